@@ -1,0 +1,4 @@
+//! Ninebit: a deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners.
+
+pub mod frame;
+pub mod state;

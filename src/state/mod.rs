@@ -1,0 +1,120 @@
+//! Decoded hardware state: what the chip is told to do, in its own terms.
+//!
+//! Plain data with exhaustive enums and public fields; nothing here renders, parses or fails. The scene front end produces a
+//! [`Scene`], the [plan](crate::plan) reduces it to what can reach the frame, and the independent oracle of the test suite
+//! reads it directly. State knows neither RON nor image files.
+
+mod combiner;
+mod named;
+mod policy;
+mod primitive;
+mod rop;
+mod texture;
+
+pub use combiner::{
+    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
+    MuxSelect, Portion, Register, Scale,
+};
+pub use named::Named;
+pub(crate) use named::named;
+pub use policy::{
+    DotRounding, ExpandCentre, HalfBiasConstant, LerpRounding, MuxNegative, OutputRounding, POLICIES, Policies, Policy,
+    PolicyError, RegisterFloor, SumRounding,
+};
+pub use primitive::{
+    Cull, Fog, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology, Vertex, VertexColor, Viewport,
+};
+pub use rop::{
+    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthBuffer, DepthFormat, DepthTest, SurfaceFormat,
+    Target,
+};
+pub use texture::{AddressMode, Filter, TEXTURE_UNITS, Texture, TextureFormat, TextureImage, TextureUnit};
+
+named! {
+    /// Which chip is modelled: its limits and the rules that differ.
+    pub enum Profile {
+        /// GeForce 256 (NV10): two general stages, two texture units.
+        Nv10,
+        /// The Xbox's NV2A: eight general stages, four texture units, blue-to-alpha. The measured profile.
+        Nv2a,
+    }
+}
+
+impl Profile {
+    /// General combiner stages available.
+    pub fn general_stages(self) -> usize {
+        match self {
+            Profile::Nv10 => 2,
+            Profile::Nv2a => 8,
+        }
+    }
+
+    /// Texture units available.
+    pub fn texture_units(self) -> usize {
+        match self {
+            Profile::Nv10 => 2,
+            Profile::Nv2a => 4,
+        }
+    }
+}
+
+/// A checked scene: render targets, textures, and draws in order.
+///
+/// Every index is in range and every combination is legal for the profile; positions within the limits of RAS-0 are
+/// established by [`Plan::compile`](crate::plan::Plan::compile).
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scene {
+    /// The chip.
+    pub profile: Profile,
+    /// Render targets; the first is the default one.
+    pub targets: Vec<Target>,
+    /// Textures, referred to by index from [`TextureUnit::texture`].
+    pub textures: Vec<Texture>,
+    /// Draws in submission order.
+    pub draws: Vec<Draw>,
+}
+
+/// One draw call with all of its state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Draw {
+    /// Name for messages and traces.
+    pub name: String,
+    /// Index into [`Scene::targets`].
+    pub target: usize,
+    /// How positions are to be read.
+    pub positions: Positions,
+    /// Vertices.
+    pub vertices: Vec<Vertex>,
+    /// Indices into `vertices`, in the order of `topology`.
+    pub indices: Vec<u32>,
+    /// How indices form triangles (RAS-4).
+    pub topology: Topology,
+    /// Smooth or flat colours (RAS-5).
+    pub shade_model: ShadeModel,
+    /// Which vertex gives the colour of a flat triangle (RAS-5).
+    pub provoking_vertex: ProvokingVertex,
+    /// Perspective-corrected weights (INT-1); off: screen-linear.
+    pub perspective: bool,
+    /// Which faces are dropped.
+    pub cull: Cull,
+    /// Which winding on screen is the front.
+    pub front_face: FrontFace,
+    /// Pixels outside are not drawn. `None`: the whole target.
+    pub scissor: Option<Rectangle>,
+    /// Fog colour and whether the vertices' fog factor is used.
+    pub fog: Fog,
+    /// Texture units; `None` is an unbound unit (TEX-16).
+    pub textures: [Option<TextureUnit>; TEXTURE_UNITS],
+    /// Register combiners.
+    pub combiners: Combiners,
+    /// Alpha test (ROP-1). `None`: every fragment passes.
+    pub alpha_test: Option<AlphaTest>,
+    /// Depth test (DEP-1, DEP-2). `None`: neither test nor write.
+    pub depth_test: Option<DepthTest>,
+    /// Blend (ROP-2 to ROP-4). `None`: the source replaces the destination.
+    pub blend: Option<Blend>,
+    /// Blend constant, R, G, B, A bytes (NUM-5).
+    pub blend_constant: [u8; 4],
+    /// Channels that are written, R, G, B, A (ROP-6).
+    pub color_mask: [bool; 4],
+}

@@ -1,0 +1,144 @@
+//! Vertices and how they become triangles.
+
+use super::named;
+
+named! {
+    /// How a list of indices forms triangles (RAS-4).
+    pub enum Topology {
+        /// Three indices each.
+        Triangles,
+        /// Triangle i: even (i, i+1, i+2), odd (i+1, i, i+2).
+        TriangleStrip,
+        /// Triangle i: (0, i, i+1).
+        TriangleFan,
+        /// Four indices each: (0, 1, 2) (0, 2, 3).
+        Quads,
+        /// Two more indices each: (0, 1, 2) (2, 1, 3).
+        QuadStrip,
+        /// One polygon: (0, i, i+1).
+        Polygon,
+    }
+}
+named! {
+    /// Smooth or flat colours.
+    pub enum ShadeModel {
+        /// Colours are interpolated.
+        Smooth,
+        /// The provoking vertex's colours hold for the whole triangle.
+        Flat,
+    }
+}
+named! {
+    /// Which vertex provides flat colours (RAS-5). Quads, quad strips and polygons ignore it.
+    pub enum ProvokingVertex {
+        /// The first.
+        First,
+        /// The last.
+        Last,
+    }
+}
+named! {
+    /// Faces that are dropped.
+    pub enum Cull {
+        /// None.
+        None,
+        /// Front faces.
+        Front,
+        /// Back faces.
+        Back,
+    }
+}
+named! {
+    /// The winding, on screen with y down as the viewer sees it, that makes a front face.
+    pub enum FrontFace {
+        /// Counter-clockwise.
+        CounterClockwise,
+        /// Clockwise.
+        Clockwise,
+    }
+}
+
+/// How [`Vertex::position`] is to be read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Positions {
+    /// Window x, y in pixels (origin top left, y down), depth 0..1, and w.
+    Window,
+    /// Clip-space x, y, z, w: divided by w and mapped by the viewport in f32 (RAS-0), clipped at w = 2^-20.
+    Clip(Viewport),
+}
+
+/// Maps normalised device coordinates to the window: x' = x + (ndc.x + 1) * width / 2, y' = y + (1 - ndc.y) * height / 2,
+/// z' = near + (ndc.z + 1) * (far - near) / 2.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewport {
+    /// Left edge, pixels.
+    pub x: f32,
+    /// Top edge, pixels.
+    pub y: f32,
+    /// Width, pixels.
+    pub width: f32,
+    /// Height, pixels.
+    pub height: f32,
+    /// Depth of ndc.z = -1.
+    pub near: f32,
+    /// Depth of ndc.z = 1.
+    pub far: f32,
+}
+
+/// A vertex colour as it was given.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum VertexColor {
+    /// R, G, B, A bytes, used as they are.
+    Bytes([u8; 4]),
+    /// R, G, B, A floats, converted by NUM-4.
+    Floats([f32; 4]),
+}
+
+/// One vertex.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vertex {
+    /// Position, read as [`Positions`] says.
+    pub position: [f32; 4],
+    /// Diffuse: the primary colour. Absent in a scene: white, opaque.
+    pub diffuse: VertexColor,
+    /// Specular: the secondary colour. Absent in a scene: zero.
+    pub specular: VertexColor,
+    /// Fog factor, 0 (all fog) to 1 (no fog).
+    pub fog: f32,
+    /// Four coordinate sets of s, t, r, q. Absent components are 0, 0, 0, 1.
+    pub texture_coordinates: [[f32; 4]; 4],
+}
+
+impl Default for Vertex {
+    fn default() -> Self {
+        Vertex {
+            position: [0.0, 0.0, 0.0, 1.0],
+            diffuse: VertexColor::Bytes([255; 4]),
+            specular: VertexColor::Bytes([0; 4]),
+            fog: 1.0,
+            texture_coordinates: [[0.0, 0.0, 0.0, 1.0]; 4],
+        }
+    }
+}
+
+/// Fog colour, and whether the fog factor of the vertices reaches FOG.a (off: 255).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fog {
+    /// Interpolated fog factors are used.
+    pub enabled: bool,
+    /// R, G, B bytes of the fog register.
+    pub color: [u8; 3],
+}
+
+/// A rectangle of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Rectangle {
+    /// First column.
+    pub x: u32,
+    /// First row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}

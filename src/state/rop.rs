@@ -1,0 +1,226 @@
+//! Raster operations and the surfaces they write.
+
+use super::{TextureFormat, named};
+
+named! {
+    /// A comparison of two unsigned integers, incoming value on the left.
+    pub enum CompareFunction {
+        /// Never passes.
+        Never,
+        /// incoming < stored.
+        Less,
+        /// incoming = stored.
+        Equal,
+        /// incoming <= stored.
+        LessOrEqual,
+        /// incoming > stored.
+        Greater,
+        /// incoming != stored.
+        NotEqual,
+        /// incoming >= stored.
+        GreaterOrEqual,
+        /// Always passes.
+        Always,
+    }
+}
+
+impl CompareFunction {
+    /// Whether `incoming` passes against `stored`.
+    pub fn passes(self, incoming: u32, stored: u32) -> bool {
+        match self {
+            CompareFunction::Never => false,
+            CompareFunction::Less => incoming < stored,
+            CompareFunction::Equal => incoming == stored,
+            CompareFunction::LessOrEqual => incoming <= stored,
+            CompareFunction::Greater => incoming > stored,
+            CompareFunction::NotEqual => incoming != stored,
+            CompareFunction::GreaterOrEqual => incoming >= stored,
+            CompareFunction::Always => true,
+        }
+    }
+}
+
+named! {
+    /// Blend equations (ROP-2, ROP-3). S and D are source and destination, s8 reads a byte as two's complement.
+    pub enum BlendEquation {
+        /// S Fs + D Fd.
+        Add,
+        /// S Fs - D Fd.
+        Subtract,
+        /// D Fd - S Fs.
+        ReverseSubtract,
+        /// min(S, D).
+        Min,
+        /// max(S, D).
+        Max,
+        /// D + s8(S) (nv2a).
+        SignedAdd,
+        /// D - s8(S) (nv2a).
+        SignedReverseSubtract,
+    }
+}
+named! {
+    /// Blend factors (ROP-4).
+    pub enum BlendFactor {
+        /// 0.
+        Zero,
+        /// 255.
+        One,
+        /// Source colour.
+        SourceColor,
+        /// 255 - source colour.
+        OneMinusSourceColor,
+        /// Source alpha.
+        SourceAlpha,
+        /// 255 - source alpha.
+        OneMinusSourceAlpha,
+        /// Destination alpha.
+        DestinationAlpha,
+        /// 255 - destination alpha.
+        OneMinusDestinationAlpha,
+        /// Destination colour.
+        DestinationColor,
+        /// 255 - destination colour.
+        OneMinusDestinationColor,
+        /// min(source alpha, 255 - destination alpha) for colour, 255 for alpha.
+        SourceAlphaSaturate,
+        /// Blend constant's colour.
+        ConstantColor,
+        /// 255 - blend constant's colour.
+        OneMinusConstantColor,
+        /// Blend constant's alpha.
+        ConstantAlpha,
+        /// 255 - blend constant's alpha.
+        OneMinusConstantAlpha,
+    }
+}
+
+/// Alpha test (ROP-1): `function(fragment alpha, reference)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AlphaTest {
+    /// Comparison.
+    pub function: CompareFunction,
+    /// Reference byte.
+    pub reference: u8,
+}
+
+/// Depth test (DEP-2): `function(fragment depth, stored depth)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DepthTest {
+    /// Comparison.
+    pub function: CompareFunction,
+    /// Whether a passing fragment's depth is stored.
+    pub write: bool,
+}
+
+/// Blend function. Factors are ignored by Min, Max and the signed equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blend {
+    /// Equation.
+    pub equation: BlendEquation,
+    /// Factor of the source.
+    pub source: BlendFactor,
+    /// Factor of the destination.
+    pub destination: BlendFactor,
+}
+
+named! {
+    /// Colour surface formats (ROP-5). A trailing Z or O says what the unused bits are written with.
+    pub enum SurfaceFormat {
+        /// 32 bits, A in the top byte.
+        A8R8G8B8,
+        /// 32 bits, top byte written 0; destination alpha 255.
+        X8R8G8B8Z,
+        /// 32 bits, top byte written 255; destination alpha 255.
+        X8R8G8B8O,
+        /// 16 bits, truncated; destination alpha 255.
+        R5G6B5,
+        /// 16 bits, truncated, top bit written 0 (nv2a).
+        X1R5G5B5Z,
+        /// 16 bits, truncated, top bit written 1 (nv2a).
+        X1R5G5B5O,
+        /// 32 bits, seven bits of alpha, top bit written 0 (nv2a).
+        X1A7R8G8B8Z,
+        /// 32 bits, seven bits of alpha, top bit written 1 (nv2a).
+        X1A7R8G8B8O,
+        /// Blue byte only; blending is not allowed.
+        B8,
+        /// Blue and green bytes, green high; blending is not allowed (nv2a).
+        G8B8,
+    }
+}
+
+impl SurfaceFormat {
+    /// Bytes of one pixel.
+    pub fn bytes(self) -> u32 {
+        match self {
+            SurfaceFormat::R5G6B5 | SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O | SurfaceFormat::G8B8 => 2,
+            SurfaceFormat::B8 => 1,
+            SurfaceFormat::A8R8G8B8
+            | SurfaceFormat::X8R8G8B8Z
+            | SurfaceFormat::X8R8G8B8O
+            | SurfaceFormat::X1A7R8G8B8Z
+            | SurfaceFormat::X1A7R8G8B8O => 4,
+        }
+    }
+
+    /// The texture format that shows the surface as a picture: the same bits, read by TEX-1.
+    pub fn texture_format(self) -> TextureFormat {
+        match self {
+            SurfaceFormat::A8R8G8B8 | SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O => {
+                TextureFormat::A8R8G8B8
+            }
+            SurfaceFormat::X8R8G8B8Z | SurfaceFormat::X8R8G8B8O => TextureFormat::X8R8G8B8,
+            SurfaceFormat::R5G6B5 => TextureFormat::R5G6B5,
+            SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => TextureFormat::X1R5G5B5,
+            SurfaceFormat::B8 => TextureFormat::L8,
+            SurfaceFormat::G8B8 => TextureFormat::G8B8,
+        }
+    }
+}
+
+named! {
+    /// Depth buffer formats (DEP-2).
+    pub enum DepthFormat {
+        /// 16 bits.
+        Z16,
+        /// 24 bits of depth; the stencil byte is not modelled.
+        Z24S8,
+    }
+}
+
+impl DepthFormat {
+    /// Bits of depth.
+    pub fn bits(self) -> u32 {
+        match self {
+            DepthFormat::Z16 => 16,
+            DepthFormat::Z24S8 => 24,
+        }
+    }
+}
+
+/// A depth buffer and what it is cleared to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DepthBuffer {
+    /// Format.
+    pub format: DepthFormat,
+    /// Integer written by the clear, below 2^bits.
+    pub clear: u32,
+}
+
+/// A render target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    /// Name in the scene.
+    pub name: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Format.
+    pub format: SurfaceFormat,
+    /// R, G, B, A bytes; the clear stores them by the format's own rule.
+    pub clear_color: [u8; 4],
+    /// Depth buffer, if there is one.
+    pub depth: Option<DepthBuffer>,
+}
