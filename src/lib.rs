@@ -6,6 +6,7 @@ pub mod frame;
 pub mod number;
 pub mod plan;
 pub mod raster;
+pub mod report;
 pub mod rop;
 pub mod state;
 pub mod texture;

@@ -16,6 +16,10 @@ pub struct PlannedFinal {
     pub uses_product: bool,
     /// SPARE0 + SECONDARY is read by a live input.
     pub uses_sum: bool,
+    /// A live input reads a constant.
+    pub reads_constants: bool,
+    /// A or C is not always 0, so that the lerp contributes.
+    pub lerps: bool,
 }
 
 /// SPARE0 + SECONDARY above 1.0 enters the lerp and D: the sum can pass 2.0 (FIN-5).
@@ -63,8 +67,9 @@ pub fn run<L: Lane, O: Observer>(
     observer: &mut O,
 ) -> [L; 4] {
     let state = &planned.state;
-    for (n, register) in [Register::ConstantColor0, Register::ConstantColor1].into_iter().enumerate() {
-        registers.load(register, state.constants[n].map(L::byte));
+    if planned.reads_constants {
+        registers.load(Register::ConstantColor0, state.constants[0].map(L::byte));
+        registers.load(Register::ConstantColor1, state.constants[1].map(L::byte));
     }
     let mut specials = Specials { sum: [L::ZERO; 4], product: [L::ZERO; 4] };
     if planned.uses_sum {
@@ -97,6 +102,11 @@ pub fn run<L: Lane, O: Observer>(
     }
     let mut out = [L::ZERO; 4];
     for channel in (0..3).filter(|c| planned.live >> c & 1 != 0) {
+        if !planned.lerps && !O::ON {
+            // 0 B + (1 - 0) 0 + D.
+            out[channel] = read(&state.inputs[3], 3, channel, registers, &specials, observer).clamped();
+            continue;
+        }
         let [a, b, c, d] = [0, 1, 2, 3].map(|n| read(&state.inputs[n], n, channel, registers, &specials, observer));
         let raw = lerp_add(a.least(L::ONE), b, c, d, policies.lerp_rounding);
         out[channel] = raw.clamped();

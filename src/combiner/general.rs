@@ -110,6 +110,8 @@ pub struct PlannedStage {
     pub alpha: PlannedPortion,
     /// Constants of the stage, R, G, B, A bytes.
     pub constants: [[u8; 4]; 2],
+    /// A needed input reads one of them.
+    pub reads_constants: bool,
 }
 
 /// What a portion hands to its destinations: AB, CD, sum or mux, by channel.
@@ -127,8 +129,9 @@ pub fn run<L: Lane, O: Observer>(
     registers: &mut Registers<L>,
     observer: &mut O,
 ) {
-    for (n, register) in [Register::ConstantColor0, Register::ConstantColor1].into_iter().enumerate() {
-        registers.load(register, stage.constants[n].map(L::byte));
+    if stage.reads_constants {
+        registers.load(Register::ConstantColor0, stage.constants[0].map(L::byte));
+        registers.load(Register::ConstantColor1, stage.constants[1].map(L::byte));
     }
     let cd = mux_takes_cd(registers.read(Register::Spare0, 3), mux_select, policies);
     let context = Context { policies, takes_cd: cd, index: stage.index };
@@ -165,7 +168,7 @@ impl Context<'_> {
         StageReport::new(self.index, alpha)
     }
 
-    #[inline]
+    #[inline(always)]
     fn evaluate<L: Lane, O: Observer>(
         &self,
         planned: &PlannedPortion,
@@ -209,14 +212,29 @@ impl Context<'_> {
             }
         }
         let mut outputs = Outputs { values: [[L::ZERO; 4]; 3], blue: [L::ZERO; 2] };
-        for channel in first..last {
-            for n in 0..3 {
+        for n in 0..3 {
+            if planned.live[n] == 0 {
+                continue;
+            }
+            // A dot product is the same in every channel: finished once, unless somebody watches.
+            let replicated = !O::ON
+                && match n {
+                    0 => portion.ab_dot_product,
+                    1 => portion.cd_dot_product,
+                    _ => portion.ab_dot_product && portion.cd_dot_product,
+                };
+            let channels = if replicated { planned.live[n].trailing_zeros() as usize } else { first };
+            for channel in channels..last {
                 if planned.live[n] >> channel & 1 != 0 {
                     let raw = match n {
                         2 => self.third::<L, O>(portion, channel, &products, alpha, observer),
                         n => products[n][channel],
                     };
                     outputs.values[n][channel] = self.finish(portion, raw, n, channel, alpha, observer);
+                    if replicated {
+                        outputs.values[n] = [outputs.values[n][channel]; 4];
+                        break;
+                    }
                 }
             }
         }

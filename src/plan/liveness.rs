@@ -8,6 +8,9 @@ use crate::state::{
     Blend, BlendFactor, Combiners, Component, Draw, FinalInput, FinalRegister, Portion, Register, TEXTURE_UNITS,
 };
 
+/// Every channel of both constant colours.
+const CONSTANTS: u64 = 255 << (4 * Register::ConstantColor0 as usize);
+
 const RGB: u8 = 7;
 const ALPHA: u8 = 8;
 
@@ -37,9 +40,11 @@ impl Liveness {
                 ],
             });
             live &= !(written_bits(&stage.rgb, RGB) | written_bits(&stage.alpha, ALPHA));
-            live |= read_bits(&rgb, RGB) | read_bits(&alpha, ALPHA);
+            let read = read_bits(&rgb, RGB) | read_bits(&alpha, ALPHA);
+            live |= read;
             if !(rgb.is_idle() && alpha.is_idle()) {
-                stages.push(PlannedStage { index, rgb, alpha, constants: stage.constants });
+                let reads_constants = read & CONSTANTS != 0;
+                stages.push(PlannedStage { index, rgb, alpha, constants: stage.constants, reads_constants });
             }
         }
         stages.reverse();
@@ -74,7 +79,15 @@ fn fragment_channels(alpha_test: bool, blend: Option<Blend>, written: u8) -> u8 
 
 fn final_liveness(combiners: &Combiners, fragment: u8) -> (PlannedFinal, u64) {
     let state = combiners.final_combiner;
-    let mut planned = PlannedFinal { state, live: fragment, uses_product: false, uses_sum: false };
+    let mut planned = PlannedFinal {
+        state,
+        live: fragment,
+        uses_product: false,
+        uses_sum: false,
+        reads_constants: false,
+        lerps: true,
+    };
+    planned.lerps = ![state.inputs[0], state.inputs[2]].iter().all(FinalInput::is_zero);
     let mut live = 0;
     let mut read = |input: &FinalInput, channels: u8| {
         for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
@@ -112,6 +125,7 @@ fn final_liveness(combiners: &Combiners, fragment: u8) -> (PlannedFinal, u64) {
         let rgb = |register| bits(register) & !bit(register, 3);
         live |= rgb(Register::Spare0) | rgb(Register::SecondaryColor);
     }
+    planned.reads_constants = live & CONSTANTS != 0;
     (planned, live)
 }
 

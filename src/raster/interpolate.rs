@@ -56,7 +56,7 @@ impl<'a> Sample<'a> {
         [self.weight(0), self.weight(2)]
     }
 
-    #[inline]
+    #[inline(always)]
     fn weight(&self, k: usize) -> Settled {
         let (value, exact) = quotient(i128::from(self.n[k]) << 8, self.d);
         let lowered = exact && value > 0 && !self.triangle.exact_reciprocal && self.dominant() != k;
@@ -64,7 +64,7 @@ impl<'a> Sample<'a> {
     }
 
     /// INT-4, INT-4t: floor(sum G E / D), 1/256 texel.
-    #[inline]
+    #[inline(always)]
     pub fn coordinate(&self, g: &[i64; 3]) -> Settled {
         let (value, exact) = quotient(self.sum(g), self.d);
         let lowered = exact && !self.triangle.exact_reciprocal && self.truncation(g) > 0;
@@ -170,7 +170,7 @@ fn dominant(n: [i64; 3], d: i64) -> usize {
 /// floor(n / d) and whether nothing remains. 0 < d < 2^62, |n / d| < 2^26.
 ///
 /// The 128-bit division is avoided: the top 35 bits of d estimate the quotient within one step, and the exact remainder settles it.
-#[inline]
+#[inline(always)]
 fn quotient(n: i128, d: i64) -> (i64, bool) {
     let excess = (64 - d.leading_zeros()).saturating_sub(35);
     let mut value = ((n >> excess) as i64).div_euclid(d >> excess);

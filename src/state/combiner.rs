@@ -219,6 +219,11 @@ impl FinalInput {
     pub fn zero(component: Component) -> Self {
         FinalInput { register: FinalRegister::Zero, component, invert: false }
     }
+
+    /// Whether the input is 0 whatever the pixel.
+    pub fn is_zero(&self) -> bool {
+        self.register == FinalRegister::Zero && !self.invert
+    }
 }
 
 /// The final combiner: rgb = A B + (1 - A) C + D, alpha = G.

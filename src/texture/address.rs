@@ -3,7 +3,7 @@
 use crate::state::AddressMode;
 
 /// The index inside 0..n of texel `i`, or `None` for the border colour. `n` is a power of two.
-#[inline]
+#[inline(always)]
 pub fn address(mode: AddressMode, i: i64, n: u32) -> Option<u32> {
     let last = i64::from(n) - 1;
     match mode {

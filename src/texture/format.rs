@@ -27,7 +27,7 @@ pub fn replicate6(v: u32) -> u8 {
 }
 
 /// R, G, B, A bytes of a raw texel.
-#[inline]
+#[inline(always)]
 pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
     let byte = |shift: u32| (word >> shift) as u8;
     match format {
@@ -44,6 +44,7 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
 }
 
 /// [`expand`] with the field values that the ideal takes: 5-bit channels as v/31.
+#[inline(always)]
 pub fn channels(format: TextureFormat, word: u32) -> [Channel; 4] {
     let bytes = expand(format, word);
     let fields: [(u32, u8); 4] = match format {

@@ -139,7 +139,7 @@ pub fn sample<L: Lane, O: Observer>(
 }
 
 /// TEX-7, TEX-8: the texel at an index that may lie outside.
-#[inline]
+#[inline(always)]
 fn fetch(unit: &PlannedUnit, words: &[u32], x: i64, y: i64) -> Texel {
     let inside = address(unit.state.address_s, x, unit.width).zip(address(unit.state.address_t, y, unit.height));
     match inside {

@@ -1,0 +1,125 @@
+//! The scalar engine on whole frames: DOT3 of one bilinear normal map and the interpolated light vector, 640x480.
+#![allow(missing_docs, clippy::float_arithmetic, clippy::unwrap_used, reason = "a benchmark")]
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use ninebit::engine::{RenderOptions, render};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::*;
+use std::hint::black_box;
+
+const WIDTH: u32 = 640;
+const HEIGHT: u32 = 480;
+
+/// A bumpy normal map: any bytes do, as long as they vary from texel to texel.
+fn normal_map() -> Texture {
+    let words = (0..256 * 256_u32)
+        .map(|n| {
+            let (x, y) = (n & 255, n >> 8);
+            let wave = |a: u32, b: u32| 96 + ((a * 7 + b * 3) & 63);
+            0xff00_0000 | wave(x, y) << 16 | wave(y, x) << 8 | (230 + (x ^ y) % 20)
+        })
+        .collect();
+    let image = TextureImage::Texels { width: 256, height: 256, format: TextureFormat::A8R8G8B8, words };
+    Texture { name: "normals".to_string(), image }
+}
+
+fn input(register: Register, mapping: InputMapping) -> CombinerInput {
+    CombinerInput { register, component: Component::Rgb, mapping }
+}
+
+/// spare0 = expand(texture0) . expand(primary), shown as it is.
+fn dot3() -> Combiners {
+    let mut rgb = Portion::idle(Component::Rgb);
+    rgb.inputs[0] = input(Register::Texture0, InputMapping::ExpandNormal);
+    rgb.inputs[1] = input(Register::PrimaryColor, InputMapping::ExpandNormal);
+    (rgb.ab_output, rgb.ab_dot_product) = (Register::Spare0, true);
+    let stage = GeneralStage { rgb, alpha: Portion::idle(Component::Alpha), constants: [[0; 4]; 2] };
+    let mut inputs = [FinalInput::zero(Component::Rgb); 6];
+    inputs[3].register = FinalRegister::Spare0;
+    let g = FinalInput { register: FinalRegister::Zero, component: Component::Alpha, invert: true };
+    let final_combiner = FinalCombiner {
+        inputs,
+        g,
+        color_sum_clamp: false,
+        invert_spare0: false,
+        invert_secondary: false,
+        constants: [[0; 4]; 2],
+    };
+    Combiners { stages: vec![stage], mux_select: MuxSelect::Msb, final_combiner }
+}
+
+fn scene(perspective: bool) -> Scene {
+    let corner = |x: f32, y: f32, diffuse: [u8; 4]| {
+        let w = if perspective && y == 0.0 { 2.0 } else { 1.0 };
+        let mut vertex = Vertex {
+            position: [x * WIDTH as f32, y * HEIGHT as f32, 0.0, w],
+            diffuse: VertexColor::Bytes(diffuse),
+            ..Vertex::default()
+        };
+        vertex.texture_coordinates[0] = [2.0 * x, 1.5 * y, 0.0, 1.0];
+        vertex
+    };
+    let vertices = vec![
+        corner(0.0, 1.0, [200, 180, 210, 255]),
+        corner(1.0, 1.0, [50, 170, 200, 255]),
+        corner(1.0, 0.0, [60, 90, 220, 255]),
+        corner(0.0, 0.0, [210, 70, 190, 255]),
+    ];
+    let unit = TextureUnit {
+        texture: 0,
+        coordinate_set: 0,
+        address_s: AddressMode::Wrap,
+        address_t: AddressMode::Wrap,
+        filter: Filter::Linear,
+        border_color: [0; 4],
+        signed: [false; 4],
+    };
+    let draw = Draw {
+        name: "surface".to_string(),
+        target: 0,
+        positions: Positions::Window,
+        vertices,
+        indices: vec![0, 1, 2, 3],
+        topology: Topology::Quads,
+        shade_model: ShadeModel::Smooth,
+        provoking_vertex: ProvokingVertex::First,
+        perspective: true,
+        cull: Cull::None,
+        front_face: FrontFace::CounterClockwise,
+        scissor: None,
+        fog: Fog { enabled: false, color: [0; 3] },
+        textures: [Some(unit), None, None, None],
+        combiners: dot3(),
+        alpha_test: None,
+        depth_test: None,
+        blend: None,
+        blend_constant: [0; 4],
+        color_mask: [true; 4],
+    };
+    let target = Target {
+        name: "frame".to_string(),
+        width: WIDTH,
+        height: HEIGHT,
+        format: SurfaceFormat::A8R8G8B8,
+        clear_color: [0, 0, 0, 255],
+        depth: None,
+    };
+    Scene { profile: Profile::Nv10, targets: vec![target], textures: vec![normal_map()], draws: vec![draw] }
+}
+
+fn engine(c: &mut Criterion) {
+    let mut group = c.benchmark_group("dot3_frame");
+    group.throughput(Throughput::Elements(u64::from(WIDTH * HEIGHT))).sample_size(20);
+    for (name, perspective) in [("perspective", true), ("flat", false)] {
+        let plan = Plan::compile(&scene(perspective), &PlanOptions::default()).unwrap();
+        for threads in [1, 2] {
+            group.bench_function(format!("{name}/{threads}_thread"), |b| {
+                b.iter(|| render(black_box(&plan), &RenderOptions { threads }));
+            });
+        }
+    }
+    group.finish();
+}
+
+criterion_group!(benches, engine);
+criterion_main!(benches);

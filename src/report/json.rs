@@ -1,0 +1,61 @@
+//! A trace as one JSON document; `docs/trace-format.md` describes it.
+
+use crate::engine::{DrawTrace, PixelTrace};
+use crate::plan::Plan;
+use crate::state::{Named, POLICIES};
+use crate::trace::{Operand, Step};
+use serde_json::{Map, Value, json};
+
+/// Version of the document.
+const VERSION: u32 = 1;
+
+/// The trace of a pixel as one JSON document, ended by a newline.
+pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
+    let policies: Map<String, Value> =
+        POLICIES.iter().map(|p| (p.rule.to_string(), json!(p.values[plan.policies.chosen(p.rule)].0))).collect();
+    let document = json!({
+        "format": "ninebit-trace",
+        "version": VERSION,
+        "profile": plan.profile.name(),
+        "policies": policies,
+        "target": trace.target,
+        "pixel": [trace.x, trace.y],
+        "cleared": trace.cleared,
+        "shown": trace.shown,
+        "word": trace.word,
+        "draws": trace.draws.iter().map(draw).collect::<Vec<_>>(),
+    });
+    let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+fn draw(draw: &DrawTrace) -> Value {
+    json!({
+        "draw": draw.draw,
+        "name": draw.name,
+        "triangle": draw.triangle,
+        "stored": draw.stored,
+        "shown": draw.shown,
+        "steps": draw.steps.iter().map(step).collect::<Vec<_>>(),
+    })
+}
+
+fn step(step: &Step) -> Value {
+    json!({
+        "block": step.block,
+        "rule": step.rule,
+        "name": step.name,
+        "operation": step.operation,
+        "inputs": step.inputs.iter().map(operand).collect::<Vec<_>>(),
+        "value": step.value,
+        "per_one": step.per_one,
+        "real": step.real(),
+        "ideal": step.ideal,
+        "note": step.note,
+    })
+}
+
+fn operand(operand: &Operand) -> Value {
+    json!({ "name": operand.name, "value": operand.value, "per_one": operand.per_one })
+}

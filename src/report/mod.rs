@@ -1,0 +1,7 @@
+//! Traces as people and programs read them.
+
+mod json;
+mod text;
+
+pub use json::trace_json;
+pub use text::trace_text;

@@ -1,0 +1,129 @@
+//! A trace as text: one line a step, the integer, its real value, the ideal and the rule.
+
+use crate::engine::{DrawTrace, PixelTrace};
+use crate::plan::Plan;
+use crate::state::{Named, POLICIES};
+use crate::trace::{Operand, Step};
+use std::fmt::Write;
+
+/// The trace of a pixel as text.
+pub fn trace_text(plan: &Plan, trace: &PixelTrace) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(&mut out, plan, trace);
+    out
+}
+
+fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result {
+    let [r, g, b, a] = trace.cleared;
+    writeln!(out, "pixel {},{} of target `{}`, profile {}", trace.x, trace.y, trace.target, plan.profile.name())?;
+    for policy in POLICIES {
+        let chosen = plan.policies.chosen(policy.rule);
+        if chosen != 0 {
+            writeln!(out, "policy {}={}: {}", policy.rule, policy.values[chosen].0, policy.values[chosen].1)?;
+        }
+    }
+    writeln!(out, "cleared to R {r} G {g} B {b} A {a}")?;
+    if trace.draws.is_empty() {
+        writeln!(out, "\nno triangle covers this pixel")?;
+    }
+    for draw in &trace.draws {
+        write_draw(out, draw)?;
+    }
+    let [r, g, b, a] = trace.shown;
+    writeln!(out, "\nat the end the surface holds {:#010x}, shown as R {r} G {g} B {b} A {a}", trace.word)
+}
+
+fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
+    writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, draw.name, draw.triangle)?;
+    let mut block = "";
+    let lines: Vec<(String, String)> = draw.steps.iter().map(|s| (s.name.clone(), expression(s))).collect();
+    // Long expressions do not push the columns of all others.
+    let width =
+        |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
+    let (names, expressions) = (width(|l| l.0.chars().count(), 24), width(|l| l.1.chars().count(), 58));
+    for (step, (name, expression)) in draw.steps.iter().zip(&lines) {
+        if step.block != block {
+            block = &step.block;
+            writeln!(out, "  {block}")?;
+        }
+        let real = if step.per_one == 1 { String::new() } else { format!("{:.6}", step.real()) };
+        let ideal = step.ideal.filter(|_| step.per_one != 1).map_or(String::new(), |i| format!("{i:.6}"));
+        let line = format!(
+            "    {name:names$}  {expression:expressions$}  {:>12} {real:>12} {ideal:>12}  {}",
+            step.value, step.rule
+        );
+        match &step.note {
+            Some(note) => writeln!(out, "{line:<8}  {note}")?,
+            None => writeln!(out, "{}", line.trim_end())?,
+        }
+    }
+    let [r, g, b, a] = draw.shown;
+    let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
+    writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
+}
+
+/// How a value came about, with the operands' integers.
+fn expression(step: &Step) -> String {
+    let value = |n: usize| step.inputs.get(n).map_or(String::new(), |o| o.value.to_string());
+    let pairs = |inputs: &[Operand]| {
+        let products: Vec<String> =
+            inputs.chunks(2).map(|p| format!("{} * {}", p[0].value, p[p.len() - 1].value)).collect();
+        products.join(" + ")
+    };
+    match step.operation {
+        "given" => String::new(),
+        "product" | "dot_product" | "sum_of_products" => pairs(&step.inputs),
+        "edge_function" => {
+            format!("{} * {} + {} * {} + {}", value(0), value(3), value(1), value(4), value(2))
+        }
+        "floor_weight" => format!("floor(256 * {} * {} / {})", value(0), value(1), value(2)),
+        "remainder_weight" => format!("256 - {} - {}", value(0), value(1)),
+        "interpolate" => format!(
+            "({} * {} + {} * {} + {} * {} + 128) >> 8",
+            value(0),
+            value(3),
+            value(1),
+            value(4),
+            value(2),
+            value(5)
+        ),
+        "floor_plane" => {
+            let axis = step.name.rsplit('.').next().unwrap_or_default();
+            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)")
+        }
+        "floor_ratio" => {
+            let axis = step.name.rsplit('.').next().unwrap_or_default();
+            format!("floor(256 * {} * N_{axis} / N_q)", value(9))
+        }
+        "nearest_texel" => format!("{} >> 8", value(0)),
+        "linear_texel" => format!("({} - 128) >> 8", value(0)),
+        "linear_texel_next" => format!("(({} - 128) >> 8) + 1", value(0)),
+        "linear_weight" => format!("({} - 128) & 255", value(0)),
+        "mix" => format!("({} * (256 - {}) + {} * {} + 128) >> 8", value(0), value(2), value(1), value(2)),
+        "expand_texel" | "expand_texel_signed" | "read_surface" => {
+            let (format, channel) = (&step.inputs[1].name, &step.inputs[2].name);
+            format!("{channel} of {} as {format}", step.inputs[0].name)
+        }
+        "fetch" => format!("texel ({}, {})", value(0), value(1)),
+        "round_255" => format!("nearest 255th of {}", value(0)),
+        "bias" => format!("{} - 128", value(0)),
+        "scale_2" => format!("{} * 2", value(0)),
+        "scale_4" => format!("{} * 4", value(0)),
+        "scale_half" => format!("({} + 1) >> 1", value(0)),
+        "lerp_add" => {
+            format!("({} * {} + (255 - {}) * {}) / 255 + {}", value(0), value(1), value(0), value(2), value(3))
+        }
+        "blend_add" => format!("({} * {} + {} * {}) / 255", value(0), value(2), value(1), value(3)),
+        "blend_subtract" => format!("({} * {} - {} * {}) / 255", value(0), value(2), value(1), value(3)),
+        "blend_reverse_subtract" => format!("({} * {} - {} * {}) / 255", value(1), value(3), value(0), value(2)),
+        "store" => {
+            let channels: Vec<String> = step.inputs[3..].iter().map(|o| format!("{} {}", o.name, o.value)).collect();
+            format!("{}({})", step.inputs[0].name, channels.join(", "))
+        }
+        operation => {
+            let operands: Vec<String> = step.inputs.iter().map(|o| format!("{} {}", o.name, o.value)).collect();
+            format!("{operation}({})", operands.join(", "))
+        }
+    }
+}
