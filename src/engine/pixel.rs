@@ -11,7 +11,7 @@ use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
 use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
 use crate::texture::unit::{self, Coordinates};
-use crate::trace::{Observer, Step, plain, report};
+use crate::trace::{Observer, Operand, Step, plain, report};
 
 /// A triangle of a draw, set up.
 pub(super) struct TriangleContext<'a> {
@@ -196,7 +196,7 @@ impl<'a> TriangleContext<'a> {
                 let mut step = Step::given("fog", "INT-5", "fog.4096", v).by("floor_factor", inputs);
                 step.per_one = 4096;
                 observer.step(step);
-                let inputs = vec![plain("fog.4096", v)];
+                let inputs = vec![Operand { per_one: 4096, ..plain("fog.4096", v) }];
                 observer.step(report::register_step("fog", "NUM-6", "fog.a", factor).by("factor_byte", inputs));
             }
             factor

@@ -138,7 +138,8 @@ impl TriangleContext<'_> {
         let step = Step::given(BLOCK, "DEP-1", "z", i64::from(z)).per(draw.depth_full).by("depth", inputs);
         observer.step(step.ideal(Some(real)));
         observer.step(Step::given(BLOCK, "", "z.stored", i64::from(stored)).per(draw.depth_full));
-        let inputs = vec![plain("z", i64::from(z)), plain("z.stored", i64::from(stored))];
+        let depth = |name: &str, value: u32| Operand { per_one: draw.depth_full, ..plain(name, i64::from(value)) };
+        let inputs = vec![depth("z", z), depth("z.stored", stored)];
         observer.step(
             Step::given(BLOCK, "DEP-2", "depth_test.passed", i64::from(passed))
                 .by(blend::compare_operation(test.function), inputs)
@@ -225,7 +226,7 @@ impl TriangleContext<'_> {
             );
         }
         if let Some(z) = depth {
-            let inputs = vec![plain("z", i64::from(z))];
+            let inputs = vec![Operand { per_one: draw.depth_full, ..plain("z", i64::from(z)) }];
             observer
                 .step(Step::given(BLOCK, "DEP-2", "stored.z", i64::from(z)).per(draw.depth_full).by("write", inputs));
         }
