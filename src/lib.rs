@@ -3,10 +3,15 @@
 pub mod combiner;
 pub mod engine;
 pub mod frame;
+pub mod generate;
+mod guard;
 pub mod number;
+pub mod output;
+pub mod picture;
 pub mod plan;
 pub mod raster;
 pub mod rop;
+pub mod scene;
 pub mod state;
 pub mod texture;
 pub mod trace;
