@@ -5,6 +5,7 @@ pub mod engine;
 pub mod frame;
 pub mod generate;
 mod guard;
+pub mod limits;
 pub mod number;
 pub mod output;
 pub mod picture;
