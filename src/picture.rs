@@ -3,7 +3,7 @@
 use sha2::{Digest, Sha256};
 
 use crate::frame::Surface;
-use crate::state::TextureFormat;
+use crate::rop::surface::show;
 
 impl Surface {
     /// The surface as R, G, B, A, row by row from the top: the stored bits read by rule TEX-1 as
@@ -11,8 +11,7 @@ impl Surface {
     ///
     /// Bits that the format does not store come out as TEX-1 says: alpha 255 where there is none, blue in red for B8 and G8B8.
     pub fn rgba8(&self) -> Vec<[u8; 4]> {
-        let format = self.format.texture_format();
-        self.words.iter().map(|word| decode(format, *word)).collect()
+        self.words.iter().map(|word| show(self.format, *word)).collect()
     }
 
     /// SHA-256, in lower-case hexadecimal, of width and height (four bytes each, little-endian) and the bytes of
@@ -31,26 +30,6 @@ pub fn digest(width: u32, height: u32, pixels: &[[u8; 4]]) -> String {
     hash.update(height.to_le_bytes());
     hash.update(pixels.as_flattened());
     hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// One stored pixel, by TEX-1.
-fn decode(format: TextureFormat, word: u32) -> [u8; 4] {
-    let byte = |shift: u32| (word >> shift) as u8;
-    match format {
-        TextureFormat::A8R8G8B8 => [byte(16), byte(8), byte(0), byte(24)],
-        TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), 255],
-        TextureFormat::R5G6B5 => [widen(word >> 11, 5), widen(word >> 5, 6), widen(word, 5), 255],
-        TextureFormat::X1R5G5B5 => [widen(word >> 10, 5), widen(word >> 5, 5), widen(word, 5), 255],
-        TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
-        TextureFormat::A8 => [255, 255, 255, byte(0)],
-        TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
-    }
-}
-
-/// The lowest `bits` (4 to 8) of `value`, widened to eight by repeating the topmost ones.
-fn widen(value: u32, bits: u32) -> u8 {
-    let value = value & ((1 << bits) - 1);
-    ((value << (8 - bits)) | (value >> (2 * bits - 8))) as u8
 }
 
 #[cfg(test)]
@@ -77,18 +56,6 @@ mod tests {
             (G8B8, 0x1242, [0x42, 0x12, 0x42, 0x12]),
         ] {
             assert_eq!(one(format, word), expected, "{format:?} {word:#x}");
-        }
-    }
-
-    #[test]
-    fn widening_repeats_the_top_bits() {
-        for bits in 4..=8 {
-            let most = (1 << bits) - 1;
-            assert_eq!((widen(0, bits), widen(most, bits)), (0, 255));
-            for value in 0..most {
-                assert!(widen(value, bits) < widen(value + 1, bits));
-                assert_eq!(u32::from(widen(value, bits)) >> (8 - bits), value);
-            }
         }
     }
 

@@ -59,10 +59,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     clock.lap("load");
     let plan = arguments.scene.plan(&scene)?;
     clock.lap("plan");
-    let frames = {
+    let (frames, statistics) = {
         let progress = Progress::new("rendering", context.color);
-        progress.report(0, 1);
-        engine::render(&plan, &RenderOptions { threads: arguments.threads })
+        let options = RenderOptions { threads: arguments.threads };
+        engine::render_counted(&plan, &options, &|done, total| progress.report(done as u64, total as u64))
     };
     clock.lap("render");
     let surface = &frames.surfaces[target];
@@ -82,11 +82,19 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
                 })
             })
             .collect();
+        let draws: Vec<_> = scene
+            .draws
+            .iter()
+            .zip(&statistics.shaded_pixels)
+            .map(|(draw, shaded)| json!({ "name": draw.name, "shaded_pixels": shaded }))
+            .collect();
         let value = json!({
             "format": "ninebit-stats-1",
             "version": env!("CARGO_PKG_VERSION"),
             "profile": scene.profile.name(),
             "cost": Cost::of(&scene),
+            "shaded_pixels": statistics.shaded_pixels.iter().sum::<u64>(),
+            "draws": draws,
             "targets": targets,
             "microseconds": clock.laps,
         });

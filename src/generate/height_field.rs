@@ -1,13 +1,13 @@
 //! Height fields of weathered rock, in integers.
 //!
-//! Three things make the picture: broken facets (cells around scattered points, each a plane of its own tilt), cracks where
-//! cells meet, and weathering (fractal value noise, which also bends the edges of the cells). All of it is periodic, so the
-//! image tiles without a seam.
+//! Three things make the picture: blocks and chips (cells around scattered points, each a plane of its own level and tilt), the
+//! rounding of their edges, and weathering (fractal value noise, which also bends the edges of the cells). All of it is
+//! periodic, so the image tiles without a seam.
 
 use crate::scene::image::Rgba;
 
 /// Sides that [`rocks`] accepts.
-pub const SIDES: std::ops::RangeInclusive<u32> = 16..=4096;
+pub const SIDES: std::ops::RangeInclusive<u32> = 16..=2048;
 
 /// One in the 16.16 fixed-point numbers used here.
 const ONE: i64 = 1 << 16;
@@ -17,8 +17,18 @@ const ONE: i64 = 1 << 16;
 /// The same `side` and `seed` give the same bytes everywhere. `side` is brought into [`SIDES`].
 pub fn rocks(side: u32, seed: u64) -> Rgba {
     let side = side.clamp(*SIDES.start(), *SIDES.end());
-    let heights: Vec<i64> =
-        (0..side).flat_map(|y| (0..side).map(move |x| (x, y))).map(|(x, y)| rock(x, y, side, seed)).collect();
+    // Four samples a pixel: where one block stands above another the step is not a staircase.
+    let point = |column: u32, row: u32| {
+        let along = |index: u32| i64::from(index) * ONE / i64::from(2 * side);
+        rock(along(column), along(row), seed)
+    };
+    let mut heights = Vec::with_capacity((side * side) as usize);
+    for y in 0..side {
+        for x in 0..side {
+            let four = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(i, j)| point(2 * x + i, 2 * y + j));
+            heights.push(four.iter().sum::<i64>());
+        }
+    }
     let lowest = heights.iter().copied().min().unwrap_or(0);
     let span = (heights.iter().copied().max().unwrap_or(0) - lowest).max(1);
     let pixels = heights
@@ -31,27 +41,30 @@ pub fn rocks(side: u32, seed: u64) -> Rgba {
     Rgba { width: side, height: side, pixels }
 }
 
-/// Height at a pixel, 16.16.
-fn rock(x: u32, y: u32, side: u32, seed: u64) -> i64 {
-    // Position in the unit square, then bent: weathered edges are not straight.
-    let (u, v) = (i64::from(x) * ONE / i64::from(side), i64::from(y) * ONE / i64::from(side));
+/// Height at a point of the unit square, 16.16 as its coordinates.
+fn rock(u: i64, v: i64, seed: u64) -> i64 {
+    // The places of blocks and chips are bent: weathered edges are not straight.
     let bend = |salt: u64| fractal(u, v, 6, 4, seed ^ salt) - ONE / 2;
     let (bent_u, bent_v) = (u + bend(0xb1) / 9, v + bend(0xb2) / 9);
 
     let blocks = facets(bent_u, bent_v, 5, seed ^ 0xf1);
     let chips = facets(bent_u, bent_v, 13, seed ^ 0xf2);
     let swell = fractal(u, v, 3, 3, seed ^ 0x51);
-    let grain = fractal(u, v, 32, 3, seed ^ 0x91);
-    let weather = ridged(bent_u, bent_v, 8, 4, seed ^ 0xa1);
-    swell * 5 / 10 + blocks.height * 6 / 10 + chips.height * 25 / 100 + weather * 3 / 10 + grain * 7 / 100
-        - crack(blocks.edge, ONE / 14) * 3 / 10
-        - crack(chips.edge, ONE / 12) * 7 / 100
+    let grain = fractal(u, v, 24, 3, seed ^ 0x91);
+    let weather = ridged(bent_u, bent_v, 6, 5, seed ^ 0xa1);
+    swell * 40 / 100
+        + blocks.height * 35 / 100
+        + round(blocks.edge, ONE / 2) * 35 / 100
+        + chips.height * 16 / 100
+        + round(chips.edge, ONE / 3) * 8 / 100
+        + weather * 30 / 100
+        + grain * 22 / 100
 }
 
-/// How deep a crack is at a distance from it: 1 on it, 0 from `width` on, steep at the bottom.
-fn crack(edge: i64, width: i64) -> i64 {
-    let near = (width - edge).max(0) * ONE / width;
-    near * near / ONE
+/// How high a worn block is at a distance from its edge: 0 on it, 1 from `width` on, steep at the edge and level at the top.
+fn round(edge: i64, width: i64) -> i64 {
+    let below = (width - edge).max(0) * ONE / width;
+    ONE - below * below / ONE
 }
 
 /// A point's place among the facets.
@@ -78,10 +91,8 @@ fn facets(u: i64, v: i64, cells: i64, seed: u64) -> Facet {
                 second = nearest;
                 nearest = distance;
                 // Level 0..1, tilt -1..1 along x and y.
-                let (tilt_x, tilt_y) = (
-                    2 * (random >> 48) as i64 - ONE,
-                    2 * (hash(i.rem_euclid(cells), j.rem_euclid(cells), !seed) & 0xffff) as i64 - ONE,
-                );
+                let tilt = hash(i.rem_euclid(cells), j.rem_euclid(cells), !seed);
+                let (tilt_x, tilt_y) = (2 * (random >> 48) as i64 - ONE, 2 * (tilt & 0xffff) as i64 - ONE);
                 height = field(32) + (dx * tilt_x + dy * tilt_y) / ONE;
             } else if distance < second {
                 second = distance;
