@@ -25,7 +25,7 @@ use terminal::{ColorChoice, Level};
 #[command(name = "ninebit", version, after_help = exit::HELP, max_term_width = 100)]
 struct Cli {
     /// Colour on stderr: on a terminal unless NO_COLOR is set, or always, or never
-    #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto, hide_possible_values = true, value_name = "auto|always|never")]
+    #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 900, value_name = "auto|always|never")]
     color: ColorChoice,
     #[command(subcommand)]
     command: Command,
