@@ -2,6 +2,7 @@
 
 pub mod combiner;
 pub mod engine;
+pub mod expectation;
 pub mod frame;
 pub mod generate;
 mod guard;

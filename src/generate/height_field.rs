@@ -52,13 +52,10 @@ fn rock(u: i64, v: i64, seed: u64) -> i64 {
     let swell = fractal(u, v, 3, 3, seed ^ 0x51);
     let grain = fractal(u, v, 24, 3, seed ^ 0x91);
     let weather = ridged(bent_u, bent_v, 6, 5, seed ^ 0xa1);
-    swell * 40 / 100
-        + blocks.height * 35 / 100
-        + round(blocks.edge, ONE / 2) * 35 / 100
-        + chips.height * 16 / 100
-        + round(chips.edge, ONE / 3) * 8 / 100
-        + weather * 30 / 100
-        + grain * 22 / 100
+    // Blocks and chips are worn down to a common level where they meet, so that no edge is a step.
+    let block = round(blocks.edge, ONE * 7 / 20) * (ONE + blocks.height) / ONE;
+    let chip = round(chips.edge, ONE / 5) * (ONE + chips.height) / ONE;
+    swell * 40 / 100 + block * 40 / 100 + chip * 8 / 100 + weather * 34 / 100 + grain * 26 / 100
 }
 
 /// How high a worn block is at a distance from its edge: 0 on it, 1 from `width` on, steep at the edge and level at the top.
