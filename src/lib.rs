@@ -2,12 +2,19 @@
 
 pub mod combiner;
 pub mod engine;
+pub mod expectation;
 pub mod frame;
+pub mod generate;
+mod guard;
+pub mod limits;
 pub mod number;
+pub mod output;
+pub mod picture;
 pub mod plan;
 pub mod raster;
 pub mod report;
 pub mod rop;
+pub mod scene;
 pub mod state;
 pub mod texture;
 pub mod trace;

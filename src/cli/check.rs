@@ -1,0 +1,73 @@
+//! `ninebit check`.
+
+use std::fmt::Write;
+
+use clap::{Args, ValueEnum};
+use ninebit::output::write_stdout;
+use ninebit::state::{Named, Scene};
+use serde_json::json;
+
+use super::Context;
+use super::cost::Cost;
+use super::exit::Failure;
+use super::scene::SceneArguments;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// For people
+    Text,
+    /// For programs
+    Json,
+}
+
+/// Checks and plans a scene and prints its cost.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let scene = arguments.scene.load(context)?;
+    arguments.scene.plan(&scene)?;
+    let cost = Cost::of(&scene);
+    let text = match arguments.format {
+        Format::Text => text(&scene, &cost),
+        Format::Json => {
+            let value = json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost });
+            format!("{value:#}\n")
+        }
+    };
+    Ok(write_stdout(text.as_bytes())?)
+}
+
+/// The cost as a table.
+fn text(scene: &Scene, cost: &Cost) -> String {
+    let mut text = String::new();
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<16}{value}");
+    };
+    row("profile", scene.profile.name().to_owned());
+    row("draws", format!("{} ({} triangles, {} vertices)", cost.draws, cost.triangles, cost.vertices));
+    for target in &scene.targets {
+        let depth = target.depth.map_or(String::new(), |depth| format!(", depth {}", depth.format.name()));
+        let (width, height, format) = (target.width, target.height, target.format.name());
+        row("target", format!("{}: {width} x {height}, {format}{depth}", target.name));
+    }
+    row("target pixels", cost.target_pixels.to_string());
+    row("textures", format!("{} ({})", scene.textures.len(), bytes(cost.texture_bytes)));
+    row("memory", format!("about {}", bytes(cost.memory_bytes)));
+    text
+}
+
+/// A number of bytes for people, rounded up.
+fn bytes(count: u64) -> String {
+    match count {
+        0..=9_999 => format!("{count} bytes"),
+        10_000..=10_239_999 => format!("{} KiB", count.div_ceil(1 << 10)),
+        _ => format!("{} MiB", count.div_ceil(1 << 20)),
+    }
+}

@@ -1,0 +1,66 @@
+//! What rendering a scene takes, estimated without rendering it.
+
+use ninebit::state::{Draw, Scene, Target, TextureImage, Topology};
+use serde::Serialize;
+
+/// The amounts that matter.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub(crate) struct Cost {
+    /// Draw calls.
+    pub(crate) draws: u64,
+    /// Triangles of all draws, before any are culled.
+    pub(crate) triangles: u64,
+    /// Vertices of all draws.
+    pub(crate) vertices: u64,
+    /// Pixels of all targets.
+    pub(crate) target_pixels: u64,
+    /// Bytes of all textures' texels on the chip.
+    pub(crate) texture_bytes: u64,
+    /// Bytes that rendering holds at once, about.
+    pub(crate) memory_bytes: u64,
+}
+
+impl Cost {
+    /// Adds up a scene.
+    pub(crate) fn of(scene: &Scene) -> Cost {
+        let (mut texels, mut texture_bytes) = (0, 0);
+        for texture in &scene.textures {
+            if let TextureImage::Texels { width, height, format, .. } = &texture.image {
+                let area = u64::from(*width) * u64::from(*height);
+                texels += area;
+                texture_bytes += area * u64::from(format.bytes());
+            }
+        }
+        let target_pixels = scene.targets.iter().map(pixels).sum();
+        let words: u64 = scene.targets.iter().map(|t| pixels(t) * if t.depth.is_some() { 2 } else { 1 }).sum();
+        let vertices = scene.draws.iter().map(|draw| draw.vertices.len() as u64).sum();
+        let triangles = scene.draws.iter().map(triangles).sum();
+        Cost {
+            draws: scene.draws.len() as u64,
+            triangles,
+            vertices,
+            target_pixels,
+            texture_bytes,
+            // Targets and texels are held as words; the scene's and the plan's copies of vertices and triangles come on top.
+            memory_bytes: 4 * (words + texels)
+                + vertices * size_of::<ninebit::state::Vertex>() as u64
+                + triangles * 512,
+        }
+    }
+}
+
+/// Pixels of a target.
+fn pixels(target: &Target) -> u64 {
+    u64::from(target.width) * u64::from(target.height)
+}
+
+/// Triangles that a draw's indices form (RAS-4).
+fn triangles(draw: &Draw) -> u64 {
+    let count = draw.indices.len() as u64;
+    match draw.topology {
+        Topology::Triangles => count / 3,
+        Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => count.saturating_sub(2),
+        Topology::Quads => count / 4 * 2,
+        Topology::QuadStrip => (count / 2).saturating_sub(1) * 2,
+    }
+}

@@ -1,0 +1,95 @@
+//! How commands end.
+
+use ninebit::output::OutputError;
+use ninebit::scene::image::ImageError;
+
+/// Exit status of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Exit {
+    /// Everything is as expected.
+    Success = 0,
+    /// The command line is wrong.
+    Usage = 2,
+    /// A scene or one of its assets is invalid.
+    Invalid = 3,
+    /// A file that is needed does not exist.
+    Missing = 4,
+    /// A limit was exceeded.
+    Limit = 5,
+    /// A fault of this program.
+    Internal = 6,
+    /// The output was not written.
+    Output = 7,
+}
+
+/// The exit statuses as help tells them. Status 1 belongs to commands that compare.
+pub(crate) const HELP: &str = "Exit status:
+  0  as expected
+  1  a difference was found
+  2  the command line is wrong
+  3  a scene or an asset is invalid
+  4  a needed file is missing
+  5  a limit was exceeded (see `ninebit limits`)
+  6  internal error
+  7  the output was not written";
+
+/// Why a command stopped: everything that stderr is to say, and the exit status.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// Status.
+    pub(crate) exit: Exit,
+    /// What happened.
+    pub(crate) report: Report,
+}
+
+/// What stderr says.
+#[derive(Debug)]
+pub(crate) enum Report {
+    /// Nothing.
+    Silent,
+    /// Finished text, ready to print.
+    Text(String),
+    /// A message, its code and what to do.
+    Message {
+        /// `NB` and four digits.
+        code: Option<&'static str>,
+        /// One line.
+        message: String,
+        /// One line.
+        help: Option<String>,
+    },
+}
+
+impl Failure {
+    /// The command line is wrong.
+    pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
+        let report = Report::Message { code: None, message: message.into(), help: Some(help.into()) };
+        Failure { exit: Exit::Usage, report }
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        if error.is_broken_pipe() {
+            // The reader has seen enough.
+            return Failure { exit: Exit::Success, report: Report::Silent };
+        }
+        Failure { exit: Exit::Output, report: message(error.code(), &error, error.help()) }
+    }
+}
+
+impl From<ImageError> for Failure {
+    fn from(error: ImageError) -> Self {
+        let exit = match &error {
+            e if e.is_limit() => Exit::Limit,
+            e if e.is_missing() => Exit::Missing,
+            _ => Exit::Invalid,
+        };
+        Failure { exit, report: message(error.code(), &error, error.help()) }
+    }
+}
+
+fn message(code: &'static str, error: &dyn std::error::Error, help: &str) -> Report {
+    Report::Message { code: Some(code), message: error.to_string(), help: Some(help.to_owned()) }
+}

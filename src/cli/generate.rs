@@ -1,0 +1,99 @@
+//! `ninebit generate`.
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand, ValueEnum};
+use ninebit::generate::height_field::{self, SIDES};
+use ninebit::generate::normal_map::{self, HeightChannel};
+use ninebit::output::{Destination, encode_png};
+use ninebit::scene::image::{self, ImageLimits, Rgba};
+
+use super::exit::Failure;
+use super::scene::refuse_overwriting;
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Turn a height field into a normal map
+    ///
+    /// For every texel, the texel itself, its right neighbour and the neighbour above it are three points of the surface; the texel's
+    /// normal is the normalised cross product of the two edges between them. Orientation: x (red) to the right, y (green) upward on the image, z
+    /// (blue) out of it. A component n is stored as 128 + round(127 n). Alpha keeps the height.
+    NormalMap(NormalMap),
+    /// Make the height field of a weathered rock face, which tiles without a seam
+    ///
+    /// The same size and seed give the same bytes on every machine.
+    HeightRocks(HeightRocks),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NormalMap {
+    /// The height field, PNG or TGA; 0 is the lowest
+    height: PathBuf,
+    /// The normal map, a PNG; `-` is stdout
+    #[arg(short, long, value_name = "NORMAL.png")]
+    output: OsString,
+    /// How many texels high a height of 255 is; negative turns hills into pits
+    #[arg(long, default_value = "8", value_parser = finite, allow_negative_numbers = true)]
+    scale: f64,
+    /// The image tiles: texels at the edge look at the opposite edge (the default)
+    #[arg(long, overrides_with = "no_wrap")]
+    wrap: bool,
+    /// The image does not tile: texels at the edge repeat their inner neighbour's slope
+    #[arg(long)]
+    no_wrap: bool,
+    /// Which channel is the height
+    #[arg(long, value_enum, default_value_t = Channel::Red)]
+    channel: Channel,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Channel {
+    /// Red, as in a grey image
+    Red,
+    /// Alpha, as in an image that carries its height along
+    Alpha,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HeightRocks {
+    /// The height field, a grey PNG; `-` is stdout
+    #[arg(short, long, value_name = "HEIGHT.png")]
+    output: OsString,
+    /// Columns and rows
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(i64::from(*SIDES.start())..=i64::from(*SIDES.end())))]
+    size: u32,
+    /// Which rock
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// Runs one of the generators.
+pub(crate) fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::NormalMap(arguments) => {
+            let destination = Destination::from(arguments.output.as_os_str());
+            refuse_overwriting(&arguments.height, &destination)?;
+            let height = image::load(&arguments.height, &ImageLimits::default())?;
+            let channel = match arguments.channel {
+                Channel::Red => HeightChannel::Red,
+                Channel::Alpha => HeightChannel::Alpha,
+            };
+            let options = normal_map::Options { scale: arguments.scale, wrap: !arguments.no_wrap, channel };
+            write(&normal_map::from_height(&height, &options), &destination)
+        }
+        Command::HeightRocks(arguments) => {
+            let destination = Destination::from(arguments.output.as_os_str());
+            write(&height_field::rocks(arguments.size, arguments.seed), &destination)
+        }
+    }
+}
+
+fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {
+    Ok(destination.write(&encode_png(image.width, image.height, &image.pixels)?)?)
+}
+
+/// Reads a finite number.
+fn finite(text: &str) -> Result<f64, String> {
+    text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "not a finite number".to_owned())
+}

@@ -1,0 +1,161 @@
+//! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
+
+mod check;
+mod cost;
+mod exit;
+mod generate;
+mod limits;
+mod policies;
+mod render;
+mod scene;
+mod terminal;
+
+use std::ffi::OsString;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+
+use exit::{Exit, Failure, Report};
+use terminal::{ColorChoice, Level};
+
+/// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
+#[derive(Debug, Parser)]
+#[command(name = "ninebit", version, after_help = exit::HELP, max_term_width = 100)]
+struct Cli {
+    /// Colour on stderr: on a terminal unless NO_COLOR is set, or always, or never
+    #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 900, value_name = "auto|always|never")]
+    color: ColorChoice,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Check a scene without rendering it, and print what it costs
+    Check(check::Arguments),
+    /// Render a scene to a PNG
+    Render(render::Arguments),
+    /// List the rules that have alternatives, and their values
+    Policies,
+    /// List the limits that scenes are held to
+    Limits,
+    /// Make height fields and normal maps
+    #[command(subcommand)]
+    Generate(generate::Command),
+}
+
+/// What every command may use.
+#[derive(Clone, Copy, Debug)]
+struct Context {
+    /// Messages on stderr are coloured.
+    color: bool,
+}
+
+/// Runs the program.
+pub(crate) fn main() -> ExitCode {
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    let color = wanted_color(&arguments);
+    let exit = guarded(color.on_stderr(), || start(&arguments, color));
+    ExitCode::from(exit as u8)
+}
+
+/// Parses the arguments and runs the command.
+fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
+    let matches = Cli::command().color(color.for_clap()).try_get_matches_from(arguments);
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help goes to stdout, complaints to stderr. A reader that is gone is no news.
+            let _ = error.print();
+            return if error.use_stderr() { Exit::Usage } else { Exit::Success };
+        }
+    };
+    let context = Context { color: cli.color.on_stderr() };
+    let result = match cli.command {
+        Command::Check(arguments) => check::run(&arguments, context),
+        Command::Render(arguments) => render::run(&arguments, context),
+        Command::Policies => policies::run(),
+        Command::Limits => limits::run(),
+        Command::Generate(command) => generate::run(&command),
+    };
+    match result {
+        Ok(()) => Exit::Success,
+        Err(Failure { exit, report }) => {
+            terminal::print(Level::Error, &report, context.color);
+            exit
+        }
+    }
+}
+
+/// Runs `work`; a panic becomes a message that says how to report it.
+fn guarded(color: bool, work: impl FnOnce() -> Exit) -> Exit {
+    let place = Arc::new(Mutex::new(None));
+    let seen = Arc::clone(&place);
+    // The first panic counts: workers' panics come here before they reach this thread.
+    std::panic::set_hook(Box::new(move |info| {
+        seen.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| info.to_string());
+    }));
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
+        let place = place.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
+        let report = Report::Message {
+            code: Some("NB0901"),
+            message: format!("internal error: {}", place.replace('\n', "\n  ")),
+            help: Some(format!(
+                "this is a fault of ninebit {}, not of your scene: please report it with this message, the command line and the scene",
+                env!("CARGO_PKG_VERSION")
+            )),
+        };
+        terminal::print(Level::Error, &report, color);
+        Exit::Internal
+    })
+}
+
+/// The value of `--color`, found before the arguments are parsed because it also governs the parser's complaints.
+fn wanted_color(arguments: &[OsString]) -> ColorChoice {
+    let mut choice = ColorChoice::Auto;
+    let mut texts = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());
+    while let Some(text) = texts.next() {
+        let value = match text.strip_prefix("--color") {
+            _ if text == "--" => break,
+            Some("") => texts.next(),
+            Some(rest) => rest.strip_prefix('=').map(|value| value.to_owned().into()),
+            None => None,
+        };
+        if let Some(Ok(given)) = value.map(|value| ColorChoice::from_str(&value, false)) {
+            choice = given;
+        }
+    }
+    choice
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_panic_is_an_internal_error() {
+        let exit = guarded(false, || {
+            std::thread::scope(|scope| scope.spawn(|| panic!("a test")).join()).expect("the worker panicked");
+            Exit::Success
+        });
+        let _ = std::panic::take_hook();
+        assert_eq!((exit, exit as u8), (Exit::Internal, 6));
+    }
+
+    #[test]
+    fn colour_is_known_before_parsing() {
+        let choice = |texts: &[&str]| wanted_color(&texts.iter().map(OsString::from).collect::<Vec<_>>());
+        assert_eq!(choice(&["ninebit", "check", "--color", "never"]), ColorChoice::Never);
+        assert_eq!(choice(&["ninebit", "--color=always", "check"]), ColorChoice::Always);
+        assert_eq!(choice(&["ninebit", "check", "--color=sometimes"]), ColorChoice::Auto);
+        assert_eq!(choice(&["ninebit", "check", "--", "--color=always"]), ColorChoice::Auto);
+        assert_eq!(choice(&["ninebit", "--colors=always", "--color"]), ColorChoice::Auto);
+    }
+}

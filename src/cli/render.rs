@@ -1,0 +1,140 @@
+//! `ninebit render`.
+
+use std::ffi::OsString;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use ninebit::engine::{self, RenderOptions};
+use ninebit::output::{Destination, encode_png, write_stdout};
+use ninebit::state::{Named, Scene};
+use serde_json::json;
+
+use super::Context;
+use super::cost::Cost;
+use super::exit::Failure;
+use super::scene::{SceneArguments, refuse_overwriting};
+use super::terminal::Progress;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// The picture, a PNG; `-` is stdout
+    #[arg(short, long, value_name = "FRAME.png")]
+    output: OsString,
+    /// Which render target to write [default: the scene's first]
+    #[arg(long, value_name = "NAME")]
+    target: Option<String>,
+    /// Threads; 0 takes all cores. The picture does not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    threads: usize,
+    /// Print statistics to stdout
+    #[arg(long, value_enum, value_name = "FORMAT")]
+    stats: Option<Stats>,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Stats {
+    /// One JSON object
+    Json,
+}
+
+/// The most threads that can be asked for.
+const MAXIMUM_THREADS: usize = 1024;
+
+/// Renders a scene and writes one of its targets.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let destination = Destination::from(arguments.output.as_os_str());
+    if arguments.stats.is_some() && destination == Destination::Stdout {
+        return Err(Failure::usage(
+            "the picture and the statistics cannot both go to stdout",
+            "write the picture to a file",
+        ));
+    }
+    refuse_overwriting(&arguments.scene.scene, &destination)?;
+
+    let mut clock = Clock::start();
+    let scene = arguments.scene.load(context)?;
+    let target = chosen_target(&scene, arguments.target.as_deref())?;
+    clock.lap("load");
+    let plan = arguments.scene.plan(&scene)?;
+    clock.lap("plan");
+    let (frames, statistics) = {
+        let progress = Progress::new("rendering", context.color);
+        let options = RenderOptions { threads: arguments.threads };
+        engine::render_counted(&plan, &options, &|done, total| progress.report(done as u64, total as u64))
+    };
+    clock.lap("render");
+    let surface = &frames.surfaces[target];
+    let pixels = surface.rgba8();
+    destination.write(&encode_png(surface.width, surface.height, &pixels)?)?;
+    clock.lap("write");
+
+    if let Some(Stats::Json) = arguments.stats {
+        let targets: Vec<_> = scene
+            .targets
+            .iter()
+            .zip(&frames.surfaces)
+            .map(|(target, surface)| {
+                json!({
+                    "name": target.name, "width": surface.width, "height": surface.height,
+                    "format": surface.format.name(), "sha256": surface.digest(),
+                })
+            })
+            .collect();
+        let draws: Vec<_> = scene
+            .draws
+            .iter()
+            .zip(&statistics.shaded_pixels)
+            .map(|(draw, shaded)| json!({ "name": draw.name, "shaded_pixels": shaded }))
+            .collect();
+        let value = json!({
+            "format": "ninebit-stats-1",
+            "version": env!("CARGO_PKG_VERSION"),
+            "profile": scene.profile.name(),
+            "cost": Cost::of(&scene),
+            "shaded_pixels": statistics.shaded_pixels.iter().sum::<u64>(),
+            "draws": draws,
+            "targets": targets,
+            "microseconds": clock.laps,
+        });
+        write_stdout(format!("{value:#}\n").as_bytes())?;
+    }
+    Ok(())
+}
+
+/// Index of the target to write.
+fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, Failure> {
+    let Some(name) = name else { return Ok(0) };
+    scene.targets.iter().position(|target| target.name == name).ok_or_else(|| {
+        let names: Vec<_> = scene.targets.iter().map(|target| format!("`{}`", target.name)).collect();
+        Failure::usage(format!("the scene has no target `{name}`"), format!("its targets: {}", names.join(", ")))
+    })
+}
+
+fn threads(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|count| *count <= MAXIMUM_THREADS)
+        .ok_or_else(|| format!("not a number from 0 to {MAXIMUM_THREADS}"))
+}
+
+/// Wall-clock times of the steps.
+struct Clock {
+    last: Instant,
+    laps: serde_json::Map<String, serde_json::Value>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Clock { last: Instant::now(), laps: serde_json::Map::new() }
+    }
+
+    /// Ends a step.
+    fn lap(&mut self, step: &str) {
+        let now = Instant::now();
+        let spent = u64::try_from((now - self.last).as_micros()).unwrap_or(u64::MAX);
+        self.laps.insert(step.to_owned(), spent.into());
+        self.last = now;
+    }
+}

@@ -1,0 +1,83 @@
+//! What the commands on scenes share: the file, the policies, the plan.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use ninebit::limits::Limits;
+use ninebit::output::Destination;
+use ninebit::plan::{Plan, PlanError, PlanOptions};
+use ninebit::scene;
+use ninebit::state::{Policies, Scene};
+
+use super::Context;
+use super::exit::{Exit, Failure, Report};
+use super::terminal::{self, Level};
+
+/// The scene and how to read it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// The scene file
+    pub(crate) scene: PathBuf,
+    /// Choose an alternative of a rule; `ninebit policies` lists them
+    #[arg(long = "policy", value_name = "RULE=VALUE")]
+    policies: Vec<String>,
+}
+
+impl SceneArguments {
+    /// Reads and checks the scene; warnings go to stderr.
+    pub(crate) fn load(&self, context: Context) -> Result<Scene, Failure> {
+        let loaded = scene::load(&self.scene, &Limits::default()).map_err(|error| failure(&error, context))?;
+        for warning in &loaded.warnings {
+            let report = Report::Message { code: None, message: warning.clone(), help: None };
+            terminal::print(Level::Warning, &report, context.color);
+        }
+        Ok(loaded.scene)
+    }
+
+    /// The policies of the command line.
+    pub(crate) fn policies(&self) -> Result<Policies, Failure> {
+        let mut policies = Policies::DEFAULT;
+        for assignment in &self.policies {
+            policies.set(assignment).map_err(|error| {
+                Failure::usage(error.to_string(), "`ninebit policies` lists the rules and their values")
+            })?;
+        }
+        Ok(policies)
+    }
+
+    /// Plans the scene.
+    pub(crate) fn plan(&self, scene: &Scene) -> Result<Plan, Failure> {
+        let options = PlanOptions { policies: self.policies()?, ..PlanOptions::default() };
+        Plan::compile(scene, &options).map_err(|errors| self.not_planned(scene, &errors))
+    }
+
+    /// Tells every reason at once.
+    fn not_planned(&self, scene: &Scene, errors: &[PlanError]) -> Failure {
+        let file = self.scene.display();
+        let lines = errors.iter().map(|error| {
+            let draw = scene.draws.get(error.draw).map_or("", |draw| draw.name.as_str());
+            let vertex = error.vertex.map_or(String::new(), |vertex| format!(", vertex {vertex}"));
+            format!(
+                "error[{}]: {file}: draw {} `{draw}`{vertex}: {}\n  help: {}\n",
+                error.rule, error.draw, error.message, error.help
+            )
+        });
+        Failure { exit: Exit::Invalid, report: Report::Text(lines.collect()) }
+    }
+}
+
+/// A scene that was not accepted.
+fn failure(error: &scene::SceneError, _context: Context) -> Failure {
+    Failure { exit: Exit::Invalid, report: Report::Text(format!("{error:?}")) }
+}
+
+/// Refuses to write over what is read.
+pub(crate) fn refuse_overwriting(input: &Path, output: &Destination) -> Result<(), Failure> {
+    let Destination::File(output) = output else { return Ok(()) };
+    match (input.canonicalize(), output.canonicalize()) {
+        (Ok(input), Ok(place)) if input == place => {
+            Err(Failure::usage(format!("`{}` is the input", output.display()), "write the output to another file"))
+        }
+        _ => Ok(()),
+    }
+}

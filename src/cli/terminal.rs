@@ -1,0 +1,113 @@
+//! Colour and progress on stderr.
+
+use std::io::{IsTerminal, Write, stderr};
+use std::time::Duration;
+
+use clap::ValueEnum;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+
+use super::exit::Report;
+
+/// When to colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ColorChoice {
+    /// On a terminal, unless NO_COLOR is set or TERM is `dumb`.
+    #[default]
+    Auto,
+    /// Always.
+    Always,
+    /// Never.
+    Never,
+}
+
+impl ColorChoice {
+    /// Whether messages on stderr are coloured.
+    pub(crate) fn on_stderr(self) -> bool {
+        let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+        match self {
+            ColorChoice::Always => true,
+            ColorChoice::Never => false,
+            ColorChoice::Auto => {
+                stderr().is_terminal() && !set("NO_COLOR") && std::env::var_os("TERM").is_none_or(|term| term != "dumb")
+            }
+        }
+    }
+
+    /// The same, for the command line parser's own output.
+    pub(crate) fn for_clap(self) -> clap::ColorChoice {
+        match self {
+            ColorChoice::Auto => clap::ColorChoice::Auto,
+            ColorChoice::Always => clap::ColorChoice::Always,
+            ColorChoice::Never => clap::ColorChoice::Never,
+        }
+    }
+}
+
+/// What a line on stderr begins with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Level {
+    /// Bold red.
+    Error,
+    /// Bold yellow.
+    Warning,
+}
+
+/// Prints a report to stderr. A stderr that refuses is not worth another message.
+pub(crate) fn print(level: Level, report: &Report, color: bool) {
+    let text = match report {
+        Report::Silent => return,
+        Report::Text(text) => format!("{}\n", text.trim_end()),
+        Report::Message { code, message, help } => {
+            let (word, paint) = match level {
+                Level::Error => ("error", "\x1b[1;31m"),
+                Level::Warning => ("warning", "\x1b[1;33m"),
+            };
+            let code = code.map_or(String::new(), |code| format!("[{code}]"));
+            let (paint, reset) = if color { (paint, "\x1b[0m") } else { ("", "") };
+            let help = help.as_ref().map_or(String::new(), |help| format!("  help: {help}\n"));
+            format!("{paint}{word}{code}{reset}: {message}\n{help}")
+        }
+    };
+    let _ = stderr().lock().write_all(text.as_bytes());
+}
+
+/// A progress bar on stderr; invisible unless stderr is a terminal, and for work that is soon done.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    started: std::time::Instant,
+}
+
+/// Work shorter than this shows no bar.
+const PATIENCE: Duration = Duration::from_millis(400);
+
+impl Progress {
+    /// A bar that has not appeared yet.
+    pub(crate) fn new(what: &'static str, color: bool) -> Self {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        let template = if color {
+            "{msg} [{bar:40.cyan}] {percent}% {eta} left"
+        } else {
+            "{msg} [{bar:40}] {percent}% {eta} left"
+        };
+        if let Ok(style) = ProgressStyle::with_template(template) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        bar.set_message(what);
+        Progress { bar, started: std::time::Instant::now() }
+    }
+
+    /// Tells how far the work is. May be called from any thread.
+    pub(crate) fn report(&self, done: u64, total: u64) {
+        if self.bar.is_hidden() && stderr().is_terminal() && self.started.elapsed() > PATIENCE {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        self.bar.set_length(total);
+        self.bar.set_position(done);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.bar.finish_and_clear();
+    }
+}

@@ -1,0 +1,257 @@
+//! What a scene is expected to show: `NAME.expect.ron` beside `NAME.ron`.
+//!
+//! Equality is the rule: an expectation is the digest of a picture. Where something else is known (a photograph of a screen, a
+//! capture with a region that nobody can vouch for) a mask leaves pixels out, and a named allowance says how many may differ
+//! and by how much; an allowance needs the picture itself.
+
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+
+use crate::frame::Surface;
+use crate::picture::digest;
+use crate::scene::image::{self, ImageError, ImageLimits};
+use crate::scene::path::{PathError, resolve};
+
+/// The version of the format that is written and read.
+pub const VERSION: u32 = 1;
+
+/// The most bytes that an expectation's file may have.
+const MAXIMUM_BYTES: usize = 64 << 10;
+
+/// What one target of a scene is expected to show.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Expectation {
+    /// [`VERSION`].
+    pub version: u32,
+    /// Name of the target.
+    pub target: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// [`digest`] of the picture, pixels that the mask leaves out taken as 0, 0, 0, 0.
+    pub sha256: String,
+    /// An image in the same folder, of the same size: where its red is 0, the picture is not compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mask: Option<String>,
+    /// What may differ all the same.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub allowance: Option<Allowance>,
+}
+
+/// Differences that are put up with, and why.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Allowance {
+    /// An image in the same folder: the expected picture itself.
+    pub picture: String,
+    /// How many pixels may differ.
+    pub pixels: u64,
+    /// By how much any channel of a pixel may differ.
+    pub difference: u8,
+    /// Why this is acceptable.
+    pub reason: String,
+}
+
+/// How a picture differs from what was expected.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Mismatch {
+    /// The size, as it is.
+    Size {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+    /// The digest, as it is. Without the expected picture no more can be said.
+    Digest {
+        /// SHA-256.
+        sha256: String,
+    },
+    /// More than is allowed.
+    Pixels {
+        /// Pixels that differ.
+        pixels: u64,
+        /// Largest difference of a channel.
+        difference: u8,
+        /// Column and row of the first one.
+        first: [u32; 2],
+    },
+}
+
+impl std::fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Mismatch::Size { width, height } => write!(f, "the picture is {width} x {height}"),
+            Mismatch::Digest { sha256 } => write!(f, "the picture's digest is {sha256}"),
+            Mismatch::Pixels { pixels, difference, first: [x, y] } => {
+                write!(f, "{pixels} pixels differ, by {difference} at most, the first at {x},{y}")
+            }
+        }
+    }
+}
+
+/// Why an expectation cannot be used.
+#[derive(Debug, Error)]
+pub enum ExpectationError {
+    /// Not an expectation.
+    #[error("{0}")]
+    Text(String),
+    /// A file it names is refused.
+    #[error(transparent)]
+    Path(#[from] PathError),
+    /// An image it names is refused.
+    #[error(transparent)]
+    Image(#[from] ImageError),
+    /// An image it names has another size.
+    #[error("`{name}` is {width} x {height}, not of the size expected")]
+    Size {
+        /// The image.
+        name: String,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+    },
+}
+
+impl Expectation {
+    /// The strict expectation that `surface` meets.
+    pub fn of(target: &str, surface: &Surface) -> Self {
+        let (width, height, sha256) = (surface.width, surface.height, surface.digest());
+        Expectation { version: VERSION, target: target.to_owned(), width, height, sha256, mask: None, allowance: None }
+    }
+
+    /// Reads an expectation's text.
+    ///
+    /// # Errors
+    /// The text is too long, is not RON of this form, or has another version.
+    pub fn parse(text: &str) -> Result<Self, ExpectationError> {
+        if text.len() > MAXIMUM_BYTES {
+            return Err(ExpectationError::Text(format!("an expectation has at most {MAXIMUM_BYTES} bytes")));
+        }
+        let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+        let expectation: Expectation =
+            options.from_str(text).map_err(|error| ExpectationError::Text(error.to_string()))?;
+        if expectation.version != VERSION {
+            let version = expectation.version;
+            return Err(ExpectationError::Text(format!("version {version} is not known; this is version {VERSION}")));
+        }
+        Ok(expectation)
+    }
+
+    /// The text of the expectation.
+    pub fn to_text(&self) -> String {
+        let pretty = ron::ser::PrettyConfig::new().extensions(ron::extensions::Extensions::IMPLICIT_SOME);
+        // Writing plain strings and numbers into memory cannot fail.
+        ron::ser::to_string_pretty(self, pretty).unwrap_or_default() + "\n"
+    }
+
+    /// Compares a surface with the expectation; images are looked for in `folder`. `None`: it is as expected.
+    ///
+    /// # Errors
+    /// The mask or the picture cannot be used.
+    pub fn compare(&self, surface: &Surface, folder: &Path) -> Result<Option<Mismatch>, ExpectationError> {
+        let (width, height) = (surface.width, surface.height);
+        if [width, height] != [self.width, self.height] {
+            return Ok(Some(Mismatch::Size { width, height }));
+        }
+        let mut pixels = surface.rgba8();
+        let mask = self.mask.as_ref().map(|name| self.image(folder, name)).transpose()?;
+        let left_out = |index: usize| mask.as_ref().is_some_and(|mask| mask[index][0] == 0);
+        for (index, pixel) in pixels.iter_mut().enumerate() {
+            if left_out(index) {
+                *pixel = [0; 4];
+            }
+        }
+        let sha256 = digest(width, height, &pixels);
+        if sha256 == self.sha256 {
+            return Ok(None);
+        }
+        let Some(allowance) = &self.allowance else { return Ok(Some(Mismatch::Digest { sha256 })) };
+        let expected = self.image(folder, &allowance.picture)?;
+        let differing = pixels.iter().zip(&expected).enumerate().filter(|(index, (a, b))| !left_out(*index) && a != b);
+        let (mut count, mut difference, mut first) = (0, 0, None);
+        for (index, (a, b)) in differing {
+            count += 1;
+            difference = a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0).max(difference);
+            first.get_or_insert(index as u32);
+        }
+        let at = first.unwrap_or(0);
+        let accepted = count <= allowance.pixels && difference <= allowance.difference;
+        let mismatch = Mismatch::Pixels { pixels: count, difference, first: [at % width, at / width] };
+        Ok((!accepted).then_some(mismatch))
+    }
+
+    /// Pixels of an image of the expected size.
+    fn image(&self, folder: &Path, name: &str) -> Result<Vec<[u8; 4]>, ExpectationError> {
+        let image = image::load(&resolve(folder, name)?, &ImageLimits::default())?;
+        if [image.width, image.height] != [self.width, self.height] {
+            let (width, height) = (image.width, image.height);
+            return Err(ExpectationError::Size { name: name.to_owned(), width, height });
+        }
+        Ok(image.pixels)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::output::{encode_png, write_file};
+    use crate::state::SurfaceFormat;
+
+    fn surface(words: &[u32]) -> Surface {
+        Surface { width: 2, height: 1, format: SurfaceFormat::A8R8G8B8, words: words.to_vec(), depth: Vec::new() }
+    }
+
+    #[test]
+    fn text_and_back() {
+        let mut expectation = Expectation::of("frame", &surface(&[1, 2]));
+        assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
+        expectation.mask = Some("mask.png".to_owned());
+        expectation.allowance =
+            Some(Allowance { picture: "p.png".to_owned(), pixels: 3, difference: 1, reason: "a camera".to_owned() });
+        assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
+        assert!(Expectation::parse(&expectation.to_text().replace("version: 1", "version: 2")).is_err());
+        assert!(Expectation::parse("(version: 1, colour: 2)").is_err());
+        assert!(Expectation::parse(&" ".repeat(MAXIMUM_BYTES + 1)).is_err());
+    }
+
+    #[test]
+    fn equality_is_the_rule() {
+        let expectation = Expectation::of("frame", &surface(&[1, 2]));
+        let folder = Path::new(".");
+        assert_eq!(expectation.compare(&surface(&[1, 2]), folder).expect("compares"), None);
+        let other = expectation.compare(&surface(&[1, 3]), folder).expect("compares");
+        assert!(matches!(other, Some(Mismatch::Digest { .. })), "{other:?}");
+        let tall = Surface { width: 1, height: 2, ..surface(&[1, 2]) };
+        assert_eq!(expectation.compare(&tall, folder).expect("compares"), Some(Mismatch::Size { width: 1, height: 2 }));
+    }
+
+    #[test]
+    fn masks_and_allowances_are_exceptions() {
+        let folder = tempfile::tempdir().expect("folder");
+        let store = |name: &str, pixels: &[[u8; 4]]| {
+            let png = encode_png(2, 1, pixels).expect("encodes");
+            write_file(&folder.path().join(name), &png).expect("writes");
+        };
+        store("mask.png", &[[255; 4], [0, 255, 255, 255]]);
+        store("picture.png", &surface(&[1, 2]).rgba8());
+
+        let masked = Expectation { mask: Some("mask.png".to_owned()), ..Expectation::of("frame", &surface(&[1, 0])) };
+        assert_eq!(masked.compare(&surface(&[1, 99]), folder.path()).expect("compares"), None);
+        assert!(masked.compare(&surface(&[2, 0]), folder.path()).expect("compares").is_some());
+
+        let allowance = |pixels, difference| {
+            Some(Allowance { picture: "picture.png".to_owned(), pixels, difference, reason: "a test".to_owned() })
+        };
+        let expected = |allowance| Expectation { allowance, ..Expectation::of("frame", &surface(&[1, 2])) };
+        let compare = |allowance| expected(allowance).compare(&surface(&[1, 5]), folder.path()).expect("compares");
+        assert_eq!(compare(allowance(1, 3)), None);
+        assert_eq!(compare(allowance(1, 2)), Some(Mismatch::Pixels { pixels: 1, difference: 3, first: [1, 0] }));
+        assert!(compare(allowance(0, 3)).is_some());
+    }
+}

@@ -1,0 +1,81 @@
+//! Every scene under `vectors/scenes` shows what is expected, and its generated textures are what the generators make.
+//!
+//! `BLESS=1 cargo test --test assets_scenes` rewrites the expectations; look at the pictures and at the difference before committing.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+
+use ninebit::engine::{RenderOptions, render};
+use ninebit::expectation::Expectation;
+use ninebit::generate::{height_field, normal_map};
+use ninebit::limits::Limits;
+use ninebit::output::write_file;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::scene;
+use ninebit::scene::image::{ImageLimits, load};
+
+fn scenes_folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes")
+}
+
+/// Every scene file, sorted.
+fn scene_files(folder: &Path) -> Vec<PathBuf> {
+    let mut files = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_name().unwrap().to_string_lossy().into_owned();
+        if path.is_dir() {
+            files.extend(scene_files(&path));
+        } else if name.ends_with(".ron") && !name.ends_with(".expect.ron") {
+            files.push(path);
+        }
+    }
+    files.sort();
+    files
+}
+
+/// Renders a scene and compares its first target with the expectation; says what is wrong.
+fn check(file: &Path, bless: bool) -> Result<(), String> {
+    let loaded = scene::load(file, &Limits::default()).map_err(|error| format!("{error:?}"))?;
+    let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).map_err(|errors| format!("{errors:?}"))?;
+    let frames = render(&plan, &RenderOptions { threads: 1 });
+    if render(&plan, &RenderOptions { threads: 3 }) != frames {
+        return Err("the picture depends on the number of threads".to_owned());
+    }
+    let surface = &frames.surfaces[0];
+    let expectation = file.with_extension("expect.ron");
+    if bless {
+        let text = Expectation::of(&loaded.scene.targets[0].name, surface).to_text();
+        return write_file(&expectation, text.as_bytes()).map_err(|error| error.to_string());
+    }
+    let text = std::fs::read_to_string(&expectation).map_err(|error| format!("no expectation ({error})"))?;
+    let expectation = Expectation::parse(&text).map_err(|error| error.to_string())?;
+    match expectation.compare(surface, file.parent().unwrap()).map_err(|error| error.to_string())? {
+        None => Ok(()),
+        Some(mismatch) => Err(mismatch.to_string()),
+    }
+}
+
+#[test]
+fn every_scene_shows_what_is_expected() {
+    let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty() && value != "0");
+    let bless = set("BLESS");
+    assert!(!(bless && set("CI")), "expectations are not rewritten in continuous integration");
+    let files = scene_files(&scenes_folder());
+    let complaints: Vec<String> = files
+        .iter()
+        .filter_map(|file| check(file, bless).err().map(|error| format!("{}: {error}", file.display())))
+        .collect();
+    assert!(complaints.is_empty(), "{}\nBLESS=1 rewrites the expectations", complaints.join("\n"));
+}
+
+#[test]
+fn stored_textures_are_what_the_generators_make() {
+    let folder = scenes_folder().join("dot3");
+    let stored = |name: &str| load(&folder.join(name), &ImageLimits::default()).unwrap();
+    let height = height_field::rocks(256, 3);
+    assert!(stored("rocks-height.png") == height, "ninebit generate height-rocks --size 256 --seed 3");
+    let options = normal_map::Options { scale: 16.0, ..normal_map::Options::default() };
+    let normal = normal_map::from_height(&height, &options);
+    assert!(stored("rocks-normal.png") == normal, "ninebit generate normal-map rocks-height.png --scale 16");
+}

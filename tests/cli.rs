@@ -1,0 +1,183 @@
+//! The program as it is used: exit statuses, what goes to stdout and what to stderr.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+
+use snapbox::{assert_data_eq, file};
+
+/// A folder to work in.
+struct Bench(tempfile::TempDir);
+
+impl Bench {
+    fn new() -> Self {
+        Bench(tempfile::tempdir().unwrap())
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> &Self {
+        fs::write(self.path(name), contents).unwrap();
+        self
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
+        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
+        for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "COLUMNS"] {
+            command.env_remove(name);
+        }
+        command
+    }
+
+    fn run(&self, arguments: &str) -> Run {
+        Run::of(self.command(arguments).output().unwrap())
+    }
+}
+
+/// What a run left.
+#[derive(Debug)]
+struct Run {
+    status: i32,
+    stdout: Vec<u8>,
+    stderr: String,
+}
+
+impl Run {
+    fn of(output: Output) -> Self {
+        Run {
+            status: output.status.code().unwrap(),
+            stdout: output.stdout,
+            stderr: String::from_utf8(output.stderr).unwrap(),
+        }
+    }
+
+    /// The run succeeded, silently but for its data.
+    fn data(self) -> Vec<u8> {
+        assert_eq!((self.status, self.stderr.as_str()), (0, ""));
+        self.stdout
+    }
+
+    fn text(self) -> String {
+        String::from_utf8(self.data()).unwrap()
+    }
+
+    /// The run failed with this status, said this on stderr and nothing on stdout.
+    fn failed(self, status: i32, message: &str) {
+        assert_eq!(self.status, status, "{}", self.stderr);
+        assert!(self.stderr.contains(message), "`{message}` is not in: {}", self.stderr);
+        assert!(!self.stderr.contains('\x1b'), "colour without a terminal: {:?}", self.stderr);
+        assert_eq!(self.stdout, b"", "diagnostics belong to stderr");
+    }
+}
+
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+
+#[test]
+fn help_goes_to_stdout() {
+    let bench = Bench::new();
+    assert_data_eq!(bench.run("--help").text(), file!["cli/help.txt"]);
+    assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
+    assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
+    assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
+    assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
+    assert_eq!(bench.run("--version").text(), concat!("ninebit ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+#[test]
+fn a_wrong_command_line_is_status_2() {
+    let bench = Bench::new();
+    bench.write("height.png", PNG);
+    bench.run("").failed(2, "Usage: ninebit");
+    bench.run("frobnicate").failed(2, "unrecognized subcommand 'frobnicate'");
+    bench.run("render scene.ron").failed(2, "--output");
+    bench.run("render scene.ron -o x.png --threads many").failed(2, "not a number from 0 to 1024");
+    bench.run("render scene.ron -o - --stats json").failed(2, "cannot both go to stdout");
+    bench.run("generate normal-map height.png -o n.png --scale NaN").failed(2, "not a finite number");
+    bench.run("generate height-rocks -o h.png --size 8").failed(2, "16..=2048");
+    bench.run("generate normal-map height.png -o ./height.png").failed(2, "is the input");
+    assert_eq!(fs::read(bench.path("height.png")).unwrap(), PNG);
+}
+
+#[test]
+fn policies_are_listed() {
+    let text = Bench::new().run("policies").text();
+    for rule in ninebit::state::POLICIES {
+        assert!(text.contains(rule.rule) && text.contains(rule.values[1].1), "{text}");
+    }
+}
+
+#[test]
+fn limits_are_listed() {
+    let text = Bench::new().run("limits").text();
+    assert!(text.lines().count() > 3 && text.contains("4096"), "{text}");
+}
+
+#[test]
+fn rocks_become_a_normal_map() {
+    let bench = Bench::new();
+    bench.run("generate height-rocks --size 32 --seed 7 -o height.png").data();
+    bench.run("generate normal-map height.png -o normal.png --scale 4").data();
+    assert!(fs::read(bench.path("normal.png")).unwrap().starts_with(PNG));
+
+    let piped = bench.run("generate height-rocks --size 32 --seed 7 -o -").data();
+    assert_eq!(piped, fs::read(bench.path("height.png")).unwrap(), "the same bytes, wherever they go");
+    let wrapped = bench.run("generate normal-map height.png -o - --scale 4 --wrap").data();
+    assert_eq!(wrapped, fs::read(bench.path("normal.png")).unwrap(), "--wrap is the default");
+    assert_ne!(wrapped, bench.run("generate normal-map height.png -o - --scale 4 --no-wrap").data());
+    assert_ne!(wrapped, bench.run("generate normal-map height.png -o - --scale -4").data());
+    assert_ne!(wrapped, bench.run("generate normal-map height.png -o - --scale 4 --channel alpha").data());
+}
+
+#[test]
+fn a_bad_asset_is_status_3_a_missing_one_4_and_a_large_one_5() {
+    let bench = Bench::new();
+    bench.write("cut.png", PNG).write("not.png", "GIF89a");
+    bench.run("generate normal-map cut.png -o n.png").failed(3, "error[NB0517]");
+    bench.run("generate normal-map not.png -o n.png").failed(3, "error[NB0513]");
+    bench.run("generate normal-map . -o n.png").failed(3, "error[NB0511]");
+    bench.run("generate normal-map missing.png -o n.png").failed(4, "error[NB0510]");
+    let mut wide = vec![0; 18];
+    (wide[2], wide[12], wide[13], wide[14], wide[16]) = (3, 0xff, 0xff, 1, 8);
+    bench.write("wide.tga", &wide);
+    bench.run("generate normal-map wide.tga -o n.png").failed(5, "65535 x 1");
+    assert!(!bench.path("n.png").exists());
+}
+
+#[test]
+fn an_output_that_cannot_be_written_is_status_7() {
+    let bench = Bench::new();
+    bench.run("generate height-rocks --size 16 -o none/h.png").failed(7, "create its folder first");
+    bench.run("generate height-rocks --size 16 -o .").failed(7, "is a folder");
+    if Path::new("/dev/full").exists() {
+        bench.run("generate height-rocks --size 16 -o /dev/full").failed(7, "error[NB0702]");
+        let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+        let run = bench.command("policies").stdout(full).output().unwrap();
+        Run::of(run).failed(7, "standard output cannot be written");
+    }
+}
+
+#[test]
+fn a_reader_that_goes_away_is_no_error() {
+    let bench = Bench::new();
+    let mut child = bench.command("policies").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    drop(child.stdout.take());
+    let run = Run::of(child.wait_with_output().unwrap());
+    assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+}
+
+#[test]
+fn colour_is_a_choice() {
+    let bench = Bench::new();
+    let stderr = |arguments: &str| bench.run(arguments).stderr;
+    let command = "generate normal-map missing.png -o n.png";
+    assert!(!stderr(command).contains('\x1b'), "stderr is no terminal here");
+    assert!(stderr(&format!("{command} --color always")).contains('\x1b'));
+    assert!(stderr("--color=always frobnicate").contains('\x1b'));
+    assert!(!stderr("--color=never frobnicate").contains('\x1b'));
+    let forced = bench.command(&format!("{command} --color always")).env("NO_COLOR", "1").output().unwrap();
+    assert!(Run::of(forced).stderr.contains('\x1b'), "the command line outranks the environment");
+}
