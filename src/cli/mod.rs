@@ -9,6 +9,7 @@ mod policies;
 mod render;
 mod scene;
 mod terminal;
+mod trace;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -37,6 +38,8 @@ enum Command {
     Check(check::Arguments),
     /// Render a scene to a PNG
     Render(render::Arguments),
+    /// Print how one pixel came to be, integer by integer
+    Trace(trace::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -76,6 +79,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
     let result = match cli.command {
         Command::Check(arguments) => check::run(&arguments, context),
         Command::Render(arguments) => render::run(&arguments, context),
+        Command::Trace(arguments) => trace::run(&arguments, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Generate(command) => generate::run(&command),

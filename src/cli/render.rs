@@ -6,13 +6,13 @@ use std::time::Instant;
 use clap::{Args, ValueEnum};
 use ninebit::engine::{self, RenderOptions};
 use ninebit::output::{Destination, encode_png, write_stdout};
-use ninebit::state::{Named, Scene};
+use ninebit::state::Named;
 use serde_json::json;
 
 use super::Context;
 use super::cost::Cost;
 use super::exit::Failure;
-use super::scene::{SceneArguments, refuse_overwriting};
+use super::scene::{SceneArguments, chosen_target, refuse_overwriting};
 use super::terminal::Progress;
 
 #[derive(Debug, Args)]
@@ -101,15 +101,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         write_stdout(format!("{value:#}\n").as_bytes())?;
     }
     Ok(())
-}
-
-/// Index of the target to write.
-fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, Failure> {
-    let Some(name) = name else { return Ok(0) };
-    scene.targets.iter().position(|target| target.name == name).ok_or_else(|| {
-        let names: Vec<_> = scene.targets.iter().map(|target| format!("`{}`", target.name)).collect();
-        Failure::usage(format!("the scene has no target `{name}`"), format!("its targets: {}", names.join(", ")))
-    })
 }
 
 fn threads(text: &str) -> Result<usize, String> {

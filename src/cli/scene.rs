@@ -71,6 +71,15 @@ fn failure(error: &scene::SceneError, _context: Context) -> Failure {
     Failure { exit: Exit::Invalid, report: Report::Text(format!("{error:?}")) }
 }
 
+/// Index of the target of that name, or of the first.
+pub(crate) fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, Failure> {
+    let Some(name) = name else { return Ok(0) };
+    scene.targets.iter().position(|target| target.name == name).ok_or_else(|| {
+        let names: Vec<_> = scene.targets.iter().map(|target| format!("`{}`", target.name)).collect();
+        Failure::usage(format!("the scene has no target `{name}`"), format!("its targets: {}", names.join(", ")))
+    })
+}
+
 /// Refuses to write over what is read.
 pub(crate) fn refuse_overwriting(input: &Path, output: &Destination) -> Result<(), Failure> {
     let Destination::File(output) = output else { return Ok(()) };

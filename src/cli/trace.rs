@@ -1,0 +1,72 @@
+//! `ninebit trace`.
+
+use clap::{Args, ValueEnum};
+use ninebit::engine::{self, TraceError};
+use ninebit::output::write_stdout;
+use ninebit::report::{trace_json, trace_text};
+use ninebit::state::Scene;
+
+use super::Context;
+use super::exit::Failure;
+use super::scene::SceneArguments;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Column and row of the pixel, from the top left
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pixel: (u32, u32),
+    /// Only this draw, numbered from 0
+    #[arg(long, value_name = "N")]
+    draw: Option<usize>,
+    /// Which render target the pixel is in [default: the scene's first]
+    #[arg(long, value_name = "NAME")]
+    target: Option<String>,
+    /// How to print it
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// One line a step: integer, real value, ideal, rule
+    Text,
+    /// One JSON document
+    Json,
+}
+
+/// Prints how one pixel came to be.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let scene = arguments.scene.load(context)?;
+    let target = super::scene::chosen_target(&scene, arguments.target.as_deref())?;
+    let plan = arguments.scene.plan(&scene)?;
+    let trace =
+        engine::trace(&plan, target, arguments.pixel, arguments.draw).map_err(|error| outside(&scene, &error))?;
+    let text = match arguments.format {
+        Format::Text => trace_text(&plan, &trace),
+        Format::Json => trace_json(&plan, &trace),
+    };
+    write_stdout(text.as_bytes())?;
+    Ok(())
+}
+
+fn outside(scene: &Scene, error: &TraceError) -> Failure {
+    let help = match error {
+        TraceError::Pixel { width, height, .. } => {
+            format!("columns run from 0 to {}, rows from 0 to {}", width - 1, height - 1)
+        }
+        TraceError::Draw { .. } => {
+            let names: Vec<String> =
+                scene.draws.iter().take(16).enumerate().map(|(n, d)| format!("{n} `{}`", d.name)).collect();
+            format!("its draws: {}", names.join(", "))
+        }
+    };
+    Failure::usage(error.to_string(), help)
+}
+
+fn pixel(text: &str) -> Result<(u32, u32), String> {
+    text.split_once(',')
+        .and_then(|(x, y)| Some((x.trim().parse().ok()?, y.trim().parse().ok()?)))
+        .ok_or_else(|| "not of the form X,Y, for example 320,240".to_string())
+}
