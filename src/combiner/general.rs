@@ -114,10 +114,18 @@ pub struct PlannedStage {
     pub reads_constants: bool,
 }
 
-/// What a portion hands to its destinations: AB, CD, sum or mux, by channel.
-struct Outputs<L> {
-    values: [[L; 4]; 3],
-    blue: [L; 2],
+/// Everything that a portion computes, for its `N` channels: three in an RGB portion, one in an alpha portion.
+///
+/// What the plan found dead is left at zero.
+pub(super) struct Values<L: Lane, const N: usize> {
+    /// A, B, C, D after their mappings.
+    pub(super) factors: [[L::Mapped; N]; 4],
+    /// AB and CD at full width.
+    pub(super) products: [[L::Full; N]; 2],
+    /// The sum or mux at full width.
+    pub(super) third: [L::Full; N],
+    /// AB, CD and the sum or mux as registers.
+    pub(super) outputs: [[L; N]; 3],
 }
 
 /// Runs a stage: reads everything, then writes everything (CMB-1).
@@ -133,198 +141,155 @@ pub fn run<L: Lane, O: Observer>(
         registers.load(Register::ConstantColor0, stage.constants[0].map(L::byte));
         registers.load(Register::ConstantColor1, stage.constants[1].map(L::byte));
     }
-    let cd = mux_takes_cd(registers.read(Register::Spare0, 3), mux_select, policies);
-    let context = Context { policies, takes_cd: cd, index: stage.index };
-    if O::ON && [&stage.rgb, &stage.alpha].into_iter().any(|p| p.portion.mux && p.live[2] != 0) {
-        let spare0 = registers.read(Register::Spare0, 3);
-        StageReport::new(stage.index, false).mux(spare0, mux_select, policies, cd, observer);
-    }
-    let rgb = (!stage.rgb.is_idle()).then(|| context.evaluate::<L, O>(&stage.rgb, false, registers, observer));
-    let alpha = (!stage.alpha.is_idle()).then(|| context.evaluate::<L, O>(&stage.alpha, true, registers, observer));
-    for (planned, outputs, channels) in [(&stage.rgb, rgb, 0..3), (&stage.alpha, alpha, 3..4)] {
-        let Some(outputs) = outputs else { continue };
-        let destinations = [planned.portion.ab_output, planned.portion.cd_output, planned.portion.sum_output];
-        for (n, destination) in destinations.into_iter().enumerate() {
-            for channel in channels.clone() {
-                if planned.live[n] >> channel & 1 != 0 {
-                    context.write(registers, destination, channel, outputs.values[n][channel], n, "CMB-1", observer);
-                }
-            }
-            if n < 2 && planned.blue_to_alpha[n] {
-                context.write(registers, destination, 3, outputs.blue[n], n, "CMB-11", observer);
+    let spare0 = registers.read(Register::Spare0, 3);
+    let takes_cd = mux_takes_cd(spare0, mux_select, policies);
+    let rgb = evaluate::<L, 3>(&stage.rgb, takes_cd, policies, registers);
+    let alpha = evaluate::<L, 1>(&stage.alpha, takes_cd, policies, registers);
+    if O::ON {
+        if [&stage.rgb, &stage.alpha].into_iter().any(|p| p.portion.mux && p.live[2] != 0) {
+            StageReport::new(stage.index, false).mux(spare0, mux_select, policies, takes_cd, observer);
+        }
+        for (portion, report) in [(&stage.rgb, false), (&stage.alpha, true)] {
+            let report = StageReport::new(stage.index, report);
+            for product in 0..2 {
+                report.inputs(portion, product, registers, policies, observer);
             }
         }
+        StageReport::new(stage.index, false).values(&stage.rgb, 0, &rgb, takes_cd, policies, observer);
+        StageReport::new(stage.index, true).values(&stage.alpha, 3, &alpha, takes_cd, policies, observer);
     }
+    write(&stage.rgb, 0, &rgb, stage.index, registers, observer);
+    write(&stage.alpha, 3, &alpha, stage.index, registers, observer);
 }
 
-struct Context<'a> {
-    policies: &'a Policies,
+/// One portion. Channels that nobody reads are computed along where that is cheaper than asking.
+#[inline(always)]
+fn evaluate<L: Lane, const N: usize>(
+    planned: &PlannedPortion,
     takes_cd: bool,
-    index: usize,
+    policies: &Policies,
+    registers: &Registers<L>,
+) -> Values<L, N> {
+    let portion = &planned.portion;
+    let zero = L::ZERO.factor();
+    let nothing = [zero.product(zero); N];
+    let mut values =
+        Values { factors: [[zero; N]; 4], products: [nothing; 2], third: nothing, outputs: [[L::ZERO; N]; 3] };
+    let dots = [portion.ab_dot_product, portion.cd_dot_product];
+    for product in 0..2 {
+        if planned.product_channels(product) == 0 {
+            continue;
+        }
+        let [a, b] = [2 * product, 2 * product + 1].map(|n| {
+            let input = &portion.inputs[n];
+            mapping::map(channels::<L, N>(input, registers), input.mapping, policies)
+        });
+        (values.factors[2 * product], values.factors[2 * product + 1]) = (a, b);
+        values.products[product] = if dots[product] {
+            [dot::<L>(a.as_slice(), b.as_slice(), policies); N]
+        } else {
+            std::array::from_fn(|c| a[c].product(b[c]))
+        };
+    }
+    let [ab, cd] = values.products;
+    if planned.live[2] != 0 {
+        values.third = std::array::from_fn(|c| third::<L>(ab[c], cd[c], portion.mux.then_some(takes_cd), policies));
+    }
+    for n in 0..3 {
+        let blue = n < 2 && planned.blue_to_alpha[n];
+        if planned.live[n] == 0 && !blue {
+            continue;
+        }
+        // A dot product is the same in every channel.
+        let (raw, same) = match n {
+            0 => (ab, dots[0]),
+            1 => (cd, dots[1]),
+            _ => (values.third, dots[0] && dots[1]),
+        };
+        values.outputs[n] = if same {
+            [finish::<L>(raw[0], portion, policies); N]
+        } else {
+            raw.map(|raw| finish::<L>(raw, portion, policies))
+        };
+    }
+    values
 }
 
-impl Context<'_> {
-    fn report(&self, alpha: bool) -> StageReport {
-        StageReport::new(self.index, alpha)
+/// The channels of its register that an input brings to a portion.
+#[inline(always)]
+fn channels<L: Lane, const N: usize>(input: &CombinerInput, registers: &Registers<L>) -> [L; N] {
+    let value = &registers.values[input.register as usize];
+    match input.component {
+        Component::Rgb => std::array::from_fn(|c| value[c]),
+        Component::Blue => [value[2]; N],
+        Component::Alpha => [value[3]; N],
     }
+}
 
-    #[inline(always)]
-    fn evaluate<L: Lane, O: Observer>(
-        &self,
-        planned: &PlannedPortion,
-        alpha: bool,
-        registers: &Registers<L>,
-        observer: &mut O,
-    ) -> Outputs<L> {
-        let portion = &planned.portion;
-        let (first, last) = if alpha { (3, 4) } else { (0, 3) };
-        let zero = L::ZERO.factor();
-        let mut factors = [[zero; 4]; 4];
-        let mut products = [[zero.product(zero); 4]; 2];
-        for product in 0..2 {
-            let dot = [portion.ab_dot_product, portion.cd_dot_product][product];
-            let needed = planned.product_channels(product);
-            let read = if dot && needed != 0 { 7 } else { needed };
-            for n in [2 * product, 2 * product + 1] {
-                for channel in (first..last).filter(|c| read >> c & 1 != 0) {
-                    let input = &portion.inputs[n];
-                    let x = registers.read(input.register, source_channel(input, channel));
-                    factors[n][channel] = mapping::map(x, input.mapping, self.policies);
-                    if O::ON {
-                        self.report(alpha).input(input, n, channel, registers, factors[n][channel], observer);
-                    }
+/// CMB-8 with its alternative. Only RGB portions have dot products, so there are three channels.
+#[inline(always)]
+fn dot<L: Lane>(a: &[L::Mapped], b: &[L::Mapped], policies: &Policies) -> L::Full {
+    let ([a0, a1, a2], [b0, b1, b2]) = (a, b) else { return L::ZERO.widened() };
+    let (a, b) = ([*a0, *a1, *a2], [*b0, *b1, *b2]);
+    match policies.dot_rounding {
+        DotRounding::Once => dot_product(a, b),
+        DotRounding::Each => {
+            let term = |n: usize| a[n].product(b[n]).rounded();
+            (term(0) + term(1) + term(2)).widened()
+        }
+    }
+}
+
+/// CMB-7, or CMB-10 where `takes_cd` is given: the third output before bias and scale.
+#[inline(always)]
+fn third<L: Lane>(ab: L::Full, cd: L::Full, takes_cd: Option<bool>, policies: &Policies) -> L::Full {
+    match (takes_cd, policies.sum_rounding) {
+        (Some(true), _) => cd,
+        (Some(false), _) => ab,
+        (None, SumRounding::Once) => ab + cd,
+        (None, SumRounding::Each) => (ab.rounded() + cd.rounded()).widened(),
+    }
+}
+
+/// CMB-9 with its alternative.
+#[inline(always)]
+fn finish<L: Lane>(raw: L::Full, portion: &Portion, policies: &Policies) -> L {
+    match policies.output_rounding {
+        OutputRounding::BeforeScale => output(raw, portion.bias, portion.scale, policies.register_floor),
+        OutputRounding::AfterScale => {
+            rounded_after::<L>(raw, portion.bias, portion.scale).saturated(policies.register_floor)
+        }
+    }
+}
+
+/// Writes the live channels of a portion, `first` being the register channel of its first one; CMB-11 last.
+#[inline(always)]
+fn write<L: Lane, O: Observer, const N: usize>(
+    planned: &PlannedPortion,
+    first: usize,
+    values: &Values<L, N>,
+    stage: usize,
+    registers: &mut Registers<L>,
+    observer: &mut O,
+) {
+    let destinations = [planned.portion.ab_output, planned.portion.cd_output, planned.portion.sum_output];
+    for (n, destination) in destinations.into_iter().enumerate() {
+        for c in 0..N {
+            let channel = first + c;
+            if planned.live[n] >> channel & 1 != 0 {
+                registers.write(destination, channel, values.outputs[n][c]);
+                if O::ON {
+                    let report = StageReport::new(stage, first == 3);
+                    report.write(destination, channel, values.outputs[n][c], n, "CMB-1", observer);
                 }
             }
-            let (a, b) = (&factors[2 * product], &factors[2 * product + 1]);
-            if dot {
-                if needed != 0 {
-                    let raw = self.dot::<L>([a[0], a[1], a[2]], [b[0], b[1], b[2]]);
-                    products[product] = [raw; 4];
-                }
-            } else {
-                for channel in (first..last).filter(|c| needed >> c & 1 != 0) {
-                    products[product][channel] = a[channel].product(b[channel]);
-                }
-            }
+        }
+        if n < 2 && planned.blue_to_alpha[n] {
+            let blue = values.outputs[n][N - 1];
+            registers.write(destination, 3, blue);
             if O::ON {
-                let rounding = dot.then_some(self.policies.dot_rounding);
-                self.report(alpha).products::<L, O>(product, needed, rounding, &factors, &products[product], observer);
+                StageReport::new(stage, first == 3).write(destination, 3, blue, n, "CMB-11", observer);
             }
-        }
-        let mut outputs = Outputs { values: [[L::ZERO; 4]; 3], blue: [L::ZERO; 2] };
-        for n in 0..3 {
-            if planned.live[n] == 0 {
-                continue;
-            }
-            // A dot product is the same in every channel: finished once, unless somebody watches.
-            let replicated = !O::ON
-                && match n {
-                    0 => portion.ab_dot_product,
-                    1 => portion.cd_dot_product,
-                    _ => portion.ab_dot_product && portion.cd_dot_product,
-                };
-            let channels = if replicated { planned.live[n].trailing_zeros() as usize } else { first };
-            for channel in channels..last {
-                if planned.live[n] >> channel & 1 != 0 {
-                    let raw = match n {
-                        2 => self.third::<L, O>(portion, channel, &products, alpha, observer),
-                        n => products[n][channel],
-                    };
-                    outputs.values[n][channel] = self.finish(portion, raw, n, channel, alpha, observer);
-                    if replicated {
-                        outputs.values[n] = [outputs.values[n][channel]; 4];
-                        break;
-                    }
-                }
-            }
-        }
-        for n in 0..2 {
-            if planned.blue_to_alpha[n] {
-                outputs.blue[n] = if planned.live[n] & BLUE != 0 {
-                    outputs.values[n][2]
-                } else {
-                    self.finish(portion, products[n][2], n, 2, alpha, observer)
-                };
-            }
-        }
-        outputs
-    }
-
-    /// CMB-8 with its alternative.
-    #[inline(always)]
-    fn dot<L: Lane>(&self, a: [L::Mapped; 3], b: [L::Mapped; 3]) -> L::Full {
-        match self.policies.dot_rounding {
-            DotRounding::Once => dot_product(a, b),
-            DotRounding::Each => {
-                let term = |n: usize| a[n].product(b[n]).rounded();
-                (term(0) + term(1) + term(2)).widened()
-            }
-        }
-    }
-
-    /// CMB-7 or CMB-10: the third output before bias and scale.
-    #[inline(always)]
-    fn third<L: Lane, O: Observer>(
-        &self,
-        portion: &Portion,
-        channel: usize,
-        products: &[[L::Full; 4]; 2],
-        alpha: bool,
-        observer: &mut O,
-    ) -> L::Full {
-        let (ab, cd) = (products[0][channel], products[1][channel]);
-        let raw = if portion.mux {
-            if self.takes_cd { cd } else { ab }
-        } else {
-            match self.policies.sum_rounding {
-                SumRounding::Once => ab + cd,
-                SumRounding::Each => (ab.rounded() + cd.rounded()).widened(),
-            }
-        };
-        if O::ON {
-            let selected = portion.mux.then_some(self.takes_cd);
-            self.report(alpha).third::<L, O>(channel, [ab, cd], raw, selected, self.policies.sum_rounding, observer);
-        }
-        raw
-    }
-
-    /// CMB-9 with its alternative.
-    #[inline(always)]
-    fn finish<L: Lane, O: Observer>(
-        &self,
-        portion: &Portion,
-        raw: L::Full,
-        n: usize,
-        channel: usize,
-        alpha: bool,
-        observer: &mut O,
-    ) -> L {
-        let floor = self.policies.register_floor;
-        let value = match self.policies.output_rounding {
-            OutputRounding::BeforeScale => output(raw, portion.bias, portion.scale, floor),
-            OutputRounding::AfterScale => rounded_after::<L>(raw, portion.bias, portion.scale).saturated(floor),
-        };
-        if O::ON {
-            self.report(alpha).output::<L, O>(portion, raw, value, (n, channel), self.policies, observer);
-        }
-        value
-    }
-
-    #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "one register write and what the trace says of it")]
-    fn write<L: Lane, O: Observer>(
-        &self,
-        registers: &mut Registers<L>,
-        destination: Register,
-        channel: usize,
-        value: L,
-        n: usize,
-        rule: &'static str,
-        observer: &mut O,
-    ) {
-        registers.write(destination, channel, value);
-        if O::ON {
-            self.report(channel == 3 && rule != "CMB-11").write(destination, channel, value, n, rule, observer);
         }
     }
 }

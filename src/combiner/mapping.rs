@@ -21,18 +21,18 @@ pub fn expand_normal<R: Register>(x: R) -> R::Expanded {
     (x.max0() - R::HALF).twice()
 }
 
-/// Any mapping, under any policy.
+/// Any mapping, under any policy, of some channels.
 #[inline(always)]
-pub fn map<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::Mapped {
+pub fn map<L: Lane, const N: usize>(x: [L; N], mapping: InputMapping, policies: &Policies) -> [L::Mapped; N] {
     match mapping {
-        InputMapping::UnsignedIdentity => unsigned_identity(x).factor(),
-        InputMapping::UnsignedInvert => unsigned_invert(x).factor(),
-        InputMapping::ExpandNormal => expand(x, policies),
-        InputMapping::ExpandNegate => L::negated(expand(x, policies)),
-        InputMapping::HalfBiasNormal => half_bias(x.max0(), L::HALF, policies),
-        InputMapping::HalfBiasNegate => L::negated(half_bias(x.max0(), L::HALF, policies)),
-        InputMapping::SignedIdentity => x.factor(),
-        InputMapping::SignedNegate => L::negated(x.factor()),
+        InputMapping::UnsignedIdentity => x.map(|x| unsigned_identity(x).factor()),
+        InputMapping::UnsignedInvert => x.map(|x| unsigned_invert(x).factor()),
+        InputMapping::ExpandNormal => x.map(|x| expand(x, policies)),
+        InputMapping::ExpandNegate => x.map(|x| L::negated(expand(x, policies))),
+        InputMapping::HalfBiasNormal => x.map(|x| half_bias(x.max0(), L::HALF, policies)),
+        InputMapping::HalfBiasNegate => x.map(|x| L::negated(half_bias(x.max0(), L::HALF, policies))),
+        InputMapping::SignedIdentity => x.map(|x| x.factor()),
+        InputMapping::SignedNegate => x.map(|x| L::negated(x.factor())),
     }
 }
 
@@ -116,7 +116,7 @@ mod tests {
                             InputMapping::SignedIdentity => 2 * x,
                             InputMapping::SignedNegate => (-2 * x).min(510),
                         };
-                        assert_eq!(map(x, *mapping, &policies), Halves(want), "{mapping:?} {x} {policies:?}");
+                        assert_eq!(map([x], *mapping, &policies), [Halves(want)], "{mapping:?} {x} {policies:?}");
                     }
                 }
             }
@@ -126,7 +126,7 @@ mod tests {
     /// CMB-2: ZERO inverted is exactly 255; CMB-5: minus one is the negation of one.
     #[test]
     fn ones() {
-        assert_eq!(map(0, InputMapping::UnsignedInvert, &Policies::DEFAULT), Halves(510));
-        assert_eq!(map(255, InputMapping::SignedNegate, &Policies::DEFAULT), Halves(-510));
+        assert_eq!(map([0], InputMapping::UnsignedInvert, &Policies::DEFAULT), [Halves(510)]);
+        assert_eq!(map([255], InputMapping::SignedNegate, &Policies::DEFAULT), [Halves(-510)]);
     }
 }

@@ -1,14 +1,17 @@
 //! What a general stage tells an observer. Nothing here computes a value that is used.
 
-use super::general::{biased, rounded_after, scaled, source_channel};
+use super::general::{PlannedPortion, Values, biased, rounded_after, scaled, source_channel};
 use super::mapping;
 use super::registers::{self, Registers, channel_name};
 use crate::number::{Lane, Sum};
 use crate::state::{
-    Bias, CombinerInput, DotRounding, MuxNegative, MuxSelect, OutputRounding, Policies, Portion, Register,
-    RegisterFloor, Scale, SumRounding,
+    Bias, DotRounding, MuxNegative, MuxSelect, OutputRounding, Policies, Portion, Register, RegisterFloor, Scale,
+    SumRounding,
 };
 use crate::trace::{Observer, Step, plain, report};
+
+/// What CMB-13 says of a value that a stage reads.
+const UNDEFINED: &str = "no document defines this register here; taken as 0 (CMB-13)";
 
 const PRODUCT_NAMES: [&str; 3] = ["AB", "CD", "sum"];
 const INPUT_NAMES: [&str; 4] = ["A", "B", "C", "D"];
@@ -51,56 +54,108 @@ impl StageReport {
         );
     }
 
-    pub(super) fn input<L: Lane, O: Observer>(
+    /// The inputs of AB (0) or CD (1), as far as they are read.
+    pub(super) fn inputs<L: Lane, O: Observer>(
         &self,
-        input: &CombinerInput,
-        n: usize,
-        channel: usize,
+        planned: &PlannedPortion,
+        product: usize,
         registers: &Registers<L>,
-        factor: L::Mapped,
+        policies: &Policies,
         observer: &mut O,
     ) {
-        let source = source_channel(input, channel);
-        let x = registers.read(input.register, source);
-        let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
-        let undefined = registers.undefined & registers::bit(input.register, source) != 0;
-        let operand = format!("{}.{}", registers::name(input.register), channel_name(source));
-        observer.step(
-            report::factor_step::<L>(&self.block, mapping::rule(input.mapping), name, factor)
-                .by(mapping::operation(input.mapping), vec![report::register(operand, x)])
-                .note(undefined.then(|| "no document defines this register here; taken as 0 (CMB-13)".to_string())),
-        );
+        for n in [2 * product, 2 * product + 1] {
+            let input = &planned.portion.inputs[n];
+            let read = self.read_channels(planned, product);
+            for channel in (0..4).filter(|c| read >> c & 1 != 0) {
+                let source = source_channel(input, channel);
+                let x = registers.read(input.register, source);
+                let [factor] = mapping::map([x], input.mapping, policies);
+                let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
+                let undefined = registers.undefined & registers::bit(input.register, source) != 0;
+                let operand = format!("{}.{}", registers::name(input.register), channel_name(source));
+                observer.step(
+                    report::factor_step::<L>(&self.block, mapping::rule(input.mapping), name, factor)
+                        .by(mapping::operation(input.mapping), vec![report::register(operand, x)])
+                        .note(undefined.then(|| UNDEFINED.to_string())),
+                );
+            }
+        }
+    }
+
+    /// Products, third output, and the way of each output to its register.
+    pub(super) fn values<L: Lane, O: Observer, const N: usize>(
+        &self,
+        planned: &PlannedPortion,
+        first: usize,
+        values: &Values<L, N>,
+        takes_cd: bool,
+        policies: &Policies,
+        observer: &mut O,
+    ) {
+        let portion = &planned.portion;
+        for product in 0..2 {
+            let dot = [portion.ab_dot_product, portion.cd_dot_product][product];
+            let rounding = dot.then_some(policies.dot_rounding);
+            let needed = planned.product_channels(product);
+            self.products::<L, O, N>(product, (needed, first), rounding, values, observer);
+        }
+        for n in 0..3 {
+            for c in 0..N {
+                let channel = first + c;
+                let blue = n < 2 && planned.blue_to_alpha[n] && channel == 2;
+                if planned.live[n] >> channel & 1 == 0 && !blue {
+                    continue;
+                }
+                let raw = if n == 2 { values.third[c] } else { values.products[n][c] };
+                if n == 2 {
+                    let selected = portion.mux.then_some(takes_cd);
+                    let products = [values.products[0][c], values.products[1][c]];
+                    self.third::<L, O>(channel, products, raw, selected, policies.sum_rounding, observer);
+                }
+                self.output::<L, O>(portion, raw, values.outputs[n][c], (n, channel), policies, observer);
+            }
+        }
+    }
+
+    /// Channels of the inputs of a product that are read.
+    fn read_channels(&self, planned: &PlannedPortion, product: usize) -> u8 {
+        let dot = [planned.portion.ab_dot_product, planned.portion.cd_dot_product][product];
+        match planned.product_channels(product) {
+            0 => 0,
+            _ if dot => 7,
+            needed => needed,
+        }
     }
 
     /// `rounding` is given for a dot product.
-    pub(super) fn products<L: Lane, O: Observer>(
+    fn products<L: Lane, O: Observer, const N: usize>(
         &self,
         product: usize,
-        needed: u8,
+        (needed, first): (u8, usize),
         rounding: Option<DotRounding>,
-        factors: &[[L::Mapped; 4]; 4],
-        products: &[L::Full; 4],
+        values: &Values<L, N>,
         observer: &mut O,
     ) {
-        let operand = |n: usize, channel: usize| {
-            let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
-            report::factor::<L>(name, factors[n][channel])
+        let operand = |n: usize, c: usize| {
+            let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(first + c));
+            report::factor::<L>(name, values.factors[n][c])
         };
         let (rule, operation) = match rounding {
             Some(DotRounding::Once) => ("CMB-8", "dot_product"),
             Some(DotRounding::Each) => ("CMB-8", "dot_product_rounded"),
             None => ("CMB-6", "product"),
         };
-        for channel in (0..4).filter(|c| needed >> c & 1 != 0) {
-            let pairs = if rounding.is_some() { vec![0, 1, 2] } else { vec![channel] };
-            let inputs = pairs.iter().flat_map(|c| [operand(2 * product, *c), operand(2 * product + 1, *c)]).collect();
-            let name = self.product_name(product, channel);
-            observer.step(report::sum_step::<L>(&self.block, rule, name, products[channel]).by(operation, inputs));
+        for c in (0..N).filter(|c| needed >> (first + c) & 1 != 0) {
+            let pairs = if rounding.is_some() { 0..N } else { c..c + 1 };
+            let inputs = pairs.flat_map(|c| [operand(2 * product, c), operand(2 * product + 1, c)]).collect();
+            let name = self.product_name(product, first + c);
+            let raw = values.products[product][c];
+            observer.step(report::sum_step::<L>(&self.block, rule, name, raw).by(operation, inputs));
         }
     }
 
     /// `selected` is given for a mux: whether CD was taken.
-    pub(super) fn third<L: Lane, O: Observer>(
+    fn third<L: Lane, O: Observer>(
         &self,
         channel: usize,
         products: [L::Full; 2],
@@ -126,7 +181,7 @@ impl StageReport {
     }
 
     /// Rounding, bias, scale and saturation of output `n` (AB, CD, sum) in `channel`.
-    pub(super) fn output<L: Lane, O: Observer>(
+    fn output<L: Lane, O: Observer>(
         &self,
         portion: &Portion,
         raw: L::Full,

@@ -161,17 +161,21 @@ impl<'a> TriangleContext<'a> {
             if live == 0 {
                 continue;
             }
-            let mut value = [L::ZERO; 4];
-            for channel in (0..4).filter(|c| live >> c & 1 != 0) {
-                let sources =
-                    self.colored.map(|v| if register == Register::PrimaryColor { &v.diffuse } else { &v.specular });
-                let vertex =
-                    |k: usize| L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel));
-                let corners = [vertex(0), vertex(1), vertex(2)];
-                value[channel] =
-                    if O::ON || !constant(colors) { interpolate::color(corners, w0, w2) } else { corners[0] };
-                if O::ON {
-                    reports::color(name, channel, sources, corners, &weights, value[channel], observer);
+            let sources =
+                self.colored.map(|v| if register == Register::PrimaryColor { &v.diffuse } else { &v.specular });
+            let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
+                std::array::from_fn(|k| {
+                    L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel))
+                })
+            });
+            let value = if O::ON || !constant(colors) {
+                corners.map(|c| interpolate::color(c, w0, w2))
+            } else {
+                corners.map(|c| c[0])
+            };
+            if O::ON {
+                for channel in (0..4).filter(|c| live >> c & 1 != 0) {
+                    reports::color(name, channel, sources, corners[channel], &weights, value[channel], observer);
                 }
             }
             registers.load(register, value);

@@ -46,17 +46,19 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
 /// [`expand`] with the field values that the ideal takes: 5-bit channels as v/31.
 #[inline(always)]
 pub fn channels(format: TextureFormat, word: u32) -> [Channel; 4] {
-    let bytes = expand(format, word);
-    let fields: [(u32, u8); 4] = match format {
-        TextureFormat::R5G6B5 => [(word >> 11 & 31, 31), (word >> 5 & 63, 63), (word & 31, 31), (1, 1)],
-        TextureFormat::X1R5G5B5 => [(word >> 10 & 31, 31), (word >> 5 & 31, 31), (word & 31, 31), (1, 1)],
+    let [r, g, b, a] = expand(format, word);
+    let whole = |byte: u8| Channel { byte, numerator: byte, denominator: 255 };
+    let field =
+        |byte: u8, shift: u32, most: u8| Channel { byte, numerator: (word >> shift) as u8 & most, denominator: most };
+    match format {
+        TextureFormat::R5G6B5 => [field(r, 11, 31), field(g, 5, 63), field(b, 0, 31), whole(a)],
+        TextureFormat::X1R5G5B5 => [field(r, 10, 31), field(g, 5, 31), field(b, 0, 31), whole(a)],
         TextureFormat::A8R8G8B8
         | TextureFormat::X8R8G8B8
         | TextureFormat::L8
         | TextureFormat::A8
-        | TextureFormat::G8B8 => bytes.map(|b| (u32::from(b), 255)),
-    };
-    std::array::from_fn(|n| Channel { byte: bytes[n], numerator: fields[n].0 as u8, denominator: fields[n].1 })
+        | TextureFormat::G8B8 => [whole(r), whole(g), whole(b), whole(a)],
+    }
 }
 
 /// A channel in a lane; a signed one (TEX-18) as its two's complement value, s/128 in the ideal.

@@ -2,7 +2,7 @@
 
 use super::address::address;
 use super::filter::{bilinear, lerp, linear, nearest};
-use super::format::{self, Channel};
+use super::format;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::interpolate::{Sample, Settled};
@@ -58,8 +58,8 @@ impl Coordinates {
     }
 }
 
-/// One texel of the footprint: where it is and its channels; `None` is the border colour.
-type Texel = (Option<(u32, u32)>, u32, [Channel; 4]);
+/// One texel of the footprint: where it is, `None` for the border colour, and its raw word.
+type Texel = (Option<(u32, u32)>, u32);
 
 /// Samples a unit. `ideal` gives u and v in 1/256 texel as real numbers; it is called only by lanes that have an ideal.
 #[inline]
@@ -84,7 +84,7 @@ pub fn sample<L: Lane, O: Observer>(
                 report.nearest([u, v], [x, y], observer);
             }
             let texel = fetch(unit, words, x, y);
-            let channels = lanes::<L>(unit, &texel.2);
+            let channels = lanes::<L>(unit, &texel);
             if O::ON {
                 report.texel(&texel, [("", x), ("", y)], "", &channels, observer);
             }
@@ -101,8 +101,9 @@ pub fn sample<L: Lane, O: Observer>(
             if O::ON {
                 report.linear::<L, O>([u, v], [x, y], weights, observer);
             }
-            let texels = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| fetch(unit, words, x + dx, y + dy));
-            let channels = texels.map(|t| lanes::<L>(unit, &t.2));
+            let texels = footprint(unit, words, x, y);
+            let [t0, t1, t2, t3] = &texels;
+            let channels = [lanes::<L>(unit, t0), lanes::<L>(unit, t1), lanes::<L>(unit, t2), lanes::<L>(unit, t3)];
             if O::ON {
                 for (n, (dx, dy)) in [("0", "0"), ("1", "0"), ("0", "1"), ("1", "1")].into_iter().enumerate() {
                     let index = [x + (n & 1) as i64, y + (n >> 1) as i64];
@@ -115,12 +116,12 @@ pub fn sample<L: Lane, O: Observer>(
                     );
                 }
             }
-            let mut out = [L::ZERO; 4];
-            for channel in (0..4).filter(|c| unit.live >> c & 1 != 0) {
-                let footprint = [0, 1, 2, 3].map(|n| channels[n][channel]);
-                out[channel] = bilinear(footprint, weights[0], weights[1]);
-                if O::ON {
-                    report.filter(channel, footprint, weights, out[channel], observer);
+            // All four channels: cheaper than asking which are read.
+            let out: [L; 4] =
+                std::array::from_fn(|channel| bilinear(channels.map(|texel| texel[channel]), weights[0], weights[1]));
+            if O::ON {
+                for channel in (0..4).filter(|c| unit.live >> c & 1 != 0) {
+                    report.filter(channel, channels.map(|t| t[channel]), weights, out[channel], observer);
                 }
             }
             out
@@ -138,27 +139,43 @@ pub fn sample<L: Lane, O: Observer>(
     register
 }
 
-/// TEX-7, TEX-8: the texel at an index that may lie outside.
+/// The texel at an index that may lie outside.
 #[inline(always)]
 fn fetch(unit: &PlannedUnit, words: &[u32], x: i64, y: i64) -> Texel {
-    let inside = address(unit.state.address_s, x, unit.width).zip(address(unit.state.address_t, y, unit.height));
-    match inside {
-        Some((x, y)) => {
-            let word = words[y as usize * unit.width as usize + x as usize];
-            (inside, word, format::channels(unit.format, word))
-        }
-        None => {
-            let [r, g, b, a] = unit.state.border_color.map(u32::from);
-            let word = a << 24 | r << 16 | g << 8 | b;
-            // The border colour is A8R8G8B8 whatever the format.
-            (None, word, format::channels(TextureFormat::A8R8G8B8, word))
-        }
+    let x = address(unit.state.address_s, x, unit.width);
+    texel(unit, words, x, address(unit.state.address_t, y, unit.height))
+}
+
+/// TEX-8: the 2x2 footprint whose upper left texel is (x, y), row by row; each index is wrapped on its own.
+#[inline(always)]
+fn footprint(unit: &PlannedUnit, words: &[u32], x: i64, y: i64) -> [Texel; 4] {
+    let (x0, x1) = (address(unit.state.address_s, x, unit.width), address(unit.state.address_s, x + 1, unit.width));
+    let (y0, y1) = (address(unit.state.address_t, y, unit.height), address(unit.state.address_t, y + 1, unit.height));
+    [texel(unit, words, x0, y0), texel(unit, words, x1, y0), texel(unit, words, x0, y1), texel(unit, words, x1, y1)]
+}
+
+/// TEX-7: the texel inside, or the border colour, which is A8R8G8B8 whatever the format.
+#[inline(always)]
+fn texel(unit: &PlannedUnit, words: &[u32], x: Option<u32>, y: Option<u32>) -> Texel {
+    if let (Some(x), Some(y)) = (x, y) {
+        (Some((x, y)), words[y as usize * unit.width as usize + x as usize])
+    } else {
+        let [r, g, b, a] = unit.state.border_color.map(u32::from);
+        (None, a << 24 | r << 16 | g << 8 | b)
     }
 }
 
 #[inline(always)]
-fn lanes<L: Lane>(unit: &PlannedUnit, channels: &[Channel; 4]) -> [L; 4] {
-    std::array::from_fn(|n| format::lane::<L>(channels[n], unit.state.signed[n]))
+fn lanes<L: Lane>(unit: &PlannedUnit, texel: &Texel) -> [L; 4] {
+    let format = if texel.0.is_some() { unit.format } else { TextureFormat::A8R8G8B8 };
+    let [r, g, b, a] = format::channels(format, texel.1);
+    let signed = &unit.state.signed;
+    [
+        format::lane::<L>(r, signed[0]),
+        format::lane::<L>(g, signed[1]),
+        format::lane::<L>(b, signed[2]),
+        format::lane::<L>(a, signed[3]),
+    ]
 }
 
 /// What a unit tells an observer.
