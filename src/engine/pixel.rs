@@ -230,15 +230,16 @@ impl<'a> TriangleContext<'a> {
     ) {
         const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         for (n, register) in UNITS.into_iter().enumerate() {
-            if self.draw.unbound[n] {
+            if self.draw.unbound[n] != 0 {
                 // TEX-16.
                 registers.load(register, [L::ZERO, L::ZERO, L::ZERO, L::ONE]);
                 if O::ON {
-                    for channel in 0..4 {
+                    for channel in (0..4).filter(|c| self.draw.unbound[n] >> c & 1 != 0) {
                         let name = format!("texture{n}.{}", channel_name(channel));
-                        let value = if channel == 3 { 255 } else { 0 };
+                        let value = if channel == 3 { 255_u8 } else { 0 };
                         let block = format!("texture unit {n}");
-                        observer.step(Step::given(&block, "TEX-16", name, value).per(255));
+                        let ideal = Some(f64::from(value));
+                        observer.step(Step::given(&block, "TEX-16", name, i64::from(value)).per(255).ideal(ideal));
                     }
                 }
             }
@@ -252,6 +253,9 @@ impl<'a> TriangleContext<'a> {
             let words = textures[planned.state.texture];
             let value = unit::sample::<L, O>(planned, words, coordinates, sample, ideal, observer);
             registers.load(UNITS[planned.index], value);
+        }
+        if !self.draw.spare0_alpha {
+            return;
         }
         let alpha = registers.read(Register::Texture0, 3);
         registers.values[Register::Spare0 as usize][3] = alpha;

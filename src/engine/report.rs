@@ -236,7 +236,9 @@ impl TriangleContext<'_> {
 /// The constants of the stage that comes at or after number `next`, or of the final combiner.
 pub(super) fn stage_constants<O: Observer>(next: usize, draw: &PlannedDraw, observer: &mut O) {
     match draw.stages.iter().find(|s| s.index >= next) {
+        Some(stage) if !stage.reads_constants => {}
         Some(stage) => constants(&format!("general stage {}", stage.index), stage.constants, observer),
+        None if !draw.final_combiner.reads_constants => {}
         None => constants("final combiner", draw.final_combiner.state.constants, observer),
     }
 }

@@ -22,6 +22,7 @@ pub(super) struct Liveness {
     pub(super) secondary: u8,
     pub(super) fog: u8,
     pub(super) units: [u8; TEXTURE_UNITS],
+    pub(super) spare0_alpha: bool,
 }
 
 impl Liveness {
@@ -54,7 +55,8 @@ impl Liveness {
         let channels = |register: Register| (live >> (4 * register as usize) & 15) as u8;
         let mut units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3].map(channels);
         // CMB-13: SPARE0's alpha starts as texture 0's.
-        units[0] |= channels(Register::Spare0) & ALPHA;
+        let spare0_alpha = channels(Register::Spare0) & ALPHA != 0;
+        units[0] |= if spare0_alpha { ALPHA } else { 0 };
         Liveness {
             stages,
             final_combiner,
@@ -62,6 +64,7 @@ impl Liveness {
             secondary: channels(Register::SecondaryColor),
             fog: channels(Register::Fog),
             units,
+            spare0_alpha,
         }
     }
 }

@@ -94,8 +94,10 @@ pub struct PlannedDraw {
     pub fog: Fog,
     /// Bound units that are read.
     pub units: Vec<PlannedUnit>,
-    /// Unbound units (TEX-16).
-    pub unbound: [bool; TEXTURE_UNITS],
+    /// Channels of each unbound unit that are read (TEX-16); 0 for bound ones.
+    pub unbound: [u8; TEXTURE_UNITS],
+    /// SPARE0's initial alpha is read (CMB-13).
+    pub spare0_alpha: bool,
     /// General stages that are needed.
     pub stages: Vec<PlannedStage>,
     /// Mux bit.
@@ -238,7 +240,8 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         fog_channels: liveness.fog,
         fog: draw.fog,
         units,
-        unbound: std::array::from_fn(|n| draw.textures[n].is_none()),
+        unbound: std::array::from_fn(|n| if draw.textures[n].is_none() { liveness.units[n] } else { 0 }),
+        spare0_alpha: liveness.spare0_alpha,
         stages: liveness.stages,
         mux_select: draw.combiners.mux_select,
         final_combiner: liveness.final_combiner,

@@ -42,6 +42,11 @@ fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
     let (names, expressions) = (width(|l| l.0.chars().count(), 24), width(|l| l.1.chars().count(), 58));
+    writeln!(
+        out,
+        "    {:names$}  {:expressions$}  {:>12} {:>12} {:>12}  rule",
+        "what", "how", "integer", "real", "ideal"
+    )?;
     for (step, (name, expression)) in draw.steps.iter().zip(&lines) {
         if step.block != block {
             block = &step.block;
