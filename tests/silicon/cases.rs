@@ -134,7 +134,9 @@ pub fn r2() -> Case {
         capture: "Attrib_float/0_1.png",
         scene: scene(background, vec![draw(Topology::Quads, vertices)]),
         background,
-        region: |x, y| [128, 192, 384, 448, 512].iter().any(|x0| (*x0..=*x0 + 50).contains(&x)) && (144..432).contains(&y),
+        region: |x, y| {
+            [128, 192, 384, 448, 512].iter().any(|x0| (*x0..=*x0 + 50).contains(&x)) && (144..432).contains(&y)
+        },
         covered: 73_440,
         differing: 0,
     }

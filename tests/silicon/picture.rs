@@ -49,7 +49,8 @@ impl Expectation {
     /// The pixels of the mask.
     pub fn positions(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         self.mask.iter().flat_map(|(first, last, runs)| {
-            (*first..=*last).flat_map(move |y| runs.iter().flat_map(move |(from, to)| (*from..=*to).map(move |x| (x, y))))
+            (*first..=*last)
+                .flat_map(move |y| runs.iter().flat_map(move |(from, to)| (*from..=*to).map(move |x| (x, y))))
         })
     }
 
