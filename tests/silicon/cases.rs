@@ -1,6 +1,6 @@
 //! The captured frames R1 to R7 as scenes: geometry of the programs that drew them, pass-through colours.
 
-use super::build::{draw, target, vertex};
+use crate::build::{draw, target, vertex};
 use ninebit::state::*;
 
 /// A captured frame and what of it the model answers for.
