@@ -72,6 +72,17 @@ mod unix {
     }
 
     #[test]
+    fn read_only_files_are_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("frame.png");
+        fs::write(&place, b"old").unwrap();
+        fs::set_permissions(&place, fs::Permissions::from_mode(0o444)).unwrap();
+        let error = write_file(&place, b"new").expect_err("read-only");
+        assert!(error.to_string().contains("read-only") && error.code() == "NB0702", "{error}");
+        assert_eq!(fs::read(&place).unwrap(), b"old");
+    }
+
+    #[test]
     fn links_stay_links() {
         let folder = tempfile::tempdir().unwrap();
         let (file, link) = (folder.path().join("file"), folder.path().join("link"));
