@@ -82,6 +82,7 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("--help").text(), file!["cli/help.txt"]);
     assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
     assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
+    assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
     assert_eq!(bench.run("--version").text(), concat!("ninebit ", env!("CARGO_PKG_VERSION"), "\n"));
@@ -95,6 +96,8 @@ fn a_wrong_command_line_is_status_2() {
     bench.run("frobnicate").failed(2, "unrecognized subcommand 'frobnicate'");
     bench.run("render scene.ron").failed(2, "--output");
     bench.run("render scene.ron -o x.png --threads many").failed(2, "not a number from 0 to 1024");
+    bench.run("trace scene.ron").failed(2, "--pixel");
+    bench.run("trace scene.ron --pixel 3").failed(2, "not of the form X,Y");
     bench.run("render scene.ron -o - --stats json").failed(2, "cannot both go to stdout");
     bench.run("generate normal-map height.png -o n.png --scale NaN").failed(2, "not a finite number");
     bench.run("generate height-rocks -o h.png --size 8").failed(2, "16..=2048");
