@@ -1,3 +1,4 @@
+<<<<<<< HEAD
 //! Stand-in for the interface.
 use crate::frame::{Frames, Surface};
 use crate::plan::Plan;
@@ -7,11 +8,39 @@ pub struct RenderOptions {
     /// Threads; 0 takes all cores.
     pub threads: usize,
 }
+=======
+//! The scalar engine: a plan in, frames or the trace of one pixel out.
+//!
+//! [`pixel`] owns the order in which the blocks run for one pixel, generic over the lane and the observer; this module walks
+//! draws, bands of rows, triangles and quads. A pixel's result is a pure function of the plan, whatever the bands and threads.
+
+mod pixel;
+mod report;
+mod tracing;
+mod walk;
+
+pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
+
+use crate::frame::{Frames, Surface};
+use crate::plan::Plan;
+use crate::rop::surface;
+use crate::state::{Target, TextureImage};
+use rayon::prelude::*;
+
+/// How to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderOptions {
+    /// Threads; 0 takes one a core. The result does not depend on it.
+    pub threads: usize,
+}
+
+>>>>>>> 1d98b68
 impl Default for RenderOptions {
     fn default() -> Self {
         RenderOptions { threads: 1 }
     }
 }
+<<<<<<< HEAD
 /// Draws everything.
 pub fn render(plan: &Plan, _options: &RenderOptions) -> Frames {
     let blank = |t: &crate::state::Target| {
@@ -20,4 +49,97 @@ pub fn render(plan: &Plan, _options: &RenderOptions) -> Frames {
         Surface { width: t.width, height: t.height, format: t.format, words: vec![0; pixels], depth }
     };
     Frames { surfaces: plan.scene().targets.iter().map(blank).collect() }
+=======
+
+/// What a render did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Covered pixels of each draw, counted once for each triangle that covers them.
+    pub shaded_pixels: Vec<u64>,
+}
+
+/// Rows of a band: the unit of work that threads share. Even, so that quads stay whole.
+const BAND: usize = 16;
+
+/// Below this many pixels a draw stays on one thread.
+const SMALL: usize = 16_384;
+
+/// Renders every draw.
+pub fn render(plan: &Plan, options: &RenderOptions) -> Frames {
+    render_counted(plan, options, &|_, _| {}).0
+}
+
+/// Renders every draw, counting; `progress` is told how many of how many draws are done.
+pub fn render_counted(
+    plan: &Plan,
+    options: &RenderOptions,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> (Frames, Statistics) {
+    let mut frames = cleared(plan);
+    let mut statistics = Statistics::default();
+    let pool = (options.threads != 1)
+        .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok())
+        .flatten();
+    for index in 0..plan.draws.len() {
+        let shaded = draw(plan, index, &mut frames, pool.as_ref());
+        statistics.shaded_pixels.push(shaded);
+        progress(index + 1, plan.draws.len());
+    }
+    (frames, statistics)
+}
+
+/// The surfaces as the clears leave them.
+pub(crate) fn cleared(plan: &Plan) -> Frames {
+    let clear = |target: &Target| {
+        let pixels = target.width as usize * target.height as usize;
+        Surface {
+            width: target.width,
+            height: target.height,
+            format: target.format,
+            words: vec![surface::pack(target.format, target.clear_color); pixels],
+            depth: target.depth.map_or(Vec::new(), |d| vec![d.clear; pixels]),
+        }
+    };
+    Frames { surfaces: plan.targets.iter().map(clear).collect() }
+}
+
+/// The words of each texture at this moment.
+pub(crate) fn texture_words<'a>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<&'a [u32]> {
+    plan.textures
+        .iter()
+        .map(|t| match &t.image {
+            TextureImage::Texels { words, .. } => words.as_slice(),
+            TextureImage::Target { target, .. } => surfaces[*target].words.as_slice(),
+        })
+        .collect()
+}
+
+/// Runs one draw on its target; covered pixels.
+pub(crate) fn draw(plan: &Plan, index: usize, frames: &mut Frames, pool: Option<&rayon::ThreadPool>) -> u64 {
+    let planned = &plan.draws[index];
+    let target = &mut frames.surfaces[planned.target];
+    let width = target.width as usize;
+    // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
+    let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
+    let textures = texture_words(plan, &frames.surfaces);
+    let band_of = |number: usize, words, depth| walk::Band { first_row: number * BAND, width, words, depth };
+    let shaded = {
+        let bands: Vec<walk::Band<'_>> = if depth.is_empty() {
+            words.chunks_mut(BAND * width).enumerate().map(|(n, w)| band_of(n, w, &mut [][..])).collect()
+        } else {
+            let pairs = words.chunks_mut(BAND * width).zip(depth.chunks_mut(BAND * width));
+            pairs.enumerate().map(|(n, (w, d))| band_of(n, w, d)).collect()
+        };
+        let pixels = planned.window.width as usize * planned.window.height as usize;
+        match pool {
+            Some(pool) if pixels >= SMALL => pool.install(|| {
+                bands.into_par_iter().map(|mut band| walk::draw(plan, planned, &textures, &mut band)).sum()
+            }),
+            _ => bands.into_iter().map(|mut band| walk::draw(plan, planned, &textures, &mut band)).sum(),
+        }
+    };
+    let target = &mut frames.surfaces[planned.target];
+    (target.words, target.depth) = (words, depth);
+    shaded
+>>>>>>> 1d98b68
 }

@@ -1,47 +1,260 @@
-//! Stand-in for the interface.
-use crate::state::{Policies, Scene};
-/// Options.
-#[derive(Clone, Copy, Debug)]
+//! The plan: what of a scene can reach its frames, decided once, before any pixel.
+//!
+//! Everything that can fail has failed by the time a [`Plan`] exists; below it nothing returns an error. With
+//! [`PlanOptions::prune`] (the default) outputs, channels, units and reads that nothing can see are left out; the bytes are the same
+//! without.
+
+mod liveness;
+
+use crate::combiner::final_combiner::PlannedFinal;
+use crate::combiner::general::PlannedStage;
+use crate::raster::TEXEL_LIMIT;
+use crate::raster::assemble::{Assembly, assemble};
+use crate::rop::surface;
+use crate::state::{
+    AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, MuxSelect, Policies, Profile, Rectangle,
+    Scene, ShadeModel, SurfaceFormat, TEXTURE_UNITS, Target, Texture, TextureImage,
+};
+use crate::texture::unit::PlannedUnit;
+use liveness::Liveness;
+
+/// How a plan is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlanOptions {
-    /// Policies.
+    /// Answers to what no capture decides.
     pub policies: Policies,
-    /// Drop what cannot reach the frame.
+    /// Leave out what cannot reach a frame.
     pub prune: bool,
 }
+
 impl Default for PlanOptions {
     fn default() -> Self {
         PlanOptions { policies: Policies::DEFAULT, prune: true }
     }
 }
-/// A compiled scene.
-#[derive(Clone, Debug)]
-pub struct Plan {
-    scene: Scene,
-}
-/// Why a scene cannot be planned (RAS-0 and memory limits).
+
+/// Why a checked scene cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanError {
     /// Index of the draw.
     pub draw: usize,
     /// Index of the vertex, if one is to blame.
     pub vertex: Option<usize>,
-    /// Rule or limit, for example "RAS-0".
+    /// Rule that sets the limit.
     pub rule: &'static str,
     /// What is wrong.
     pub message: String,
     /// What to do.
     pub help: String,
 }
+
+/// A scene ready to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The chip.
+    pub profile: Profile,
+    /// The policies in force.
+    pub policies: Policies,
+    /// Render targets.
+    pub targets: Vec<Target>,
+    /// Textures.
+    pub textures: Vec<Texture>,
+    /// Draws in order.
+    pub draws: Vec<PlannedDraw>,
+}
+
+/// A draw reduced to what can reach its target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedDraw {
+    /// Name for messages and traces.
+    pub name: String,
+    /// Index of the target.
+    pub target: usize,
+    /// Format of the target.
+    pub surface: SurfaceFormat,
+    /// Pixels that may be drawn: the scissor within the target.
+    pub window: Rectangle,
+    /// Vertices in window coordinates and triangles.
+    pub assembly: Assembly,
+    /// Smooth or flat.
+    pub shade_model: ShadeModel,
+    /// Perspective-corrected weights.
+    pub perspective: bool,
+    /// Faces dropped.
+    pub cull: Cull,
+    /// Which winding is the front.
+    pub front_face: FrontFace,
+    /// Channels of the primary colour that are read, bits R, G, B, A.
+    pub primary: u8,
+    /// Channels of the secondary colour that are read.
+    pub secondary: u8,
+    /// Channels of the fog register that are read.
+    pub fog_channels: u8,
+    /// Fog state.
+    pub fog: Fog,
+    /// Bound units that are read.
+    pub units: Vec<PlannedUnit>,
+    /// Unbound units (TEX-16).
+    pub unbound: [bool; TEXTURE_UNITS],
+    /// General stages that are needed.
+    pub stages: Vec<PlannedStage>,
+    /// Mux bit.
+    pub mux_select: MuxSelect,
+    /// Final combiner.
+    pub final_combiner: PlannedFinal,
+    /// Alpha test, unless it always passes.
+    pub alpha_test: Option<AlphaTest>,
+    /// Depth test.
+    pub depth_test: Option<DepthTest>,
+    /// Largest depth of the target's buffer; 0 without one.
+    pub depth_full: i64,
+    /// Bits of depth.
+    pub depth_bits: u32,
+    /// Blend, where the surface allows it.
+    pub blend: Option<Blend>,
+    /// Channels that are blended, bits R, G, B, A.
+    pub blended: u8,
+    /// Blend constant.
+    pub blend_constant: [u8; 4],
+    /// Bits of the stored word that are written.
+    pub write_mask: u32,
+}
+
 impl Plan {
-    /// Compiles.
+    /// Plans a checked scene.
     ///
     /// # Errors
-    /// All draws that break a limit of RAS-0.
-    pub fn compile(scene: &Scene, _options: &PlanOptions) -> Result<Plan, Vec<PlanError>> {
-        Ok(Plan { scene: scene.clone() })
+    /// Every vertex (eight at most a draw) outside the limits of RAS-0.
+    pub fn compile(scene: &Scene, options: &PlanOptions) -> Result<Plan, Vec<PlanError>> {
+        let mut errors = Vec::new();
+        let mut draws = Vec::with_capacity(scene.draws.len());
+        for (index, draw) in scene.draws.iter().enumerate() {
+            check_coordinates(scene, index, draw, &mut errors);
+            match assemble(draw) {
+                Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, options)),
+                Err(positions) => errors.extend(positions.into_iter().map(|p| {
+                    PlanError {
+                        draw: index,
+                        vertex: Some(p.vertex),
+                        rule: "RAS-0",
+                        message: format!(
+                            "window position x = {}, y = {}, w = {} lies outside the rasteriser's domain",
+                            p.window[0], p.window[1], p.window[3]
+                        ),
+                        help: "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20; \
+                           a vertex far outside the view can be cut off by splitting its triangle"
+                            .to_string(),
+                    }
+                })),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        Ok(Plan {
+            profile: scene.profile,
+            policies: options.policies,
+            targets: scene.targets.clone(),
+            textures: scene.textures.clone(),
+            draws,
+        })
     }
-    /// The scene.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
+}
+
+/// Columns and rows of a texture.
+pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
+    match &scene.textures[texture].image {
+        TextureImage::Texels { width, height, .. } => (*width, *height),
+        TextureImage::Target { target, .. } => (scene.targets[*target].width, scene.targets[*target].height),
     }
+}
+
+/// RAS-0 for texel coordinates: finite, and at most 65536 texels where q is 1.
+fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<PlanError>) {
+    const MOST_ERRORS: usize = 8;
+    let mut found = 0;
+    for unit in draw.textures.iter().flatten() {
+        let (width, height) = texture_size(scene, unit.texture);
+        for (vertex, v) in draw.vertices.iter().enumerate() {
+            let set = v.texture_coordinates[unit.coordinate_set];
+            let outside = |n: usize, size: u32| set[3] == 1.0 && set[n].abs() > (TEXEL_LIMIT / i64::from(size)) as f32;
+            if (outside(0, width) || outside(1, height) || set.iter().any(|c| !c.is_finite())) && found < MOST_ERRORS {
+                found += 1;
+                errors.push(PlanError {
+                    draw: index,
+                    vertex: Some(vertex),
+                    rule: "RAS-0",
+                    message: format!(
+                        "texture coordinate ({}, {}) is more than 65536 texels of the {width} x {height} texture \
+                         `{}` away from its origin",
+                        set[0], set[1], scene.textures[unit.texture].name
+                    ),
+                    help: "shift the coordinates by whole repeats, or split the geometry".to_string(),
+                });
+            }
+        }
+    }
+}
+
+fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptions) -> PlannedDraw {
+    let target = &scene.targets[draw.target];
+    let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
+    let window = draw.scissor.map_or(whole, |s| {
+        let x = s.x.min(target.width);
+        let y = s.y.min(target.height);
+        Rectangle { x, y, width: s.width.min(target.width - x), height: s.height.min(target.height - y) }
+    });
+    let write_mask = surface::write_mask(target.format, draw.color_mask);
+    let blend = draw.blend.filter(|_| surface::blends(target.format));
+    let alpha_test = draw.alpha_test.filter(|t| !(options.prune && t.function == CompareFunction::Always));
+    let written = written_channels(target.format, write_mask);
+    let blended = if options.prune { written } else { 15 };
+    let liveness = Liveness::of(draw, alpha_test.is_some(), blend, written, options.prune);
+    let units = liveness
+        .units
+        .iter()
+        .enumerate()
+        .filter_map(|(index, live)| {
+            let state = draw.textures[index].filter(|_| *live != 0)?;
+            let (width, height) = texture_size(scene, state.texture);
+            let format = match &scene.textures[state.texture].image {
+                TextureImage::Texels { format, .. } | TextureImage::Target { format, .. } => *format,
+            };
+            Some(PlannedUnit { index, state, width, height, format, live: *live })
+        })
+        .collect();
+    PlannedDraw {
+        name: draw.name.clone(),
+        target: draw.target,
+        surface: target.format,
+        window,
+        assembly,
+        shade_model: draw.shade_model,
+        perspective: draw.perspective,
+        cull: draw.cull,
+        front_face: draw.front_face,
+        primary: liveness.primary,
+        secondary: liveness.secondary,
+        fog_channels: liveness.fog,
+        fog: draw.fog,
+        units,
+        unbound: std::array::from_fn(|n| draw.textures[n].is_none()),
+        stages: liveness.stages,
+        mux_select: draw.combiners.mux_select,
+        final_combiner: liveness.final_combiner,
+        alpha_test,
+        depth_test: draw.depth_test.filter(|_| target.depth.is_some()),
+        depth_full: target.depth.map_or(0, |d| (1 << d.format.bits()) - 1),
+        depth_bits: target.depth.map_or(0, |d| d.format.bits()),
+        blend,
+        blended,
+        blend_constant: draw.blend_constant,
+        write_mask,
+    }
+}
+
+/// Channels R, G, B, A of the fragment that the written bits keep.
+fn written_channels(format: SurfaceFormat, write_mask: u32) -> u8 {
+    let bits = surface::channel_bits(format);
+    (0..4).filter(|n| bits[*n] & write_mask != 0 && (*n < 3 || surface::stores_alpha(format))).map(|n| 1 << n).sum()
 }

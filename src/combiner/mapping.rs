@@ -1,0 +1,132 @@
+//! CMB-2 to CMB-5: input mappings.
+
+use crate::number::{Lane, Register};
+use crate::state::{ExpandCentre, HalfBiasConstant, InputMapping, Policies};
+
+/// CMB-2: max(0, x).
+#[inline(always)]
+pub fn unsigned_identity<R: Register>(x: R) -> R {
+    x.max0()
+}
+
+/// CMB-2: 255 - max(0, x).
+#[inline(always)]
+pub fn unsigned_invert<R: Register>(x: R) -> R {
+    R::ONE - x.max0()
+}
+
+/// CMB-3: 2 (max(0, x) - 128).
+#[inline(always)]
+pub fn expand_normal<R: Register>(x: R) -> R::Expanded {
+    (x.max0() - R::HALF).twice()
+}
+
+/// Any mapping, under any policy.
+#[inline(always)]
+pub fn map<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::Mapped {
+    match mapping {
+        InputMapping::UnsignedIdentity => unsigned_identity(x).factor(),
+        InputMapping::UnsignedInvert => unsigned_invert(x).factor(),
+        InputMapping::ExpandNormal => expand(x, policies),
+        InputMapping::ExpandNegate => L::negated(expand(x, policies)),
+        InputMapping::HalfBiasNormal => half_bias(x.max0(), L::HALF, policies),
+        InputMapping::HalfBiasNegate => L::negated(half_bias(x.max0(), L::HALF, policies)),
+        InputMapping::SignedIdentity => x.factor(),
+        InputMapping::SignedNegate => L::negated(x.factor()),
+    }
+}
+
+/// CMB-3 with its alternative: 2x - 255 is (x - 128) + (x - 127).
+#[inline(always)]
+fn expand<L: Lane>(x: L, policies: &Policies) -> L::Mapped {
+    match policies.expand_centre {
+        ExpandCentre::Centred => expand_normal(x),
+        ExpandCentre::Literal => {
+            let low = x.max0() - L::HALF;
+            (low + low + L::STEP).factor()
+        }
+    }
+}
+
+/// CMB-4 with its alternatives.
+#[inline(always)]
+fn half_bias<L: Lane>(x: L, half: L, policies: &Policies) -> L::Mapped {
+    match policies.half_bias {
+        HalfBiasConstant::Half128 => (x - half).factor(),
+        HalfBiasConstant::Half127 => (x - half + L::STEP).factor(),
+        HalfBiasConstant::Half127And5 => L::halfway(x - half, x - half + L::STEP),
+    }
+}
+
+/// The rule that a mapping belongs to.
+pub fn rule(mapping: InputMapping) -> &'static str {
+    match mapping {
+        InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert => "CMB-2",
+        InputMapping::ExpandNormal | InputMapping::ExpandNegate => "CMB-3",
+        InputMapping::HalfBiasNormal | InputMapping::HalfBiasNegate => "CMB-4",
+        InputMapping::SignedIdentity | InputMapping::SignedNegate => "CMB-5",
+    }
+}
+
+/// The mapping's operation in traces.
+pub fn operation(mapping: InputMapping) -> &'static str {
+    match mapping {
+        InputMapping::UnsignedIdentity => "unsigned_identity",
+        InputMapping::UnsignedInvert => "unsigned_invert",
+        InputMapping::ExpandNormal => "expand_normal",
+        InputMapping::ExpandNegate => "expand_negate",
+        InputMapping::HalfBiasNormal => "half_bias_normal",
+        InputMapping::HalfBiasNegate => "half_bias_negate",
+        InputMapping::SignedIdentity => "signed_identity",
+        InputMapping::SignedNegate => "signed_negate",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::number::Halves;
+    use crate::state::Named;
+
+    /// Every mapping of every register value, under every policy, against integer statements; the result in halves.
+    #[test]
+    fn all_mappings_of_all_values() {
+        for expand_centre in ExpandCentre::ALL {
+            for half_bias in HalfBiasConstant::ALL {
+                let policies = Policies { expand_centre: *expand_centre, half_bias: *half_bias, ..Policies::DEFAULT };
+                for x in -256..=255_i32 {
+                    let m = x.max(0);
+                    let centre = match expand_centre {
+                        ExpandCentre::Centred => 256,
+                        ExpandCentre::Literal => 255,
+                    };
+                    let half = match half_bias {
+                        HalfBiasConstant::Half128 => 256,
+                        HalfBiasConstant::Half127 => 254,
+                        HalfBiasConstant::Half127And5 => 255,
+                    };
+                    for mapping in InputMapping::ALL {
+                        let want = match mapping {
+                            InputMapping::UnsignedIdentity => 2 * m,
+                            InputMapping::UnsignedInvert => 2 * (255 - m),
+                            InputMapping::ExpandNormal => 2 * (2 * m - centre),
+                            InputMapping::ExpandNegate => (2 * (centre - 2 * m)).min(510),
+                            InputMapping::HalfBiasNormal => 2 * m - half,
+                            InputMapping::HalfBiasNegate => half - 2 * m,
+                            InputMapping::SignedIdentity => 2 * x,
+                            InputMapping::SignedNegate => (-2 * x).min(510),
+                        };
+                        assert_eq!(map(x, *mapping, &policies), Halves(want), "{mapping:?} {x} {policies:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// CMB-2: ZERO inverted is exactly 255; CMB-5: minus one is the negation of one.
+    #[test]
+    fn ones() {
+        assert_eq!(map(0, InputMapping::UnsignedInvert, &Policies::DEFAULT), Halves(510));
+        assert_eq!(map(255, InputMapping::SignedNegate, &Policies::DEFAULT), Halves(-510));
+    }
+}

@@ -1,0 +1,7 @@
+//! Register combiners: the register file, the general stages and the final combiner.
+
+pub mod final_combiner;
+pub mod general;
+pub mod mapping;
+pub mod registers;
+mod report;

@@ -1,0 +1,215 @@
+//! What a general stage tells an observer. Nothing here computes a value that is used.
+
+use super::general::{biased, rounded_after, scaled, source_channel};
+use super::mapping;
+use super::registers::{self, Registers, channel_name};
+use crate::number::{Lane, Sum};
+use crate::state::{
+    Bias, CombinerInput, DotRounding, MuxNegative, MuxSelect, OutputRounding, Policies, Portion, Register,
+    RegisterFloor, Scale, SumRounding,
+};
+use crate::trace::{Observer, Step, plain, report};
+
+const PRODUCT_NAMES: [&str; 3] = ["AB", "CD", "sum"];
+const INPUT_NAMES: [&str; 4] = ["A", "B", "C", "D"];
+
+/// Names of one portion of one stage.
+pub(super) struct StageReport {
+    block: String,
+    prefix: String,
+    stage: usize,
+}
+
+impl StageReport {
+    pub(super) fn new(stage: usize, alpha: bool) -> Self {
+        let portion = if alpha { "alpha" } else { "rgb" };
+        StageReport {
+            block: format!("general stage {stage} {portion}"),
+            prefix: format!("stage{stage}.{portion}"),
+            stage,
+        }
+    }
+
+    pub(super) fn mux<L: Lane, O: Observer>(
+        &self,
+        spare0_alpha: L,
+        select: MuxSelect,
+        policies: &Policies,
+        takes_cd: bool,
+        observer: &mut O,
+    ) {
+        let operation = match select {
+            MuxSelect::Msb if policies.mux_negative == MuxNegative::Bit7 => "mux_bit7",
+            MuxSelect::Msb => "mux_msb",
+            MuxSelect::Lsb => "mux_lsb",
+        };
+        let name = format!("stage{}.mux", self.stage);
+        observer.step(
+            Step::given(&format!("general stage {} mux", self.stage), "CMB-10", name, i64::from(takes_cd))
+                .by(operation, vec![report::register("spare0.a", spare0_alpha)])
+                .note(Some(if takes_cd { "set: takes CD" } else { "clear: takes AB" }.to_string())),
+        );
+    }
+
+    pub(super) fn input<L: Lane, O: Observer>(
+        &self,
+        input: &CombinerInput,
+        n: usize,
+        channel: usize,
+        registers: &Registers<L>,
+        factor: L::Mapped,
+        observer: &mut O,
+    ) {
+        let source = source_channel(input, channel);
+        let x = registers.read(input.register, source);
+        let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
+        let undefined = registers.undefined & registers::bit(input.register, source) != 0;
+        let operand = format!("{}.{}", registers::name(input.register), channel_name(source));
+        observer.step(
+            report::factor_step::<L>(&self.block, mapping::rule(input.mapping), name, factor)
+                .by(mapping::operation(input.mapping), vec![report::register(operand, x)])
+                .note(undefined.then(|| "no document defines this register here; taken as 0 (CMB-13)".to_string())),
+        );
+    }
+
+    /// `rounding` is given for a dot product.
+    pub(super) fn products<L: Lane, O: Observer>(
+        &self,
+        product: usize,
+        needed: u8,
+        rounding: Option<DotRounding>,
+        factors: &[[L::Mapped; 4]; 4],
+        products: &[L::Full; 4],
+        observer: &mut O,
+    ) {
+        let operand = |n: usize, channel: usize| {
+            let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
+            report::factor::<L>(name, factors[n][channel])
+        };
+        let (rule, operation) = match rounding {
+            Some(DotRounding::Once) => ("CMB-8", "dot_product"),
+            Some(DotRounding::Each) => ("CMB-8", "dot_product_rounded"),
+            None => ("CMB-6", "product"),
+        };
+        for channel in (0..4).filter(|c| needed >> c & 1 != 0) {
+            let pairs = if rounding.is_some() { vec![0, 1, 2] } else { vec![channel] };
+            let inputs = pairs.iter().flat_map(|c| [operand(2 * product, *c), operand(2 * product + 1, *c)]).collect();
+            let name = self.product_name(product, channel);
+            observer.step(report::sum_step::<L>(&self.block, rule, name, products[channel]).by(operation, inputs));
+        }
+    }
+
+    /// `selected` is given for a mux: whether CD was taken.
+    pub(super) fn third<L: Lane, O: Observer>(
+        &self,
+        channel: usize,
+        products: [L::Full; 2],
+        raw: L::Full,
+        selected: Option<bool>,
+        rounding: SumRounding,
+        observer: &mut O,
+    ) {
+        let mut inputs = vec![
+            report::sum::<L>(self.product_name(0, channel), products[0]),
+            report::sum::<L>(self.product_name(1, channel), products[1]),
+        ];
+        let (rule, operation) = match (selected, rounding) {
+            (Some(takes_cd), _) => {
+                inputs.push(plain(format!("stage{}.mux", self.stage), i64::from(takes_cd)));
+                ("CMB-10", "select")
+            }
+            (None, SumRounding::Each) => ("CMB-7", "add_rounded"),
+            (None, SumRounding::Once) => ("CMB-7", "add"),
+        };
+        let name = self.product_name(2, channel);
+        observer.step(report::sum_step::<L>(&self.block, rule, name, raw).by(operation, inputs));
+    }
+
+    /// Rounding, bias, scale and saturation of output `n` (AB, CD, sum) in `channel`.
+    pub(super) fn output<L: Lane, O: Observer>(
+        &self,
+        portion: &Portion,
+        raw: L::Full,
+        value: L,
+        (n, channel): (usize, usize),
+        policies: &Policies,
+        observer: &mut O,
+    ) {
+        let base = self.product_name(n, channel);
+        let mut last = (base.clone(), raw.rounded());
+        let mut step = |suffix: &str, rule, operation, v: L, first: bool| {
+            let name = format!("{base}.{suffix}");
+            let operand = if first { report::sum::<L>(&base, raw) } else { report::register(last.0.clone(), last.1) };
+            let changed = v.observe().0 != last.1.observe().0;
+            let note = (suffix == "output" && changed).then(|| "saturated".to_string());
+            observer.step(
+                report::register_step(&self.block, rule, name.clone(), v).by(operation, vec![operand]).note(note),
+            );
+            last = (name, v);
+        };
+        match policies.output_rounding {
+            OutputRounding::BeforeScale => {
+                let rounded = raw.rounded();
+                step("rounded", "NUM-2", "round_255", rounded, true);
+                let v = biased(rounded, portion.bias);
+                if portion.bias != Bias::None {
+                    step("biased", "CMB-9", "bias", v, false);
+                }
+                if portion.scale != Scale::One {
+                    step("scaled", "CMB-9", scale_operation(portion.scale), scaled(v, portion.scale), false);
+                }
+            }
+            OutputRounding::AfterScale => {
+                let operation = after_operation(portion.bias, portion.scale);
+                step("scaled", "CMB-9", operation, rounded_after::<L>(raw, portion.bias, portion.scale), true);
+            }
+        }
+        let saturate = match policies.register_floor {
+            RegisterFloor::Full => "saturate_256",
+            RegisterFloor::Symmetric => "saturate_255",
+        };
+        step("output", "NUM-3", saturate, value, false);
+    }
+
+    pub(super) fn write<L: Lane, O: Observer>(
+        &self,
+        destination: Register,
+        channel: usize,
+        value: L,
+        n: usize,
+        rule: &'static str,
+        observer: &mut O,
+    ) {
+        let source_channel = if rule == "CMB-11" { 2 } else { channel };
+        let source = format!("{}.output", self.product_name(n, source_channel));
+        let name = format!("{}.{}", registers::name(destination), channel_name(channel));
+        observer.step(
+            report::register_step(&self.block, rule, name, value).by("write", vec![report::register(source, value)]),
+        );
+    }
+
+    fn product_name(&self, n: usize, channel: usize) -> String {
+        format!("{}.{}.{}", self.prefix, PRODUCT_NAMES[n], channel_name(channel))
+    }
+}
+
+fn scale_operation(scale: Scale) -> &'static str {
+    match scale {
+        Scale::One => "scale_1",
+        Scale::Two => "scale_2",
+        Scale::Four => "scale_4",
+        Scale::Half => "scale_half",
+    }
+}
+
+fn after_operation(bias: Bias, scale: Scale) -> &'static str {
+    match (bias, scale) {
+        (Bias::None, Scale::One) => "scale_1_round_255",
+        (Bias::None, Scale::Two) => "scale_2_round_255",
+        (Bias::None, Scale::Four) => "scale_4_round_255",
+        (Bias::None, Scale::Half) => "scale_half_round_255",
+        (Bias::NegativeHalf, Scale::One) => "bias_scale_1_round_255",
+        (Bias::NegativeHalf, Scale::Two) => "bias_scale_2_round_255",
+        (Bias::NegativeHalf, Scale::Four | Scale::Half) => "illegal",
+    }
+}

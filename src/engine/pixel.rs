@@ -1,0 +1,323 @@
+//! One pixel: the order in which the blocks of the chip run.
+
+use super::report as reports;
+use crate::combiner::registers::{Registers, channel_name};
+use crate::combiner::{final_combiner, general};
+use crate::number::{Lane, convert};
+use crate::plan::{Plan, PlannedDraw};
+use crate::raster::interpolate::{self, Sample, Settled};
+use crate::raster::setup::Triangle;
+use crate::raster::{assemble::Assembled, ideal};
+use crate::rop::{blend, surface};
+use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
+use crate::texture::unit::{self, Coordinates};
+use crate::trace::{Observer, Step, plain, report};
+
+/// A triangle of a draw, set up.
+pub(super) struct TriangleContext<'a> {
+    plan: &'a Plan,
+    pub(super) draw: &'a PlannedDraw,
+    /// Its number in the draw.
+    pub(super) number: usize,
+    pub(super) triangle: Triangle,
+    pub(super) vertices: [&'a Vertex; 3],
+    /// The vertices whose diffuse and specular are taken: all three, or the provoking one thrice.
+    colored: [&'a Vertex; 3],
+    primary: [[u8; 4]; 3],
+    secondary: [[u8; 4]; 3],
+    coordinates: [Option<Coordinates>; 4],
+    fog: [i64; 3],
+    pub(super) z: [i64; 3],
+}
+
+/// A covered pixel before shading.
+pub(super) struct Fragment {
+    /// Column and row.
+    pub(super) pixel: (i64, i64),
+    /// Edge functions.
+    pub(super) e: [i64; 3],
+    /// What the surface holds.
+    pub(super) stored: u32,
+    /// What the depth buffer holds.
+    pub(super) stored_depth: u32,
+}
+
+/// What a fragment leaves behind.
+pub(super) struct Stored<L> {
+    /// The surface's new word.
+    pub(super) word: u32,
+    /// The new depth, if it is written.
+    pub(super) depth: Option<u32>,
+    /// The blended channels before the store, and which of them the mask lets through: what an ideal surface would hold.
+    pub(super) channels: [L; 4],
+}
+
+impl<'a> TriangleContext<'a> {
+    /// Sets up triangle `number`; `None` when it is culled, empty, or outside `rows`.
+    pub(super) fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
+        let Assembled { vertices, provoking } = draw.assembly.triangles[number];
+        let all = &draw.assembly.vertices;
+        let vertices = vertices.map(|v| &all[v as usize]);
+        let triangle = Triangle::new(vertices.map(|v| v.position), draw.perspective, plan.profile)?;
+        if triangle.rows.1 <= rows.0 || triangle.rows.0 >= rows.1 {
+            return None;
+        }
+        let front = triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
+        match draw.cull {
+            Cull::Front if front => return None,
+            Cull::Back if !front => return None,
+            Cull::None | Cull::Front | Cull::Back => {}
+        }
+        let colored = match draw.shade_model {
+            ShadeModel::Smooth => vertices,
+            ShadeModel::Flat => [&all[provoking as usize]; 3],
+        };
+        let mut coordinates = [None; 4];
+        for unit in &draw.units {
+            let sets = vertices.map(|v| v.texture_coordinates[unit.state.coordinate_set]);
+            coordinates[unit.index] = Some(Coordinates::new(&triangle, sets, unit));
+        }
+        let uses_fog = draw.fog.enabled && draw.fog_channels & 8 != 0;
+        Some(TriangleContext {
+            plan,
+            draw,
+            number,
+            fog: if uses_fog { triangle.factor(vertices.map(|v| v.fog.clamp(0.0, 1.0))) } else { [0; 3] },
+            z: vertices.map(|v| convert::depth(v.position[2], draw.depth_bits)),
+            triangle,
+            vertices,
+            colored,
+            primary: colored.map(|v| color_bytes(&v.diffuse)),
+            secondary: colored.map(|v| color_bytes(&v.specular)),
+            coordinates,
+        })
+    }
+
+    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the alpha or the depth test.
+    ///
+    /// `destination` is the ideal's stored colour, where the lane has one; without it the stored word counts.
+    #[inline]
+    pub(super) fn shade<L: Lane, O: Observer>(
+        &self,
+        fragment: &Fragment,
+        destination: Option<[L; 4]>,
+        textures: &[&[u32]],
+        observer: &mut O,
+    ) -> Option<Stored<L>> {
+        let draw = self.draw;
+        let sample = Sample::new(&self.triangle, fragment.e);
+        if O::ON {
+            reports::setup(&self.triangle, &sample, fragment.pixel, observer);
+        }
+        let mut registers = Registers::<L>::new();
+        self.interpolate_colors(&sample, &mut registers, observer);
+        self.sample_textures(&sample, &mut registers, textures, observer);
+        if O::ON {
+            reports::stage_constants(0, draw, observer);
+        }
+        for stage in &draw.stages {
+            general::run(stage, draw.mux_select, &self.plan.policies, &mut registers, observer);
+            if O::ON {
+                // The next stage's constants may differ.
+                reports::stage_constants(stage.index + 1, draw, observer);
+            }
+        }
+        let source =
+            final_combiner::run(&draw.final_combiner, self.plan.profile, &self.plan.policies, &mut registers, observer);
+        self.raster_operations(source, &sample, fragment, destination, observer)
+    }
+
+    /// INT-2: PRIMARY, SECONDARY and FOG.
+    #[inline]
+    fn interpolate_colors<L: Lane, O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        registers: &mut Registers<L>,
+        observer: &mut O,
+    ) {
+        let draw = self.draw;
+        let constant = |colors: &[[u8; 4]; 3]| colors[0] == colors[1] && colors[1] == colors[2];
+        let sets = [
+            (Register::PrimaryColor, draw.primary, &self.primary, "primary"),
+            (Register::SecondaryColor, draw.secondary, &self.secondary, "secondary"),
+        ];
+        // Equal bytes at all three vertices need no weights: C W0 + C W1 + C W2 is 256 C.
+        let weights = if O::ON || sets.iter().any(|s| s.1 != 0 && !constant(s.2)) {
+            let weights = sample.weights();
+            if O::ON && sets.iter().any(|s| s.1 != 0) {
+                reports::weights(sample, weights, self.barycentrics(sample), observer);
+            }
+            weights
+        } else {
+            [Settled { value: 0, lowered: false }; 2]
+        };
+        let lane = |n: usize| {
+            let k = 2 * n;
+            #[allow(clippy::float_arithmetic, reason = "the ideal's weight")]
+            L::weight(weights[n].value as i32, || 256.0 * self.barycentrics(sample)[k])
+        };
+        let (w0, w2) = (lane(0), lane(1));
+        for (register, live, colors, name) in sets {
+            if live == 0 {
+                continue;
+            }
+            let mut value = [L::ZERO; 4];
+            for channel in (0..4).filter(|c| live >> c & 1 != 0) {
+                let sources =
+                    self.colored.map(|v| if register == Register::PrimaryColor { &v.diffuse } else { &v.specular });
+                let vertex =
+                    |k: usize| L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel));
+                let corners = [vertex(0), vertex(1), vertex(2)];
+                value[channel] =
+                    if O::ON || !constant(colors) { interpolate::color(corners, w0, w2) } else { corners[0] };
+                if O::ON {
+                    reports::color(name, channel, sources, corners, &weights, value[channel], observer);
+                }
+            }
+            registers.load(register, value);
+        }
+        if draw.fog_channels != 0 {
+            self.load_fog(sample, registers, observer);
+        }
+    }
+
+    /// The fog register: its colour, and in alpha the factor (NUM-6), 255 with fog off (CMB-13).
+    fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
+        let draw = self.draw;
+        let [r, g, b] = draw.fog.color.map(L::byte);
+        let factor = if draw.fog.enabled && draw.fog_channels & 8 != 0 {
+            let v = sample.factor(&self.fog);
+            let ideal = || ideal::factor(self.barycentrics(sample), self.vertices.map(|v| v.fog));
+            let factor = L::value(i32::from(convert::factor_byte(v)), ideal);
+            if O::ON {
+                let planes = (0..3).map(|k| plain(format!("G_fog{k}"), self.fog[k]));
+                let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
+                let inputs = planes.chain(edges).chain([plain("D", sample.d)]).collect();
+                let mut step = Step::given("fog", "INT-5", "fog.4096", v).by("floor_factor", inputs);
+                step.per_one = 4096;
+                observer.step(step);
+                let inputs = vec![plain("fog.4096", v)];
+                observer.step(report::register_step("fog", "NUM-6", "fog.a", factor).by("factor_byte", inputs));
+            }
+            factor
+        } else {
+            if O::ON {
+                observer.step(Step::given("fog", "CMB-13", "fog.a", 255).per(255));
+            }
+            L::ONE
+        };
+        if O::ON {
+            for (channel, value) in [r, g, b].into_iter().enumerate() {
+                let name = format!("fog.{}", channel_name(channel));
+                observer.step(report::register_step("fog", "NUM-5", name, value));
+            }
+        }
+        registers.load(Register::Fog, [r, g, b, factor]);
+    }
+
+    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13).
+    #[inline]
+    fn sample_textures<L: Lane, O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        registers: &mut Registers<L>,
+        textures: &[&[u32]],
+        observer: &mut O,
+    ) {
+        const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+        for (n, register) in UNITS.into_iter().enumerate() {
+            if self.draw.unbound[n] {
+                // TEX-16.
+                registers.load(register, [L::ZERO, L::ZERO, L::ZERO, L::ONE]);
+                if O::ON {
+                    for channel in 0..4 {
+                        let name = format!("texture{n}.{}", channel_name(channel));
+                        let value = if channel == 3 { 255 } else { 0 };
+                        let block = format!("texture unit {n}");
+                        observer.step(Step::given(&block, "TEX-16", name, value).per(255));
+                    }
+                }
+            }
+        }
+        for planned in &self.draw.units {
+            let Some(coordinates) = &self.coordinates[planned.index] else { continue };
+            let ideal = || {
+                let sets = self.vertices.map(|v| v.texture_coordinates[planned.state.coordinate_set]);
+                ideal::texel_coordinates(self.barycentrics(sample), sets, [planned.width, planned.height])
+            };
+            let words = textures[planned.state.texture];
+            let value = unit::sample::<L, O>(planned, words, coordinates, sample, ideal, observer);
+            registers.load(UNITS[planned.index], value);
+        }
+        let alpha = registers.read(Register::Texture0, 3);
+        registers.values[Register::Spare0 as usize][3] = alpha;
+        if O::ON {
+            let inputs = vec![report::register("texture0.a", alpha)];
+            observer.step(report::register_step("registers", "CMB-13", "spare0.a", alpha).by("write", inputs));
+        }
+    }
+
+    /// ROP-1 to ROP-6, DEP-1, DEP-2.
+    #[inline]
+    fn raster_operations<L: Lane, O: Observer>(
+        &self,
+        source: [L; 4],
+        sample: &Sample<'_>,
+        fragment: &Fragment,
+        destination: Option<[L; 4]>,
+        observer: &mut O,
+    ) -> Option<Stored<L>> {
+        let draw = self.draw;
+        if let Some(test) = &draw.alpha_test
+            && !blend::alpha_test(test, source[3], observer)
+        {
+            return None;
+        }
+        let mut depth = None;
+        if let Some(test) = &draw.depth_test {
+            let z = sample.depth(self.z, draw.depth_full) as u32;
+            let passed = test.function.passes(z, fragment.stored_depth);
+            if O::ON {
+                self.report_depth(sample, z, fragment.stored_depth, passed, observer);
+            }
+            if !passed {
+                return None;
+            }
+            depth = test.write.then_some(z);
+        }
+        let dropped = surface::dropped_bits(draw.surface);
+        let channels = match &draw.blend {
+            None => source,
+            Some(state) => {
+                let truncated: [L; 4] =
+                    std::array::from_fn(|n| if n < 3 { source[n].truncated(dropped[n]) } else { source[n] });
+                let stored = surface::read(draw.surface, fragment.stored);
+                let destination = destination.unwrap_or(stored.map(L::byte));
+                if O::ON {
+                    self.report_blend_operands(&source, &truncated, fragment.stored, &destination, observer);
+                }
+                let constant = draw.blend_constant;
+                blend::run(state, draw.blended, constant, &truncated, &destination, observer)
+            }
+        };
+        let word = surface::pack(draw.surface, channels.map(|c| c.decision().clamp(0, 255) as u8));
+        let word = (fragment.stored & !draw.write_mask) | (word & draw.write_mask);
+        if O::ON {
+            self.report_store(&channels, fragment.stored, word, depth, observer);
+        }
+        Some(Stored { word, depth, channels })
+    }
+
+    /// The ideal's weights of the three vertices.
+    fn barycentrics(&self, sample: &Sample<'_>) -> [f64; 3] {
+        ideal::barycentrics(&self.triangle, sample.e, self.vertices.map(|v| v.position[3]), self.draw.perspective)
+    }
+}
+
+/// NUM-4, or the bytes as they are.
+fn color_bytes(color: &VertexColor) -> [u8; 4] {
+    match color {
+        VertexColor::Bytes(bytes) => *bytes,
+        VertexColor::Floats(floats) => floats.map(convert::vertex_color),
+    }
+}

@@ -1,0 +1,241 @@
+//! What a pixel tells an observer outside the blocks that report for themselves. Nothing here computes a value that is used.
+
+use super::pixel::TriangleContext;
+use crate::combiner::registers::channel_name;
+use crate::number::Lane;
+use crate::plan::PlannedDraw;
+use crate::raster::interpolate::{Sample, Settled};
+use crate::raster::{ideal, setup};
+use crate::rop::{blend, surface};
+use crate::state::{Named, VertexColor};
+use crate::trace::{Observer, Operand, Step, byte, part, plain, report};
+
+const RASTER: &str = "rasteriser";
+const INTERPOLATION: &str = "interpolation";
+
+/// Edge functions, perspective weights, D.
+pub(super) fn setup<O: Observer>(
+    triangle: &setup::Triangle,
+    sample: &Sample<'_>,
+    (x, y): (i64, i64),
+    observer: &mut O,
+) {
+    for (k, e) in sample.e.iter().enumerate() {
+        let inputs = vec![
+            plain(format!("a{k}"), triangle.a[k]),
+            plain(format!("b{k}"), triangle.b[k]),
+            plain(format!("c{k}"), triangle.c[k]),
+            plain("x", x),
+            plain("y", y),
+        ];
+        let owns = if triangle.owns[k] { "left or top edge" } else { "right or bottom edge" };
+        let on_edge = (*e == 0).then(|| format!("exactly on a {owns}"));
+        observer.step(Step::given(RASTER, "RAS-3", format!("E{k}"), *e).by("edge_function", inputs).note(on_edge));
+    }
+    for (k, p) in triangle.p.iter().enumerate() {
+        observer.step(Step::given(RASTER, "INT-1", format!("P{k}"), *p));
+    }
+    let inputs =
+        (0..3).flat_map(|k| [plain(format!("P{k}"), triangle.p[k]), plain(format!("E{k}"), sample.e[k])]).collect();
+    observer.step(Step::given(RASTER, "INT-1", "D", sample.d).by("sum_of_products", inputs));
+}
+
+/// The 8-bit weights of the colours.
+pub(super) fn weights<O: Observer>(
+    sample: &Sample<'_>,
+    weights: [Settled; 2],
+    barycentrics: [f64; 3],
+    observer: &mut O,
+) {
+    #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
+    let ideal = barycentrics.map(|b| Some(256.0 * b));
+    for (k, settled) in [(0, weights[0]), (2, weights[1])] {
+        let inputs = vec![
+            plain(format!("P{k}"), sample.triangle.p[k]),
+            plain(format!("E{k}"), sample.e[k]),
+            plain("D", sample.d),
+            plain("lowered", i64::from(settled.lowered)),
+        ];
+        let (rule, note) = if settled.lowered {
+            ("INT-3", Some(format!("exact tie; weight {} dominates: one step lower", sample.dominant())))
+        } else {
+            ("INT-2", None)
+        };
+        observer.step(
+            Step::given(INTERPOLATION, rule, format!("W{k}"), settled.value)
+                .per(256)
+                .by("floor_weight", inputs)
+                .ideal(ideal[k])
+                .note(note),
+        );
+    }
+    let (w0, w2) = (weights[0].value, weights[1].value);
+    observer.step(
+        Step::given(INTERPOLATION, "INT-2", "W1", 256 - w0 - w2)
+            .per(256)
+            .by("remainder_weight", vec![part("W0", w0), part("W2", w2)])
+            .ideal(ideal[1]),
+    );
+}
+
+/// One interpolated channel, and the vertices' bytes that it comes from.
+pub(super) fn color<L: Lane, O: Observer>(
+    register: &str,
+    channel: usize,
+    sources: [&VertexColor; 3],
+    corners: [L; 3],
+    weights: &[Settled; 2],
+    value: L,
+    observer: &mut O,
+) {
+    let name = format!("{register}.{}", channel_name(channel));
+    let mut inputs: Vec<Operand> = Vec::new();
+    for k in 0..3 {
+        let corner = format!("vertex{k}.{name}");
+        let (rule, note) = match sources[k] {
+            VertexColor::Bytes(_) => ("INT-2", None),
+            VertexColor::Floats(floats) => ("NUM-4", Some(format!("from {}", floats[channel]))),
+        };
+        observer.step(report::register_step(INTERPOLATION, rule, corner.clone(), corners[k]).note(note));
+        inputs.push(report::register(corner, corners[k]));
+    }
+    let (w0, w2) = (weights[0].value, weights[1].value);
+    inputs.extend([part("W0", w0), part("W1", 256 - w0 - w2), part("W2", w2)]);
+    observer.step(report::register_step(INTERPOLATION, "INT-2", name, value).by("interpolate", inputs));
+}
+
+fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O) {
+    for (n, constant) in constants.into_iter().enumerate() {
+        for (channel, value) in constant.into_iter().enumerate() {
+            let name = format!("constant{n}.{}", channel_name(channel));
+            observer.step(Step::given(block, "NUM-5", name, i64::from(value)).per(255).ideal(Some(f64::from(value))));
+        }
+    }
+}
+
+impl TriangleContext<'_> {
+    pub(super) fn report_depth<O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        z: u32,
+        stored: u32,
+        passed: bool,
+        observer: &mut O,
+    ) {
+        const BLOCK: &str = "depth test";
+        let draw = self.draw;
+        let Some(test) = &draw.depth_test else { return };
+        let mut inputs = Vec::new();
+        for (k, z) in self.z.iter().enumerate() {
+            let name = format!("vertex{k}.z");
+            observer.step(Step::given(BLOCK, "DEP-1", name.clone(), *z));
+            inputs.push(plain(name, *z));
+        }
+        inputs.extend((0..3).map(|k| plain(format!("E{k}"), sample.e[k])));
+        inputs.push(plain("z_max", draw.depth_full));
+        let linear = ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false);
+        let real = ideal::depth(linear, self.vertices.map(|v| v.position[2]), draw.depth_full);
+        let step = Step::given(BLOCK, "DEP-1", "z", i64::from(z)).per(draw.depth_full).by("depth", inputs);
+        observer.step(step.ideal(Some(real)));
+        observer.step(Step::given(BLOCK, "", "z.stored", i64::from(stored)).per(draw.depth_full));
+        let inputs = vec![plain("z", i64::from(z)), plain("z.stored", i64::from(stored))];
+        observer.step(
+            Step::given(BLOCK, "DEP-2", "depth_test.passed", i64::from(passed))
+                .by(blend::compare_operation(test.function), inputs)
+                .note(Some(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string())),
+        );
+    }
+
+    pub(super) fn report_blend_operands<L: Lane, O: Observer>(
+        &self,
+        source: &[L; 4],
+        truncated: &[L; 4],
+        word: u32,
+        destination: &[L; 4],
+        observer: &mut O,
+    ) {
+        const BLOCK: &str = "blend";
+        let draw = self.draw;
+        let dropped = surface::dropped_bits(draw.surface);
+        for channel in (0..4).filter(|c| draw.final_combiner.live >> c & 1 != 0) {
+            let suffix = channel_name(channel);
+            let operation = match dropped.get(channel) {
+                Some(3) => "drop_3_bits",
+                Some(2) => "drop_2_bits",
+                _ => "write",
+            };
+            let inputs = vec![report::register(format!("fragment.{suffix}"), source[channel])];
+            let name = format!("source.{suffix}");
+            observer.step(report::register_step(BLOCK, "ROP-5", name, truncated[channel]).by(operation, inputs));
+        }
+        observer.step(Step::given(BLOCK, "", "destination.word", i64::from(word)).note(Some(format!("{word:#010x}"))));
+        for (channel, value) in destination.iter().enumerate() {
+            let inputs = vec![
+                plain("destination.word", i64::from(word)),
+                plain(draw.surface.name(), 0),
+                plain(channel_name(channel), channel as i64),
+            ];
+            let name = format!("destination.{}", channel_name(channel));
+            observer.step(report::register_step(BLOCK, "ROP-5", name, *value).by("read_surface", inputs));
+        }
+        for (channel, value) in draw.blend_constant.into_iter().enumerate() {
+            let name = format!("blend_constant.{}", channel_name(channel));
+            observer.step(Step::given(BLOCK, "NUM-5", name, i64::from(value)).per(255).ideal(Some(f64::from(value))));
+        }
+    }
+
+    pub(super) fn report_store<L: Lane, O: Observer>(
+        &self,
+        channels: &[L; 4],
+        old: u32,
+        word: u32,
+        depth: Option<u32>,
+        observer: &mut O,
+    ) {
+        const BLOCK: &str = "store";
+        let draw = self.draw;
+        let bits = surface::channel_bits(draw.surface);
+        let mut inputs = vec![
+            plain(draw.surface.name(), 0),
+            plain("surface.word", i64::from(old)),
+            plain("write_mask", i64::from(draw.write_mask)),
+        ];
+        observer.step(Step::given(BLOCK, "", "surface.word", i64::from(old)).note(Some(format!("{old:#010x}"))));
+        for channel in (0..4).filter(|c| bits[*c] & draw.write_mask != 0 && draw.final_combiner.live >> c & 1 != 0) {
+            let from = if draw.blend.is_some() && draw.blended >> channel & 1 != 0 { "blend" } else { "fragment" };
+            let value = channels[channel].observe().0;
+            inputs.push(byte(format!("{from}.{}", channel_name(channel)), value));
+        }
+        let note = format!("{word:#010x}");
+        observer.step(Step::given(BLOCK, "ROP-5", "stored.word", i64::from(word)).by("store", inputs).note(Some(note)));
+        let shown = surface::show(draw.surface, word);
+        for channel in 0..4 {
+            let name = format!("stored.{}", channel_name(channel));
+            let ideal = channels[channel].observe().1.filter(|_| bits[channel] & draw.write_mask != 0);
+            let inputs = vec![
+                plain("stored.word", i64::from(word)),
+                plain(draw.surface.texture_format().name(), 0),
+                plain(channel_name(channel), channel as i64),
+            ];
+            observer.step(
+                Step::given(BLOCK, "TEX-1", name, i64::from(shown[channel]))
+                    .per(255)
+                    .by("expand_texel", inputs)
+                    .ideal(ideal),
+            );
+        }
+        if let Some(z) = depth {
+            let inputs = vec![plain("z", i64::from(z))];
+            observer
+                .step(Step::given(BLOCK, "DEP-2", "stored.z", i64::from(z)).per(draw.depth_full).by("write", inputs));
+        }
+    }
+}
+
+/// The constants of the stage that comes at or after number `next`, or of the final combiner.
+pub(super) fn stage_constants<O: Observer>(next: usize, draw: &PlannedDraw, observer: &mut O) {
+    match draw.stages.iter().find(|s| s.index >= next) {
+        Some(stage) => constants(&format!("general stage {}", stage.index), stage.constants, observer),
+        None => constants("final combiner", draw.final_combiner.state.constants, observer),
+    }
+}

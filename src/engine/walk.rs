@@ -1,0 +1,80 @@
+//! The walk: triangles in order, rows in pairs, 2x2 quads from left to right.
+
+use super::pixel::{Fragment, TriangleContext};
+use crate::plan::{Plan, PlannedDraw};
+use crate::trace::Silent;
+
+/// Some rows of a surface.
+pub(super) struct Band<'a> {
+    /// Row of the first word; even.
+    pub(super) first_row: usize,
+    /// Words a row.
+    pub(super) width: usize,
+    /// The rows' words.
+    pub(super) words: &'a mut [u32],
+    /// The rows' depths; empty without a depth buffer.
+    pub(super) depth: &'a mut [u32],
+}
+
+impl Band<'_> {
+    /// First row and the row after the last.
+    fn rows(&self) -> (i64, i64) {
+        (self.first_row as i64, (self.first_row + self.words.len() / self.width) as i64)
+    }
+}
+
+/// Draws what of a draw falls into a band; covered pixels.
+pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[&[u32]], band: &mut Band<'_>) -> u64 {
+    let window = &planned.window;
+    let columns = (i64::from(window.x), i64::from(window.x + window.width));
+    let (first, end) = band.rows();
+    let rows = (first.max(i64::from(window.y)), end.min(i64::from(window.y + window.height)));
+    if rows.0 >= rows.1 || columns.0 >= columns.1 {
+        return 0;
+    }
+    let mut shaded = 0;
+    for number in 0..planned.assembly.triangles.len() {
+        let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
+        let triangle = &context.triangle;
+        let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
+        let mut top = rows.0 & !1;
+        while top < rows.1 {
+            let span = |j: i64| if (rows.0..rows.1).contains(&j) { triangle.span(j, columns) } else { (0, 0) };
+            let spans = [span(top), span(top + 1)];
+            let filled = spans.into_iter().filter(|s| s.0 < s.1);
+            let left = filled.clone().map(|s| s.0).min().unwrap_or(0) & !1;
+            let right = filled.map(|s| s.1).max().unwrap_or(0);
+            let mut i = left;
+            while i < right {
+                for (j, span) in [(top, spans[0]), (top + 1, spans[1])] {
+                    for i in [i, i + 1] {
+                        if span.0 <= i && i < span.1 {
+                            pixel(&context, textures, band, i, j);
+                            shaded += 1;
+                        }
+                    }
+                }
+                i += 2;
+            }
+            top += 2;
+        }
+    }
+    shaded
+}
+
+#[inline]
+fn pixel(context: &TriangleContext<'_>, textures: &[&[u32]], band: &mut Band<'_>, i: i64, j: i64) {
+    let at = (j as usize - band.first_row) * band.width + i as usize;
+    let depth = band.depth.get(at).copied();
+    let fragment = Fragment {
+        pixel: (i, j),
+        e: context.triangle.edges(i, j),
+        stored: band.words[at],
+        stored_depth: depth.unwrap_or(0),
+    };
+    let Some(result) = context.shade::<i32, Silent>(&fragment, None, textures, &mut Silent) else { return };
+    band.words[at] = result.word;
+    if let (Some(depth), Some(slot)) = (result.depth, band.depth.get_mut(at)) {
+        *slot = depth;
+    }
+}

@@ -1,0 +1,213 @@
+//! Lanes for loops over blocks of pixels, 16 bits of storage each. Every formula that is particular to a lane stands here with
+//! its exhaustive test; the rules' text does not change.
+
+use super::{Blend, Factor, Register, Sum};
+use crate::state::RegisterFloor;
+use std::ops::{Add, Sub};
+
+/// Range: every sum that a weight rule forms is at most 255 * 256 + 128.
+impl Blend for u16 {
+    type Weight = u16;
+    const WHOLE: u16 = 256;
+    #[inline(always)]
+    fn times(self, weight: u16) -> u16 {
+        self * weight
+    }
+    #[inline(always)]
+    fn round8(self) -> u16 {
+        (self + 128) >> 8
+    }
+}
+
+/// NUM-2 without a division: floor((2n + 255) / 510) for |n| <= 400 000; two dot products need 393 216.
+#[inline(always)]
+fn rnd255(n: i32) -> i32 {
+    (n * 257 + (n >> 8) + 32646) >> 16
+}
+
+#[inline(always)]
+fn saturate(v: i16, floor: RegisterFloor) -> i16 {
+    match floor {
+        RegisterFloor::Full => v.clamp(-256, 255),
+        RegisterFloor::Symmetric => v.clamp(-255, 255),
+    }
+}
+
+impl Register for i16 {
+    type Factor = i16;
+    type Expanded = i16;
+    const ZERO: i16 = 0;
+    const ONE: i16 = 255;
+    const HALF: i16 = 128;
+    #[inline(always)]
+    fn max0(self) -> i16 {
+        self.max(0)
+    }
+    #[inline(always)]
+    fn factor(self) -> i16 {
+        self
+    }
+    #[inline(always)]
+    fn twice(self) -> i16 {
+        self * 2
+    }
+    #[inline(always)]
+    fn halved(self) -> i16 {
+        (self + 1) >> 1
+    }
+    #[inline(always)]
+    fn saturated(self, floor: RegisterFloor) -> i16 {
+        saturate(self, floor)
+    }
+}
+
+impl Factor for i16 {
+    type Sum = i32;
+    type Register = i16;
+    #[inline(always)]
+    fn product(self, other: i16) -> i32 {
+        i32::from(self) * i32::from(other)
+    }
+}
+
+impl Sum for i32 {
+    type Register = i16;
+    #[inline(always)]
+    fn rounded(self) -> i16 {
+        rnd255(self) as i16
+    }
+}
+
+/// An `i16` register whose expanded factors stay halved, so that their products stay in 16 bits.
+///
+/// Valid where the result is read through an unsigned mapping only: a negative sum comes out as some value that is not positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Narrow(pub i16);
+
+/// Half of an expanded value, -128..=127.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Halved(i16);
+
+/// A quarter of a sum of products, saturated; 16256 and more is a full register, so the saturation cannot be seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quarter(i16);
+
+impl Add for Narrow {
+    type Output = Narrow;
+    #[inline(always)]
+    fn add(self, other: Narrow) -> Narrow {
+        Narrow(self.0 + other.0)
+    }
+}
+
+impl Sub for Narrow {
+    type Output = Narrow;
+    #[inline(always)]
+    fn sub(self, other: Narrow) -> Narrow {
+        Narrow(self.0 - other.0)
+    }
+}
+
+impl Add for Quarter {
+    type Output = Quarter;
+    #[inline(always)]
+    fn add(self, other: Quarter) -> Quarter {
+        Quarter(self.0.saturating_add(other.0))
+    }
+}
+
+impl Sum for Quarter {
+    type Register = Narrow;
+    /// floor((8m + 255) / 510) on 0..=16256; negative sums come out as 0, larger ones as 255.
+    #[inline(always)]
+    fn rounded(self) -> Narrow {
+        let m = self.0.clamp(0, 16256) as u16 + 32;
+        Narrow(((u32::from(m) * 1028) >> 16) as i16)
+    }
+}
+
+impl Factor for Halved {
+    type Sum = Quarter;
+    type Register = Narrow;
+    #[inline(always)]
+    fn product(self, other: Halved) -> Quarter {
+        Quarter(self.0 * other.0)
+    }
+}
+
+/// A product of [`Narrow`] registers that are not expanded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct NarrowSum(i32);
+
+impl Add for NarrowSum {
+    type Output = NarrowSum;
+    #[inline(always)]
+    fn add(self, other: NarrowSum) -> NarrowSum {
+        NarrowSum(self.0 + other.0)
+    }
+}
+
+impl Sum for NarrowSum {
+    type Register = Narrow;
+    #[inline(always)]
+    fn rounded(self) -> Narrow {
+        Narrow(rnd255(self.0) as i16)
+    }
+}
+
+impl Factor for Narrow {
+    type Sum = NarrowSum;
+    type Register = Narrow;
+    #[inline(always)]
+    fn product(self, other: Narrow) -> NarrowSum {
+        NarrowSum(i32::from(self.0) * i32::from(other.0))
+    }
+}
+
+impl Register for Narrow {
+    type Factor = Narrow;
+    type Expanded = Halved;
+    const ZERO: Narrow = Narrow(0);
+    const ONE: Narrow = Narrow(255);
+    const HALF: Narrow = Narrow(128);
+    #[inline(always)]
+    fn max0(self) -> Narrow {
+        Narrow(self.0.max(0))
+    }
+    #[inline(always)]
+    fn factor(self) -> Narrow {
+        self
+    }
+    #[inline(always)]
+    fn twice(self) -> Halved {
+        Halved(self.0)
+    }
+    #[inline(always)]
+    fn halved(self) -> Narrow {
+        Narrow((self.0 + 1) >> 1)
+    }
+    #[inline(always)]
+    fn saturated(self, floor: RegisterFloor) -> Narrow {
+        Narrow(saturate(self.0, floor))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn division_free_rounding_is_exact() {
+        for n in -400_000..=400_000_i32 {
+            assert_eq!(rnd255(n), (2 * n + 255).div_euclid(510), "{n}");
+        }
+    }
+
+    #[test]
+    fn quarter_is_exact_for_every_sum() {
+        for m in -32768..=32767_i16 {
+            let want = (8 * i32::from(m) + 255).div_euclid(510).clamp(0, 255);
+            assert_eq!(i32::from(Quarter(m).rounded().0), want, "{m}");
+        }
+    }
+}

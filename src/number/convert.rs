@@ -1,0 +1,154 @@
+//! Entry of floats: a single-precision number is taken apart into integers once, and no float arithmetic follows.
+
+/// f = mantissa * 2^exponent, exactly. `f` is finite.
+#[inline]
+pub fn split(f: f32) -> (i64, i32) {
+    let bits = f.to_bits();
+    let exponent = (bits >> 23 & 255) as i32;
+    let mantissa = i64::from(bits & 0x7f_ffff);
+    let (mantissa, exponent) = if exponent == 0 { (mantissa, -149) } else { (mantissa | 0x80_0000, exponent - 150) };
+    (if bits >> 31 == 1 { -mantissa } else { mantissa }, exponent)
+}
+
+/// floor(n * 2^exponent). The result must fit; shifts to the right may be of any size.
+#[inline]
+pub fn shift(n: i128, exponent: i32) -> i128 {
+    if exponent >= 0 { n << exponent.min(126) } else { n >> (-exponent).min(127) }
+}
+
+/// Block floating point: the largest magnitude keeps exactly `keep` bits, the others share its exponent; floors.
+pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> [i64; N] {
+    let bits = |n: i128| 128 - n.unsigned_abs().leading_zeros() as i32;
+    let top = values.iter().filter(|v| v.0 != 0).map(|v| bits(v.0) + v.1).max().unwrap_or(0);
+    values.map(|(m, e)| shift(m, e + keep - top) as i64)
+}
+
+/// NUM-4: a float vertex colour as a byte: clamped to 0..1, truncated to 14 significant bits, floor(255 c + 1/2).
+///
+/// NaN counts as 0 (a checked scene has none).
+pub fn vertex_color(c: f32) -> u8 {
+    if c.is_nan() || c <= 0.0 {
+        return 0;
+    }
+    if c >= 1.0 {
+        return 255;
+    }
+    let (mantissa, exponent) = split(c);
+    // 24 significant bits, or fewer for subnormals, which are far below half a step anyway.
+    let truncated = mantissa & !0x3ff;
+    // floor(255 t + 1/2) = floor((510 t + 1) / 2), with t = truncated * 2^exponent.
+    let doubled = shift(i128::from(510 * truncated), exponent);
+    ((doubled + 1) >> 1) as u8
+}
+
+/// NUM-6: a factor as floor(4096 f), 0..=4096, to a byte.
+#[inline]
+pub fn factor_byte(v: i64) -> u8 {
+    debug_assert!((0..=4096).contains(&v));
+    (((v - (v >> 8)) >> 4) & 255) as u8
+}
+
+/// NUM-0: a constant given as a float: floor(255 c + 1/2) after clamping to 0..1, computed exactly. NaN counts as 0.
+pub fn constant(c: f32) -> u8 {
+    if c.is_nan() || c <= 0.0 {
+        return 0;
+    }
+    if c >= 1.0 {
+        return 255;
+    }
+    let (mantissa, exponent) = split(c);
+    ((shift(i128::from(510 * mantissa), exponent) + 1) >> 1) as u8
+}
+
+/// A depth in 0..1 in units of the buffer's last bit: floor(z (2^bits - 1)), clamped (DEP-1). NaN counts as 0.
+pub fn depth(z: f32, bits: u32) -> i64 {
+    let full = (1_i64 << bits) - 1;
+    if z.is_nan() || z <= 0.0 {
+        return 0;
+    }
+    if z >= 1.0 {
+        return full;
+    }
+    let (mantissa, exponent) = split(z);
+    shift(i128::from(mantissa) * i128::from(full), exponent) as i64
+}
+
+/// RAS-1: 1/16 pixel, truncated toward zero.
+pub fn snap(x: f32) -> i64 {
+    let (mantissa, exponent) = split(x);
+    let n = shift(i128::from(mantissa.abs()), exponent + 4) as i64;
+    if mantissa < 0 { -n } else { n }
+}
+
+/// INT-6 on nv10: w cut to 16 significant bits.
+pub fn w_16_bits(w: f32) -> f32 {
+    f32::from_bits(w.to_bits() & !0xff)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vertex_colors_as_captured() {
+        // Float attributes and the bytes that the frames show.
+        let seen = [
+            (0.5, 128),
+            (0.1, 25),
+            (0.3, 76),
+            (0.700_000_05, 178),
+            (0.900_000_1, 229),
+            (0.65, 166),
+            (0.25, 64),
+            (0.7, 178),
+            (0.6, 153),
+            (1.2, 255),
+            (-1.0, 0),
+        ];
+        for (c, byte) in seen {
+            assert_eq!(vertex_color(c), byte, "{c}");
+        }
+    }
+
+    #[test]
+    fn constants_round_half_up() {
+        for byte in 0..=255_u8 {
+            assert_eq!(constant(f32::from(byte) / 255.0), byte);
+        }
+        assert_eq!((constant(0.5), constant(f32::NAN), constant(7.0)), (128, 0, 255));
+    }
+
+    #[test]
+    fn factor_bytes_end_at_255() {
+        assert_eq!((factor_byte(0), factor_byte(4096), factor_byte(2048)), (0, 255, 127));
+        // Captured fog factors: 0.25, 0.5, 0.65, 0.9, 0.1.
+        for (f, byte) in [(0.25_f32, 63), (0.5, 127), (0.65, 165), (0.9, 229), (0.1, 25)] {
+            let (m, e) = split(f);
+            assert_eq!(factor_byte(shift(i128::from(m), e + 12) as i64), byte, "{f}");
+        }
+        let mut last = 0;
+        for v in 0..=4096 {
+            assert!(factor_byte(v) >= last);
+            last = factor_byte(v);
+        }
+    }
+
+    #[test]
+    fn snap_truncates_toward_zero() {
+        assert_eq!(snap(-162.311_39), -2596);
+        assert_eq!(snap(162.311_39), 2596);
+        assert_eq!(snap(0.062_4), 0);
+        assert_eq!(snap(-0.062_5), -1);
+    }
+
+    #[test]
+    fn depth_ends() {
+        assert_eq!((depth(1.0, 24), depth(0.0, 24), depth(0.5, 16)), (16_777_215, 0, 32_767));
+    }
+
+    #[test]
+    fn align_keeps_the_bits_of_the_largest() {
+        assert_eq!(align([(1, 0), (3, 0), (-5, -1)], 4), [4, 12, -10]);
+        assert_eq!(align([(0, 0), (0, 5), (0, 9)], 28), [0, 0, 0]);
+    }
+}

@@ -1,0 +1,128 @@
+//! The numbers of the chip, and the traits by which one text of a rule serves every evaluation.
+//!
+//! A *lane* is the type a rule is evaluated in. The rules in [`raster`](crate::raster), [`texture`](crate::texture),
+//! [`combiner`](crate::combiner) and [`rop`](crate::rop) are free functions over the traits of this module; what differs between
+//! evaluations (rounding, width, the size of one half) sits in the lane and nowhere else.
+//!
+//! | lane | is | used by |
+//! |---|---|---|
+//! | `i32` | the definition | the scalar engine |
+//! | [`Paired`] | the definition and the ideal side by side; the definition takes every decision | traces |
+//! | `f64` | the ideal: the vendor's real-number text, nothing rounded | the second half of [`Paired`] |
+//! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | `benches/stage.rs` |
+//! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | `benches/stage.rs` |
+//!
+//! All lanes count in steps of 1/255 (NUM-1): 1.0 is 255.
+
+mod block;
+pub mod convert;
+mod paired;
+mod real;
+mod scalar;
+
+pub use block::{Halved, Narrow, Quarter};
+pub use paired::{Paired, PairedFactor, PairedSum};
+pub use scalar::{Halves, Quarters};
+
+use crate::state::RegisterFloor;
+use std::ops::{Add, Sub};
+
+/// A value that is mixed by weights of 256ths: interpolated colours and filtered texels.
+pub trait Blend: Copy + Add<Output = Self> {
+    /// A weight, 0 to 256.
+    type Weight: Copy + Sub<Output = Self::Weight>;
+    /// 256.
+    const WHOLE: Self::Weight;
+    /// Product with a weight; nothing is rounded.
+    fn times(self, weight: Self::Weight) -> Self;
+    /// Back from 256ths: (x + 128) >> 8.
+    fn round8(self) -> Self;
+}
+
+/// A 9-bit combiner register, or a byte of the raster operations, in steps of 1/255.
+pub trait Register: Copy + Add<Output = Self> + Sub<Output = Self> {
+    /// What a mapping yields: a factor of a product.
+    type Factor: Factor<Register = Self>;
+    /// What the expand mappings yield: a [`Factor`](Self::Factor), or a narrower lane that knows it is even.
+    type Expanded: Factor<Register = Self>;
+    /// 0.
+    const ZERO: Self;
+    /// 1.0: 255.
+    const ONE: Self;
+    /// One half: 128 (CMB-3, CMB-4, CMB-9); 127.5 in the ideal.
+    const HALF: Self;
+    /// max(0, x).
+    fn max0(self) -> Self;
+    /// The value itself as a factor.
+    fn factor(self) -> Self::Factor;
+    /// Twice the value as a factor, exactly.
+    fn twice(self) -> Self::Expanded;
+    /// (x + 1) >> 1: the output scale one half.
+    fn halved(self) -> Self;
+    /// NUM-3: limited to what a register holds.
+    fn saturated(self, floor: RegisterFloor) -> Self;
+}
+
+/// A factor of a combiner product: a register after its input mapping.
+pub trait Factor: Copy {
+    /// Holds sums of products.
+    type Sum: Sum<Register = Self::Register>;
+    /// The register that receives the result.
+    type Register;
+    /// The full-width product; nothing is rounded.
+    fn product(self, other: Self) -> Self::Sum;
+}
+
+/// A sum of full-width products, in steps of 1/65025.
+pub trait Sum: Copy + Add<Output = Self> {
+    /// The register that receives the result.
+    type Register;
+    /// NUM-2: the nearest 255th, not saturated.
+    fn rounded(self) -> Self::Register;
+}
+
+/// What the policies' alternatives, the final combiner and the raster operations need beyond [`Register`].
+pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Self as Lane>::Mapped> {
+    /// The factor type, whatever the mapping.
+    type Mapped: Factor<Sum = Self::Full, Register = Self> + Copy;
+    /// The sum type, with subtraction.
+    type Full: Sum<Register = Self> + Sub<Output = Self::Full> + Copy;
+    /// One step of a register; 0 in the ideal, which has none.
+    const STEP: Self;
+    /// A byte as it is.
+    fn byte(value: u8) -> Self;
+    /// A texel channel: the expanded byte (or two's complement value) of the definition; `numerator / denominator` of the ideal.
+    fn texel(value: i32, numerator: i32, denominator: i32) -> Self;
+    /// A signed texel channel s as a register: 2s (TEX-18); s / 128 in the ideal.
+    fn signed_texel(self) -> Self;
+    /// A weight, from the definition's integer and the ideal's real number of 256ths.
+    fn weight(fixed: i32, ideal: impl FnOnce() -> f64) -> Self::Weight;
+    /// A value from the definition's integer and the ideal's real number of 255ths.
+    fn value(fixed: i32, ideal: impl FnOnce() -> f64) -> Self;
+    /// The factor half way between two registers, the half bit kept (CMB-4=127.5).
+    fn halfway(a: Self, b: Self) -> Self::Mapped;
+    /// The negation, saturated to a register (-256 becomes 255).
+    fn negated(factor: Self::Mapped) -> Self::Mapped;
+    /// A register taken to the width of a sum, times 255.
+    fn widened(self) -> Self::Full;
+    /// Half of a sum, rounded to the nearest 255th, halves up (CMB-9=after).
+    fn rounded_half(sum: Self::Full) -> Self;
+    /// Limited to 0..255.
+    fn clamped(self) -> Self;
+    /// The smaller.
+    fn least(self, other: Self) -> Self;
+    /// The larger.
+    fn greatest(self, other: Self) -> Self;
+    /// The integer that takes decisions: mux, alpha test, stores. The ideal rounds to nearest.
+    fn decision(self) -> i32;
+    /// The high bits that a surface keeps: v >> shift << shift (ROP-5); the ideal keeps all.
+    fn truncated(self, shift: u32) -> Self;
+    /// The integer and, where the lane has one, the ideal, for observers.
+    fn observe(self) -> (i64, Option<f64>);
+    /// A factor for observers, in halves of a step.
+    fn observe_factor(factor: Self::Mapped) -> (i64, Option<f64>);
+    /// A sum for observers, in quarters of a product step.
+    fn observe_sum(sum: Self::Full) -> (i64, Option<f64>);
+    /// A weight for observers.
+    fn observe_weight(weight: Self::Weight) -> (i64, Option<f64>);
+}

@@ -1,0 +1,185 @@
+//! Files written so that a reader never sees half of one.
+//!
+//! A file is written under a temporary name in its own folder, flushed to the disk and renamed. Whatever goes wrong before the
+//! rename, the old file is untouched and the temporary one is removed.
+
+use std::ffi::OsStr;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use image::codecs::png::{CompressionType, FilterType, PngEncoder};
+use image::{ExtendedColorType, ImageEncoder};
+use thiserror::Error;
+
+/// Why an output was not written. Nothing of it exists then.
+#[derive(Debug, Error)]
+pub enum OutputError {
+    /// The place does not take files.
+    #[error("`{}` is a folder", path.display())]
+    Folder {
+        /// The output.
+        path: PathBuf,
+    },
+    /// The file system refused.
+    #[error("`{}` cannot be written: {source}", path.display())]
+    Write {
+        /// The output.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Standard output refused.
+    #[error("standard output cannot be written: {source}")]
+    Stdout {
+        /// Why.
+        source: io::Error,
+    },
+    /// The encoder refused the picture.
+    #[error("a picture of {width} x {height} cannot be encoded: {reason}")]
+    Encode {
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// Why.
+        reason: String,
+    },
+}
+
+impl OutputError {
+    /// Stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            OutputError::Folder { .. } => "NB0701",
+            OutputError::Write { .. } => "NB0702",
+            OutputError::Stdout { .. } => "NB0703",
+            OutputError::Encode { .. } => "NB0704",
+        }
+    }
+
+    /// What to do about it.
+    pub fn help(&self) -> &'static str {
+        match self {
+            OutputError::Folder { .. } => "name a file in it",
+            OutputError::Write { source, .. } => match source.kind() {
+                io::ErrorKind::NotFound => "create its folder first",
+                io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space on that disk",
+                _ => "check that its folder may be written to",
+            },
+            OutputError::Stdout { .. } => "write to a file with `-o FILE`",
+            OutputError::Encode { .. } => "pictures need at least one pixel",
+        }
+    }
+
+    /// The reader of standard output went away, as `head` does: no reason for a message.
+    pub fn is_broken_pipe(&self) -> bool {
+        matches!(self, OutputError::Stdout { source } if source.kind() == io::ErrorKind::BrokenPipe)
+    }
+}
+
+/// Where output goes: a file, or standard output for `-`.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// A file, replaced as a whole.
+    File(PathBuf),
+    /// Standard output.
+    Stdout,
+}
+
+impl From<&OsStr> for Destination {
+    fn from(text: &OsStr) -> Self {
+        if text == "-" { Destination::Stdout } else { Destination::File(text.into()) }
+    }
+}
+
+impl Destination {
+    /// Writes `bytes` there.
+    ///
+    /// # Errors
+    /// See [`write_file`]; standard output refuses.
+    pub fn write(&self, bytes: &[u8]) -> Result<(), OutputError> {
+        match self {
+            Destination::File(path) => write_file(path, bytes),
+            Destination::Stdout => write_stdout(bytes),
+        }
+    }
+}
+
+/// Replaces the file at `path` by `bytes`, as a whole or not at all.
+///
+/// A link is followed, so that what it points to is replaced and not the link. An existing file's permissions are kept. A place
+/// that is not a regular file, such as `/dev/null`, is written to directly.
+///
+/// # Errors
+/// The place is a folder, its folder is missing or not writable, the disk is full.
+pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    let refused = |source: io::Error| OutputError::Write { path: path.to_path_buf(), source };
+    let existing = path.metadata().ok();
+    if existing.as_ref().is_some_and(std::fs::Metadata::is_dir) {
+        return Err(OutputError::Folder { path: path.to_path_buf() });
+    }
+    if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
+        return std::fs::OpenOptions::new()
+            .write(true)
+            .open(path)
+            .and_then(|mut device| device.write_all(bytes))
+            .map_err(refused);
+    }
+    let place = if existing.is_some() { path.canonicalize().map_err(refused)? } else { path.to_path_buf() };
+    let folder = match place.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".ninebit-").suffix(".part");
+    let permissions = match &existing {
+        Some(metadata) => Some(metadata.permissions()),
+        None => ordinary_permissions(),
+    };
+    if let Some(permissions) = permissions {
+        // On systems where the mode of a new file is subject to the user's mask, so is this one.
+        builder.permissions(permissions);
+    }
+    let mut temporary = builder.tempfile_in(folder).map_err(refused)?;
+    temporary.write_all(bytes).map_err(refused)?;
+    temporary.as_file().sync_all().map_err(refused)?;
+    temporary.persist(&place).map_err(|error| refused(error.error))?;
+    Ok(())
+}
+
+/// What a file made in the ordinary way may be used for: temporary files are closed to others, outputs are not.
+#[cfg(unix)]
+fn ordinary_permissions() -> Option<std::fs::Permissions> {
+    use std::os::unix::fs::PermissionsExt;
+    Some(std::fs::Permissions::from_mode(0o666))
+}
+
+#[cfg(not(unix))]
+fn ordinary_permissions() -> Option<std::fs::Permissions> {
+    None
+}
+
+/// Writes `bytes` to standard output and flushes it.
+///
+/// # Errors
+/// Standard output refuses; see [`OutputError::is_broken_pipe`].
+pub fn write_stdout(bytes: &[u8]) -> Result<(), OutputError> {
+    let mut stdout = io::stdout().lock();
+    stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
+}
+
+/// A PNG of 8 bits a channel, R, G, B, A, row by row from the top.
+///
+/// # Errors
+/// No pixels, or not `width * height` of them.
+pub fn encode_png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, OutputError> {
+    let refuse = |reason: String| OutputError::Encode { width, height, reason };
+    if u64::from(width) * u64::from(height) != pixels.len() as u64 || pixels.is_empty() {
+        return Err(refuse(format!("{} pixels were given", pixels.len())));
+    }
+    let mut bytes = Vec::new();
+    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
+        .write_image(pixels.as_flattened(), width, height, ExtendedColorType::Rgba8)
+        .map_err(|error| refuse(error.to_string()))?;
+    Ok(bytes)
+}

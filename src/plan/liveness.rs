@@ -1,0 +1,164 @@
+//! Which outputs of the combiners anybody reads: backwards from the stored word to the interpolators and texture units.
+
+use crate::combiner::final_combiner::{self, PlannedFinal};
+use crate::combiner::general::{PlannedPortion, PlannedStage, source_channel};
+use crate::combiner::registers::{bit, bits};
+use crate::rop::blend;
+use crate::state::{
+    Blend, BlendFactor, Combiners, Component, Draw, FinalInput, FinalRegister, Portion, Register, TEXTURE_UNITS,
+};
+
+const RGB: u8 = 7;
+const ALPHA: u8 = 8;
+
+/// What a draw's combiners need, and what of them is needed.
+pub(super) struct Liveness {
+    pub(super) stages: Vec<PlannedStage>,
+    pub(super) final_combiner: PlannedFinal,
+    pub(super) primary: u8,
+    pub(super) secondary: u8,
+    pub(super) fog: u8,
+    pub(super) units: [u8; TEXTURE_UNITS],
+}
+
+impl Liveness {
+    /// `written` are the channels that the surface stores; without `prune` everything counts as read.
+    pub(super) fn of(draw: &Draw, alpha_test: bool, blend: Option<Blend>, written: u8, prune: bool) -> Liveness {
+        let fragment = if prune { fragment_channels(alpha_test, blend, written) } else { RGB | ALPHA };
+        let (final_combiner, mut live) = final_liveness(&draw.combiners, fragment);
+        let mut stages: Vec<PlannedStage> = Vec::new();
+        for (index, stage) in draw.combiners.stages.iter().enumerate().rev() {
+            let [rgb, alpha] = [(&stage.rgb, RGB), (&stage.alpha, ALPHA)].map(|(portion, channels)| PlannedPortion {
+                portion: *portion,
+                live: outputs(portion).map(|d| live_channels(d, channels, live, prune)),
+                blue_to_alpha: [
+                    portion.ab_blue_to_alpha && live_channels(portion.ab_output, ALPHA, live, prune) != 0,
+                    portion.cd_blue_to_alpha && live_channels(portion.cd_output, ALPHA, live, prune) != 0,
+                ],
+            });
+            live &= !(written_bits(&stage.rgb, RGB) | written_bits(&stage.alpha, ALPHA));
+            live |= read_bits(&rgb, RGB) | read_bits(&alpha, ALPHA);
+            if !(rgb.is_idle() && alpha.is_idle()) {
+                stages.push(PlannedStage { index, rgb, alpha, constants: stage.constants });
+            }
+        }
+        stages.reverse();
+        if !prune {
+            live = u64::MAX;
+        }
+        let channels = |register: Register| (live >> (4 * register as usize) & 15) as u8;
+        let mut units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3].map(channels);
+        // CMB-13: SPARE0's alpha starts as texture 0's.
+        units[0] |= channels(Register::Spare0) & ALPHA;
+        Liveness {
+            stages,
+            final_combiner,
+            primary: channels(Register::PrimaryColor),
+            secondary: channels(Register::SecondaryColor),
+            fog: channels(Register::Fog),
+            units,
+        }
+    }
+}
+
+/// Channels of the fragment that alpha test, blend and store read.
+fn fragment_channels(alpha_test: bool, blend: Option<Blend>, written: u8) -> u8 {
+    let alpha_factor = |f: BlendFactor| {
+        matches!(f, BlendFactor::SourceAlpha | BlendFactor::OneMinusSourceAlpha | BlendFactor::SourceAlphaSaturate)
+    };
+    let blends_alpha = blend.is_some_and(|b| {
+        blend::uses_factors(b.equation) && (alpha_factor(b.source) || alpha_factor(b.destination)) && written != 0
+    });
+    written | if alpha_test || blends_alpha { ALPHA } else { 0 }
+}
+
+fn final_liveness(combiners: &Combiners, fragment: u8) -> (PlannedFinal, u64) {
+    let state = combiners.final_combiner;
+    let mut planned = PlannedFinal { state, live: fragment, uses_product: false, uses_sum: false };
+    let mut live = 0;
+    let mut read = |input: &FinalInput, channels: u8| {
+        for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
+            let source = match input.component {
+                Component::Rgb => channel,
+                Component::Blue => 2,
+                Component::Alpha => 3,
+            };
+            match input.register {
+                // Their alpha is 0 and reads nothing.
+                FinalRegister::Spare0PlusSecondary if source < 3 => planned.uses_sum = true,
+                FinalRegister::ETimesF if source < 3 => planned.uses_product = true,
+                FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => {}
+                register => live |= bit(final_combiner::general(register), source),
+            }
+        }
+    };
+    for input in &state.inputs[..4] {
+        read(input, fragment & RGB);
+    }
+    if fragment & ALPHA != 0 {
+        read(&state.g, ALPHA);
+    }
+    if planned.uses_product {
+        let mut product_live = 0;
+        for input in &state.inputs[4..] {
+            for channel in 0..3 {
+                let source = if input.component == Component::Rgb { channel } else { 3 };
+                product_live |= bit(final_combiner::general(input.register), source);
+            }
+        }
+        live |= product_live;
+    }
+    if planned.uses_sum {
+        let rgb = |register| bits(register) & !bit(register, 3);
+        live |= rgb(Register::Spare0) | rgb(Register::SecondaryColor);
+    }
+    (planned, live)
+}
+
+fn outputs(portion: &Portion) -> [Register; 3] {
+    [portion.ab_output, portion.cd_output, portion.sum_output]
+}
+
+/// Channels of a destination, among `channels`, that are live.
+fn live_channels(destination: Register, channels: u8, live: u64, prune: bool) -> u8 {
+    match destination {
+        Register::Zero => 0,
+        _ if !prune => channels,
+        register => (live >> (4 * register as usize)) as u8 & channels,
+    }
+}
+
+/// Bits that a portion overwrites.
+fn written_bits(portion: &Portion, channels: u8) -> u64 {
+    let whole = |register: Register| {
+        if register == Register::Zero { 0 } else { u64::from(channels) << (4 * register as usize) }
+    };
+    let mut written: u64 = outputs(portion).into_iter().fold(0, |all, register| all | whole(register));
+    for (flag, register) in
+        [(portion.ab_blue_to_alpha, portion.ab_output), (portion.cd_blue_to_alpha, portion.cd_output)]
+    {
+        if flag && register != Register::Zero {
+            written |= bit(register, 3);
+        }
+    }
+    written
+}
+
+/// Bits that a planned portion reads.
+fn read_bits(planned: &PlannedPortion, channels: u8) -> u64 {
+    let mut read = 0;
+    for product in 0..2 {
+        let dot = [planned.portion.ab_dot_product, planned.portion.cd_dot_product][product];
+        let needed = planned.product_channels(product);
+        let needed = if dot && needed != 0 { RGB } else { needed & channels };
+        for input in &planned.portion.inputs[2 * product..2 * product + 2] {
+            for channel in (0..4).filter(|c| needed >> c & 1 != 0) {
+                read |= bit(input.register, source_channel(input, channel));
+            }
+        }
+    }
+    if planned.portion.mux && planned.live[2] != 0 {
+        read |= bit(Register::Spare0, 3);
+    }
+    read
+}

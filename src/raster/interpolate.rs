@@ -1,0 +1,266 @@
+//! INT-1 to INT-4, fog and depth: the definition, in integers, of everything that is interpolated.
+//!
+//! With E the edge functions, P the perspective weights, N_k = P_k E_k and D their sum, every result is a floor of a quotient by D, and
+//! ties are decided by exact remainders. The rule for colours, [`color`], is generic over the lane.
+
+use super::setup::Triangle;
+use crate::number::Blend;
+
+/// INT-2: one colour channel from the vertices' bytes; the second vertex takes the remainder.
+#[inline(always)]
+pub fn color<L: Blend>(c: [L; 3], w0: L::Weight, w2: L::Weight) -> L {
+    (c[0].times(w0) + c[1].times(L::WHOLE - w0 - w2) + c[2].times(w2)).round8()
+}
+
+/// A sample point of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// The triangle.
+    pub triangle: &'a Triangle,
+    /// Edge functions E_k.
+    pub e: [i64; 3],
+    /// N_k = P_k E_k.
+    pub n: [i64; 3],
+    /// D = N_0 + N_1 + N_2.
+    pub d: i64,
+}
+
+/// A quotient's floor, and what a tie did to it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settled {
+    /// The result.
+    pub value: i64,
+    /// The quotient was exact and the chip's truncation took it one step lower.
+    pub lowered: bool,
+}
+
+/// Largest magnitude of a texel coordinate, 1/256 texel (RAS-0, TEX-15).
+pub const COORDINATE_LIMIT: i64 = super::TEXEL_LIMIT << 8;
+
+impl<'a> Sample<'a> {
+    /// The sample with edge functions `e`, all covered.
+    #[inline]
+    pub fn new(triangle: &'a Triangle, e: [i64; 3]) -> Self {
+        let n: [i64; 3] = std::array::from_fn(|k| triangle.p[k] * e[k]);
+        Sample { triangle, e, n, d: n[0] + n[1] + n[2] }
+    }
+
+    /// INT-3's dominant weight: the largest binary exponent, a power of two counting as just below itself.
+    pub fn dominant(&self) -> usize {
+        dominant(self.n, self.d)
+    }
+
+    /// INT-2, INT-3: W0 and W2, 0..=256; W1 is the remainder.
+    #[inline]
+    pub fn weights(&self) -> [Settled; 2] {
+        [self.weight(0), self.weight(2)]
+    }
+
+    #[inline]
+    fn weight(&self, k: usize) -> Settled {
+        let (value, exact) = quotient(i128::from(self.n[k]) << 8, self.d);
+        let lowered = exact && value > 0 && !self.triangle.exact_reciprocal && self.dominant() != k;
+        Settled { value: value - i64::from(lowered), lowered }
+    }
+
+    /// INT-4, INT-4t: floor(sum G E / D), 1/256 texel.
+    #[inline]
+    pub fn coordinate(&self, g: &[i64; 3]) -> Settled {
+        let (value, exact) = quotient(self.sum(g), self.d);
+        let lowered = exact && !self.triangle.exact_reciprocal && self.truncation(g) > 0;
+        Settled { value: value - i64::from(lowered), lowered }
+    }
+
+    /// A factor in 4096ths, 0..=4096.
+    #[inline]
+    pub fn factor(&self, g: &[i64; 3]) -> i64 {
+        quotient(self.sum(g), self.d).0.clamp(0, 4096)
+    }
+
+    /// TEX-15: 256 size s/q as a floor, 1/256 texel, limited to [`COORDINATE_LIMIT`]; q = 0 is infinite, 0/0 is 0. Ties as in INT-4t.
+    pub fn ratio(&self, s: &[i64; 3], q: &[i64; 3], size: u32) -> Settled {
+        let (ns, nq) = (self.sum(s), self.sum(q));
+        if nq == 0 {
+            return Settled { value: COORDINATE_LIMIT * ns.signum() as i64, lowered: false };
+        }
+        let scale = i128::from(size) << 8;
+        let (numerator, denominator) = if nq > 0 { (ns * scale, nq) } else { (-ns * scale, -nq) };
+        let value = numerator.div_euclid(denominator);
+        if value.abs() > i128::from(COORDINATE_LIMIT) {
+            return Settled { value: COORDINATE_LIMIT * value.signum() as i64, lowered: false };
+        }
+        let tie = numerator.rem_euclid(denominator) == 0 && !self.triangle.exact_reciprocal;
+        let direction = || (self.truncation(s) * scale - value * self.truncation(q)) * nq.signum();
+        let lowered = tie && value > -i128::from(COORDINATE_LIMIT) && direction() > 0;
+        Settled { value: value as i64 - i64::from(lowered), lowered }
+    }
+
+    /// sum G_k E_k.
+    #[inline]
+    pub fn sum(&self, g: &[i64; 3]) -> i128 {
+        (0..3).map(|k| i128::from(g[k]) * i128::from(self.e[k])).sum()
+    }
+
+    /// INT-4t: which way truncating the weights 0 and 2 moves a linear function; its sign is all that counts.
+    ///
+    /// Weight i, unless dominant, comes out a hair low and weight 1 takes up the difference: the function changes by
+    /// -eps sum b_i (u_i - u_1), which is -eps' times this sum of E_i (G_i P_1 - P_i G_1).
+    pub fn truncation(&self, g: &[i64; 3]) -> i128 {
+        let (p, dominant) = (&self.triangle.p, self.dominant());
+        [0, 2]
+            .into_iter()
+            .filter(|i| *i != dominant)
+            .map(|i| {
+                let difference = i128::from(g[i]) * i128::from(p[1]) - i128::from(p[i]) * i128::from(g[1]);
+                difference * i128::from(self.e[i])
+            })
+            .sum()
+    }
+
+    /// DEP-1: z_dom + sum of trunc24(b_i) (z_i - z_dom), floored; screen-linear. `full` is the largest depth.
+    pub fn depth(&self, z: [i64; 3], full: i64) -> i64 {
+        let whole = self.triangle.doubled_area;
+        let dominant = dominant(self.e, whole);
+        let terms: [(i128, u32); 3] = std::array::from_fn(|k| {
+            if k == dominant || self.e[k] == 0 {
+                return (0, 0);
+            }
+            let (mantissa, exponent) = truncated_ratio(self.e[k], whole);
+            (mantissa * i128::from(z[k] - z[dominant]), exponent)
+        });
+        let finest = terms.iter().map(|t| t.1).max().unwrap_or(0);
+        let sum: i128 = terms.iter().map(|t| t.0 << (finest - t.1)).sum();
+        (z[dominant] + (sum >> finest) as i64).clamp(0, full)
+    }
+}
+
+/// floor(2^exponent e / whole) with exactly 24 bits, and that exponent. 0 < e <= whole.
+fn truncated_ratio(e: i64, whole: i64) -> (i128, u32) {
+    let mut exponent = 24 + e.leading_zeros() - whole.leading_zeros();
+    let mut mantissa = (i128::from(e) << exponent) / i128::from(whole);
+    if mantissa >= 1 << 24 {
+        exponent -= 1;
+        mantissa = (i128::from(e) << exponent) / i128::from(whole);
+    }
+    debug_assert!((1 << 23..1 << 24).contains(&mantissa));
+    (mantissa, exponent)
+}
+
+/// INT-3: the dominant one of three weights n_k / d.
+fn dominant(n: [i64; 3], d: i64) -> usize {
+    // Class c: the weight lies in (2^-(c+1), 2^-c].
+    let class = n.map(|n| {
+        if n == 0 {
+            return u32::MAX;
+        }
+        (0..).find(|c| i128::from(n) << (c + 1) > i128::from(d)).unwrap_or(u32::MAX)
+    });
+    let best = class[0].min(class[1]).min(class[2]);
+    match class.map(|c| c == best) {
+        [true, true, true] => 2,
+        [true, true, false] => 0,
+        [false, true, true] => 1,
+        [true, false, true] => 2,
+        [true, false, false] => 0,
+        [false, true, false] => 1,
+        [false, false, _] => 2,
+    }
+}
+
+/// floor(n / d) and whether nothing remains. 0 < d < 2^62, |n / d| < 2^26.
+///
+/// The 128-bit division is avoided: the top 35 bits of d estimate the quotient within one step, and the exact remainder settles it.
+#[inline]
+fn quotient(n: i128, d: i64) -> (i64, bool) {
+    let excess = (64 - d.leading_zeros()).saturating_sub(35);
+    let mut value = ((n >> excess) as i64).div_euclid(d >> excess);
+    let mut remainder = n - i128::from(value) * i128::from(d);
+    while remainder < 0 {
+        value -= 1;
+        remainder += i128::from(d);
+    }
+    while remainder >= i128::from(d) {
+        value += 1;
+        remainder -= i128::from(d);
+    }
+    (value, remainder == 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Profile;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn quotients_are_floors(d in 1_i64..1 << 62, q in -(1_i64 << 25)..1 << 25, r in 0.0..1.0_f64, small in 0_u32..62) {
+            let d = (d >> small).max(1);
+            #[allow(clippy::float_arithmetic, reason = "choosing a remainder")]
+            let remainder = ((d as f64 * r) as i64).min(d - 1);
+            for remainder in [remainder, 0, d - 1] {
+                let n = i128::from(q) * i128::from(d) + i128::from(remainder);
+                prop_assert_eq!(quotient(n, d), (q, remainder == 0));
+            }
+        }
+    }
+
+    fn right_triangle(size: f32, w: f32) -> Triangle {
+        let p = [[0.0, 0.0, 0.0, w], [size, 0.0, 0.0, w], [0.0, size, 0.0, w]];
+        Triangle::new(p, true, Profile::Nv2a).expect("area")
+    }
+
+    #[test]
+    fn weights_add_to_256_and_ties_go_down() {
+        let t = right_triangle(96.0, 1.0);
+        assert!(!t.exact_reciprocal);
+        let mut lowered = 0;
+        for j in 0..96 {
+            for i in 0..95 - j {
+                let s = Sample::new(&t, t.edges(i, j));
+                let [w0, w2] = s.weights();
+                assert!(w0.value >= 0 && w2.value >= 0 && w0.value + w2.value <= 256);
+                lowered += i32::from(w0.lowered) + i32::from(w2.lowered);
+            }
+        }
+        assert!(lowered > 0);
+    }
+
+    #[test]
+    fn power_of_two_areas_lower_nothing() {
+        let t = right_triangle(64.0, 2.0);
+        assert!(t.exact_reciprocal);
+        for j in 0..64 {
+            for i in 0..63 - j {
+                assert!(Sample::new(&t, t.edges(i, j)).weights().iter().all(|w| !w.lowered));
+            }
+        }
+    }
+
+    #[test]
+    fn dominance_order() {
+        assert_eq!(dominant([5, 5, 2], 12), 0);
+        assert_eq!(dominant([2, 5, 5], 12), 1);
+        assert_eq!(dominant([5, 2, 5], 12), 2);
+        assert_eq!(dominant([4, 4, 4], 12), 2);
+        // An exact power of two counts as just below itself: 1/2 falls into the class of 3/8.
+        assert_eq!(dominant([4, 3, 1], 8), 0);
+        assert_eq!(dominant([1, 3, 4], 8), 1);
+        assert_eq!(dominant([0, 0, 8], 8), 2);
+    }
+
+    #[test]
+    fn constant_texel_coordinates_stay_constant() {
+        let p = [[1.0, 2.0, 0.0, 1.3], [90.0, 7.0, 0.0, 2.9], [13.0, 71.0, 0.0, 0.7]];
+        let t = Triangle::new(p, true, Profile::Nv2a).expect("area");
+        let g = t.coordinate([0.75; 3], 64);
+        for j in 0..80 {
+            for i in 0..100 {
+                let e = t.edges(i, j);
+                if t.covers(e) {
+                    assert_eq!(Sample::new(&t, e).coordinate(&g), Settled { value: 48 * 256, lowered: false });
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,201 @@
+//! Triangle set-up: RAS-1 to RAS-3, and the perspective weights that INT-1 is made of.
+
+use super::GUARD;
+use crate::number::convert::{align, shift, snap, split, w_16_bits};
+use crate::state::Profile;
+
+/// Bits of the perspective weights, so that their sum with the edge functions stays below 2^62.
+pub const PERSPECTIVE_BITS: i32 = 28;
+
+/// A triangle ready to be walked.
+///
+/// Edge k at pixel (i, j) is `a[k] i + b[k] j + c[k]`, in 1/256 square pixel, not negative inside; the three add up to
+/// `doubled_area`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Triangle {
+    /// Slope of each edge function along x.
+    pub a: [i64; 3],
+    /// Slope along y.
+    pub b: [i64; 3],
+    /// Value at the centre of pixel (0, 0).
+    pub c: [i64; 3],
+    /// Whether a sample exactly on edge k belongs to the triangle: left and horizontal top edges (RAS-3).
+    pub owns: [bool; 3],
+    /// P_k: the product of the other two w, block floating, the largest in [2^27, 2^28), none below 1. All 2^27 without perspective.
+    pub p: [i64; 3],
+    /// Twice the area, 1/256 square pixel, positive, below 2^34.
+    pub doubled_area: i64,
+    /// First row and the row after the last that can be covered.
+    pub rows: (i64, i64),
+    /// The winding as seen on screen.
+    pub counter_clockwise: bool,
+    /// INT-3's exception: the reciprocal of the weights' sum is exact, no tie is lowered.
+    pub exact_reciprocal: bool,
+}
+
+impl Triangle {
+    /// Sets up a triangle from window positions x, y and w. `None` when nothing can be covered: zero area after RAS-1.
+    ///
+    /// Positions lie within RAS-0; the plan has checked that.
+    pub fn new(positions: [[f32; 4]; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
+        let x = positions.map(|p| snap(p[0]));
+        let y = positions.map(|p| snap(p[1]));
+        debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
+        let (mut a, mut b, mut c) = ([0; 3], [0; 3], [0; 3]);
+        let mut area = 0;
+        for k in 0..3 {
+            let (s, t) = ((k + 1) % 3, (k + 2) % 3);
+            (a[k], b[k]) = (y[s] - y[t], x[t] - x[s]);
+            c[k] = -(a[k] * x[s] + b[k] * y[s]);
+            area = a[k] * x[k] + b[k] * y[k] + c[k];
+        }
+        if area == 0 {
+            return None;
+        }
+        let sign = area.signum();
+        let mut owns = [false; 3];
+        for k in 0..3 {
+            let (da, db, dc) = (a[k] * sign, b[k] * sign, c[k] * sign);
+            owns[k] = da > 0 || (da == 0 && db > 0);
+            // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
+            (a[k], b[k], c[k]) = (16 * da, 16 * db, dc + 8 * da + 8 * db);
+        }
+        let w = positions.map(|p| if profile == Profile::Nv10 { w_16_bits(p[3]) } else { p[3] });
+        let doubled_area = area.abs();
+        let one_power_of_two = w[0] == w[1] && w[1] == w[2] && w[0].to_bits() & 0x7f_ffff == 0;
+        let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+        Some(Triangle {
+            a,
+            b,
+            c,
+            owns,
+            p: if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] },
+            doubled_area,
+            rows: ((low - 8).div_euclid(16), (high - 8).div_euclid(16) + 1),
+            // y points down, so a positive area turns clockwise for the viewer.
+            counter_clockwise: area < 0,
+            exact_reciprocal: doubled_area.count_ones() == 1 && (!perspective || one_power_of_two),
+        })
+    }
+
+    /// The three edge functions at the centre of pixel (i, j).
+    #[inline]
+    pub fn edges(&self, i: i64, j: i64) -> [i64; 3] {
+        std::array::from_fn(|k| self.a[k] * i + self.b[k] * j + self.c[k])
+    }
+
+    /// RAS-3: whether the edge functions of a sample say that it belongs to the triangle.
+    #[inline]
+    pub fn covers(&self, e: [i64; 3]) -> bool {
+        (0..3).all(|k| e[k] > 0 || (e[k] == 0 && self.owns[k]))
+    }
+
+    /// Columns of row j that [`covers`](Self::covers) accepts, as a half-open range within `columns`.
+    pub fn span(&self, j: i64, columns: (i64, i64)) -> (i64, i64) {
+        let (mut low, mut high) = columns;
+        for k in 0..3 {
+            // Needed: a i + r >= 0.
+            let r = self.b[k] * j + self.c[k] - i64::from(!self.owns[k]);
+            match self.a[k] {
+                0 if r < 0 => return (0, 0),
+                0 => {}
+                a if a > 0 => low = low.max(-r.div_euclid(a)),
+                a => high = high.min(r.div_euclid(-a) + 1),
+            }
+        }
+        (low, high.max(low))
+    }
+
+    /// G_k of one coordinate: floor(P_k 256 size s_k), so that u = floor(sum G E / sum P E) in 1/256 texel (INT-4).
+    pub fn coordinate(&self, s: [f32; 3], size: u32) -> [i64; 3] {
+        std::array::from_fn(|k| {
+            let (m, e) = split(s[k]);
+            shift(i128::from(m) * i128::from(self.p[k]) * i128::from(size), e + 8) as i64
+        })
+    }
+
+    /// A factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5).
+    pub fn factor(&self, f: [f32; 3]) -> [i64; 3] {
+        std::array::from_fn(|k| {
+            let (m, e) = split(f[k]);
+            shift(i128::from(m) * i128::from(self.p[k]), e + 12) as i64
+        })
+    }
+
+    /// The three linear functions of s, t and q, of which only ratios are used: nine numbers P_k x_k of one exponent, 28 bits.
+    pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
+        let scaled: [(i128, i32); 9] = std::array::from_fn(|n| {
+            let (axis, k) = (n / 3, n % 3);
+            let (m, e) = split(x[axis][k]);
+            (i128::from(m) * i128::from(self.p[k]), e)
+        });
+        let g = align(scaled, PERSPECTIVE_BITS);
+        std::array::from_fn(|axis| std::array::from_fn(|k| g[3 * axis + k]))
+    }
+}
+
+/// P_k: the exact product of the other two w, then one common exponent, floors, at least 1.
+fn perspective_weights(w: [f32; 3]) -> [i64; 3] {
+    let m = w.map(split);
+    let product = |i: usize, j: usize| (i128::from(m[i].0) * i128::from(m[j].0), m[i].1 + m[j].1);
+    align([product(1, 2), product(2, 0), product(0, 1)], PERSPECTIVE_BITS).map(|n| n.max(1))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn triangle(x: [[f32; 2]; 3]) -> Option<Triangle> {
+        Triangle::new(x.map(|p| [p[0], p[1], 0.0, 1.0]), true, Profile::Nv2a)
+    }
+
+    #[test]
+    fn spans_are_the_covered_columns() {
+        let shapes = [
+            [[1.3, 1.1], [18.7, 3.9], [5.2, 17.4]],
+            [[0.5, 0.5], [16.5, 0.5], [0.5, 16.5]],
+            [[-30.0, 5.0], [40.0, 4.0], [12.0, 9.5]],
+            [[3.0, 19.0], [3.0, 1.0], [3.4, 10.0]],
+        ];
+        for shape in shapes {
+            let t = triangle(shape).expect("area");
+            for j in -2..22 {
+                let (low, high) = t.span(j, (0, 20));
+                for i in 0..20 {
+                    assert_eq!((low..high).contains(&i), t.covers(t.edges(i, j)), "{shape:?} {i} {j}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn shared_edges_cover_once() {
+        let corners = [[2.0, 2.0], [14.5, 3.5], [13.0, 15.0], [1.5, 12.25]];
+        let a = triangle([corners[0], corners[1], corners[2]]).expect("area");
+        let b = triangle([corners[0], corners[2], corners[3]]).expect("area");
+        for j in 0..20 {
+            for i in 0..20 {
+                assert!(!(a.covers(a.edges(i, j)) && b.covers(b.edges(i, j))), "{i} {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn zero_area_after_snapping_is_nothing() {
+        assert!(triangle([[1.0, 1.0], [1.01, 1.0], [1.0, 1.03]]).is_none());
+    }
+
+    #[test]
+    fn winding_is_the_viewers() {
+        // Right, then down: clockwise on a screen whose y points down.
+        assert!(!triangle([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]).expect("area").counter_clockwise);
+        assert!(triangle([[0.0, 0.0], [9.0, 9.0], [9.0, 0.0]]).expect("area").counter_clockwise);
+    }
+
+    #[test]
+    fn equal_w_keeps_weights_equal() {
+        let t = Triangle::new([[0.0, 0.0, 0.0, 3.7], [9.0, 0.0, 0.0, 3.7], [0.0, 9.0, 0.0, 3.7]], true, Profile::Nv2a);
+        let p = t.expect("area").p;
+        assert!(p[0] == p[1] && p[1] == p[2]);
+    }
+}

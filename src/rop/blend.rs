@@ -1,0 +1,264 @@
+//! ROP-1 to ROP-4: alpha test, blend equations and factors.
+
+use crate::combiner::registers::channel_name;
+use crate::number::{Factor, Lane, Sum};
+use crate::state::{AlphaTest, Blend, BlendEquation, BlendFactor};
+use crate::trace::{Observer, Operand, report};
+
+const BLOCK: &str = "blend";
+
+/// ROP-4: a blend factor of one channel.
+#[inline(always)]
+pub fn factor<L: Lane>(
+    factor: BlendFactor,
+    channel: usize,
+    source: &[L; 4],
+    destination: &[L; 4],
+    constant: &[L; 4],
+) -> L {
+    match factor {
+        BlendFactor::Zero => L::ZERO,
+        BlendFactor::One => L::ONE,
+        BlendFactor::SourceColor => source[channel],
+        BlendFactor::OneMinusSourceColor => L::ONE - source[channel],
+        BlendFactor::SourceAlpha => source[3],
+        BlendFactor::OneMinusSourceAlpha => L::ONE - source[3],
+        BlendFactor::DestinationAlpha => destination[3],
+        BlendFactor::OneMinusDestinationAlpha => L::ONE - destination[3],
+        BlendFactor::DestinationColor => destination[channel],
+        BlendFactor::OneMinusDestinationColor => L::ONE - destination[channel],
+        BlendFactor::SourceAlphaSaturate if channel == 3 => L::ONE,
+        BlendFactor::SourceAlphaSaturate => source[3].least(L::ONE - destination[3]),
+        BlendFactor::ConstantColor => constant[channel],
+        BlendFactor::OneMinusConstantColor => L::ONE - constant[channel],
+        BlendFactor::ConstantAlpha => constant[3],
+        BlendFactor::OneMinusConstantAlpha => L::ONE - constant[3],
+    }
+}
+
+/// ROP-2, ROP-3: one channel, not yet clamped. `fs` and `fd` are the factors.
+#[inline(always)]
+pub fn equation<L: Lane>(equation: BlendEquation, s: L, d: L, fs: L, fd: L) -> L {
+    let source = || s.factor().product(fs.factor());
+    let destination = || d.factor().product(fd.factor());
+    match equation {
+        BlendEquation::Add => (source() + destination()).rounded(),
+        BlendEquation::Subtract => (source() - destination()).rounded(),
+        BlendEquation::ReverseSubtract => (destination() - source()).rounded(),
+        BlendEquation::Min => s.least(d),
+        BlendEquation::Max => s.greatest(d),
+        BlendEquation::SignedAdd => d + twos_complement(s),
+        BlendEquation::SignedReverseSubtract => d - twos_complement(s),
+    }
+}
+
+/// The byte as two's complement.
+#[inline(always)]
+fn twos_complement<L: Lane>(s: L) -> L {
+    if s.decision() >= 128 { s - L::value(256, || 256.0) } else { s }
+}
+
+/// Whether the equation takes its factors into account.
+pub fn uses_factors(equation: BlendEquation) -> bool {
+    matches!(equation, BlendEquation::Add | BlendEquation::Subtract | BlendEquation::ReverseSubtract)
+}
+
+/// Blends the `channels` (bits R, G, B, A) of a fragment with what the surface holds; the others are left as the source has them.
+///
+/// `source` has been truncated to the surface's depth, except its alpha (ROP-5).
+#[inline]
+pub fn run<L: Lane, O: Observer>(
+    blend: &Blend,
+    channels: u8,
+    constant: [u8; 4],
+    source: &[L; 4],
+    destination: &[L; 4],
+    observer: &mut O,
+) -> [L; 4] {
+    let constant = constant.map(L::byte);
+    let mut out = *source;
+    for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
+        let [fs, fd] = [blend.source, blend.destination].map(|f| factor(f, channel, source, destination, &constant));
+        let raw = equation(blend.equation, source[channel], destination[channel], fs, fd);
+        out[channel] = raw.clamped();
+        if O::ON {
+            report_channel(blend, channel, source, destination, &constant, [fs, fd], raw, out[channel], observer);
+        }
+    }
+    out
+}
+
+/// ROP-1.
+#[inline]
+pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &mut O) -> bool {
+    let passed = test.function.passes(alpha.decision().clamp(0, 255) as u32, u32::from(test.reference));
+    if O::ON {
+        let inputs = vec![
+            report::register("fragment.a", alpha),
+            crate::trace::byte("alpha_test.reference", i64::from(test.reference)),
+        ];
+        observer.step(
+            crate::trace::Step::given("alpha test", "ROP-1", "alpha_test.passed", i64::from(passed))
+                .by(compare_operation(test.function), inputs)
+                .note(Some(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string())),
+        );
+    }
+    passed
+}
+
+/// A comparison's operation in traces.
+pub fn compare_operation(function: crate::state::CompareFunction) -> &'static str {
+    use crate::state::CompareFunction;
+    match function {
+        CompareFunction::Never => "never",
+        CompareFunction::Less => "less",
+        CompareFunction::Equal => "equal",
+        CompareFunction::LessOrEqual => "less_or_equal",
+        CompareFunction::Greater => "greater",
+        CompareFunction::NotEqual => "not_equal",
+        CompareFunction::GreaterOrEqual => "greater_or_equal",
+        CompareFunction::Always => "always",
+    }
+}
+
+#[allow(clippy::too_many_arguments, reason = "one channel's blend and what the trace says of it")]
+fn report_channel<L: Lane, O: Observer>(
+    blend: &Blend,
+    channel: usize,
+    source: &[L; 4],
+    destination: &[L; 4],
+    constant: &[L; 4],
+    factors: [L; 2],
+    raw: L,
+    out: L,
+    observer: &mut O,
+) {
+    let suffix = channel_name(channel);
+    let mut operands: Vec<Operand> = vec![
+        report::register(format!("source.{suffix}"), source[channel]),
+        report::register(format!("destination.{suffix}"), destination[channel]),
+    ];
+    if uses_factors(blend.equation) {
+        for (name, kind, value) in [("Fs", blend.source, factors[0]), ("Fd", blend.destination, factors[1])] {
+            let (operation, inputs) = factor_operation(kind, channel, source, destination, constant);
+            let name = format!("blend.{name}.{suffix}");
+            observer.step(report::register_step(BLOCK, "ROP-4", name.clone(), value).by(operation, inputs));
+            operands.push(report::register(name, value));
+        }
+    }
+    let (rule, operation) = match blend.equation {
+        BlendEquation::Add => ("ROP-2", "blend_add"),
+        BlendEquation::Subtract => ("ROP-2", "blend_subtract"),
+        BlendEquation::ReverseSubtract => ("ROP-2", "blend_reverse_subtract"),
+        BlendEquation::Min => ("ROP-2", "minimum"),
+        BlendEquation::Max => ("ROP-2", "maximum"),
+        BlendEquation::SignedAdd => ("ROP-3", "signed_add"),
+        BlendEquation::SignedReverseSubtract => ("ROP-3", "signed_reverse_subtract"),
+    };
+    let name = format!("blend.raw.{suffix}");
+    observer.step(report::register_step(BLOCK, rule, name.clone(), raw).by(operation, operands));
+    let clamped = (raw.observe().0 != out.observe().0).then(|| "clamped".to_string());
+    observer.step(
+        report::register_step(BLOCK, rule, format!("blend.{suffix}"), out)
+            .by("clamp_0_255", vec![report::register(name, raw)])
+            .note(clamped),
+    );
+}
+
+fn factor_operation<L: Lane>(
+    kind: BlendFactor,
+    channel: usize,
+    source: &[L; 4],
+    destination: &[L; 4],
+    constant: &[L; 4],
+) -> (&'static str, Vec<Operand>) {
+    let operand = |from: &str, values: &[L; 4], channel: usize| {
+        vec![report::register(format!("{from}.{}", channel_name(channel)), values[channel])]
+    };
+    let (from, values) = match kind {
+        BlendFactor::Zero => return ("constant_0", Vec::new()),
+        BlendFactor::One => return ("constant_255", Vec::new()),
+        BlendFactor::SourceAlphaSaturate if channel == 3 => return ("constant_255", Vec::new()),
+        BlendFactor::SourceAlphaSaturate => {
+            let mut inputs = operand("source", source, 3);
+            inputs.extend(operand("destination", destination, 3));
+            return ("saturate_factor", inputs);
+        }
+        BlendFactor::SourceColor
+        | BlendFactor::OneMinusSourceColor
+        | BlendFactor::SourceAlpha
+        | BlendFactor::OneMinusSourceAlpha => ("source", source),
+        BlendFactor::DestinationAlpha
+        | BlendFactor::OneMinusDestinationAlpha
+        | BlendFactor::DestinationColor
+        | BlendFactor::OneMinusDestinationColor => ("destination", destination),
+        BlendFactor::ConstantColor
+        | BlendFactor::OneMinusConstantColor
+        | BlendFactor::ConstantAlpha
+        | BlendFactor::OneMinusConstantAlpha => ("blend_constant", constant),
+    };
+    let (operation, channel) = match kind {
+        BlendFactor::SourceColor | BlendFactor::DestinationColor | BlendFactor::ConstantColor => ("copy", channel),
+        BlendFactor::OneMinusSourceColor
+        | BlendFactor::OneMinusDestinationColor
+        | BlendFactor::OneMinusConstantColor => ("invert_255", channel),
+        BlendFactor::SourceAlpha | BlendFactor::DestinationAlpha | BlendFactor::ConstantAlpha => ("copy", 3),
+        _ => ("invert_255", 3),
+    };
+    (operation, operand(from, values, channel))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trace::Silent;
+
+    fn blend(
+        equation: BlendEquation,
+        source: BlendFactor,
+        destination: BlendFactor,
+        s: [i32; 4],
+        d: [i32; 4],
+    ) -> [i32; 4] {
+        run(&Blend { equation, source, destination }, 15, [0x55; 4], &s, &d, &mut Silent)
+    }
+
+    /// One rounding after the sum, over every source byte and alpha: the captured rule.
+    #[test]
+    fn add_rounds_once() {
+        for s in 0..=255 {
+            for a in 0..=255 {
+                for d in [0, 37, 128, 255] {
+                    let n: i32 = s * a + d * (255 - a);
+                    let got = blend(
+                        BlendEquation::Add,
+                        BlendFactor::SourceAlpha,
+                        BlendFactor::OneMinusSourceAlpha,
+                        [s, s, s, a],
+                        [d; 4],
+                    );
+                    assert_eq!(got[0], (2 * n + 255).div_euclid(510));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn captured_rows() {
+        // Blend_tests and Texture_signed_component_tests, one row each.
+        assert_eq!(blend(BlendEquation::SignedAdd, BlendFactor::Zero, BlendFactor::Zero, [200; 4], [127; 4])[0], 71);
+        assert_eq!(
+            blend(BlendEquation::SignedReverseSubtract, BlendFactor::Zero, BlendFactor::Zero, [200; 4], [127; 4])[0],
+            183
+        );
+        assert_eq!(blend(BlendEquation::Subtract, BlendFactor::One, BlendFactor::One, [10; 4], [20; 4]), [0; 4]);
+        let saturate = blend(
+            BlendEquation::Add,
+            BlendFactor::SourceAlphaSaturate,
+            BlendFactor::Zero,
+            [255, 255, 255, 100],
+            [0, 0, 0, 200],
+        );
+        assert_eq!(saturate, [55, 55, 55, 100]);
+    }
+}

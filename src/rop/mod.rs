@@ -1,0 +1,4 @@
+//! Raster operations: alpha test, depth test, blend, colour mask, surfaces.
+
+pub mod blend;
+pub mod surface;

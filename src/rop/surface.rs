@@ -1,0 +1,131 @@
+//! ROP-5, ROP-6: what the surface formats store and what blending reads back.
+
+use crate::state::{SurfaceFormat, TextureFormat};
+use crate::texture::format;
+
+/// Low bits of R, G, B that the surface drops: from the source before blending, and in the store.
+#[inline]
+pub fn dropped_bits(format: SurfaceFormat) -> [u32; 3] {
+    match format {
+        SurfaceFormat::R5G6B5 => [3, 2, 3],
+        SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => [3, 3, 3],
+        SurfaceFormat::A8R8G8B8
+        | SurfaceFormat::X8R8G8B8Z
+        | SurfaceFormat::X8R8G8B8O
+        | SurfaceFormat::X1A7R8G8B8Z
+        | SurfaceFormat::X1A7R8G8B8O
+        | SurfaceFormat::B8
+        | SurfaceFormat::G8B8 => [0; 3],
+    }
+}
+
+/// Whether the surface stores alpha.
+pub fn stores_alpha(format: SurfaceFormat) -> bool {
+    matches!(format, SurfaceFormat::A8R8G8B8 | SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O)
+}
+
+/// Whether blending is allowed.
+pub fn blends(format: SurfaceFormat) -> bool {
+    !matches!(format, SurfaceFormat::B8 | SurfaceFormat::G8B8)
+}
+
+/// D and destination alpha, R, G, B, A bytes, as blending reads them: zero low bits, 255 where no alpha is stored.
+#[inline]
+pub fn read(format: SurfaceFormat, word: u32) -> [u8; 4] {
+    let byte = |shift: u32| (word >> shift) as u8;
+    let field = |shift: u32, bits: u32| ((word >> shift & ((1 << bits) - 1)) << (8 - bits)) as u8;
+    match format {
+        SurfaceFormat::A8R8G8B8 => [byte(16), byte(8), byte(0), byte(24)],
+        SurfaceFormat::X8R8G8B8Z | SurfaceFormat::X8R8G8B8O => [byte(16), byte(8), byte(0), 255],
+        SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O => {
+            let a = byte(24) & 127;
+            [byte(16), byte(8), byte(0), a << 1 | a >> 6]
+        }
+        SurfaceFormat::R5G6B5 => [field(11, 5), field(5, 6), field(0, 5), 255],
+        SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => [field(10, 5), field(5, 5), field(0, 5), 255],
+        SurfaceFormat::B8 => [0, 0, byte(0), 255],
+        SurfaceFormat::G8B8 => [0, byte(8), byte(0), 255],
+    }
+}
+
+/// The bits of the stored word that belong to R, G, B and A. Unused bits are written together with alpha.
+#[inline]
+pub fn channel_bits(format: SurfaceFormat) -> [u32; 4] {
+    match format {
+        SurfaceFormat::A8R8G8B8
+        | SurfaceFormat::X8R8G8B8Z
+        | SurfaceFormat::X8R8G8B8O
+        | SurfaceFormat::X1A7R8G8B8Z
+        | SurfaceFormat::X1A7R8G8B8O => [0x00ff_0000, 0x0000_ff00, 0x0000_00ff, 0xff00_0000],
+        SurfaceFormat::R5G6B5 => [0xf800, 0x07e0, 0x001f, 0],
+        SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => [0x7c00, 0x03e0, 0x001f, 0x8000],
+        SurfaceFormat::B8 => [0, 0, 0xff, 0],
+        SurfaceFormat::G8B8 => [0, 0xff00, 0xff, 0],
+    }
+}
+
+/// R, G, B, A bytes as a stored word.
+#[inline]
+pub fn pack(format: SurfaceFormat, rgba: [u8; 4]) -> u32 {
+    let [r, g, b, a] = rgba.map(u32::from);
+    let rgb = r << 16 | g << 8 | b;
+    match format {
+        SurfaceFormat::A8R8G8B8 => a << 24 | rgb,
+        SurfaceFormat::X8R8G8B8Z => rgb,
+        SurfaceFormat::X8R8G8B8O => 0xff00_0000 | rgb,
+        SurfaceFormat::X1A7R8G8B8Z => (a >> 1) << 24 | rgb,
+        SurfaceFormat::X1A7R8G8B8O => (0x80 | a >> 1) << 24 | rgb,
+        SurfaceFormat::R5G6B5 => (r >> 3) << 11 | (g >> 2) << 5 | b >> 3,
+        SurfaceFormat::X1R5G5B5Z => (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
+        SurfaceFormat::X1R5G5B5O => 0x8000 | (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
+        SurfaceFormat::B8 => b,
+        SurfaceFormat::G8B8 => g << 8 | b,
+    }
+}
+
+/// ROP-6: the bits of the stored word that a colour mask (R, G, B, A) lets through.
+#[inline]
+pub fn write_mask(format: SurfaceFormat, color_mask: [bool; 4]) -> u32 {
+    let bits = channel_bits(format);
+    (0..4).filter(|n| color_mask[*n]).map(|n| bits[n]).sum()
+}
+
+/// The word as a picture shows it: R, G, B, A by the texture format of the same bits (TEX-1).
+pub fn show(format: SurfaceFormat, word: u32) -> [u8; 4] {
+    let texture: TextureFormat = format.texture_format();
+    format::expand(texture, word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Named;
+
+    /// What is stored comes back, as far as the format keeps it.
+    #[test]
+    fn round_trips() {
+        for format in SurfaceFormat::ALL {
+            for v in 0..=255_u8 {
+                let rgba = [v, v ^ 0x5a, v.wrapping_mul(7), 255 - v];
+                let word = pack(*format, rgba);
+                assert!(format.bytes() == 4 || word < 1 << (8 * format.bytes()));
+                let back = read(*format, word);
+                let dropped = dropped_bits(*format);
+                for n in 0..3 {
+                    if channel_bits(*format)[n] != 0 {
+                        assert_eq!(back[n], rgba[n] >> dropped[n] << dropped[n], "{format:?}");
+                    }
+                }
+                assert_eq!(pack(*format, back) & !channel_bits(*format)[3], word & !channel_bits(*format)[3]);
+            }
+        }
+    }
+
+    #[test]
+    fn seven_bit_alpha_is_replicated() {
+        assert_eq!(pack(SurfaceFormat::X1A7R8G8B8O, [0, 0, 0, 0]), 0x8000_0000);
+        assert_eq!(pack(SurfaceFormat::X1A7R8G8B8Z, [0, 0, 0, 255]), 0x7f00_0000);
+        assert_eq!(read(SurfaceFormat::X1A7R8G8B8Z, 0x7f00_0000)[3], 255);
+        assert_eq!(read(SurfaceFormat::X1A7R8G8B8O, 0xc000_0000)[3], 129);
+    }
+}

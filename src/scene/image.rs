@@ -1,0 +1,286 @@
+//! Reads PNG and TGA files that nobody has looked at before.
+//!
+//! The order matters: kind of file and its size, then the header against the limits, then the decoder, which runs under a
+//! guard because decoders panic on bytes nobody thought of. Of a PNG only the chunks that decide the pixels reach the decoder,
+//! so compressed text and profiles are never unpacked. Bytes come out as they are stored: no gamma, no colour management.
+
+use std::fs::File;
+use std::io::{self, Cursor, Read};
+use std::path::{Path, PathBuf};
+
+use image::{DynamicImage, ImageFormat};
+use thiserror::Error;
+
+use crate::guard;
+
+mod png;
+
+/// What an image file may ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageLimits {
+    /// Columns and rows, each.
+    pub maximum_side: u32,
+    /// Bytes of the decoded pixels at four bytes each.
+    pub maximum_decoded_bytes: u64,
+    /// Bytes of the file.
+    pub maximum_file_bytes: u64,
+}
+
+impl Default for ImageLimits {
+    fn default() -> Self {
+        ImageLimits { maximum_side: 4096, maximum_decoded_bytes: 64 << 20, maximum_file_bytes: 64 << 20 }
+    }
+}
+
+/// A decoded image.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Rgba {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width * height` pixels R, G, B, A, row by row from the top. Files without alpha give 255.
+    pub pixels: Vec<[u8; 4]>,
+}
+
+/// Why an image was not read.
+#[derive(Debug, Error)]
+pub enum ImageError {
+    /// There is no such file.
+    #[error("image `{}` does not exist", path.display())]
+    Missing {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A folder, a device, a pipe.
+    #[error("image `{}` is not a regular file", path.display())]
+    NotAFile {
+        /// The file.
+        path: PathBuf,
+    },
+    /// The file system refused.
+    #[error("image `{}` cannot be read: {source}", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// Why.
+        source: io::Error,
+    },
+    /// Neither PNG nor TGA.
+    #[error("image `{}` is neither a PNG nor a TGA file", path.display())]
+    Format {
+        /// The file.
+        path: PathBuf,
+    },
+    /// More bytes than allowed.
+    #[error("image `{}` is larger than {limit} bytes", path.display())]
+    FileBytes {
+        /// The file.
+        path: PathBuf,
+        /// [`ImageLimits::maximum_file_bytes`].
+        limit: u64,
+    },
+    /// More columns or rows than allowed.
+    #[error("image `{}` is {width} x {height}; a side may have {limit} pixels at most", path.display())]
+    Side {
+        /// The file.
+        path: PathBuf,
+        /// Columns.
+        width: u32,
+        /// Rows.
+        height: u32,
+        /// [`ImageLimits::maximum_side`].
+        limit: u32,
+    },
+    /// More pixels than allowed.
+    #[error("image `{}` decodes to {bytes} bytes; {limit} are allowed", path.display())]
+    DecodedBytes {
+        /// The file.
+        path: PathBuf,
+        /// Needed.
+        bytes: u64,
+        /// [`ImageLimits::maximum_decoded_bytes`].
+        limit: u64,
+    },
+    /// The contents make no sense.
+    #[error("image `{}` is damaged: {reason}", path.display())]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What the reader said.
+        reason: String,
+    },
+    /// Sixteen bits a channel.
+    #[error("image `{}` has {bits} bits a channel; 8 are the most", path.display())]
+    Depth {
+        /// The file.
+        path: PathBuf,
+        /// Bits a channel.
+        bits: u8,
+    },
+}
+
+impl ImageError {
+    /// Stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            ImageError::Missing { .. } => "NB0510",
+            ImageError::NotAFile { .. } => "NB0511",
+            ImageError::Unreadable { .. } => "NB0512",
+            ImageError::Format { .. } => "NB0513",
+            ImageError::FileBytes { .. } => "NB0514",
+            ImageError::Side { .. } => "NB0515",
+            ImageError::DecodedBytes { .. } => "NB0516",
+            ImageError::Damaged { .. } => "NB0517",
+            ImageError::Depth { .. } => "NB0518",
+        }
+    }
+
+    /// What to do about it.
+    pub fn help(&self) -> &'static str {
+        match self {
+            ImageError::Missing { .. } => {
+                "names are relative to the folder of the scene file; upper and lower case count"
+            }
+            ImageError::NotAFile { .. } => "name a PNG or TGA file, not a folder or a device",
+            ImageError::Unreadable { .. } => "check the file's permissions",
+            ImageError::Format { .. } => "convert it to PNG, or to TGA with the extension `.tga`",
+            ImageError::FileBytes { .. } => "store the image compressed, or smaller",
+            ImageError::Side { .. } | ImageError::DecodedBytes { .. } => {
+                "scale the image down; `ninebit limits` prints what is allowed"
+            }
+            ImageError::Damaged { .. } => "open the file in an image editor and save it again",
+            ImageError::Depth { .. } => {
+                "save it with 8 bits a channel: which of the 16 bits are to be kept is yours to decide"
+            }
+        }
+    }
+
+    /// The file is sound as far as looked at, but asks for more than is allowed.
+    pub fn is_limit(&self) -> bool {
+        matches!(self, ImageError::FileBytes { .. } | ImageError::Side { .. } | ImageError::DecodedBytes { .. })
+    }
+
+    /// There is no such file.
+    pub fn is_missing(&self) -> bool {
+        matches!(self, ImageError::Missing { .. })
+    }
+}
+
+/// Reads the PNG or TGA file at `path`.
+///
+/// A PNG is known by its first eight bytes, whatever its name; a TGA has no such mark and is known by its extension.
+///
+/// # Errors
+/// See [`ImageError`]. No input makes this panic.
+pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
+    let bytes = read(path, limits.maximum_file_bytes)?;
+    decode(&bytes, path, limits)
+}
+
+/// Decodes the contents of an image file; `path` gives the extension and names the file in errors.
+///
+/// # Errors
+/// As [`load`], less those of reading.
+pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
+    let named = || path.to_path_buf();
+    let damaged = |reason: String| ImageError::Damaged { path: named(), reason };
+    let (format, header, bytes) = if bytes.starts_with(&png::SIGNATURE) {
+        let reduced = png::essential(bytes).map_err(|reason| damaged(reason.to_owned()))?;
+        (ImageFormat::Png, reduced.header, std::borrow::Cow::Owned(reduced.bytes))
+    } else if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("tga")) {
+        let header = tga_header(bytes).ok_or_else(|| damaged("the header is cut off".to_owned()))?;
+        (ImageFormat::Tga, header, std::borrow::Cow::Borrowed(bytes))
+    } else {
+        return Err(ImageError::Format { path: named() });
+    };
+    check_header(header, path, limits)?;
+
+    let mut allowed = image::Limits::default();
+    allowed.max_image_width = Some(limits.maximum_side);
+    allowed.max_image_height = Some(limits.maximum_side);
+    // The decoder's own row buffers come on top of the pixels.
+    allowed.max_alloc = Some(limits.maximum_decoded_bytes.saturating_add(4 << 20));
+    let decoded = guard::quietly(|| {
+        let mut reader = image::ImageReader::with_format(Cursor::new(&*bytes), format);
+        reader.limits(allowed);
+        reader.decode()
+    })
+    .map_err(|panic| damaged(format!("the decoder gave up ({panic})")))?
+    .map_err(|error| damaged(error.to_string()))?;
+    to_rgba(decoded, path)
+}
+
+/// What a header says, before anything is decoded.
+#[derive(Clone, Copy, Debug)]
+struct Header {
+    width: u32,
+    height: u32,
+    /// Bits a channel.
+    bits: u8,
+}
+
+/// The header of a TGA file; `None` when the file ends within it.
+fn tga_header(bytes: &[u8]) -> Option<Header> {
+    let header: &[u8; 18] = bytes.first_chunk()?;
+    let side = |low: usize| u32::from(u16::from_le_bytes([header[low], header[low + 1]]));
+    Some(Header { width: side(12), height: side(14), bits: 8 })
+}
+
+/// Holds a header against the limits.
+fn check_header(header: Header, path: &Path, limits: &ImageLimits) -> Result<(), ImageError> {
+    let Header { width, height, bits } = header;
+    let path = || path.to_path_buf();
+    if width == 0 || height == 0 {
+        return Err(ImageError::Damaged { path: path(), reason: format!("it is {width} x {height}") });
+    }
+    if width > limits.maximum_side || height > limits.maximum_side {
+        return Err(ImageError::Side { path: path(), width, height, limit: limits.maximum_side });
+    }
+    let bytes = u64::from(width) * u64::from(height) * 4;
+    if bytes > limits.maximum_decoded_bytes {
+        return Err(ImageError::DecodedBytes { path: path(), bytes, limit: limits.maximum_decoded_bytes });
+    }
+    if bits > 8 {
+        return Err(ImageError::Depth { path: path(), bits });
+    }
+    Ok(())
+}
+
+/// Spreads what the decoder gave to R, G, B, A. Grey counts for all three colours.
+fn to_rgba(decoded: DynamicImage, path: &Path) -> Result<Rgba, ImageError> {
+    let (width, height) = (decoded.width(), decoded.height());
+    let pixels = match decoded {
+        DynamicImage::ImageLuma8(grey) => grey.pixels().map(|p| [p[0], p[0], p[0], 255]).collect(),
+        DynamicImage::ImageLumaA8(grey) => grey.pixels().map(|p| [p[0], p[0], p[0], p[1]]).collect(),
+        DynamicImage::ImageRgb8(color) => color.pixels().map(|p| [p[0], p[1], p[2], 255]).collect(),
+        DynamicImage::ImageRgba8(color) => color.pixels().map(|p| p.0).collect(),
+        // The header was refused already; a decoder that widens must not slip through.
+        _ => return Err(ImageError::Depth { path: path.to_path_buf(), bits: 16 }),
+    };
+    Ok(Rgba { width, height, pixels })
+}
+
+/// Reads a regular file of at most `limit` bytes.
+fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
+    let classify = |source: io::Error| match source.kind() {
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ImageError::Missing { path: path.to_path_buf() },
+        _ => ImageError::Unreadable { path: path.to_path_buf(), source },
+    };
+    // Before the file is opened: opening a pipe would wait for its other end.
+    let metadata = path.metadata().map_err(classify)?;
+    if !metadata.is_file() {
+        return Err(ImageError::NotAFile { path: path.to_path_buf() });
+    }
+    let too_large = || ImageError::FileBytes { path: path.to_path_buf(), limit };
+    if metadata.len() > limit {
+        return Err(too_large());
+    }
+    let mut bytes = Vec::new();
+    // One byte beyond the limit tells a file that grew meanwhile.
+    File::open(path).map_err(classify)?.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(classify)?;
+    if bytes.len() as u64 > limit {
+        return Err(too_large());
+    }
+    Ok(bytes)
+}

@@ -1,0 +1,329 @@
+//! Meshes with tangent frames, the same on every machine.
+//!
+//! Everything here is addition, subtraction, multiplication, division and rounding of IEEE numbers in a fixed order; sine and
+//! cosine come from [`circle`], not from the system's library, whose last bits differ between systems.
+//!
+//! Conventions: right-handed object space, y up. Triangles are counter-clockwise seen from the side the normal points to. Texture
+//! coordinate s grows to the right and t downward, as rows of an image do. The tangent points along s; the binormal points
+//! *against* t, upward on the image, as the green of a [normal map](crate::generate::normal_map) does, so that tangent x
+//! binormal = normal.
+#![allow(
+    clippy::float_arithmetic,
+    reason = "vertices are floats in the chip's programming model; the order of operations is fixed"
+)]
+
+use thiserror::Error;
+
+/// The most vertices that a mesh here may have.
+pub const MAXIMUM_VERTICES: u32 = 1 << 20;
+
+/// Vertices and triangles. The vertex lists have the same length; all vectors are of unit length (to rounding).
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Mesh {
+    /// Object space.
+    pub positions: Vec<[f32; 3]>,
+    /// Out of the surface.
+    pub normals: Vec<[f32; 3]>,
+    /// Along increasing s.
+    pub tangents: Vec<[f32; 3]>,
+    /// Along decreasing t.
+    pub binormals: Vec<[f32; 3]>,
+    /// s, t.
+    pub texture_coordinates: Vec<[f32; 2]>,
+    /// Three a triangle.
+    pub indices: Vec<u32>,
+}
+
+/// Why there is no such mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum MeshError {
+    /// Not enough divisions for the shape.
+    #[error("a {shape} needs at least {minimum} {what}, not {given}")]
+    TooCoarse {
+        /// The shape.
+        shape: &'static str,
+        /// What is counted.
+        what: &'static str,
+        /// The least.
+        minimum: u32,
+        /// As given.
+        given: u32,
+    },
+    /// More than [`MAXIMUM_VERTICES`].
+    #[error("a {shape} of {vertices} vertices is too fine; {MAXIMUM_VERTICES} are allowed")]
+    TooFine {
+        /// The shape.
+        shape: &'static str,
+        /// What it would have.
+        vertices: u64,
+    },
+}
+
+/// A rectangle in the xy plane, centred on the origin, facing +z, cut into `columns` x `rows` cells of two triangles each.
+///
+/// `size` is its width and height; the texture is repeated `repeat` times along s and t, and its first row lies at the top.
+///
+/// # Errors
+/// No columns or rows, or too many vertices.
+pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result<Mesh, MeshError> {
+    at_least("grid", "columns", 1, columns)?;
+    at_least("grid", "rows", 1, rows)?;
+    let mut mesh = with_room("grid", columns, rows)?;
+    for row in 0..=rows {
+        for column in 0..=columns {
+            // (2i - n) / 2n: exactly symmetric about the centre.
+            let x = (2.0 * column as f32 - columns as f32) / (2.0 * columns as f32) * size[0];
+            let y = (rows as f32 - 2.0 * row as f32) / (2.0 * rows as f32) * size[1];
+            mesh.positions.push([x, y, 0.0]);
+            mesh.normals.push([0.0, 0.0, 1.0]);
+            mesh.tangents.push([1.0, 0.0, 0.0]);
+            mesh.binormals.push([0.0, 1.0, 0.0]);
+            let s = column as f32 / columns as f32 * repeat[0];
+            let t = row as f32 / rows as f32 * repeat[1];
+            mesh.texture_coordinates.push([s, t]);
+        }
+    }
+    for row in 0..rows {
+        for column in 0..columns {
+            let [a, b, c, d] = cell(columns, row, column);
+            mesh.indices.extend([a, c, d, a, d, b]);
+        }
+    }
+    Ok(mesh)
+}
+
+/// A sphere about the origin with its poles on the y axis: `slices` around, `stacks` from the north pole to the south pole.
+///
+/// s = 0 lies at +z, grows eastward (to the right seen
+/// from outside), and is `repeat[0]` when it is back there; t is 0 at the north pole and `repeat[1]` at the south pole.
+///
+/// # Errors
+/// Fewer than 3 slices or 2 stacks, or too many vertices.
+pub fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result<Mesh, MeshError> {
+    at_least("sphere", "slices", 3, slices)?;
+    at_least("sphere", "stacks", 2, stacks)?;
+    let mut mesh = with_room("sphere", slices, stacks)?;
+    for stack in 0..=stacks {
+        // Half a turn from pole to pole.
+        let [sin_polar, cos_polar] = circle(stack, 2 * stacks);
+        for slice in 0..=slices {
+            let [sin_azimuth, cos_azimuth] = circle(slice, slices);
+            let normal = [sin_polar * sin_azimuth, cos_polar, sin_polar * cos_azimuth];
+            mesh.positions.push(normal.map(|n| n as f32 * radius));
+            mesh.normals.push(normal.map(|n| n as f32));
+            mesh.tangents.push([cos_azimuth as f32, 0.0, -sin_azimuth as f32]);
+            let binormal = [-cos_polar * sin_azimuth, sin_polar, -cos_polar * cos_azimuth];
+            mesh.binormals.push(binormal.map(|n| n as f32));
+            let s = slice as f32 / slices as f32 * repeat[0];
+            let t = stack as f32 / stacks as f32 * repeat[1];
+            mesh.texture_coordinates.push([s, t]);
+        }
+    }
+    for stack in 0..stacks {
+        for slice in 0..slices {
+            let [a, b, c, d] = cell(slices, stack, slice);
+            // At the poles one of a cell's two triangles has no area.
+            if stack + 1 < stacks {
+                mesh.indices.extend([a, c, d]);
+            }
+            if stack > 0 {
+                mesh.indices.extend([a, d, b]);
+            }
+        }
+    }
+    Ok(mesh)
+}
+
+/// Sine and cosine of `numerator / denominator` of a full turn.
+///
+/// The angle is brought into the first eighth of a turn in integers, so the symmetries are exact: quarter turns give exactly 0 and
+/// 1, and sin(-a) = -sin(a). There, Taylor polynomials of degree 15 and 14 in f64 are off by less than 3e-16.
+///
+/// `denominator` must not be 0; it may be up to 2^28.
+pub fn circle(numerator: u32, denominator: u32) -> [f64; 2] {
+    debug_assert!(denominator > 0 && denominator <= 1 << 28);
+    let (n, d) = (u64::from(numerator % denominator), u64::from(denominator));
+    // In eighths of a turn: `octant`, and `rest / d` of the next.
+    let octant = 8 * n / d;
+    let rest = 8 * n % d;
+    // Odd octants are measured back from their far end.
+    let eighths = if octant % 2 == 0 { rest } else { d - rest };
+    let angle = eighths as f64 / d as f64 * std::f64::consts::FRAC_PI_4;
+    let (sin, cos) = if eighths == d {
+        // Between two octants: the two polynomials may differ in the last bit, the two symmetries must not.
+        [std::f64::consts::FRAC_1_SQRT_2; 2].into()
+    } else {
+        (sin_eighth(angle), cos_eighth(angle))
+    };
+    match octant {
+        0 => [sin, cos],
+        1 => [cos, sin],
+        2 => [cos, -sin],
+        3 => [sin, -cos],
+        4 => [-sin, -cos],
+        5 => [-cos, -sin],
+        6 => [-cos, sin],
+        _ => [-sin, cos],
+    }
+}
+
+/// Sine for 0 <= x <= pi / 4.
+fn sin_eighth(x: f64) -> f64 {
+    let y = x * x;
+    let mut sum = 1.0;
+    // 1 - y/(2 3) (1 - y/(4 5) (1 - ...)), innermost first.
+    for k in (1..=7).rev() {
+        let k = f64::from(k);
+        sum = 1.0 - y / ((2.0 * k) * (2.0 * k + 1.0)) * sum;
+    }
+    x * sum
+}
+
+/// Cosine for 0 <= x <= pi / 4.
+fn cos_eighth(x: f64) -> f64 {
+    let y = x * x;
+    let mut sum = 1.0;
+    for k in (1..=8).rev() {
+        let k = f64::from(k);
+        sum = 1.0 - y / ((2.0 * k - 1.0) * (2.0 * k)) * sum;
+    }
+    sum
+}
+
+/// Corners of a cell in a lattice of rows of `columns + 1` vertices: upper left, upper right, lower left, lower right.
+fn cell(columns: u32, row: u32, column: u32) -> [u32; 4] {
+    let upper = row * (columns + 1) + column;
+    let lower = upper + columns + 1;
+    [upper, upper + 1, lower, lower + 1]
+}
+
+fn at_least(shape: &'static str, what: &'static str, minimum: u32, given: u32) -> Result<(), MeshError> {
+    if given < minimum { Err(MeshError::TooCoarse { shape, what, minimum, given }) } else { Ok(()) }
+}
+
+/// An empty mesh with room for a lattice of `columns` x `rows` cells.
+fn with_room(shape: &'static str, columns: u32, rows: u32) -> Result<Mesh, MeshError> {
+    let vertices = (u64::from(columns) + 1).saturating_mul(u64::from(rows) + 1);
+    if vertices > u64::from(MAXIMUM_VERTICES) {
+        return Err(MeshError::TooFine { shape, vertices });
+    }
+    let vertices = vertices as usize;
+    Ok(Mesh {
+        positions: Vec::with_capacity(vertices),
+        normals: Vec::with_capacity(vertices),
+        tangents: Vec::with_capacity(vertices),
+        binormals: Vec::with_capacity(vertices),
+        texture_coordinates: Vec::with_capacity(vertices),
+        indices: Vec::with_capacity(vertices * 6),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+        [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+    }
+    fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    /// Frames are orthonormal and right-handed, triangles face outward, indices are in range.
+    fn check(mesh: &Mesh) {
+        let vertices = mesh.positions.len();
+        assert_eq!(
+            [mesh.normals.len(), mesh.tangents.len(), mesh.binormals.len(), mesh.texture_coordinates.len()],
+            [vertices; 4]
+        );
+        for i in 0..vertices {
+            let (t, b, n) = (mesh.tangents[i], mesh.binormals[i], mesh.normals[i]);
+            for (v, expected) in
+                [(dot(t, t), 1.0), (dot(b, b), 1.0), (dot(n, n), 1.0), (dot(t, b), 0.0), (dot(t, n), 0.0)]
+            {
+                assert!((v - expected).abs() < 1e-6, "vertex {i}: {t:?} {b:?} {n:?}");
+            }
+            let third = cross(t, b);
+            assert!((0..3).all(|k| (third[k] - n[k]).abs() < 1e-6), "vertex {i} is left-handed");
+        }
+        assert!(mesh.indices.len().is_multiple_of(3));
+        for triangle in mesh.indices.chunks(3) {
+            let [a, b, c] = [0, 1, 2].map(|k| mesh.positions[triangle[k] as usize]);
+            let edge = |p: [f32; 3]| [p[0] - a[0], p[1] - a[1], p[2] - a[2]];
+            let facing = cross(edge(b), edge(c));
+            let outward: [f32; 3] =
+                std::array::from_fn(|k| (0..3).map(|v| mesh.normals[triangle[v] as usize][k]).sum());
+            assert!(dot(facing, outward) > 0.0, "triangle {triangle:?} is inside out or has no area");
+        }
+    }
+
+    #[test]
+    fn sine_and_cosine_are_within_their_stated_error() {
+        for n in 0..=4096 {
+            let [sin, cos] = circle(n, 4096);
+            let angle = f64::from(n) / 4096.0 * std::f64::consts::TAU;
+            // The reference multiplies a rounded angle: 1e-15 of that is its own.
+            assert!((sin - angle.sin()).abs() < 2e-15 && (cos - angle.cos()).abs() < 2e-15, "{n}: {sin} {cos}");
+            assert!((sin * sin + cos * cos - 1.0).abs() < 6e-16, "{n}");
+        }
+        // In the first eighth the reference is good to its last bit.
+        for n in 0..=512 {
+            let angle = f64::from(n) / 512.0 * std::f64::consts::FRAC_PI_4;
+            assert!((sin_eighth(angle) - angle.sin()).abs() < 3e-16 && (cos_eighth(angle) - angle.cos()).abs() < 3e-16);
+        }
+    }
+
+    #[test]
+    fn the_circle_is_exactly_symmetric() {
+        assert_eq!(
+            [0, 1, 2, 3, 4].map(|q| circle(q, 4)),
+            [[0.0, 1.0], [1.0, 0.0], [0.0, -1.0], [-1.0, 0.0], [0.0, 1.0]]
+        );
+        for d in [3, 5, 7, 360, 1000] {
+            for n in 1..d {
+                let ([sin, cos], [back_sin, back_cos]) = (circle(n, d), circle(d - n, d));
+                assert_eq!((sin, cos), (-back_sin, back_cos), "{n}/{d}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_grid_of_one_cell_is_two_triangles() {
+        let mesh = grid(1, 1, [4.0, 2.0], [3.0, 1.0]).expect("mesh");
+        check(&mesh);
+        assert_eq!(mesh.positions, [[-2.0, 1.0, 0.0], [2.0, 1.0, 0.0], [-2.0, -1.0, 0.0], [2.0, -1.0, 0.0]]);
+        assert_eq!(mesh.texture_coordinates, [[0.0, 0.0], [3.0, 0.0], [0.0, 1.0], [3.0, 1.0]]);
+        assert_eq!(mesh.indices, [0, 2, 3, 0, 3, 1]);
+    }
+
+    #[test]
+    fn finer_grids_hold_together() {
+        let mesh = grid(7, 5, [1.0, 1.0], [1.0, 1.0]).expect("mesh");
+        check(&mesh);
+        assert_eq!((mesh.positions.len(), mesh.indices.len()), (8 * 6, 7 * 5 * 6));
+    }
+
+    #[test]
+    fn spheres_are_round_and_closed() {
+        for (slices, stacks) in [(3, 2), (8, 4), (31, 17), (64, 32)] {
+            let mesh = sphere(slices, stacks, 2.0, [2.0, 1.0]).expect("mesh");
+            check(&mesh);
+            assert_eq!(mesh.indices.len() as u32, slices * (stacks - 1) * 6);
+            assert!(mesh.positions.iter().all(|p| (dot(*p, *p) - 4.0).abs() < 2e-6));
+            // The seam's two columns are the same points.
+            for stack in 0..=stacks {
+                let first = (stack * (slices + 1)) as usize;
+                assert_eq!(mesh.positions[first], mesh.positions[first + slices as usize]);
+            }
+        }
+    }
+
+    #[test]
+    fn divisions_are_checked() {
+        assert!(matches!(grid(0, 1, [1.0; 2], [1.0; 2]), Err(MeshError::TooCoarse { .. })));
+        assert!(matches!(sphere(2, 2, 1.0, [1.0; 2]), Err(MeshError::TooCoarse { .. })));
+        assert!(matches!(grid(1 << 20, 1, [1.0; 2], [1.0; 2]), Err(MeshError::TooFine { .. })));
+        let huge = sphere(u32::MAX, u32::MAX, 1.0, [1.0; 2]).expect_err("too fine");
+        assert!(huge.to_string().contains("1048576"));
+    }
+}

@@ -1,0 +1,5 @@
+//! The scene front end: files, paths, meshes.
+
+pub mod image;
+pub mod mesh;
+pub mod path;

@@ -1,0 +1,61 @@
+//! TEX-5, TEX-6: from coordinates in 1/256 texel to texel indices and weights, and the mix of four texels.
+
+use crate::number::Blend;
+
+/// TEX-6: one linear step.
+#[inline(always)]
+pub fn lerp<L: Blend>(a: L, b: L, w: L::Weight) -> L {
+    (a.times(L::WHOLE - w) + b.times(w)).round8()
+}
+
+/// TEX-6: along u on both rows, then along v, eight bits between. `t` is the 2x2 footprint, row by row.
+#[inline(always)]
+pub fn bilinear<L: Blend>(t: [L; 4], u: L::Weight, v: L::Weight) -> L {
+    lerp(lerp(t[0], t[1], u), lerp(t[2], t[3], u), v)
+}
+
+/// TEX-5: the texel at a coordinate in 1/256 texel.
+#[inline]
+pub fn nearest(u: i64) -> i64 {
+    u >> 8
+}
+
+/// TEX-6: the lower texel of the pair and the weight of the upper one, 0..=255.
+#[inline]
+pub fn linear(u: i64) -> (i64, i32) {
+    let f = u - 128;
+    (f >> 8, (f & 255) as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every weight with every pair of bytes, in both lanes that filter.
+    #[test]
+    fn one_step_by_its_formula() {
+        for w in 0..=255_i32 {
+            for a in 0..=255_i32 {
+                for b in 0..=255_i32 {
+                    let want = (a * (256 - w) + b * w + 128) >> 8;
+                    assert_eq!(lerp(a, b, w), want);
+                    assert_eq!(i32::from(lerp(a as u16, b as u16, w as u16)), want);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn signed_steps_shift_arithmetically() {
+        assert_eq!(lerp(-128, 127, 0), -128);
+        assert_eq!(lerp(-1, 0, 128), 0);
+        assert_eq!(lerp(-2, -1, 128), -1);
+        assert_eq!(lerp(-3, -1, 128), -2);
+    }
+
+    #[test]
+    fn coordinates() {
+        assert_eq!((nearest(255), nearest(256), nearest(-1)), (0, 1, -1));
+        assert_eq!((linear(128), linear(127), linear(384)), ((0, 0), (-1, 255), (1, 0)));
+    }
+}

@@ -1,0 +1,108 @@
+//! TEX-1: the bits of a texel as channels.
+
+use crate::number::Lane;
+use crate::state::TextureFormat;
+
+/// An expanded channel: the chip's byte, and the real number it stands for as a fraction of one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Channel {
+    /// 0..=255.
+    pub byte: u8,
+    /// The field's own value.
+    pub numerator: u8,
+    /// The field's largest value.
+    pub denominator: u8,
+}
+
+/// 5 bits to 8 by replication.
+#[inline]
+pub fn replicate5(v: u32) -> u8 {
+    (v << 3 | v >> 2) as u8
+}
+
+/// 6 bits to 8 by replication.
+#[inline]
+pub fn replicate6(v: u32) -> u8 {
+    (v << 2 | v >> 4) as u8
+}
+
+/// R, G, B, A bytes of a raw texel.
+#[inline]
+pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
+    let byte = |shift: u32| (word >> shift) as u8;
+    match format {
+        TextureFormat::A8R8G8B8 => [byte(16), byte(8), byte(0), byte(24)],
+        TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), 255],
+        TextureFormat::R5G6B5 => [replicate5(word >> 11 & 31), replicate6(word >> 5 & 63), replicate5(word & 31), 255],
+        TextureFormat::X1R5G5B5 => {
+            [replicate5(word >> 10 & 31), replicate5(word >> 5 & 31), replicate5(word & 31), 255]
+        }
+        TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
+        TextureFormat::A8 => [255, 255, 255, byte(0)],
+        TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
+    }
+}
+
+/// [`expand`] with the field values that the ideal takes: 5-bit channels as v/31.
+pub fn channels(format: TextureFormat, word: u32) -> [Channel; 4] {
+    let bytes = expand(format, word);
+    let fields: [(u32, u8); 4] = match format {
+        TextureFormat::R5G6B5 => [(word >> 11 & 31, 31), (word >> 5 & 63, 63), (word & 31, 31), (1, 1)],
+        TextureFormat::X1R5G5B5 => [(word >> 10 & 31, 31), (word >> 5 & 31, 31), (word & 31, 31), (1, 1)],
+        TextureFormat::A8R8G8B8
+        | TextureFormat::X8R8G8B8
+        | TextureFormat::L8
+        | TextureFormat::A8
+        | TextureFormat::G8B8 => bytes.map(|b| (u32::from(b), 255)),
+    };
+    std::array::from_fn(|n| Channel { byte: bytes[n], numerator: fields[n].0 as u8, denominator: fields[n].1 })
+}
+
+/// A channel in a lane; a signed one (TEX-18) as its two's complement value, s/128 in the ideal.
+#[inline(always)]
+pub fn lane<L: Lane>(channel: Channel, signed: bool) -> L {
+    if signed {
+        let s = i32::from(channel.byte as i8);
+        L::texel(s, s, 128)
+    } else {
+        L::texel(i32::from(channel.byte), i32::from(channel.numerator), i32::from(channel.denominator))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every 16-bit texel: replication is the nearest that keeps both ends, and channels agree with bytes.
+    #[test]
+    fn sixteen_bit_formats() {
+        for word in 0..=0xffff_u32 {
+            let [r, g, b, a] = expand(TextureFormat::R5G6B5, word);
+            assert_eq!(
+                (r >> 3, g >> 2, b >> 3, a),
+                ((word >> 11) as u8, (word >> 5 & 63) as u8, (word & 31) as u8, 255)
+            );
+            assert_eq!((r & 7, g & 3, b & 7), (r >> 5, g >> 6, b >> 5));
+            let [r, g, b, a] = expand(TextureFormat::X1R5G5B5, word);
+            assert_eq!(
+                (r >> 3, g >> 3, b >> 3, a),
+                ((word >> 10 & 31) as u8, (word >> 5 & 31) as u8, (word & 31) as u8, 255)
+            );
+            assert_eq!(
+                expand(TextureFormat::G8B8, word),
+                [word as u8, (word >> 8) as u8, word as u8, (word >> 8) as u8]
+            );
+            for format in [TextureFormat::R5G6B5, TextureFormat::X1R5G5B5, TextureFormat::G8B8] {
+                assert_eq!(channels(format, word).map(|c| c.byte), expand(format, word));
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_and_fixed_channels() {
+        assert_eq!(expand(TextureFormat::A8R8G8B8, 0x1122_3344), [0x22, 0x33, 0x44, 0x11]);
+        assert_eq!(expand(TextureFormat::X8R8G8B8, 0x1122_3344), [0x22, 0x33, 0x44, 255]);
+        assert_eq!(expand(TextureFormat::L8, 0x7f), [0x7f, 0x7f, 0x7f, 255]);
+        assert_eq!(expand(TextureFormat::A8, 0x7f), [255, 255, 255, 0x7f]);
+    }
+}

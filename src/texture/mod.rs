@@ -1,0 +1,6 @@
+//! Texture units: texel expansion, addressing, filtering.
+
+pub mod address;
+pub mod filter;
+pub mod format;
+pub mod unit;

@@ -1,0 +1,358 @@
+//! One texture unit: coordinate, address, fetch, filter, register.
+
+use super::address::address;
+use super::filter::{bilinear, lerp, linear, nearest};
+use super::format::{self, Channel};
+use crate::combiner::registers::channel_name;
+use crate::number::Lane;
+use crate::raster::interpolate::{Sample, Settled};
+use crate::raster::setup::Triangle;
+use crate::state::{AddressMode, Filter, TextureFormat, TextureUnit};
+use crate::trace::{Observer, Operand, Step, part, plain, report};
+
+/// A texture unit with the image it samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedUnit {
+    /// The unit's number.
+    pub index: usize,
+    /// Its state.
+    pub state: TextureUnit,
+    /// Columns of the image.
+    pub width: u32,
+    /// Rows of the image.
+    pub height: u32,
+    /// Format of the image.
+    pub format: TextureFormat,
+    /// Channels R, G, B, A (bits 1, 2, 4, 8) that anybody reads.
+    pub live: u8,
+}
+
+/// A unit's coordinates, set up for one triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// q is 1 at all three vertices: u and v are linear functions over D (INT-4).
+    Plane([[i64; 3]; 2]),
+    /// s/q and t/q, a ratio of linear functions (TEX-15).
+    Ratio([[i64; 3]; 3]),
+}
+
+impl Coordinates {
+    /// Sets up the coordinates of a triangle. `st_q` holds s, t, r, q of its three vertices.
+    pub fn new(triangle: &Triangle, vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
+        let component = |n: usize| vertices.map(|v| v[n]);
+        if component(3) == [1.0; 3] {
+            let g = |n: usize, size: u32| triangle.coordinate(component(n), size);
+            Coordinates::Plane([g(0, unit.width), g(1, unit.height)])
+        } else {
+            Coordinates::Ratio(triangle.direction([component(0), component(1), component(3)]))
+        }
+    }
+
+    /// u and v in 1/256 texel, floored.
+    #[inline]
+    pub fn at(&self, sample: &Sample<'_>, unit: &PlannedUnit) -> [Settled; 2] {
+        match self {
+            Coordinates::Plane(g) => [sample.coordinate(&g[0]), sample.coordinate(&g[1])],
+            Coordinates::Ratio([s, t, q]) => [sample.ratio(s, q, unit.width), sample.ratio(t, q, unit.height)],
+        }
+    }
+}
+
+/// One texel of the footprint: where it is and its channels; `None` is the border colour.
+type Texel = (Option<(u32, u32)>, u32, [Channel; 4]);
+
+/// Samples a unit. `ideal` gives u and v in 1/256 texel as real numbers; it is called only by lanes that have an ideal.
+#[inline]
+pub fn sample<L: Lane, O: Observer>(
+    unit: &PlannedUnit,
+    words: &[u32],
+    coordinates: &Coordinates,
+    at: &Sample<'_>,
+    ideal: impl Fn() -> [f64; 2],
+    observer: &mut O,
+) -> [L; 4] {
+    let settled = coordinates.at(at, unit);
+    let [u, v] = settled.map(|c| c.value);
+    let report = Report { unit };
+    if O::ON {
+        report.coordinates(coordinates, at, settled, &ideal, observer);
+    }
+    let value = match unit.state.filter {
+        Filter::Nearest => {
+            let (x, y) = (nearest(u), nearest(v));
+            if O::ON {
+                report.nearest([u, v], [x, y], observer);
+            }
+            let texel = fetch(unit, words, x, y);
+            let channels = lanes::<L>(unit, &texel.2);
+            if O::ON {
+                report.texel(&texel, [("", x), ("", y)], "", &channels, observer);
+            }
+            channels
+        }
+        Filter::Linear => {
+            let ((x, wu), (y, wv)) = (linear(u), linear(v));
+            let fraction = |axis: usize, texel: i64| {
+                #[allow(clippy::float_arithmetic, reason = "the ideal's weight, never the definition's")]
+                let fraction = ideal()[axis] - 128.0 - (texel * 256) as f64;
+                fraction
+            };
+            let weights = [L::weight(wu, || fraction(0, x)), L::weight(wv, || fraction(1, y))];
+            if O::ON {
+                report.linear::<L, O>([u, v], [x, y], weights, observer);
+            }
+            let texels = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(dx, dy)| fetch(unit, words, x + dx, y + dy));
+            let channels = texels.map(|t| lanes::<L>(unit, &t.2));
+            if O::ON {
+                for (n, (dx, dy)) in [("0", "0"), ("1", "0"), ("0", "1"), ("1", "1")].into_iter().enumerate() {
+                    let index = [x + (n & 1) as i64, y + (n >> 1) as i64];
+                    report.texel(
+                        &texels[n],
+                        [(dx, index[0]), (dy, index[1])],
+                        &format!("{dx}{dy}"),
+                        &channels[n],
+                        observer,
+                    );
+                }
+            }
+            let mut out = [L::ZERO; 4];
+            for channel in (0..4).filter(|c| unit.live >> c & 1 != 0) {
+                let footprint = [0, 1, 2, 3].map(|n| channels[n][channel]);
+                out[channel] = bilinear(footprint, weights[0], weights[1]);
+                if O::ON {
+                    report.filter(channel, footprint, weights, out[channel], observer);
+                }
+            }
+            out
+        }
+    };
+    let mut register = value;
+    for channel in 0..4 {
+        if unit.state.signed[channel] {
+            register[channel] = value[channel].signed_texel();
+        }
+        if O::ON && unit.live >> channel & 1 != 0 {
+            report.register(channel, value[channel], register[channel], observer);
+        }
+    }
+    register
+}
+
+/// TEX-7, TEX-8: the texel at an index that may lie outside.
+#[inline]
+fn fetch(unit: &PlannedUnit, words: &[u32], x: i64, y: i64) -> Texel {
+    let inside = address(unit.state.address_s, x, unit.width).zip(address(unit.state.address_t, y, unit.height));
+    match inside {
+        Some((x, y)) => {
+            let word = words[y as usize * unit.width as usize + x as usize];
+            (inside, word, format::channels(unit.format, word))
+        }
+        None => {
+            let [r, g, b, a] = unit.state.border_color.map(u32::from);
+            let word = a << 24 | r << 16 | g << 8 | b;
+            // The border colour is A8R8G8B8 whatever the format.
+            (None, word, format::channels(TextureFormat::A8R8G8B8, word))
+        }
+    }
+}
+
+#[inline(always)]
+fn lanes<L: Lane>(unit: &PlannedUnit, channels: &[Channel; 4]) -> [L; 4] {
+    std::array::from_fn(|n| format::lane::<L>(channels[n], unit.state.signed[n]))
+}
+
+/// What a unit tells an observer.
+struct Report<'a> {
+    unit: &'a PlannedUnit,
+}
+
+impl Report<'_> {
+    fn block(&self) -> String {
+        format!("texture unit {}", self.unit.index)
+    }
+
+    fn name(&self, suffix: &str) -> String {
+        format!("unit{}.{suffix}", self.unit.index)
+    }
+
+    fn coordinates<O: Observer>(
+        &self,
+        coordinates: &Coordinates,
+        at: &Sample<'_>,
+        settled: [Settled; 2],
+        ideal: &impl Fn() -> [f64; 2],
+        observer: &mut O,
+    ) {
+        let (block, ideal) = (self.block(), ideal());
+        let sizes = [self.unit.width, self.unit.height];
+        for (axis, letter) in ["u", "v"].into_iter().enumerate() {
+            let mut inputs: Vec<Operand> = Vec::new();
+            let mut planes = |name: &str, g: &[i64; 3]| {
+                for (k, g) in g.iter().enumerate() {
+                    let name = self.name(&format!("{name}{k}"));
+                    observer.step(Step::given(&block, "INT-4", name.clone(), *g));
+                    inputs.push(plain(name, *g));
+                }
+            };
+            let operation = match coordinates {
+                Coordinates::Plane(g) => {
+                    planes(&format!("G_{letter}"), &g[axis]);
+                    "floor_plane"
+                }
+                Coordinates::Ratio(planes_stq) => {
+                    planes(&format!("N_{letter}"), &planes_stq[axis]);
+                    planes("N_q", &planes_stq[2]);
+                    "floor_ratio"
+                }
+            };
+            inputs.extend((0..3).map(|k| plain(format!("E{k}"), at.e[k])));
+            if operation == "floor_plane" {
+                inputs.push(plain("D", at.d));
+            } else {
+                inputs.push(plain("size", i64::from(sizes[axis])));
+            }
+            inputs.push(plain("lowered", i64::from(settled[axis].lowered)));
+            let note = settled[axis].lowered.then(|| "exactly on a 1/256 texel: one step lower (INT-4t)".to_string());
+            let rule = if operation == "floor_plane" { "INT-4" } else { "TEX-15" };
+            observer.step(
+                Step::given(&block, rule, self.name(letter), settled[axis].value)
+                    .per(256)
+                    .by(operation, inputs)
+                    .ideal(Some(ideal[axis]))
+                    .note(note),
+            );
+        }
+    }
+
+    fn nearest<O: Observer>(&self, coordinate: [i64; 2], texel: [i64; 2], observer: &mut O) {
+        for (n, (letter, axis)) in [("u", "x"), ("v", "y")].into_iter().enumerate() {
+            observer.step(
+                Step::given(&self.block(), "TEX-5", self.name(axis), texel[n])
+                    .by("nearest_texel", vec![part(self.name(letter), coordinate[n])]),
+            );
+        }
+    }
+
+    fn linear<L: Lane, O: Observer>(
+        &self,
+        coordinate: [i64; 2],
+        texel: [i64; 2],
+        weights: [L::Weight; 2],
+        observer: &mut O,
+    ) {
+        for (n, (letter, axis)) in [("u", "x"), ("v", "y")].into_iter().enumerate() {
+            let inputs = vec![part(self.name(letter), coordinate[n])];
+            for step in 0..2 {
+                let name = self.name(&format!("{axis}{step}"));
+                let operation = if step == 0 { "linear_texel" } else { "linear_texel_next" };
+                observer.step(Step::given(&self.block(), "TEX-6", name, texel[n] + step).by(operation, inputs.clone()));
+            }
+            let (weight, ideal) = L::observe_weight(weights[n]);
+            observer.step(
+                Step::given(&self.block(), "TEX-6", self.name(&format!("weight_{letter}")), weight)
+                    .per(256)
+                    .by("linear_weight", inputs)
+                    .ideal(ideal),
+            );
+        }
+    }
+
+    fn texel<L: Lane, O: Observer>(
+        &self,
+        texel: &Texel,
+        index: [(&str, i64); 2],
+        suffix: &str,
+        channels: &[L; 4],
+        observer: &mut O,
+    ) {
+        let block = self.block();
+        let sizes = [self.unit.width, self.unit.height];
+        let modes = [self.unit.state.address_s, self.unit.state.address_t];
+        let mut address_inputs = Vec::new();
+        if let Some((x, y)) = texel.0 {
+            for (n, axis) in ["x", "y"].into_iter().enumerate() {
+                let name = self.name(&format!("texel{suffix}.{axis}"));
+                let value = i64::from([x, y][n]);
+                let inputs = vec![
+                    plain(self.name(&format!("{axis}{}", index[n].0)), index[n].1),
+                    plain("size", i64::from(sizes[n])),
+                ];
+                let moved = (value != index[n].1).then(|| format!("{} from outside", address_operation(modes[n])));
+                observer.step(
+                    Step::given(&block, "TEX-7", name.clone(), value)
+                        .by(address_operation(modes[n]), inputs)
+                        .note(moved),
+                );
+                address_inputs.push(plain(name, value));
+            }
+        }
+        let name = self.name(&format!("texel{suffix}.word"));
+        let (rule, operation) = if texel.0.is_some() { ("TEX-1", "fetch") } else { ("TEX-7", "border_color") };
+        let word = i64::from(texel.1);
+        let note = Some(format!("{word:#010x}"));
+        observer.step(Step::given(&block, rule, name.clone(), word).by(operation, address_inputs).note(note));
+        for channel in (0..4).filter(|c| self.unit.live >> c & 1 != 0) {
+            let signed = self.unit.state.signed[channel];
+            let format = if texel.0.is_some() { self.unit.format } else { TextureFormat::A8R8G8B8 };
+            let operation = if signed { "expand_texel_signed" } else { "expand_texel" };
+            let inputs = vec![
+                plain(name.clone(), word),
+                plain(crate::state::Named::name(format), 0),
+                plain(channel_name(channel), channel as i64),
+            ];
+            let suffix = format!("texel{suffix}.{}", channel_name(channel));
+            let rule = if signed { "TEX-18" } else { "TEX-1" };
+            observer
+                .step(report::register_step(&block, rule, self.name(&suffix), channels[channel]).by(operation, inputs));
+        }
+    }
+
+    fn filter<L: Lane, O: Observer>(
+        &self,
+        channel: usize,
+        texels: [L; 4],
+        weights: [L::Weight; 2],
+        value: L,
+        observer: &mut O,
+    ) {
+        let (block, suffix) = (self.block(), channel_name(channel));
+        let rows = [lerp(texels[0], texels[1], weights[0]), lerp(texels[2], texels[3], weights[0])];
+        let weight = |n: usize| part(self.name(["weight_u", "weight_v"][n]), L::observe_weight(weights[n]).0);
+        let texel = |n: usize| {
+            let name = self.name(&format!("texel{}{}.{suffix}", n & 1, n >> 1));
+            report::register(name, texels[n])
+        };
+        for (row, mixed) in rows.into_iter().enumerate() {
+            let inputs = vec![texel(2 * row), texel(2 * row + 1), weight(0)];
+            let name = self.name(&format!("row{row}.{suffix}"));
+            observer.step(report::register_step(&block, "TEX-6", name, mixed).by("mix", inputs));
+        }
+        let row = |n: usize| report::register(self.name(&format!("row{n}.{suffix}")), rows[n]);
+        let inputs = vec![row(0), row(1), weight(1)];
+        observer.step(report::register_step(&block, "TEX-6", self.name(suffix), value).by("mix", inputs));
+    }
+
+    fn register<L: Lane, O: Observer>(&self, channel: usize, value: L, register: L, observer: &mut O) {
+        let suffix = channel_name(channel);
+        let source = match self.unit.state.filter {
+            Filter::Nearest => self.name(&format!("texel.{suffix}")),
+            Filter::Linear => self.name(suffix),
+        };
+        let (rule, operation) = if self.unit.state.signed[channel] { ("TEX-18", "double") } else { ("NUM-1", "write") };
+        let name = format!("texture{}.{suffix}", self.unit.index);
+        observer.step(
+            report::register_step(&self.block(), rule, name, register)
+                .by(operation, vec![report::register(source, value)]),
+        );
+    }
+}
+
+fn address_operation(mode: AddressMode) -> &'static str {
+    match mode {
+        AddressMode::Wrap => "wrap",
+        AddressMode::Mirror => "mirror",
+        AddressMode::ClampToEdge => "clamp_to_edge",
+        AddressMode::ClampToBorder => "clamp_to_border",
+        AddressMode::Clamp => "clamp",
+    }
+}

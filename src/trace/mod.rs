@@ -1,0 +1,176 @@
+//! Observation: the pixel pipe reports each rule that it applies to whoever listens.
+//!
+//! A trace is not another code path. The functions of the pipe take an [`Observer`]; [`Silent`] makes the reports vanish, a recorder keeps
+//! them. Each [`Step`] names the rule, what it computed from what, the integer, the real number that it stands for, and the ideal.
+
+/// Receives the steps of a pixel.
+pub trait Observer {
+    /// Whether anybody listens; `false` lets the compiler drop the reports.
+    const ON: bool;
+    /// One rule has been applied.
+    fn step(&mut self, step: Step);
+}
+
+/// Nobody listens.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Silent;
+
+impl Observer for Silent {
+    const ON: bool = false;
+    fn step(&mut self, _step: Step) {}
+}
+
+/// A named operand of a step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Operand {
+    /// The name of an earlier step, or of something given.
+    pub name: String,
+    /// Its integer.
+    pub value: i64,
+    /// How many make 1.0: 255 for registers and bytes, 256 for weights and texel coordinates, 1 for plain integers.
+    pub per_one: i64,
+}
+
+/// One application of a rule.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The hardware block.
+    pub block: String,
+    /// Rule id of `docs/numerics.md`; empty for what is merely given.
+    pub rule: &'static str,
+    /// What was computed. A later step of the same name supersedes it, as a register write does.
+    pub name: String,
+    /// How: a fixed vocabulary, listed in `docs/trace-format.md`.
+    pub operation: &'static str,
+    /// From what.
+    pub inputs: Vec<Operand>,
+    /// The integer.
+    pub value: i64,
+    /// How many make 1.0.
+    pub per_one: i64,
+    /// The float64 ideal in the unit of the real value.
+    pub ideal: Option<f64>,
+    /// A remark for the reader: a tie, a saturation, an undefined value.
+    pub note: Option<String>,
+}
+
+impl Step {
+    /// A plain integer (per one: 1) without operands.
+    pub fn given(block: &str, rule: &'static str, name: impl Into<String>, value: i64) -> Step {
+        Step {
+            block: block.to_string(),
+            rule,
+            name: name.into(),
+            operation: "given",
+            inputs: Vec::new(),
+            value,
+            per_one: 1,
+            ideal: None,
+            note: None,
+        }
+    }
+
+    /// Changes the operation and its operands.
+    #[must_use]
+    pub fn by(mut self, operation: &'static str, inputs: Vec<Operand>) -> Step {
+        self.operation = operation;
+        self.inputs = inputs;
+        self
+    }
+
+    /// Changes the unit.
+    #[must_use]
+    pub fn per(mut self, per_one: i64) -> Step {
+        self.per_one = per_one;
+        self
+    }
+
+    /// Sets the ideal, a number in steps of this step's unit.
+    #[must_use]
+    #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
+    pub fn ideal(mut self, ideal: Option<f64>) -> Step {
+        self.ideal = ideal.map(|i| i / self.per_one as f64);
+        self
+    }
+
+    /// Sets the remark, if there is one.
+    #[must_use]
+    pub fn note(mut self, note: Option<String>) -> Step {
+        self.note = note;
+        self
+    }
+
+    /// The real number that the integer stands for.
+    #[allow(clippy::float_arithmetic, reason = "display of the real value")]
+    pub fn real(&self) -> f64 {
+        self.value as f64 / self.per_one as f64
+    }
+}
+
+/// A plain integer operand.
+pub fn plain(name: impl Into<String>, value: i64) -> Operand {
+    Operand { name: name.into(), value, per_one: 1 }
+}
+
+/// An operand in steps of 1/255.
+pub fn byte(name: impl Into<String>, value: i64) -> Operand {
+    Operand { name: name.into(), value, per_one: 255 }
+}
+
+/// An operand in 256ths.
+pub fn part(name: impl Into<String>, value: i64) -> Operand {
+    Operand { name: name.into(), value, per_one: 256 }
+}
+
+/// Reports for values of a lane: the integer and the ideal in the unit that shows no fraction.
+pub mod report {
+    use super::{Operand, Step};
+    use crate::number::Lane;
+
+    /// A register or byte as an operand.
+    pub fn register<L: Lane>(name: impl Into<String>, value: L) -> Operand {
+        super::byte(name, value.observe().0)
+    }
+
+    /// A factor as an operand: in 255ths, or in 510ths where a half bit is kept.
+    pub fn factor<L: Lane>(name: impl Into<String>, value: L::Mapped) -> Operand {
+        let (value, per_one) = whole(L::observe_factor(value).0, 2, 255);
+        Operand { name: name.into(), value, per_one }
+    }
+
+    /// A sum as an operand: in 65025ths, or finer where half bits are kept.
+    pub fn sum<L: Lane>(name: impl Into<String>, value: L::Full) -> Operand {
+        let (value, per_one) = whole(L::observe_sum(value).0, 4, 65025);
+        Operand { name: name.into(), value, per_one }
+    }
+
+    /// A step that yields a register or byte.
+    pub fn register_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L) -> Step {
+        let (value, ideal) = value.observe();
+        Step::given(block, rule, name, value).per(255).ideal(ideal)
+    }
+
+    /// A step that yields a factor.
+    pub fn factor_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Mapped) -> Step {
+        let (fixed, ideal) = L::observe_factor(value);
+        let (value, per_one) = whole(fixed, 2, 255);
+        // The ideal is counted in 255ths whatever the step's own unit.
+        let mut step = Step::given(block, rule, name, value).per(255).ideal(ideal);
+        step.per_one = per_one;
+        step
+    }
+
+    /// A step that yields a sum.
+    pub fn sum_step<L: Lane>(block: &str, rule: &'static str, name: impl Into<String>, value: L::Full) -> Step {
+        let (fixed, ideal) = L::observe_sum(value);
+        let (value, per_one) = whole(fixed, 4, 65025);
+        let mut step = Step::given(block, rule, name, value).per(65025).ideal(ideal);
+        step.per_one = per_one;
+        step
+    }
+
+    /// Takes a fraction out of a value where it is whole.
+    fn whole(value: i64, fraction: i64, per_one: i64) -> (i64, i64) {
+        if value % fraction == 0 { (value / fraction, per_one) } else { (value, per_one * fraction) }
+    }
+}

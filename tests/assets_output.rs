@@ -1,0 +1,144 @@
+//! Outputs arrive whole or not at all.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+
+use ninebit::output::{Destination, encode_png, write_file};
+
+/// Names in a folder, sorted.
+fn listing(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+#[test]
+fn files_are_replaced_as_a_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("frame.png");
+    write_file(&place, b"one").unwrap();
+    assert_eq!(fs::read(&place).unwrap(), b"one");
+    write_file(&place, b"second").unwrap();
+    assert_eq!(fs::read(&place).unwrap(), b"second");
+    assert_eq!(listing(folder.path()), ["frame.png"]);
+}
+
+#[test]
+fn folders_and_missing_folders_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let error = write_file(folder.path(), b"x").expect_err("a folder");
+    assert_eq!(error.code(), "NB0701");
+    let error = write_file(&folder.path().join("none/frame.png"), b"x").expect_err("no such folder");
+    assert_eq!((error.code(), error.help()), ("NB0702", "create its folder first"));
+    let file = folder.path().join("file");
+    write_file(&file, b"x").unwrap();
+    assert_eq!(write_file(&file.join("frame.png"), b"x").expect_err("a file").code(), "NB0702");
+    assert_eq!(listing(folder.path()), ["file"]);
+}
+
+#[test]
+fn a_dash_is_standard_output() {
+    assert_eq!(Destination::from(OsStr::new("-")), Destination::Stdout);
+    assert_eq!(Destination::from(OsStr::new("./-")), Destination::File("./-".into()));
+}
+
+#[test]
+fn pictures_need_their_pixels() {
+    assert_eq!(encode_png(2, 2, &[[0; 4]; 3]).expect_err("three of four").code(), "NB0704");
+    assert_eq!(encode_png(0, 0, &[]).expect_err("none").code(), "NB0704");
+}
+
+#[cfg(unix)]
+mod unix {
+    use super::*;
+    use std::os::unix::fs::{PermissionsExt, symlink};
+    use std::process::Command;
+
+    #[test]
+    fn outputs_are_ordinary_files() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("frame.png");
+        let ordinary = folder.path().join("ordinary");
+        write_file(&place, b"one").unwrap();
+        fs::write(&ordinary, b"two").unwrap();
+        let mode = |path: &Path| path.metadata().unwrap().permissions().mode() & 0o777;
+        assert_eq!(mode(&place), mode(&ordinary));
+        fs::set_permissions(&place, fs::Permissions::from_mode(0o640)).unwrap();
+        write_file(&place, b"three").unwrap();
+        assert_eq!(mode(&place), 0o640);
+    }
+
+    #[test]
+    fn links_stay_links() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, b"old").unwrap();
+        symlink("file", &link).unwrap();
+        write_file(&link, b"new").unwrap();
+        assert!(link.symlink_metadata().unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+    }
+
+    #[test]
+    fn devices_are_written_to() {
+        write_file(Path::new("/dev/null"), b"gone").unwrap();
+        assert!(!Path::new("/dev/null").metadata().unwrap().is_file());
+    }
+
+    #[test]
+    fn an_unwritable_folder_keeps_its_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("frame.png");
+        fs::write(&place, b"old").unwrap();
+        fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o555)).unwrap();
+        let result = write_file(&place, b"new");
+        let may_write_anywhere = fs::write(folder.path().join("probe"), b"x").is_ok();
+        fs::set_permissions(folder.path(), fs::Permissions::from_mode(0o755)).unwrap();
+        if may_write_anywhere {
+            eprintln!("skipped: this user may write to every folder");
+            return;
+        }
+        assert_eq!(result.expect_err("unwritable").code(), "NB0702");
+        assert_eq!(fs::read(&place).unwrap(), b"old");
+    }
+
+    #[test]
+    fn a_full_device_is_reported() {
+        let Ok(metadata) = Path::new("/dev/full").metadata() else {
+            eprintln!("skipped: no /dev/full");
+            return;
+        };
+        assert!(!metadata.is_file());
+        let error = write_file(Path::new("/dev/full"), b"x").expect_err("full");
+        assert_eq!(error.help(), "free some space on that disk");
+    }
+
+    #[test]
+    fn a_full_disk_leaves_the_old_file_and_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let mount = folder.path().join("disk");
+        fs::create_dir(&mount).unwrap();
+        let mounted = Command::new("mount")
+            .args(["-t", "tmpfs", "-o", "size=64k", "tmpfs"])
+            .arg(&mount)
+            .output()
+            .is_ok_and(|output| output.status.success());
+        if !mounted {
+            eprintln!("skipped: no small disk can be mounted here");
+            return;
+        }
+        let place = mount.join("frame.png");
+        let outcome = std::panic::catch_unwind(|| {
+            write_file(&place, b"old").unwrap();
+            let error = write_file(&place, &vec![7; 1 << 20]).expect_err("full");
+            assert_eq!((error.code(), error.help()), ("NB0702", "free some space on that disk"));
+            assert_eq!(fs::read(&place).unwrap(), b"old");
+            assert_eq!(listing(&mount), ["frame.png"]);
+        });
+        let _ = Command::new("umount").arg(&mount).status();
+        outcome.unwrap();
+    }
+}
