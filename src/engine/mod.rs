@@ -1,14 +1,3 @@
-<<<<<<< HEAD
-//! Stand-in for the interface.
-use crate::frame::{Frames, Surface};
-use crate::plan::Plan;
-/// Options.
-#[derive(Clone, Copy, Debug)]
-pub struct RenderOptions {
-    /// Threads; 0 takes all cores.
-    pub threads: usize,
-}
-=======
 //! The scalar engine: a plan in, frames or the trace of one pixel out.
 //!
 //! [`pixel`] owns the order in which the blocks run for one pixel, generic over the lane and the observer; this module walks
@@ -34,22 +23,11 @@ pub struct RenderOptions {
     pub threads: usize,
 }
 
->>>>>>> 1d98b68
 impl Default for RenderOptions {
     fn default() -> Self {
         RenderOptions { threads: 1 }
     }
 }
-<<<<<<< HEAD
-/// Draws everything.
-pub fn render(plan: &Plan, _options: &RenderOptions) -> Frames {
-    let blank = |t: &crate::state::Target| {
-        let pixels = (t.width * t.height) as usize;
-        let depth = t.depth.map_or(Vec::new(), |d| vec![d.clear; pixels]);
-        Surface { width: t.width, height: t.height, format: t.format, words: vec![0; pixels], depth }
-    };
-    Frames { surfaces: plan.scene().targets.iter().map(blank).collect() }
-=======
 
 /// What a render did.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -141,5 +119,4 @@ pub(crate) fn draw(plan: &Plan, index: usize, frames: &mut Frames, pool: Option<
     let target = &mut frames.surfaces[planned.target];
     (target.words, target.depth) = (words, depth);
     shaded
->>>>>>> 1d98b68
 }
