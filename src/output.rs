@@ -173,17 +173,35 @@ pub fn write_stdout(bytes: &[u8]) -> Result<(), OutputError> {
     stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
 }
 
+/// What a PNG is made for. The pixels are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compression {
+    /// Frames: written quickly, about half as large again.
+    Fast,
+    /// Pictures that are kept, such as textures.
+    Small,
+}
+
 /// A PNG of 8 bits a channel, R, G, B, A, row by row from the top.
 ///
 /// # Errors
 /// No pixels, or not `width * height` of them.
-pub fn encode_png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, OutputError> {
+pub fn encode_png(
+    width: u32,
+    height: u32,
+    pixels: &[[u8; 4]],
+    compression: Compression,
+) -> Result<Vec<u8>, OutputError> {
     let refuse = |reason: String| OutputError::Encode { width, height, reason };
     if u64::from(width) * u64::from(height) != pixels.len() as u64 || pixels.is_empty() {
         return Err(refuse(format!("{} pixels were given", pixels.len())));
     }
+    let quality = match compression {
+        Compression::Fast => CompressionType::Fast,
+        Compression::Small => CompressionType::Default,
+    };
     let mut bytes = Vec::new();
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
+    PngEncoder::new_with_quality(&mut bytes, quality, FilterType::Adaptive)
         .write_image(pixels.as_flattened(), width, height, ExtendedColorType::Rgba8)
         .map_err(|error| refuse(error.to_string()))?;
     Ok(bytes)

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
-use ninebit::output::{Destination, encode_png, write_file};
+use ninebit::output::{Compression, Destination, encode_png, write_file};
 
 /// Names in a folder, sorted.
 fn listing(folder: &Path) -> Vec<String> {
@@ -47,8 +47,8 @@ fn a_dash_is_standard_output() {
 
 #[test]
 fn pictures_need_their_pixels() {
-    assert_eq!(encode_png(2, 2, &[[0; 4]; 3]).expect_err("three of four").code(), "NB0704");
-    assert_eq!(encode_png(0, 0, &[]).expect_err("none").code(), "NB0704");
+    assert_eq!(encode_png(2, 2, &[[0; 4]; 3], Compression::Fast).expect_err("three of four").code(), "NB0704");
+    assert_eq!(encode_png(0, 0, &[], Compression::Fast).expect_err("none").code(), "NB0704");
 }
 
 #[cfg(unix)]
