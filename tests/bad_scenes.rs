@@ -63,7 +63,7 @@ fn a_missing_scene_is_missing() {
     assert_eq!(error.kind(), ErrorKind::Missing);
     assert_eq!(
         error.render(false),
-        "error[NB0111]: there is no such scene file\n --> tests/bad/there-is-none.ron\n  = help: check the spelling and \
+        "error[NB0111]: there is no such scene file\n--> tests/bad/there-is-none.ron\n = help: check the spelling and \
          the folder; upper and lower case count\n"
     );
 }

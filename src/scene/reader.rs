@@ -40,13 +40,16 @@ impl<'a> Reader<'a> {
 
     pub(super) fn push(&mut self, diagnostic: Diagnostic) {
         let error = diagnostic.severity == super::Severity::Error;
+        if error && self.errors == 0 {
+            // Warnings come again when the errors are gone; until then they would only hide them.
+            self.diagnostics.clear();
+            self.suppressed = 0;
+        }
+        if !error && self.errors > 0 {
+            return;
+        }
         self.errors += usize::from(error);
         if self.diagnostics.len() < MOST_DIAGNOSTICS {
-            self.diagnostics.push(diagnostic);
-        } else if error && self.errors == 1 {
-            // Warnings must not crowd out the first error.
-            self.suppressed += 1;
-            self.diagnostics.pop();
             self.diagnostics.push(diagnostic);
         } else {
             self.suppressed += 1;
@@ -104,7 +107,7 @@ impl<'a> Reader<'a> {
         if let (Some(value), "") = (T::from_name(head), rest) {
             return Some(value);
         }
-        self.unknown_variant(raw, T::TYPE, T::NAMES);
+        self.unknown_variant(raw, &words(T::TYPE), T::NAMES);
         None
     }
 
@@ -133,7 +136,7 @@ impl<'a> Reader<'a> {
         let (head, rest) = raw.split();
         let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         let diagnostic = if head.is_empty() {
-            Diagnostic::error("NB0205", self.span(raw), format!("expected {what}, found {}", describe(raw.text)))
+            Diagnostic::error("NB0205", self.span(raw), format!("expected a {what}, found {}", describe(raw.text)))
                 .label("wrong kind of value")
                 .help(format!("write one of {list}"))
         } else if known.contains(&head) {
@@ -174,8 +177,16 @@ impl<'a> Reader<'a> {
         if !(least..=most).contains(&parts.len()) {
             let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
             self.push(
-                Diagnostic::error("NB0211", self.span(raw), format!("{what} has {wanted} numbers, not {}", parts.len()))
-                    .label(format!("{} here", parts.len())),
+                Diagnostic::error(
+                    "NB0211",
+                    self.span(raw),
+                    format!("{what} has {wanted} numbers, not {}", parts.len()),
+                )
+                .label(if parts.len() == 1 {
+                    "1 number".to_owned()
+                } else {
+                    format!("{} numbers", parts.len())
+                }),
             );
             return None;
         }
@@ -202,7 +213,12 @@ impl<'a> Reader<'a> {
     }
 
     /// A whole number in `range`.
-    pub(super) fn whole(&mut self, raw: &Raw<'a, u32>, what: &str, range: std::ops::RangeInclusive<u32>) -> Option<u32> {
+    pub(super) fn whole(
+        &mut self,
+        raw: &Raw<'a, u32>,
+        what: &str,
+        range: std::ops::RangeInclusive<u32>,
+    ) -> Option<u32> {
         let value = self.read(raw)?;
         if range.contains(&value) {
             return Some(value);
@@ -219,7 +235,7 @@ impl<'a> Reader<'a> {
     /// Records that the format reserves something that is not built.
     pub(super) fn not_built(&mut self, span: Range<usize>, what: &str) {
         self.push(
-            Diagnostic::error("NB0401", span, format!("{what}: not built yet"))
+            Diagnostic::error("NB0401", span, format!("not built yet: {what}"))
                 .label("reserved for a later version")
                 .note("the format reserves this so that it can be added without a change of version")
                 .help("leave it out"),
@@ -303,7 +319,7 @@ impl<'a> Reader<'a> {
             | Error::InvalidIntegerDigit { .. }
             | Error::TrailingCharacters
             | Error::UnderscoreAtBeginning
-                if !expected.is_empty() && whole.len() < self.text.len() =>
+                if text.len() < trim(self.text).len() =>
             {
                 Diagnostic::error("NB0205", whole, format!("expected {expected}, found {}", describe(text)))
                     .label("wrong kind of value")
@@ -314,6 +330,9 @@ impl<'a> Reader<'a> {
 
     /// An error of the notation itself.
     fn syntax(&self, code: &Error, start: usize, end: usize) -> Diagnostic {
+        let ended = self.text.trim_end().len();
+        let early = matches!(code, Error::Eof);
+        let (start, end) = if early { (ended, ended) } else { (start, end) };
         let at_end = trim(&self.text[super::diagnostic::floor_boundary(self.text, start)..]).is_empty();
         let (message, help) = match code {
             Error::Eof => ("the scene ends too early".to_owned(), "close the brackets that are still open"),
@@ -341,7 +360,9 @@ impl<'a> Reader<'a> {
                 "something follows the end of the scene".to_owned(),
                 "a scene is one value in parentheses: look for a bracket that was closed too early",
             ),
-            Error::ExpectedStructLike | Error::ExpectedNamedStructLike(_) | Error::ExpectedDifferentStructName { .. } => (
+            Error::ExpectedStructLike
+            | Error::ExpectedNamedStructLike(_)
+            | Error::ExpectedDifferentStructName { .. } => (
                 "a scene starts with an opening parenthesis".to_owned(),
                 "write `(version: 1, profile: Nv2a, draws: [...])`",
             ),
@@ -359,7 +380,15 @@ impl<'a> Reader<'a> {
                 (text, "see docs/scene-format.md for examples")
             }
         };
-        Diagnostic::error("NB0101", start..end.max(start), message).label("here").help(help)
+        let label = match code {
+            Error::ExpectedComma if !at_end => "a comma before this?",
+            _ => "here",
+        };
+        let finding = Diagnostic::error("NB0101", start..end.max(start), message).label(label).help(help);
+        match unclosed(self.text) {
+            Some(open) if at_end => finding.related(open..open + 1, "this bracket is still open"),
+            _ => finding,
+        }
     }
 
     /// The place of `word` at or shortly before `start..end`: the parser stops behind the field that it objects to.
@@ -386,7 +415,7 @@ pub(super) struct Name<T>(std::marker::PhantomData<fn() -> T>);
 
 /// The finding that a name is taken.
 pub(super) fn twice(what: &str, name: &str, place: Range<usize>, first: Range<usize>) -> Diagnostic {
-    Diagnostic::error("NB0209", place, format!("the {what} `{}` is defined twice", shorten(name)))
+    Diagnostic::error("NB0209", place, format!("the {what} \"{}\" is defined twice", shorten(name)))
         .label("again here")
         .related(first, "first defined here")
         .help("give one of them another name")
@@ -402,6 +431,45 @@ fn offset(text: &str, line: usize, column: usize) -> usize {
         }
     }
     text[start..].char_indices().nth(column.saturating_sub(1)).map_or(text.len(), |(at, _)| start + at)
+}
+
+/// "ShadeModel" as "shade model".
+fn words(name: &str) -> String {
+    let mut words = String::with_capacity(name.len() + 2);
+    for letter in name.chars() {
+        if letter.is_uppercase() && !words.is_empty() {
+            words.push(' ');
+        }
+        words.extend(letter.to_lowercase());
+    }
+    words
+}
+
+/// The bracket that is still open at the end of the text, and the place where the text ends for it.
+fn unclosed(text: &str) -> Option<usize> {
+    let bytes = text.as_bytes();
+    let (mut open, mut at) = (Vec::new(), 0);
+    while at < bytes.len() {
+        match bytes[at] {
+            b'/' if bytes.get(at + 1).is_some_and(|next| matches!(next, b'/' | b'*')) => {
+                at = text.len() - trim(&text[at..]).len();
+                continue;
+            }
+            b'"' => {
+                at += 1;
+                while at < bytes.len() && bytes[at] != b'"' {
+                    at += 1 + usize::from(bytes[at] == b'\\');
+                }
+            }
+            b'(' | b'[' | b'{' => open.push(at),
+            b')' | b']' | b'}' => {
+                open.pop();
+            }
+            _ => {}
+        }
+        at += 1;
+    }
+    open.last().copied()
 }
 
 /// What a value looks like, for messages.
@@ -428,11 +496,16 @@ pub(super) fn closest<'n>(word: &str, candidates: impl IntoIterator<Item = &'n s
     if word.len() > 64 {
         return None;
     }
-    let allowed = (word.chars().count() / 3).max(1);
+    let allowed = ((word.chars().count() + 1) / 3).max(1);
+    let word = word.to_lowercase();
     candidates
         .into_iter()
         .filter(|candidate| candidate.len() <= 64)
-        .map(|candidate| (distance(&word.to_lowercase(), &candidate.to_lowercase()), candidate))
+        .map(|candidate| {
+            let like = candidate.to_lowercase();
+            let begun = word.len() >= 4 && like.starts_with(&word);
+            (if begun { 1 } else { distance(&word, &like) }, candidate)
+        })
         .filter(|(distance, _)| *distance <= allowed)
         .min_by_key(|(distance, _)| *distance)
         .map(|(_, candidate)| candidate)

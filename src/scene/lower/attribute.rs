@@ -68,9 +68,16 @@ pub(super) enum Source {
     Binormal,
     TextureCoordinates,
     /// Toward a light.
-    Light { light: Light, tangent_space: bool },
+    Light {
+        light: Light,
+        tangent_space: bool,
+    },
     /// Half-way between a light and the viewer.
-    Half { light: Light, viewer: [f32; 3], tangent_space: bool },
+    Half {
+        light: Light,
+        viewer: [f32; 3],
+        tangent_space: bool,
+    },
 }
 
 /// Object space.

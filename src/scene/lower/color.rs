@@ -78,7 +78,9 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
         reader.push(
             Diagnostic::error("NB0205", place, format!("expected a colour, found `{}`", shorten(found)))
                 .label("not a colour")
-                .help("write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, or \"the name of a colour\""),
+                .help(
+                    "write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, or \"the name of a colour\"",
+                ),
         );
         return None;
     }

@@ -17,11 +17,7 @@ pub(super) struct ProgramData {
 
 /// OpenGL's initial program: the colours of the vertices, with fog.
 pub(super) fn default_program() -> Combiners {
-    let one = |component| CombinerInput {
-        register: Register::Zero,
-        component,
-        mapping: InputMapping::UnsignedInvert,
-    };
+    let one = |component| CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert };
     let primary = |component| CombinerInput {
         register: Register::PrimaryColor,
         component,
@@ -34,8 +30,7 @@ pub(super) fn default_program() -> Combiners {
         portion.sum_output = Register::Spare0;
         portion
     };
-    let stage =
-        GeneralStage { rgb: portion(Component::Rgb), alpha: portion(Component::Alpha), constants: [[0; 4]; 2] };
+    let stage = GeneralStage { rgb: portion(Component::Rgb), alpha: portion(Component::Alpha), constants: [[0; 4]; 2] };
     Combiners { stages: vec![stage], mux_select: MuxSelect::Msb, final_combiner: default_final([[0; 4]; 2]) }
 }
 
@@ -174,13 +169,10 @@ fn stages<'a>(
     if let Some(extra) = list.get(most) {
         let count = list.len();
         let place = reader.range(extra.text.get(..1).unwrap_or(extra.text));
-        let mut finding = Diagnostic::error(
-            "NB0301",
-            place,
-            format!("{count} general stages; {:?} has {most}", reader.profile),
-        )
-        .label(format!("stage {most} is the first too many"))
-        .rule("CMB-12");
+        let mut finding =
+            Diagnostic::error("NB0301", place, format!("{count} general stages; {:?} has {most}", reader.profile))
+                .label(format!("stage {most} is the first too many"))
+                .rule("CMB-12");
         finding = if count <= 8 {
             finding.help("profile Nv2a has 8: write `profile: Nv2a`, or use fewer stages")
         } else {
@@ -207,10 +199,9 @@ fn stages<'a>(
                 walk.write(output, is_alpha);
             }
         }
-        for (blue, output) in [
-            (rgb_state.ab_blue_to_alpha, rgb_state.ab_output),
-            (rgb_state.cd_blue_to_alpha, rgb_state.cd_output),
-        ] {
+        for (blue, output) in
+            [(rgb_state.ab_blue_to_alpha, rgb_state.ab_output), (rgb_state.cd_blue_to_alpha, rgb_state.cd_output)]
+        {
             if blue {
                 walk.write(output, true);
             }
@@ -284,7 +275,10 @@ fn portion<'a>(reader: &mut Reader<'a>, fields: &source::Portion<'a>, alpha: boo
     portion.ab_output = output(reader, &fields.ab);
     portion.cd_output = output(reader, &fields.cd);
     portion.sum_output = output(reader, &fields.sum);
-    distinct(reader, [(&fields.ab, portion.ab_output), (&fields.cd, portion.cd_output), (&fields.sum, portion.sum_output)]);
+    distinct(
+        reader,
+        [(&fields.ab, portion.ab_output), (&fields.cd, portion.cd_output), (&fields.sum, portion.sum_output)],
+    );
     let writes = [portion.ab_output, portion.cd_output, portion.sum_output].iter().any(|r| *r != Register::Zero);
     for (slot, field) in portion.inputs.iter_mut().zip([&fields.a, &fields.b, &fields.c, &fields.d]) {
         if let Some(raw) = field
@@ -401,14 +395,24 @@ struct Parts<'a, R> {
 }
 
 /// `Register`, `(Register, Component)`, `Mapping(Register)` or `Mapping(Register, Component)`.
-fn parts<'a, R: Named>(reader: &mut Reader<'a>, raw: Raw<'a, source::Word>, mappings: &[&'static str]) -> Option<Parts<'a, R>> {
+fn parts<'a, R: Named>(
+    reader: &mut Reader<'a>,
+    raw: Raw<'a, source::Word>,
+    mappings: &[&'static str],
+) -> Option<Parts<'a, R>> {
     let (head, rest) = raw.split();
     if let (Some(register), "") = (R::from_name(head), rest) {
         return Some(Parts { mapping: None, register, component: None });
     }
     let mapping = mappings.iter().position(|name| *name == head);
     if mapping.is_none() && !(head.is_empty() && rest.starts_with('(')) {
-        if FinalRegister::from_name(head).is_some() && rest.is_empty() {
+        if R::from_name(head).is_some() {
+            reader.push(
+                Diagnostic::error("NB0205", reader.range(rest), format!("`{head}` takes nothing in parentheses"))
+                    .label("not expected here")
+                    .help(format!("for a component write `({head}, Alpha)`")),
+            );
+        } else if FinalRegister::from_name(head).is_some() {
             reader.push(
                 Diagnostic::error("NB0313", reader.span(&raw), format!("{head} exists only in the final combiner"))
                     .label("not in a general stage")
@@ -454,11 +458,10 @@ fn general_input<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Input>, alph
     if let Some((written, raw)) = &component
         && *written == wrong
     {
-        let message = if alpha { "an alpha portion has no RGB to read" } else { "an RGB portion cannot read just blue" };
+        let message =
+            if alpha { "an alpha portion has no RGB to read" } else { "an RGB portion cannot read just blue" };
         let help = if alpha { "take Alpha (the default here) or Blue" } else { "take Rgb (the default here) or Alpha" };
-        reader.push(
-            Diagnostic::error("NB0311", reader.span(raw), message).label("not here").rule("CMB-12").help(help),
-        );
+        reader.push(Diagnostic::error("NB0311", reader.span(raw), message).label("not here").rule("CMB-12").help(help));
     }
     let component = component.map_or(if alpha { Component::Alpha } else { Component::Rgb }, |(written, _)| written);
     on_chip(reader, register.name(), place.clone());
@@ -499,7 +502,8 @@ fn final_combiner<'a>(
     let all = [&fields.a, &fields.b, &fields.c, &fields.d, &fields.e, &fields.f];
     for (index, (slot, field)) in inputs.iter_mut().zip(all).enumerate() {
         if let Some(raw) = field {
-            *slot = final_input(reader, raw, if index < 4 { Place::Sum } else { Place::Product }, walk).unwrap_or(*slot);
+            *slot =
+                final_input(reader, raw, if index < 4 { Place::Sum } else { Place::Product }, walk).unwrap_or(*slot);
         }
     }
     let spare0_alpha = FinalInput { register: FinalRegister::Spare0, component: Component::Alpha, invert: false };
@@ -542,7 +546,9 @@ fn final_input<'a>(
             Diagnostic::error("NB0311", reader.range(head), format!("the final combiner has no mapping {head}"))
                 .label("not here")
                 .rule("FIN-1")
-                .help("its inputs are taken as they are, or inverted: `Spare0`, `Invert(Spare0)`; map in a general stage"),
+                .help(
+                    "its inputs are taken as they are, or inverted: `Spare0`, `Invert(Spare0)`; map in a general stage",
+                ),
         );
         return None;
     }

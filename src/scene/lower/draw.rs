@@ -201,15 +201,23 @@ fn feedback(
     let name = targets.list.get(sampled).map_or("", |target| target.name.as_str());
     if sampled == target {
         reader.push(
-            Diagnostic::error("NB0217", place.clone(), format!("this draw samples its own target \"{}\"", shorten(name)))
-                .label("shows the target that is drawn into")
-                .help("draw into another target and sample that one"),
+            Diagnostic::error(
+                "NB0217",
+                place.clone(),
+                format!("this draw samples its own target \"{}\"", shorten(name)),
+            )
+            .label("shows the target that is drawn into")
+            .help("draw into another target and sample that one"),
         );
     } else if !written.get(sampled).copied().unwrap_or(true) {
         reader.push(
-            Diagnostic::warning("NB0904", place.clone(), format!("no earlier draw draws into target \"{}\"", shorten(name)))
-                .label("shows only the clear colour")
-                .help("draws happen in the order of the text: put the one that fills this target first"),
+            Diagnostic::warning(
+                "NB0904",
+                place.clone(),
+                format!("no earlier draw draws into target \"{}\"", shorten(name)),
+            )
+            .label("shows only the clear colour")
+            .help("draws happen in the order of the text: put the one that fills this target first"),
         );
     }
 }
@@ -230,9 +238,13 @@ fn geometry<'a>(
             let parts = reader.read(&list)?.0;
             let [list] = parts[..] else {
                 reader.push(
-                    Diagnostic::error("NB0211", reader.span(&list), "expected one list of vertices in these parentheses")
-                        .label("here")
-                        .help("write `Window([(position: (10, 20)), ...])`"),
+                    Diagnostic::error(
+                        "NB0211",
+                        reader.span(&list),
+                        "expected one list of vertices in these parentheses",
+                    )
+                    .label("here")
+                    .help("write `Window([(position: (10, 20)), ...])`"),
                 );
                 return None;
             };
@@ -267,8 +279,7 @@ fn matrix_geometry<'a>(
     let viewport = viewport(reader, &fields.viewport, size);
     let (mut vertices, spans, triangles) = match (&fields.vertices, &fields.mesh) {
         (Some(raw), None) => {
-            let outputs =
-                [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
+            let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
             if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
                 reader.push(
                     Diagnostic::error("NB0222", reader.span(output), "listed vertices have no mesh attributes")
@@ -334,8 +345,7 @@ fn viewport<'a>(
     raw: &Option<Raw<'a, source::Viewport<'a>>>,
     (width, height): (u32, u32),
 ) -> Viewport {
-    let mut viewport =
-        Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, near: 0.0, far: 1.0 };
+    let mut viewport = Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, near: 0.0, far: 1.0 };
     let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return viewport };
     for (field, slot, positive) in [
         (&fields.x, &mut viewport.x, false),
@@ -402,13 +412,16 @@ fn indices<'a>(
         let list = reader.read(&Raw::<source::List<'a, u32>>::new(raw.text));
         let place = list.and_then(|list| list.get(at).map(|raw| reader.span(raw)));
         let place = place.unwrap_or_else(|| reader.span(raw));
-        let (index, help) = (indices[at], match vertices {
-            0 => "this draw has no vertices".to_owned(),
-            n => format!("indices run from 0 to {}", n - 1),
-        });
+        let (index, help) = (
+            indices[at],
+            match vertices {
+                0 => "add vertices first".to_owned(),
+                n => format!("indices run from 0 to {}", n - 1),
+            },
+        );
         reader.push(
             Diagnostic::error("NB0212", place, format!("index {index} is past the vertices"))
-                .label(format!("there are {vertices} vertices"))
+                .label(format!("this draw has {vertices} vertices"))
                 .help(help),
         );
         return None;
@@ -423,7 +436,9 @@ fn fits<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, count: usize, to
         Topology::Triangles => (count.is_multiple_of(3), "three for each"),
         Topology::Quads => (count.is_multiple_of(4), "four for each"),
         Topology::QuadStrip => (count == 0 || count >= 4 && count.is_multiple_of(2), "four, then two for each more"),
-        Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => (count == 0 || count >= 3, "at least three"),
+        Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => {
+            (count == 0 || count >= 3, "at least three")
+        }
     };
     if fits {
         return;
@@ -433,9 +448,14 @@ fn fits<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, count: usize, to
         (None, Some(raw)) => reader.span(raw),
         (None, None) => return,
     };
-    let what = if fields.indices.is_some() { "indices" } else { "vertices" };
+    let what = match (fields.indices.is_some(), count) {
+        (true, 1) => "index does",
+        (true, _) => "indices do",
+        (false, 1) => "vertex does",
+        (false, _) => "vertices do",
+    };
     reader.push(
-        Diagnostic::error("NB0213", place, format!("{count} {what} do not make {}", topology.name()))
+        Diagnostic::error("NB0213", place, format!("{count} {what} not make {}", topology.name()))
             .label(format!("{} needs {wanted}", topology.name()))
             .help("add what is missing, or choose another `topology`"),
     );

@@ -47,7 +47,9 @@ pub(super) fn evaluate<'a>(
     reader.push(
         Diagnostic::error("NB0207", place, "this matrix is not finite")
             .label("a division by zero, or numbers too large")
-            .help("near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero"),
+            .help(
+                "near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero",
+            ),
     );
     None
 }

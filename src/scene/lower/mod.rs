@@ -60,6 +60,13 @@ impl DrawSpans {
 /// Reads and checks a whole scene. Findings are in the reader; `None` if there are errors.
 pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path) -> Option<(Scene, Vec<DrawSpans>)> {
     let raw = Raw::<source::Scene<'a>>::new(text);
+    if raw.text.is_empty() {
+        reader.push(
+            Diagnostic::error("NB0101", 0..0, "the scene is empty")
+                .help("a scene starts with `(version: 1, profile: Nv2a, draws: [...])`"),
+        );
+        return None;
+    }
     let file = reader.read(&raw)?;
     // The parenthesis that opens the scene; in front of it may stand its type.
     let start = reader.span(&raw).start;
@@ -121,9 +128,7 @@ fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> bool {
             (Some(vertex), Some(draw)) => format!("vertex {vertex} of `{}`", shorten(&draw.name)),
             _ => "this draw".to_owned(),
         };
-        reader.push(
-            Diagnostic::error("NB0322", span, error.message).label(label).rule(error.rule).help(error.help),
-        );
+        reader.push(Diagnostic::error("NB0322", span, error.message).label(label).rule(error.rule).help(error.help));
     }
     false
 }
@@ -141,7 +146,7 @@ fn unknown_name<'n>(
         Some(known) => format!("did you mean \"{}\"?", shorten(known)),
         None => {
             let list: Vec<String> = known.take(8).map(|name| format!("\"{}\"", shorten(name))).collect();
-            if list.is_empty() { define.to_owned() } else { format!("defined are {}; {define}", list.join(", ")) }
+            if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
         }
     };
     reader.push(

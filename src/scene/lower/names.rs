@@ -15,8 +15,7 @@ use crate::state::{Blend, VertexColor};
 const LONGEST_CHAIN: usize = 32;
 
 /// How a definition of the table is read. The last argument counts the names followed so far.
-pub(super) type Evaluate<'e, 'a, S, T> =
-    &'e dyn Fn(&mut Reader<'a>, &Table<'a, S, T>, &Raw<'a, S>, usize) -> Option<T>;
+pub(super) type Evaluate<'e, 'a, S, T> = &'e dyn Fn(&mut Reader<'a>, &Table<'a, S, T>, &Raw<'a, S>, usize) -> Option<T>;
 
 enum State<T> {
     Waiting,

@@ -38,11 +38,14 @@ pub(super) fn operations<'a>(
     if let Some(raw) = &fields.depth_test {
         draw.depth_test = depth_test(reader, raw);
         if target.depth.is_none() {
-            let mut finding =
-                Diagnostic::error("NB0216", reader.span(raw), format!("target \"{}\" has no depth buffer", target.name))
-                    .label("tests depth")
-                    .rule("DEP-2")
-                    .help("add `depth: Z24S8` (or `Z16`) to the target");
+            let mut finding = Diagnostic::error(
+                "NB0216",
+                reader.span(raw),
+                format!("target \"{}\" has no depth buffer", target.name),
+            )
+            .label("tests depth")
+            .rule("DEP-2")
+            .help("add `depth: Z24S8` (or `Z16`) to the target");
             let place = targets.place(draw.target);
             if !place.is_empty() {
                 finding = finding.related(place, "the target");
@@ -123,11 +126,7 @@ pub(super) fn four_flags<'a>(
 }
 
 /// Reads the fog state.
-pub(super) fn fog<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Option<Raw<'a, source::Fog<'a>>>,
-) -> Fog {
+pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<Raw<'a, source::Fog<'a>>>) -> Fog {
     let mut fog = Fog { enabled: false, color: [0; 3] };
     let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return fog };
     fog.enabled = reader.or(&fields.enabled, true);

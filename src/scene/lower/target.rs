@@ -112,22 +112,10 @@ impl Targets {
 }
 
 fn default_target(name: String) -> Target {
-    Target {
-        name,
-        width: 640,
-        height: 480,
-        format: SurfaceFormat::A8R8G8B8,
-        clear_color: [0, 0, 0, 255],
-        depth: None,
-    }
+    Target { name, width: 640, height: 480, format: SurfaceFormat::A8R8G8B8, clear_color: [0, 0, 0, 255], depth: None }
 }
 
-fn target<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    fields: &source::Target<'a>,
-    name: String,
-) -> Target {
+fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Target<'a>, name: String) -> Target {
     let mut target = default_target(name);
     for (field, side, what) in [
         (&fields.width, &mut target.width, "the width of a target"),

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-
 use super::names::Names;
 use super::target::Targets;
 use super::*;
@@ -100,7 +99,8 @@ fn texture<'a>(
     let opening = reader.range(entry.value.text.get(..1).unwrap_or(entry.value.text));
     let fields = reader.read(&entry.value)?;
     if let Some(raw) = &fields.kind {
-        let (kind, _) = reader.variant(raw, "texture kind", &["TwoDimensional", "Cube", "Rectangle", "ThreeDimensional"])?;
+        let (kind, _) =
+            reader.variant(raw, "texture kind", &["TwoDimensional", "Cube", "Rectangle", "ThreeDimensional"])?;
         if kind > 0 {
             reader.not_built(reader.span(raw), ["", "cube maps", "rectangle textures", "volume textures"][kind]);
         }
@@ -229,9 +229,8 @@ fn file<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path, left: &mut u6
     let path = match path::resolve(folder, &name) {
         Ok(path) => path,
         Err(error) => {
-            reader.push(
-                Diagnostic::error(error.code(), place, error.to_string()).label("this file").help(error.help()),
-            );
+            reader
+                .push(Diagnostic::error(error.code(), place, error.to_string()).label("this file").help(error.help()));
             return None;
         }
     };

@@ -71,11 +71,9 @@ fn unit<'a>(
     let both = reader.name_or(&fields.address, AddressMode::Wrap);
     unit.address_s = reader.name_or(&fields.address_s, both);
     unit.address_t = reader.name_or(&fields.address_t, both);
-    for (field, mode) in [
-        (&fields.address, both),
-        (&fields.address_s, unit.address_s),
-        (&fields.address_t, unit.address_t),
-    ] {
+    for (field, mode) in
+        [(&fields.address, both), (&fields.address_s, unit.address_s), (&fields.address_t, unit.address_t)]
+    {
         if let Some(raw) = field
             && mode == AddressMode::ClampToBorder
             && reader.profile == Profile::Nv10

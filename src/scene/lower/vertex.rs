@@ -38,11 +38,7 @@ pub(super) fn too_many(place: Range<usize>, count: usize, limit: usize) -> Diagn
         .help("use indices to share vertices, or split the scene; `ninebit limits` prints what is allowed")
 }
 
-fn vertex<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::Vertex<'a>>,
-) -> Option<Vertex> {
+fn vertex<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Option<Vertex> {
     let place = reader.span(raw);
     let fields = reader.read(raw)?;
     let mut vertex = Vertex::default();
