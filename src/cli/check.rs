@@ -51,7 +51,7 @@ fn text(scene: &Scene, cost: &Cost) -> String {
         let _ = writeln!(text, "{name:<16}{value}");
     };
     row("profile", scene.profile.name().to_owned());
-    row("draws", format!("{} ({} triangles, {} vertices)", cost.draws, cost.triangles, cost.vertices));
+    row("draws", format!("{} ({}, {} vertices)", cost.draws, count(cost.triangles, "triangle"), cost.vertices));
     for target in &scene.targets {
         let depth = target.depth.map_or(String::new(), |depth| format!(", depth {}", depth.format.name()));
         let (width, height, format) = (target.width, target.height, target.format.name());
@@ -61,6 +61,11 @@ fn text(scene: &Scene, cost: &Cost) -> String {
     row("textures", format!("{} ({})", scene.textures.len(), bytes(cost.texture_bytes)));
     row("memory", format!("about {}", bytes(cost.memory_bytes)));
     text
+}
+
+/// A number of things.
+fn count(number: u64, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
 /// A number of bytes for people, rounded up.
