@@ -78,6 +78,11 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Reads the value if it can be read; says nothing otherwise.
+    pub(super) fn attempt<T: Deserialize<'a>>(&self, text: &'a str) -> Option<T> {
+        self.options.from_str(text).ok()
+    }
+
     /// The value of an optional field; `default` if it is absent or wrong.
     pub(super) fn or<T: Deserialize<'a> + Expected>(&mut self, raw: &Option<Raw<'a, T>>, default: T) -> T {
         raw.as_ref().and_then(|raw| self.read(raw)).unwrap_or(default)
@@ -164,7 +169,7 @@ impl<'a> Reader<'a> {
         most: usize,
         defaults: [f32; 4],
     ) -> Option<[f32; 4]> {
-        if let Ok(numbers) = self.options.from_str::<Numbers>(raw.text)
+        if let Some(numbers) = self.attempt::<Numbers>(raw.text)
             && (least..=most).contains(&numbers.count)
             && numbers.values.iter().all(|value| value.is_finite())
         {

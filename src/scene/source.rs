@@ -20,6 +20,7 @@ macro_rules! expected {
 }
 expected! {
     String: "a text in double quotes",
+    u8: "a whole number from 0 to 255",
     u32: "a whole number from 0 to 4294967295",
     f32: "a number",
     bool: "`true` or `false`",
