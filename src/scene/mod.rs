@@ -13,6 +13,7 @@ mod raw;
 mod reader;
 mod render;
 mod source;
+mod split;
 
 use std::fs::File;
 use std::io::Read;

@@ -66,8 +66,13 @@ impl<'a> Reader<'a> {
         self.range(raw.text)
     }
 
-    /// Reads the value; `None` once the reason has been recorded.
-    pub(super) fn read<T: Deserialize<'a> + Expected>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+    /// Reads the value, which is known to be well formed; `None` once the reason has been recorded.
+    pub(super) fn read<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+        T::split(raw.text).or_else(|| self.parse(raw))
+    }
+
+    /// Reads the value with the parser, down to its innermost bracket.
+    pub(super) fn parse<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
         match self.options.from_str::<T>(raw.text) {
             Ok(value) => Some(value),
             Err(error) => {
@@ -84,7 +89,7 @@ impl<'a> Reader<'a> {
     }
 
     /// The value of an optional field; `default` if it is absent or wrong.
-    pub(super) fn or<T: Deserialize<'a> + Expected>(&mut self, raw: &Option<Raw<'a, T>>, default: T) -> T {
+    pub(super) fn or<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Option<Raw<'a, T>>, default: T) -> T {
         raw.as_ref().and_then(|raw| self.read(raw)).unwrap_or(default)
     }
 

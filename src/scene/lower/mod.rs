@@ -67,7 +67,8 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path) -
         );
         return None;
     }
-    let file = reader.read(&raw)?;
+    // The parser goes through all of the text here: below, brackets are known to match.
+    let file = reader.parse(&raw)?;
     // The parenthesis that opens the scene; in front of it may stand its type.
     let start = reader.span(&raw).start;
     let opening = text[start..].find('(').map_or(start..start, |at| start + at..start + at + 1);
