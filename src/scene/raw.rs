@@ -137,6 +137,48 @@ pub(super) struct Few<N> {
     pub(super) count: usize,
 }
 
+impl<N: Plain + Copy + Default> Few<N> {
+    /// Reads decimal numbers without the parser; `None` leaves it to the parser.
+    pub(super) fn split(text: &str) -> Option<Self> {
+        let inside = text.strip_prefix('(')?.strip_suffix(')')?;
+        let mut few = Few { values: [N::default(); 4], count: 0 };
+        let mut parts = inside.split(',').map(str::trim).peekable();
+        while let Some(part) = parts.next() {
+            if part.is_empty() && few.count > 0 && parts.peek().is_none() {
+                break;
+            }
+            *few.values.get_mut(few.count)? = N::plain(part)?;
+            few.count += 1;
+        }
+        Some(few)
+    }
+}
+
+/// Numbers in decimal notation, which reads the same everywhere.
+pub(super) trait Plain: Sized {
+    /// `None` for everything that is not plain.
+    fn plain(text: &str) -> Option<Self>;
+}
+
+impl Plain for f32 {
+    fn plain(text: &str) -> Option<Self> {
+        let digits = |byte: u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'e');
+        text.bytes().all(digits).then(|| text.parse().ok())?
+    }
+}
+
+impl Plain for u8 {
+    fn plain(text: &str) -> Option<Self> {
+        text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok())?
+    }
+}
+
+impl Plain for u32 {
+    fn plain(text: &str) -> Option<Self> {
+        text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok())?
+    }
+}
+
 /// Coordinates and the like.
 pub(super) type Numbers = Few<f32>;
 

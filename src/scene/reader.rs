@@ -174,7 +174,7 @@ impl<'a> Reader<'a> {
         most: usize,
         defaults: [f32; 4],
     ) -> Option<[f32; 4]> {
-        if let Some(numbers) = self.attempt::<Numbers>(raw.text)
+        if let Some(numbers) = Numbers::split(raw.text).or_else(|| self.attempt(raw.text))
             && (least..=most).contains(&numbers.count)
             && numbers.values.iter().all(|value| value.is_finite())
         {

@@ -5,7 +5,7 @@
 
 use serde::Deserialize;
 
-use super::raw::{Entries, Numbers, Raw, Reserved, Tuple};
+use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
 use super::reader::Name;
 use super::split;
 use crate::state;
@@ -30,8 +30,12 @@ expected! {
     u32: "a whole number from 0 to 4294967295",
     f32: "a number",
     bool: "`true` or `false`",
-    Numbers: "one to four numbers in parentheses, such as `(1.0, 2.0)`",
-    Vec<u32>: "a list of whole numbers, such as `[0, 1, 2]`",
+}
+impl Expected<'_> for Vec<u32> {
+    const EXPECTED: &'static str = "a list of whole numbers, such as `[0, 1, 2]`";
+    fn split(text: &str) -> Option<Self> {
+        split::items(text, b'[', b']')?.into_iter().map(u32::plain).collect()
+    }
 }
 impl<'a, T> Expected<'a> for Vec<Raw<'a, T>> {
     const EXPECTED: &'static str = "a list in square brackets";
