@@ -273,3 +273,14 @@ fn places_are_where_things_stand() {
     assert_eq!(loaded.source.position(spans.draw.start), (2, 19));
     assert_eq!(&loaded.source.text[spans.vertex(99)], "(");
 }
+
+#[test]
+fn attributes_type_names_and_options_may_be_written() {
+    let loaded = parse(
+        "#![enable(implicit_some)]\n/* a /* nested */ comment */ Scene(version: Some(1), profile: Nv2a, names: None, // end\n \
+         targets: Some([(name: r\"a\", width: 8 /* wide */, format: R5G6B5 // short\n )]), draws: [],)\n// the end",
+    );
+    assert_eq!((loaded.scene.targets[0].name.as_str(), loaded.scene.targets[0].format), ("a", SurfaceFormat::R5G6B5));
+    let error = scene::parse("#![enable(implicit_some)]\n(profile: Nv2a)", Path::new("x.ron"), &Limits::default());
+    assert!(error.unwrap_err().render(false).contains("x.ron:2:1\n"));
+}

@@ -14,6 +14,7 @@ mod reader;
 mod render;
 mod source;
 mod split;
+mod wording;
 
 use std::fs::File;
 use std::io::Read;
