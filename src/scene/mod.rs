@@ -13,6 +13,8 @@ mod raw;
 mod reader;
 mod render;
 mod source;
+mod split;
+mod wording;
 
 use std::fs::File;
 use std::io::Read;

@@ -130,35 +130,77 @@ impl<'de: 'a, 'a, T> Deserialize<'de> for Tuple<'a, T> {
     }
 }
 
-/// One to four numbers in parentheses, read in one go: most of a large scene is these.
+/// One to four plain values in parentheses, read in one go: most of a large scene is these.
 #[derive(Clone, Copy)]
-pub(super) struct Numbers {
-    pub(super) values: [f32; 4],
+pub(super) struct Few<N> {
+    pub(super) values: [N; 4],
     pub(super) count: usize,
 }
 
-impl<'de> Deserialize<'de> for Numbers {
+impl<N: Plain + Copy + Default> Few<N> {
+    /// Reads decimal numbers without the parser; `None` leaves it to the parser.
+    pub(super) fn split(text: &str) -> Option<Self> {
+        let inside = text.strip_prefix('(')?.strip_suffix(')')?;
+        let mut few = Few { values: [N::default(); 4], count: 0 };
+        let mut parts = inside.split(',').map(str::trim).peekable();
+        while let Some(part) = parts.next() {
+            if part.is_empty() && few.count > 0 && parts.peek().is_none() {
+                break;
+            }
+            *few.values.get_mut(few.count)? = N::plain(part)?;
+            few.count += 1;
+        }
+        Some(few)
+    }
+}
+
+/// Numbers in decimal notation, which reads the same everywhere.
+pub(super) trait Plain: Sized {
+    /// `None` for everything that is not plain.
+    fn plain(text: &str) -> Option<Self>;
+}
+
+impl Plain for f32 {
+    fn plain(text: &str) -> Option<Self> {
+        let digits = |byte: u8| byte.is_ascii_digit() || matches!(byte, b'.' | b'-' | b'e');
+        text.bytes().all(digits).then(|| text.parse().ok())?
+    }
+}
+
+impl Plain for u8 {
+    fn plain(text: &str) -> Option<Self> {
+        text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok())?
+    }
+}
+
+impl Plain for u32 {
+    fn plain(text: &str) -> Option<Self> {
+        text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok())?
+    }
+}
+
+/// Coordinates and the like.
+pub(super) type Numbers = Few<f32>;
+
+impl<'de, N: Deserialize<'de> + Copy + Default> Deserialize<'de> for Few<N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct NumbersVisitor;
-        impl<'de> Visitor<'de> for NumbersVisitor {
-            type Value = Numbers;
+        struct FewVisitor<N>(PhantomData<fn() -> N>);
+        impl<'de, N: Deserialize<'de> + Copy + Default> Visitor<'de> for FewVisitor<N> {
+            type Value = Few<N>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("one to four numbers in parentheses")
             }
-            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Numbers, A::Error> {
-                let mut numbers = Numbers { values: [0.0; 4], count: 0 };
+            fn visit_seq<A: SeqAccess<'de>>(self, mut seq: A) -> Result<Few<N>, A::Error> {
+                let mut few = Few { values: [N::default(); 4], count: 0 };
                 while let Some(value) = seq.next_element()? {
-                    let slot = numbers
-                        .values
-                        .get_mut(numbers.count)
-                        .ok_or_else(|| de::Error::invalid_length(5, &NumbersVisitor))?;
+                    let slot = few.values.get_mut(few.count).ok_or_else(|| de::Error::invalid_length(5, &self))?;
                     *slot = value;
-                    numbers.count += 1;
+                    few.count += 1;
                 }
-                Ok(numbers)
+                Ok(few)
             }
         }
-        deserializer.deserialize_tuple(4, NumbersVisitor)
+        deserializer.deserialize_tuple(4, FewVisitor(PhantomData))
     }
 }
 

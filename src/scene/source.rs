@@ -5,35 +5,59 @@
 
 use serde::Deserialize;
 
-use super::raw::{Entries, Numbers, Raw, Reserved, Tuple};
+use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
 use super::reader::Name;
+use super::split;
 use crate::state;
 
 /// What a value of a type looks like, for "expected ...".
-pub(super) trait Expected {
-    /// Empty where the parser's own words are better.
+pub(super) trait Expected<'a>: Sized {
+    /// In the singular, with its article.
     const EXPECTED: &'static str;
+
+    /// Takes well-formed text apart without the parser; `None` leaves it to the parser, errors included.
+    fn split(_text: &'a str) -> Option<Self> {
+        None
+    }
 }
 
 macro_rules! expected {
-    ($($type:ty: $text:literal),+ $(,)?) => { $(impl Expected for $type { const EXPECTED: &'static str = $text; })+ };
+    ($($type:ty: $text:literal),+ $(,)?) => { $(impl Expected<'_> for $type { const EXPECTED: &'static str = $text; })+ };
 }
 expected! {
     String: "a text in double quotes",
+    u8: "a whole number from 0 to 255",
     u32: "a whole number from 0 to 4294967295",
     f32: "a number",
     bool: "`true` or `false`",
-    Numbers: "one to four numbers in parentheses, such as `(1.0, 2.0)`",
-    Vec<u32>: "a list of whole numbers, such as `[0, 1, 2]`",
 }
-impl<T> Expected for Vec<Raw<'_, T>> {
+impl Expected<'_> for Vec<u32> {
+    const EXPECTED: &'static str = "a list of whole numbers, such as `[0, 1, 2]`";
+    fn split(text: &str) -> Option<Self> {
+        split::items(text, b'[', b']')?.into_iter().map(u32::plain).collect()
+    }
+}
+impl<'a, T> Expected<'a> for Vec<Raw<'a, T>> {
     const EXPECTED: &'static str = "a list in square brackets";
+    fn split(text: &'a str) -> Option<Self> {
+        Some(split::items(text, b'[', b']')?.into_iter().map(Raw::new).collect())
+    }
 }
-impl<T> Expected for Entries<'_, T> {
+impl<'a, T> Expected<'a> for Entries<'a, T> {
     const EXPECTED: &'static str = "a table in braces, such as `{ \"name\": ... }`";
+    fn split(text: &'a str) -> Option<Self> {
+        let entries = split::entries(text)?;
+        Some(Entries(entries.into_iter().map(|(key, value)| (Raw::new(key), Raw::new(value))).collect()))
+    }
 }
-impl<T> Expected for Tuple<'_, T> {
+impl<'a, T> Expected<'a> for Tuple<'a, T> {
     const EXPECTED: &'static str = "values in parentheses, such as `(1, 2, 3)`";
+    fn split(text: &'a str) -> Option<Self> {
+        let items = split::items(text, b'(', b')')?;
+        // Named fields are not what is wanted: the parser says so.
+        let named = |item: &&str| Raw::<()>::new(item).split().1.starts_with(':');
+        (!items.iter().any(named)).then(|| Tuple(items.into_iter().map(Raw::new).collect()))
+    }
 }
 
 macro_rules! source {
@@ -42,8 +66,18 @@ macro_rules! source {
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields, bound(deserialize = "'de: 'a"))]
         pub(super) struct $name<'a> { $(pub(super) $field: Option<Raw<'a, $type>>),* }
-        impl Expected for $name<'_> {
+        impl<'a> Expected<'a> for $name<'a> {
             const EXPECTED: &'static str = "fields in parentheses, `(field: value, ...)`";
+            fn split(text: &'a str) -> Option<Self> {
+                let mut fields = $name { $($field: None),* };
+                for (name, value) in split::fields(text)? {
+                    match name {
+                        $(stringify!($field) if fields.$field.is_none() => fields.$field = Some(Raw::new(value)),)*
+                        _ => return None,
+                    }
+                }
+                Some(fields)
+            }
         }
     )+ };
 }

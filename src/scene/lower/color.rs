@@ -3,7 +3,7 @@
 
 use super::names::Names;
 use super::*;
-use crate::scene::raw::{Numbers, Tuple};
+use crate::scene::raw::{Few, Numbers, Tuple};
 use crate::state::VertexColor;
 
 /// A colour that stays as it was given. `None` once the reason has been recorded.
@@ -61,9 +61,9 @@ pub(super) fn constants<'a>(
     constants
 }
 
-/// NUM-0: clamped to 0..1, then floor(255 c + 0.5).
+/// NUM-0: clamped to 0..1, then floor(255 c + 0.5), which is exact in 64 bits.
 fn byte(value: f32) -> u8 {
-    (255.0 * value.clamp(0.0, 1.0) + 0.5).floor() as u8
+    (255.0 * f64::from(value.clamp(0.0, 1.0)) + 0.5).floor() as u8
 }
 
 /// A colour that is not a name.
@@ -89,12 +89,17 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
 
 /// Three or four bytes.
 fn bytes<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
-    let numbers = reader.numbers(&raw.as_other(), "a colour", 3, 4, [0.0, 0.0, 0.0, 255.0])?;
-    if numbers.iter().all(|value| (0.0..=255.0).contains(value) && value.fract() == 0.0) {
-        return Some(VertexColor::Bytes(numbers.map(|value| value as u8)));
+    match Few::<u8>::split(raw.text).or_else(|| reader.attempt(raw.text)) {
+        Some(Few { values: [r, g, b, _], count: 3 }) => return Some(VertexColor::Bytes([r, g, b, 255])),
+        Some(Few { values, count: 4 }) => return Some(VertexColor::Bytes(values)),
+        _ => {}
     }
-    for (part, value) in reader.read(&raw.as_other::<Tuple<'a, f32>>())?.0.iter().zip(numbers) {
-        if !(0.0..=255.0).contains(&value) || value.fract() != 0.0 {
+    // Something is wrong: find out what.
+    let parts = reader.read(&raw.as_other::<Tuple<'a, u8>>())?.0;
+    let mut wrong = false;
+    for part in &parts {
+        if reader.attempt::<u8>(part.text).is_none() {
+            wrong = true;
             let place = reader.span(part);
             let message = format!("`{}` is not a byte of a colour", shorten(part.text));
             reader.push(
@@ -103,6 +108,14 @@ fn bytes<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<Ve
                     .help("for 0.0 to 1.0 write `Float(1.0, 0.5, 0.0, 1.0)`"),
             );
         }
+    }
+    if !wrong {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0211", place, format!("a colour has 3 or 4 bytes, not {}", parts.len()))
+                .label("R, G, B and perhaps A")
+                .help("write `(255, 128, 0)` or `(255, 128, 0, 255)`"),
+        );
     }
     None
 }

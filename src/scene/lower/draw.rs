@@ -47,7 +47,7 @@ pub(super) fn draws<'a>(
             place = reader.span(raw);
             if let Some(first) = seen.get(&given) {
                 let first = first.clone();
-                reader.push(crate::scene::reader::twice("draw", &given, place.clone(), first));
+                reader.push(crate::scene::wording::twice("draw", &given, place.clone(), first));
             }
             seen.insert(given.clone(), place.clone());
             name = given;

@@ -10,6 +10,9 @@ use crate::scene::raw::{Numbers, Tuple};
 
 const IDENTITY: Rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
+/// Deepest product of products: each level reads its text again.
+const DEEPEST: usize = 16;
+
 const KINDS: &[&str] =
     &["Identity", "Rows", "Product", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
 
@@ -22,6 +25,15 @@ pub(super) fn evaluate<'a>(
 ) -> Option<Rows> {
     if raw.is_text() {
         return table.get(reader, raw, &evaluate, depth);
+    }
+    if depth > DEEPEST {
+        let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        reader.push(
+            Diagnostic::error("NB0602", place, format!("more than {DEEPEST} products inside each other"))
+                .label("one level too many")
+                .help("a product takes any number of matrices: write them side by side"),
+        );
+        return None;
     }
     let (kind, rest) = reader.variant(raw, "matrix", KINDS)?;
     let matrix = match KINDS[kind] {
@@ -85,7 +97,7 @@ fn product<'a>(
 ) -> Option<Rows> {
     let mut result = IDENTITY;
     for (index, part) in reader.read(raw)?.0.iter().enumerate() {
-        let factor = evaluate(reader, table, part, depth)?;
+        let factor = evaluate(reader, table, part, depth + 1)?;
         result = if index == 0 { factor } else { multiply(&result, &factor) };
     }
     Some(result)

@@ -4,6 +4,7 @@ mod attribute;
 mod color;
 mod combiner;
 mod draw;
+mod input;
 mod matrix;
 mod names;
 mod raster;
@@ -17,8 +18,9 @@ use std::path::Path;
 
 use super::diagnostic::Diagnostic;
 use super::raw::Raw;
-use super::reader::{Reader, closest, shorten};
+use super::reader::Reader;
 use super::source;
+use super::wording::{closest, shorten};
 use crate::plan::{Plan, PlanOptions};
 use crate::state::{Profile, Scene};
 use names::Names;
@@ -67,10 +69,9 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path) -
         );
         return None;
     }
-    let file = reader.read(&raw)?;
-    // The parenthesis that opens the scene; in front of it may stand its type.
-    let start = reader.span(&raw).start;
-    let opening = text[start..].find('(').map_or(start..start, |at| start + at..start + at + 1);
+    // The parser goes through all of the text here: below, brackets are known to match.
+    let file = reader.parse(&raw)?;
+    let opening = opening(text, reader.span(&raw).start);
     if !version(reader, &file, opening.clone()) {
         return None;
     }
@@ -90,6 +91,16 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path) -
     let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().unzip();
     let scene = Scene { profile: reader.profile, targets: targets.list, textures: textures.list, draws };
     plan(reader, &scene, &spans).then_some((scene, spans))
+}
+
+/// The parenthesis that opens the scene: before it may stand attributes and the scene's type.
+fn opening(text: &str, start: usize) -> Range<usize> {
+    let mut rest = &text[start..];
+    while rest.starts_with("#!") {
+        rest = rest.find(']').map_or("", |end| crate::scene::raw::trim(&rest[end + 1..]));
+    }
+    let start = text.len() - rest.len();
+    rest.find('(').map_or(start..start, |at| start + at..start + at + 1)
 }
 
 /// Whether this program reads that version of the format.

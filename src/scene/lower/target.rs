@@ -82,7 +82,7 @@ pub(super) fn targets<'a>(
         let Some(name) = name else { continue };
         if let Some(first) = targets.by_name.get(&name) {
             let first = targets.place(*first);
-            reader.push(crate::scene::reader::twice("target", &name, place, first));
+            reader.push(crate::scene::wording::twice("target", &name, place, first));
             continue;
         }
         let target = target(reader, names, &fields, name.clone());

@@ -81,6 +81,9 @@ pub(super) fn textures<'a>(
     textures
 }
 
+/// The colour at a column and row.
+type PixelAt = Box<dyn Fn(u32, u32) -> [u8; 4]>;
+
 /// Pixels before they are packed.
 struct Pixels {
     width: u32,
@@ -334,7 +337,7 @@ fn procedural<'a>(
         let raw = reader.required(field, name, "texture", opening.clone())?;
         color::constant(reader, names, &raw)
     };
-    let (width, height, pixel): (u32, u32, Box<dyn Fn(u32, u32) -> [u8; 4]>) = match kind {
+    let (width, height, pixel): (u32, u32, PixelAt) = match kind {
         "Solid" => {
             let fields = reader.read(&Raw::<source::SolidImage<'a>>::new(text))?;
             let (width, height) = sides(reader, text, &fields.width, &fields.height, left)?;
