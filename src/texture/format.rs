@@ -37,6 +37,10 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
         TextureFormat::X1R5G5B5 => {
             [replicate5(word >> 10 & 31), replicate5(word >> 5 & 31), replicate5(word & 31), 255]
         }
+        TextureFormat::A1R5G5B5 => {
+            let a = if word >> 15 & 1 == 0 { 0 } else { 255 };
+            [replicate5(word >> 10 & 31), replicate5(word >> 5 & 31), replicate5(word & 31), a]
+        }
         TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
         TextureFormat::A8 => [255, 255, 255, byte(0)],
         TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
@@ -52,7 +56,9 @@ pub fn channels(format: TextureFormat, word: u32) -> [Channel; 4] {
         |byte: u8, shift: u32, most: u8| Channel { byte, numerator: (word >> shift) as u8 & most, denominator: most };
     match format {
         TextureFormat::R5G6B5 => [field(r, 11, 31), field(g, 5, 63), field(b, 0, 31), whole(a)],
-        TextureFormat::X1R5G5B5 => [field(r, 10, 31), field(g, 5, 31), field(b, 0, 31), whole(a)],
+        TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5 => {
+            [field(r, 10, 31), field(g, 5, 31), field(b, 0, 31), whole(a)]
+        }
         TextureFormat::A8R8G8B8
         | TextureFormat::X8R8G8B8
         | TextureFormat::L8
@@ -95,7 +101,10 @@ mod tests {
                 expand(TextureFormat::G8B8, word),
                 [word as u8, (word >> 8) as u8, word as u8, (word >> 8) as u8]
             );
-            for format in [TextureFormat::R5G6B5, TextureFormat::X1R5G5B5, TextureFormat::G8B8] {
+            let a = if word & 0x8000 == 0 { 0 } else { 255 };
+            assert_eq!(expand(TextureFormat::A1R5G5B5, word), [r, g, b, a]);
+            for format in [TextureFormat::R5G6B5, TextureFormat::X1R5G5B5, TextureFormat::A1R5G5B5, TextureFormat::G8B8]
+            {
                 assert_eq!(channels(format, word).map(|c| c.byte), expand(format, word));
             }
         }

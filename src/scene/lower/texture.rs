@@ -393,6 +393,7 @@ fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
             TextureFormat::X8R8G8B8 => r << 16 | g << 8 | b,
             TextureFormat::R5G6B5 => (r >> 3) << 11 | (g >> 2) << 5 | b >> 3,
             TextureFormat::X1R5G5B5 => (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
+            TextureFormat::A1R5G5B5 => (a >> 7) << 15 | (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
             TextureFormat::L8 => r,
             TextureFormat::A8 => a,
             TextureFormat::G8B8 => g << 8 | b,
