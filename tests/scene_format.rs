@@ -4,7 +4,9 @@
 use std::fs;
 use std::path::Path;
 
+use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::{self, Limits};
+use ninebit::plan::{Plan, PlanOptions};
 use ninebit::scene::{self, Loaded, VertexSpans};
 use ninebit::state::{
     AddressMode, Blend, BlendEquation, BlendFactor, Component, Cull, DepthBuffer, DepthFormat, Filter, FinalRegister,
@@ -30,7 +32,13 @@ fn every_example_of_the_document_is_accepted_without_warnings() {
         document.split("```ron\n").skip(1).map(|rest| rest.split("```").next().unwrap()).collect();
     assert!(examples.len() >= 3);
     for example in examples {
-        assert_eq!(parse(example).render_warnings(false), "");
+        let loaded = parse(example);
+        assert_eq!(loaded.render_warnings(false), "");
+        // Every example shows something.
+        let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap();
+        let frames = engine::render(&plan, &RenderOptions::default());
+        let words = &frames.surfaces[0].words;
+        assert!(words.iter().any(|word| *word != words[0]) || words[0] != 0xff00_0000, "blank: {example}");
     }
 }
 
