@@ -2,7 +2,7 @@
 //!
 //! The captures are not part of the repository; `vectors/silicon/frames` says what they show. With `NINEBIT_CAPTURES` set to a
 //! folder that holds them (`frames/SUITE/NAME.png`) they are compared directly, and `BLESS=1` writes the expectations anew.
-#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, reason = "a test that gives floats to the model")]
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test that gives floats to the model")]
 
 #[path = "silicon/build.rs"]
 mod build;

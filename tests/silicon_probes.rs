@@ -1,5 +1,11 @@
 //! What a real NV2A showed, row by row: every probe of `vectors/silicon` goes through the model.
-#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, reason = "a test that gives floats to the model")]
+#![allow(
+    clippy::float_arithmetic,
+    clippy::unwrap_used,
+    missing_docs,
+    unreachable_pub,
+    reason = "a test that gives floats to the model"
+)]
 
 #[path = "silicon/blend_probes.rs"]
 mod blend_probes;

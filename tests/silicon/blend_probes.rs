@@ -130,40 +130,18 @@ pub fn destination_alpha(rows: &[Row]) -> Answers {
         let mut shown = cell(frame, n, [255; 4]);
         shown.combiners = shows(FinalRegister::Texture0);
         shown.blend = Some(OVER);
-        match format {
-            SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => {
-                let (colors, halves) =
-                    (sheet.reads(canvas, TextureFormat::X1R5G5B5), sheet.reads(canvas, TextureFormat::G8B8));
-                bind(&mut shown, 0, colors);
-                bind(&mut shown, 1, halves);
-                top_bit_as_alpha(&mut shown.combiners);
-            }
-            SurfaceFormat::R5G6B5 => bind(&mut shown, 0, sheet.reads(canvas, TextureFormat::R5G6B5)),
-            _ => bind(&mut shown, 0, sheet.reads(canvas, TextureFormat::A8R8G8B8)),
-        }
+        let read_as = match format {
+            SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => TextureFormat::A1R5G5B5,
+            SurfaceFormat::R5G6B5 => TextureFormat::R5G6B5,
+            _ => TextureFormat::A8R8G8B8,
+        };
+        bind(&mut shown, 0, sheet.reads(canvas, read_as));
         if row.text("shown") == "opaque" {
             opaque(&mut shown);
         }
         sheet.draw(shown);
     }
     single(sheet.show(frame, rows.len()))
-}
-
-/// The captures read these surfaces as A1R5G5B5, which the state does not have: unit 1 reads the high byte as alpha (TEX-1, G8B8),
-/// and the mux makes 0 or 255 of its top bit (CMB-10).
-fn top_bit_as_alpha(combiners: &mut Combiners) {
-    let one = CombinerInput { mapping: InputMapping::UnsignedInvert, ..CombinerInput::zero(Component::Alpha) };
-    let mut mux = combiners.stages[0];
-    let load = &mut combiners.stages[0].alpha;
-    load.inputs[0].register = Register::Texture1;
-    load.inputs[1] = one;
-    load.ab_output = Register::Spare0;
-    mux.alpha.inputs[2] = one;
-    mux.alpha.inputs[3] = one;
-    mux.alpha.mux = true;
-    mux.alpha.sum_output = Register::Spare1;
-    combiners.stages.push(mux);
-    combiners.final_combiner.g.register = FinalRegister::Spare1;
 }
 
 /// signed-texel: a signed channel, shown by one blend.
