@@ -59,7 +59,7 @@ fn run(cases: u32, strategy: &BoxedStrategy<(Scene, Policies)>) {
     let result =
         runner(cases).run(strategy, |(scene, policies)| compare(&scene, &policies).map_err(TestCaseError::fail));
     match result {
-        Err(TestError::Fail(reason, (scene, policies))) => panic!("{reason}\n{policies:?}\n{scene:#?}"),
+        Err(TestError::Fail(reason, (scene, policies))) => panic!("{reason}\n{policies:?}\n{scene:?}"),
         other => other.unwrap(),
     }
 }

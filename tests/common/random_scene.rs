@@ -14,7 +14,7 @@ const SHARED: usize = 1024;
 const DRAW: usize = 1024;
 const VERTICES: usize = 768;
 const VERTEX: usize = 48;
-const STAGE: usize = 48;
+const STAGE: usize = 64;
 
 /// Valid scenes within the limits of RAS-0.
 pub fn scene() -> impl Strategy<Value = Scene> {
@@ -162,7 +162,7 @@ pub fn build(tape: &[u32]) -> Scene {
             textures.push(Texture { name: format!("view{n}"), image });
         }
     }
-    let count = c.size(1, 4);
+    let count = [2, 3, 4, 1][c.below(4) as usize];
     let draws = (0..count).map(|n| draw(&mut tape.part(DRAW), profile, &targets, &textures, n)).collect();
     Scene { profile, targets, textures, draws }
 }
@@ -172,7 +172,8 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
         _ if large => (c.size(120, 150), c.size(140, 160)),
         0 => (16, 16),
         1 => (1 << c.below(5), 1 << c.below(5)),
-        _ => (c.size(1, 48), c.size(1, 48)),
+        2 => (c.size(1, 48), c.size(1, 48)),
+        _ => (c.size(13, 48), c.size(11, 48)),
     };
     let formats: &[SurfaceFormat] = match profile {
         Profile::Nv2a => SurfaceFormat::ALL,
@@ -518,7 +519,7 @@ fn portion(c: &mut Choices<'_>, profile: Profile, rgb: bool) -> Portion {
     let ab_output = output(true);
     let cd_output = output(true);
     let keep = c.below(8);
-    let scale: Scale = c.any();
+    let scale = if c.once_in(2) { c.any() } else { Scale::One };
     let bias = matches!(scale, Scale::One | Scale::Two) && c.once_in(3);
     Portion {
         inputs,
@@ -536,7 +537,7 @@ fn portion(c: &mut Choices<'_>, profile: Profile, rgb: bool) -> Portion {
 }
 
 fn input(c: &mut Choices<'_>, profile: Profile, rgb: bool) -> CombinerInput {
-    let mut c = c.part(3);
+    let mut c = c.part(4);
     let mut readable = vec![
         Register::PrimaryColor,
         Register::Texture0,
@@ -556,7 +557,11 @@ fn input(c: &mut Choices<'_>, profile: Profile, rgb: bool) -> CombinerInput {
     let plain = if rgb { Component::Rgb } else { Component::Blue };
     let alpha = register != Register::Fog && (register != Register::SecondaryColor || profile == Profile::Nv2a);
     let wanted = if rgb { c.once_in(3) } else { c.below(3) != 2 };
-    CombinerInput { register, component: if alpha && wanted { Component::Alpha } else { plain }, mapping: c.any() }
+    CombinerInput {
+        register,
+        component: if alpha && wanted { Component::Alpha } else { plain },
+        mapping: if c.once_in(2) { c.any() } else { InputMapping::UnsignedIdentity },
+    }
 }
 
 fn final_combiner(c: &mut Choices<'_>, profile: Profile) -> FinalCombiner {
@@ -576,10 +581,10 @@ fn final_combiner(c: &mut Choices<'_>, profile: Profile) -> FinalCombiner {
         };
         let wanted = c.below(3) == if plain == Component::Blue { 1 } else { 2 };
         let component = if alpha && wanted { Component::Alpha } else { plain };
-        FinalInput { register, component, invert: c.once_in(3) }
+        FinalInput { register, component, invert: c.once_in(4) }
     };
     let inputs = [
-        input(true, Component::Rgb, FinalRegister::Fog),
+        input(true, Component::Rgb, FinalRegister::PrimaryColor),
         input(true, Component::Rgb, FinalRegister::Spare0),
         input(true, Component::Rgb, FinalRegister::Spare0PlusSecondary),
         input(true, Component::Rgb, FinalRegister::Zero),

@@ -315,7 +315,8 @@ impl Setup {
     /// DEP-1: depth in units of a buffer whose largest value is `full`.
     pub fn depth(&self, sample: &Sample, full: i128) -> i128 {
         let z = self.vertices.map(|v| {
-            let (m, e) = split(v.position[2]);
+            // A scene's depth lies in 0..1.
+            let (m, e) = split(v.position[2].clamp(0.0, 1.0));
             shift(m * full, e)
         });
         let dom = dominant(sample.e, self.area);
