@@ -200,7 +200,7 @@ impl Expectation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::output::{encode_png, write_file};
+    use crate::output::{Compression, encode_png, write_file};
     use crate::state::SurfaceFormat;
 
     fn surface(words: &[u32]) -> Surface {
@@ -235,7 +235,7 @@ mod tests {
     fn masks_and_allowances_are_exceptions() {
         let folder = tempfile::tempdir().expect("folder");
         let store = |name: &str, pixels: &[[u8; 4]]| {
-            let png = encode_png(2, 1, pixels).expect("encodes");
+            let png = encode_png(2, 1, pixels, Compression::Small).expect("encodes");
             write_file(&folder.path().join(name), &png).expect("writes");
         };
         store("mask.png", &[[255; 4], [0, 255, 255, 255]]);

@@ -63,8 +63,9 @@ impl OutputError {
             OutputError::Folder { .. } => "name a file in it",
             OutputError::Write { source, .. } => match source.kind() {
                 io::ErrorKind::NotFound => "create its folder first",
+                io::ErrorKind::PermissionDenied => "check that the file and its folder may be written to",
                 io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => "free some space on that disk",
-                _ => "check that its folder may be written to",
+                _ => "write to another place",
             },
             OutputError::Stdout { .. } => "write to a file with `-o FILE`",
             OutputError::Encode { .. } => "pictures need at least one pixel",
@@ -111,7 +112,7 @@ impl Destination {
 /// that is not a regular file, such as `/dev/null`, is written to directly.
 ///
 /// # Errors
-/// The place is a folder, its folder is missing or not writable, the disk is full.
+/// The place is a folder, a read-only file, its folder is missing or not writable, the disk is full.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     let refused = |source: io::Error| OutputError::Write { path: path.to_path_buf(), source };
     let existing = path.metadata().ok();
@@ -124,6 +125,10 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
             .open(path)
             .and_then(|mut device| device.write_all(bytes))
             .map_err(refused);
+    }
+    if existing.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
+        // A rename would replace it all the same; whoever protected it meant the name.
+        return Err(refused(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only")));
     }
     let place = if existing.is_some() { path.canonicalize().map_err(refused)? } else { path.to_path_buf() };
     let folder = match place.parent() {
@@ -168,17 +173,35 @@ pub fn write_stdout(bytes: &[u8]) -> Result<(), OutputError> {
     stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
 }
 
+/// What a PNG is made for. The pixels are the same.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Compression {
+    /// Frames: written quickly, about half as large again.
+    Fast,
+    /// Pictures that are kept, such as textures.
+    Small,
+}
+
 /// A PNG of 8 bits a channel, R, G, B, A, row by row from the top.
 ///
 /// # Errors
 /// No pixels, or not `width * height` of them.
-pub fn encode_png(width: u32, height: u32, pixels: &[[u8; 4]]) -> Result<Vec<u8>, OutputError> {
+pub fn encode_png(
+    width: u32,
+    height: u32,
+    pixels: &[[u8; 4]],
+    compression: Compression,
+) -> Result<Vec<u8>, OutputError> {
     let refuse = |reason: String| OutputError::Encode { width, height, reason };
     if u64::from(width) * u64::from(height) != pixels.len() as u64 || pixels.is_empty() {
         return Err(refuse(format!("{} pixels were given", pixels.len())));
     }
+    let quality = match compression {
+        Compression::Fast => CompressionType::Fast,
+        Compression::Small => CompressionType::Default,
+    };
     let mut bytes = Vec::new();
-    PngEncoder::new_with_quality(&mut bytes, CompressionType::Default, FilterType::Adaptive)
+    PngEncoder::new_with_quality(&mut bytes, quality, FilterType::Adaptive)
         .write_image(pixels.as_flattened(), width, height, ExtendedColorType::Rgba8)
         .map_err(|error| refuse(error.to_string()))?;
     Ok(bytes)

@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
-use ninebit::output::{Destination, encode_png, write_file};
+use ninebit::output::{Compression, Destination, encode_png, write_file};
 
 /// Names in a folder, sorted.
 fn listing(folder: &Path) -> Vec<String> {
@@ -47,8 +47,8 @@ fn a_dash_is_standard_output() {
 
 #[test]
 fn pictures_need_their_pixels() {
-    assert_eq!(encode_png(2, 2, &[[0; 4]; 3]).expect_err("three of four").code(), "NB0704");
-    assert_eq!(encode_png(0, 0, &[]).expect_err("none").code(), "NB0704");
+    assert_eq!(encode_png(2, 2, &[[0; 4]; 3], Compression::Fast).expect_err("three of four").code(), "NB0704");
+    assert_eq!(encode_png(0, 0, &[], Compression::Fast).expect_err("none").code(), "NB0704");
 }
 
 #[cfg(unix)]
@@ -69,6 +69,17 @@ mod unix {
         fs::set_permissions(&place, fs::Permissions::from_mode(0o640)).unwrap();
         write_file(&place, b"three").unwrap();
         assert_eq!(mode(&place), 0o640);
+    }
+
+    #[test]
+    fn read_only_files_are_not_replaced() {
+        let folder = tempfile::tempdir().unwrap();
+        let place = folder.path().join("frame.png");
+        fs::write(&place, b"old").unwrap();
+        fs::set_permissions(&place, fs::Permissions::from_mode(0o444)).unwrap();
+        let error = write_file(&place, b"new").expect_err("read-only");
+        assert!(error.to_string().contains("read-only") && error.code() == "NB0702", "{error}");
+        assert_eq!(fs::read(&place).unwrap(), b"old");
     }
 
     #[test]

@@ -36,7 +36,7 @@ fn scene_files(folder: &Path) -> Vec<PathBuf> {
 
 /// Renders a scene and compares its first target with the expectation; says what is wrong.
 fn check(file: &Path, bless: bool) -> Result<(), String> {
-    let loaded = scene::load(file, &Limits::default()).map_err(|error| format!("{error:?}"))?;
+    let loaded = scene::load(file, &Limits::default()).map_err(|error| error.render(false))?;
     let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).map_err(|errors| format!("{errors:?}"))?;
     let frames = render(&plan, &RenderOptions { threads: 1 });
     if render(&plan, &RenderOptions { threads: 3 }) != frames {

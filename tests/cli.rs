@@ -82,6 +82,7 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("--help").text(), file!["cli/help.txt"]);
     assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
     assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
+    assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
     assert_eq!(bench.run("--version").text(), concat!("ninebit ", env!("CARGO_PKG_VERSION"), "\n"));
@@ -95,6 +96,8 @@ fn a_wrong_command_line_is_status_2() {
     bench.run("frobnicate").failed(2, "unrecognized subcommand 'frobnicate'");
     bench.run("render scene.ron").failed(2, "--output");
     bench.run("render scene.ron -o x.png --threads many").failed(2, "not a number from 0 to 1024");
+    bench.run("trace scene.ron").failed(2, "--pixel");
+    bench.run("trace scene.ron --pixel 3").failed(2, "not of the form X,Y");
     bench.run("render scene.ron -o - --stats json").failed(2, "cannot both go to stdout");
     bench.run("generate normal-map height.png -o n.png --scale NaN").failed(2, "not a finite number");
     bench.run("generate height-rocks -o h.png --size 8").failed(2, "16..=2048");
@@ -180,4 +183,93 @@ fn colour_is_a_choice() {
     assert!(!stderr("--color=never frobnicate").contains('\x1b'));
     let forced = bench.command(&format!("{command} --color always")).env("NO_COLOR", "1").output().unwrap();
     assert!(Run::of(forced).stderr.contains('\x1b'), "the command line outranks the environment");
+}
+
+/// A scene of one red triangle on 8 x 4 pixels, and a second target.
+const SCENE: &str = r#"(
+    version: 1,
+    profile: Nv2a,
+    targets: [(name: "frame", width: 8, height: 4), (name: "spare", width: 2, height: 2)],
+    draws: [(name: "triangle", vertices: Window([
+        (position: (0, 0), diffuse: (255, 0, 0, 255)),
+        (position: (0, 4), diffuse: (255, 0, 0, 255)),
+        (position: (8, 4), diffuse: (255, 0, 0, 255)),
+    ]))],
+)"#;
+
+#[test]
+fn scenes_are_checked() {
+    let bench = Bench::new();
+    bench.write("scene.ron", SCENE);
+    let text = bench.run("check scene.ron").text();
+    assert_data_eq!(&text, file!["cli/check.txt"]);
+    let json: serde_json::Value = serde_json::from_str(&bench.run("check scene.ron --format json").text()).unwrap();
+    assert_eq!((&json["cost"]["triangles"], &json["cost"]["target_pixels"]), (&1.into(), &36.into()));
+
+    bench.write("broken.ron", SCENE.replace("triangle", "triangle\", colour: \""));
+    bench.run("check broken.ron").failed(3, "broken.ron:");
+    bench.run("check missing.ron").failed(4, "missing.ron");
+    bench.write("large.ron", SCENE.replace("width: 8", "width: 5000"));
+    bench.run("check large.ron").failed(5, "5000");
+    bench.run("check scene.ron --policy CMB-3").failed(2, "RULE=VALUE");
+    bench.run("check scene.ron --policy CMB-99=x").failed(2, "CMB-99");
+    bench.run("check scene.ron --policy CMB-3=curly").failed(2, "centred, literal");
+}
+
+#[test]
+fn scenes_are_rendered() {
+    let bench = Bench::new();
+    bench.write("scene.ron", SCENE);
+    bench.run("render scene.ron -o frame.png").data();
+    let limits = ninebit::scene::image::ImageLimits::default();
+    let picture = ninebit::scene::image::load(&bench.path("frame.png"), &limits).unwrap();
+    assert_eq!((picture.width, picture.height, picture.pixels[3 * 8]), (8, 4, [255, 0, 0, 255]));
+
+    let bytes = fs::read(bench.path("frame.png")).unwrap();
+    for arguments in ["-o -", "-o - --threads 1", "-o - --threads 3 --target frame", "-o - --policy CMB-7=each"] {
+        assert_eq!(bench.run(&format!("render scene.ron {arguments}")).data(), bytes, "{arguments}");
+    }
+    assert_ne!(bench.run("render scene.ron --target spare -o -").data(), bytes);
+    bench.run("render scene.ron --target attic -o -").failed(2, "its targets: `frame`, `spare`");
+    bench.run("render scene.ron -o none/frame.png").failed(7, "create its folder first");
+    bench.run("render scene.ron -o scene.ron").failed(2, "is the input");
+    bench.run("render missing.ron -o new.png").failed(4, "missing.ron");
+    assert!(!bench.path("new.png").exists());
+}
+
+#[test]
+fn statistics_are_json_on_stdout() {
+    let bench = Bench::new();
+    bench.write("scene.ron", SCENE);
+    let text = bench.run("render scene.ron -o frame.png --stats json").text();
+    let json: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(json["draws"][0]["name"], "triangle");
+    assert_eq!(json["shaded_pixels"], json["draws"][0]["shaded_pixels"]);
+    assert!(json["shaded_pixels"].as_u64().is_some_and(|count| count > 8 && count < 32), "{text}");
+    assert_eq!(json["targets"][0]["sha256"].as_str().map(str::len), Some(64));
+    assert!(json["microseconds"]["render"].is_u64());
+}
+
+#[test]
+fn pixels_are_traced() {
+    let bench = Bench::new();
+    bench.write("scene.ron", SCENE);
+    assert!(bench.run("trace scene.ron --pixel 0,3").text().contains("triangle"));
+    let json = bench.run("trace scene.ron --pixel 0,3 --format json").text();
+    assert!(serde_json::from_str::<serde_json::Value>(&json).is_ok(), "{json}");
+    bench.run("trace scene.ron --pixel 8,0").failed(2, "columns run from 0 to 7");
+    bench.run("trace scene.ron --pixel 0,0 --draw 1").failed(2, "0 `triangle`");
+}
+
+#[test]
+fn warnings_go_to_stderr_and_change_nothing() {
+    let bench = Bench::new();
+    bench.write(
+        "scene.ron",
+        SCENE.replace("profile: Nv2a,", "profile: Nv2a, names: (colors: { \"grey\": (9, 9, 9) }),"),
+    );
+    let run = bench.run("check scene.ron");
+    assert_eq!(run.status, 0);
+    assert!(run.stderr.contains("warning") && run.stderr.contains("grey"), "{}", run.stderr);
+    assert!(!run.stdout.is_empty());
 }

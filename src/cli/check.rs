@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use ninebit::output::write_stdout;
 use ninebit::state::{Named, Scene};
 use serde_json::json;
 
-use super::Context;
 use super::cost::Cost;
 use super::exit::Failure;
 use super::scene::SceneArguments;
+use super::{Context, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -19,14 +19,6 @@ pub(crate) struct Arguments {
     /// How to print the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// For programs
-    Json,
 }
 
 /// Checks and plans a scene and prints its cost.
@@ -51,7 +43,7 @@ fn text(scene: &Scene, cost: &Cost) -> String {
         let _ = writeln!(text, "{name:<16}{value}");
     };
     row("profile", scene.profile.name().to_owned());
-    row("draws", format!("{} ({} triangles, {} vertices)", cost.draws, cost.triangles, cost.vertices));
+    row("draws", format!("{} ({}, {} vertices)", cost.draws, count(cost.triangles, "triangle"), cost.vertices));
     for target in &scene.targets {
         let depth = target.depth.map_or(String::new(), |depth| format!(", depth {}", depth.format.name()));
         let (width, height, format) = (target.width, target.height, target.format.name());
@@ -61,6 +53,11 @@ fn text(scene: &Scene, cost: &Cost) -> String {
     row("textures", format!("{} ({})", scene.textures.len(), bytes(cost.texture_bytes)));
     row("memory", format!("about {}", bytes(cost.memory_bytes)));
     text
+}
+
+/// A number of things.
+fn count(number: u64, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }
 
 /// A number of bytes for people, rounded up.

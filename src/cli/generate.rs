@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, Subcommand, ValueEnum};
 use ninebit::generate::height_field::{self, SIDES};
 use ninebit::generate::normal_map::{self, HeightChannel};
-use ninebit::output::{Destination, encode_png};
+use ninebit::output::{Compression, Destination, encode_png};
 use ninebit::scene::image::{self, ImageLimits, Rgba};
 
 use super::exit::Failure;
@@ -90,7 +90,7 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 }
 
 fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {
-    Ok(destination.write(&encode_png(image.width, image.height, &image.pixels)?)?)
+    Ok(destination.write(&encode_png(image.width, image.height, &image.pixels, Compression::Small)?)?)
 }
 
 /// Reads a finite number.

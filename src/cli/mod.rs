@@ -49,6 +49,15 @@ enum Command {
     Generate(generate::Command),
 }
 
+/// How a command prints its data.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// For people
+    Text,
+    /// For programs: one JSON document
+    Json,
+}
+
 /// What every command may use.
 #[derive(Clone, Copy, Debug)]
 struct Context {
@@ -104,7 +113,7 @@ fn guarded(color: bool, work: impl FnOnce() -> Exit) -> Exit {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
         let place = place.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
         let report = Report::Message {
-            code: Some("NB0901"),
+            code: Some("NB0801"),
             message: format!("internal error: {}", place.replace('\n', "\n  ")),
             help: Some(format!(
                 "this is a fault of ninebit {}, not of your scene: please report it with this message, the command line and the scene",

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use ninebit::engine::{self, RenderOptions};
-use ninebit::output::{Destination, encode_png, write_stdout};
+use ninebit::output::{Compression, Destination, encode_png, write_stdout};
 use ninebit::state::Named;
 use serde_json::json;
 
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     clock.lap("render");
     let surface = &frames.surfaces[target];
     let pixels = surface.rgba8();
-    destination.write(&encode_png(surface.width, surface.height, &pixels)?)?;
+    destination.write(&encode_png(surface.width, surface.height, &pixels, Compression::Fast)?)?;
     clock.lap("write");
 
     if let Some(Stats::Json) = arguments.stats {

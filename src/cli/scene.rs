@@ -6,7 +6,7 @@ use clap::Args;
 use ninebit::limits::Limits;
 use ninebit::output::Destination;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
-use ninebit::scene;
+use ninebit::scene::{self, ErrorKind, SceneError};
 use ninebit::state::{Policies, Scene};
 
 use super::Context;
@@ -26,10 +26,9 @@ pub(crate) struct SceneArguments {
 impl SceneArguments {
     /// Reads and checks the scene; warnings go to stderr.
     pub(crate) fn load(&self, context: Context) -> Result<Scene, Failure> {
-        let loaded = scene::load(&self.scene, &Limits::default()).map_err(|error| failure(&error, context))?;
-        for warning in &loaded.warnings {
-            let report = Report::Message { code: None, message: warning.clone(), help: None };
-            terminal::print(Level::Warning, &report, context.color);
+        let loaded = scene::load(&self.scene, &Limits::default()).map_err(|error| refused(&error, context))?;
+        if !loaded.warnings.is_empty() {
+            terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
         }
         Ok(loaded.scene)
     }
@@ -67,8 +66,13 @@ impl SceneArguments {
 }
 
 /// A scene that was not accepted.
-fn failure(error: &scene::SceneError, _context: Context) -> Failure {
-    Failure { exit: Exit::Invalid, report: Report::Text(format!("{error:?}")) }
+fn refused(error: &SceneError, context: Context) -> Failure {
+    let exit = match error.kind() {
+        ErrorKind::Invalid => Exit::Invalid,
+        ErrorKind::Missing => Exit::Missing,
+        ErrorKind::Limit => Exit::Limit,
+    };
+    Failure { exit, report: Report::Text(error.render(context.color)) }
 }
 
 /// Index of the target of that name, or of the first.

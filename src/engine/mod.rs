@@ -1,6 +1,6 @@
 //! The scalar engine: a plan in, frames or the trace of one pixel out.
 //!
-//! [`pixel`] owns the order in which the blocks run for one pixel, generic over the lane and the observer; this module walks
+//! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; this module walks
 //! draws, bands of rows, triangles and quads. A pixel's result is a pure function of the plan, whatever the bands and threads.
 
 mod pixel;
@@ -11,10 +11,11 @@ mod walk;
 pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
 
 use crate::frame::{Frames, Surface};
-use crate::plan::Plan;
+use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::{Target, TextureImage};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +48,7 @@ pub fn render(plan: &Plan, options: &RenderOptions) -> Frames {
     render_counted(plan, options, &|_, _| {}).0
 }
 
-/// Renders every draw, counting; `progress` is told how many of how many draws are done.
+/// Renders every draw, counting; `progress` is told how many of how many bands of rows are done, from any thread.
 pub fn render_counted(
     plan: &Plan,
     options: &RenderOptions,
@@ -58,10 +59,13 @@ pub fn render_counted(
     let pool = (options.threads != 1)
         .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok())
         .flatten();
+    let bands = |draw: &PlannedDraw| (plan.targets[draw.target].height as usize).div_ceil(BAND);
+    let total = plan.draws.iter().map(bands).sum();
+    let done = AtomicUsize::new(0);
+    let band_done = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     for index in 0..plan.draws.len() {
-        let shaded = draw(plan, index, &mut frames, pool.as_ref());
+        let shaded = draw(plan, index, &mut frames, pool.as_ref(), &band_done);
         statistics.shaded_pixels.push(shaded);
-        progress(index + 1, plan.draws.len());
     }
     (frames, statistics)
 }
@@ -93,7 +97,13 @@ pub(crate) fn texture_words<'a>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<
 }
 
 /// Runs one draw on its target; covered pixels.
-pub(crate) fn draw(plan: &Plan, index: usize, frames: &mut Frames, pool: Option<&rayon::ThreadPool>) -> u64 {
+pub(crate) fn draw(
+    plan: &Plan,
+    index: usize,
+    frames: &mut Frames,
+    pool: Option<&rayon::ThreadPool>,
+    band_done: &(dyn Fn() + Sync),
+) -> u64 {
     let planned = &plan.draws[index];
     let target = &mut frames.surfaces[planned.target];
     let width = target.width as usize;
@@ -109,11 +119,14 @@ pub(crate) fn draw(plan: &Plan, index: usize, frames: &mut Frames, pool: Option<
             pairs.enumerate().map(|(n, (w, d))| band_of(n, w, d)).collect()
         };
         let pixels = planned.window.width as usize * planned.window.height as usize;
+        let run = |mut band: walk::Band<'_>| {
+            let shaded = walk::draw(plan, planned, &textures, &mut band);
+            band_done();
+            shaded
+        };
         match pool {
-            Some(pool) if pixels >= SMALL => pool.install(|| {
-                bands.into_par_iter().map(|mut band| walk::draw(plan, planned, &textures, &mut band)).sum()
-            }),
-            _ => bands.into_iter().map(|mut band| walk::draw(plan, planned, &textures, &mut band)).sum(),
+            Some(pool) if pixels >= SMALL => pool.install(|| bands.into_par_iter().map(run).sum()),
+            _ => bands.into_iter().map(run).sum(),
         }
     };
     let target = &mut frames.surfaces[planned.target];

@@ -119,7 +119,7 @@ pub fn trace(plan: &Plan, target: usize, (x, y): (u32, u32), only: Option<usize>
             draws.extend(traced.into_iter().filter(|_| only.is_none_or(|d| d == index)));
         }
         if rendered {
-            draw(plan, index, &mut frames, None);
+            draw(plan, index, &mut frames, None, &|| {});
         }
     }
     let shown = surface::show(description.format, pixel.word);

@@ -42,9 +42,10 @@ fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
     let (names, expressions) = (width(|l| l.0.chars().count(), 24), width(|l| l.1.chars().count(), 58));
+    let integers = draw.steps.iter().map(|s| s.value.to_string().len()).max().unwrap_or(0).max(7);
     writeln!(
         out,
-        "    {:names$}  {:expressions$}  {:>12} {:>12} {:>12}  rule",
+        "    {:names$}  {:expressions$}  {:>integers$} {:>10} {:>10}  rule",
         "what", "how", "integer", "real", "ideal"
     )?;
     for (step, (name, expression)) in draw.steps.iter().zip(&lines) {
@@ -55,7 +56,7 @@ fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
         let real = if step.per_one == 1 { String::new() } else { format!("{:.6}", step.real()) };
         let ideal = step.ideal.filter(|_| step.per_one != 1).map_or(String::new(), |i| format!("{i:.6}"));
         let line = format!(
-            "    {name:names$}  {expression:expressions$}  {:>12} {real:>12} {ideal:>12}  {}",
+            "    {name:names$}  {expression:expressions$}  {:>integers$} {real:>10} {ideal:>10}  {}",
             step.value, step.rule
         );
         match &step.note {
@@ -78,7 +79,8 @@ fn expression(step: &Step) -> String {
     };
     match step.operation {
         "given" => String::new(),
-        "product" | "dot_product" | "sum_of_products" => pairs(&step.inputs),
+        "product" | "dot_product" => pairs(&step.inputs),
+        "sum_of_products" => "P0 E0 + P1 E1 + P2 E2".to_string(),
         "edge_function" => {
             format!("{} * {} + {} * {} + {}", value(0), value(3), value(1), value(4), value(2))
         }

@@ -1,27 +1,126 @@
-//! The scene front end: files, paths, meshes.
+//! The scene front end: text in, checked state out.
+//!
+//! [`load`] reads a file, [`parse`] a text. What they return draws without further checks; what they refuse comes back as
+//! [`Diagnostic`]s that point into the text, all of them at once. The format is described in `docs/scene-format.md`.
 
+pub mod code;
+mod diagnostic;
 pub mod image;
+mod lower;
 pub mod mesh;
 pub mod path;
+mod raw;
+mod reader;
+mod render;
+mod source;
+mod split;
+mod wording;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 
 use crate::limits::Limits;
 use crate::state::Scene;
+pub use diagnostic::{Diagnostic, ErrorKind, SceneError, Severity, Source};
+pub use lower::{DrawSpans, VertexSpans};
+pub use render::render;
 
-/// Stand-in for the interface.
-#[derive(Debug)]
+/// A scene that was read and checked.
+#[derive(Clone, Debug)]
 pub struct Loaded {
-    /// Checked.
+    /// What to draw.
     pub scene: Scene,
-    /// Worth telling.
-    pub warnings: Vec<String>,
+    /// What is probably not meant.
+    pub warnings: Vec<Diagnostic>,
+    /// The text that the warnings and the places point into.
+    pub source: Source,
+    /// Places of the draws, in their order.
+    pub draw_spans: Vec<DrawSpans>,
 }
-/// Stand-in for the interface.
-#[derive(Debug)]
-pub struct SceneError {}
-/// Stand-in for the interface.
+
+impl Loaded {
+    /// The warnings as text for a terminal; empty if there are none.
+    pub fn render_warnings(&self, color: bool) -> String {
+        render(&self.warnings, &self.source, color)
+    }
+}
+
+/// Reads and checks the scene file at `path`; the files it names are looked for in its folder.
 ///
 /// # Errors
-/// Always.
-pub fn load(_path: &std::path::Path, _limits: &Limits) -> Result<Loaded, SceneError> {
-    Err(SceneError {})
+/// The file is missing, too large or not UTF-8; the scene is not one; a file that it names cannot be used.
+pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
+    let name = path.display().to_string();
+    let fail = |finding: Diagnostic, text: String| SceneError {
+        diagnostics: vec![finding],
+        suppressed: 0,
+        source: Source { name: name.clone(), text },
+    };
+    let bytes = match read(path, limits.scene_bytes) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            let finding = if error.kind() == std::io::ErrorKind::NotFound {
+                Diagnostic::error("NB0111", None, "there is no such scene file")
+                    .help("check the spelling and the folder; upper and lower case count")
+            } else {
+                Diagnostic::error("NB0112", None, format!("the scene file cannot be read: {error}"))
+                    .help("name a regular file that may be read")
+            };
+            return Err(fail(finding, String::new()));
+        }
+    };
+    if bytes.len() as u64 > limits.scene_bytes {
+        return Err(fail(too_large(limits.scene_bytes), String::new()));
+    }
+    match String::from_utf8(bytes) {
+        Ok(text) => parse(&text, path, limits),
+        Err(error) => {
+            let at = error.utf8_error().valid_up_to();
+            let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
+            let finding = Diagnostic::error("NB0102", at..at + '\u{fffd}'.len_utf8(), "the scene is not UTF-8 text")
+                .label("no character is written like this")
+                .help("save the file as UTF-8");
+            Err(fail(finding, text))
+        }
+    }
+}
+
+fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    if file.metadata()?.is_dir() {
+        return Err(std::io::Error::other("it is a folder"));
+    }
+    let mut bytes = Vec::new();
+    // One byte more than allowed tells a file at the limit from one beyond it.
+    file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn too_large(limit: u64) -> Diagnostic {
+    Diagnostic::error("NB0601", None, format!("the scene file is larger than {limit} bytes"))
+        .help("move repeated vertex lists to `names`, use generated meshes, or split the scene")
+}
+
+/// Reads and checks a scene from its text. `origin` is its path: messages name it, and the files that the scene names are looked
+/// for in its folder.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let source = Source { name: origin.display().to_string(), text: text.to_owned() };
+    if text.len() as u64 > limits.scene_bytes {
+        let source = Source { text: String::new(), ..source };
+        return Err(SceneError { diagnostics: vec![too_large(limits.scene_bytes)], suppressed: 0, source });
+    }
+    let mut reader = reader::Reader::new(text, limits);
+    let folder = origin.parent().unwrap_or(Path::new(""));
+    let found = lower::scene(&mut reader, text, folder);
+    let mut diagnostics = reader.diagnostics;
+    diagnostics.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
+    match found {
+        Some((scene, draw_spans)) => Ok(Loaded { scene, warnings: diagnostics, source, draw_spans }),
+        None => Err(SceneError { diagnostics, suppressed: reader.suppressed, source }),
+    }
 }

@@ -16,6 +16,8 @@ named! {
         R5G6B5,
         /// 16 bits, top bit ignored, alpha 255.
         X1R5G5B5,
+        /// 16 bits, the top bit is alpha: 0 or 255.
+        A1R5G5B5,
         /// Luminance byte: L, L, L, 255.
         L8,
         /// Alpha byte: 255, 255, 255, A.
@@ -30,7 +32,7 @@ impl TextureFormat {
     pub fn bytes(self) -> u32 {
         match self {
             TextureFormat::A8R8G8B8 | TextureFormat::X8R8G8B8 => 4,
-            TextureFormat::R5G6B5 | TextureFormat::X1R5G5B5 | TextureFormat::G8B8 => 2,
+            TextureFormat::R5G6B5 | TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5 | TextureFormat::G8B8 => 2,
             TextureFormat::L8 | TextureFormat::A8 => 1,
         }
     }

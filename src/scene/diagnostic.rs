@@ -1,0 +1,185 @@
+//! What is wrong with a scene, where, and what to do about it.
+
+use std::fmt;
+use std::ops::Range;
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Severity {
+    /// The scene is not accepted.
+    Error,
+    /// The scene is accepted; something in it is probably not meant.
+    Warning,
+}
+
+/// What a caller does about a refused scene: each kind has its exit code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ErrorKind {
+    /// The scene, or a file that it names, makes no sense.
+    Invalid,
+    /// The scene, or a file that it names, does not exist.
+    Missing,
+    /// Sound as far as looked at, but more than is allowed.
+    Limit,
+}
+
+impl ErrorKind {
+    /// Exit code of the command line.
+    pub fn exit_code(self) -> u8 {
+        match self {
+            ErrorKind::Invalid => 3,
+            ErrorKind::Missing => 4,
+            ErrorKind::Limit => 5,
+        }
+    }
+}
+
+/// One finding.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Diagnostic {
+    /// Stable code, for example "NB0201"; [`code::CODES`](super::code::CODES) lists them.
+    pub code: &'static str,
+    /// Error or warning.
+    pub severity: Severity,
+    /// What is wrong, in one line.
+    pub message: String,
+    /// Bytes of [`Source::text`] that are to blame; `None` if no text is.
+    pub span: Option<Range<usize>>,
+    /// Said under the marked text.
+    pub label: String,
+    /// Other places that matter, and why.
+    pub related: Vec<(Range<usize>, String)>,
+    /// The rule of `docs/numerics.md` behind it.
+    pub rule: Option<&'static str>,
+    /// Background.
+    pub notes: Vec<String>,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    /// An error about `span`.
+    pub(super) fn error(code: &'static str, span: impl Into<Option<Range<usize>>>, message: impl Into<String>) -> Self {
+        Diagnostic {
+            code,
+            severity: Severity::Error,
+            message: message.into(),
+            span: span.into(),
+            label: String::new(),
+            related: Vec::new(),
+            rule: None,
+            notes: Vec::new(),
+            help: None,
+        }
+    }
+
+    /// A warning about `span`.
+    pub(super) fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+        Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, span, message) }
+    }
+
+    pub(super) fn label(mut self, label: impl Into<String>) -> Self {
+        self.label = label.into();
+        self
+    }
+
+    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+
+    pub(super) fn rule(mut self, rule: &'static str) -> Self {
+        self.rule = Some(rule);
+        self
+    }
+
+    pub(super) fn note(mut self, note: impl Into<String>) -> Self {
+        self.notes.push(note.into());
+        self
+    }
+
+    pub(super) fn related(mut self, span: Range<usize>, label: impl Into<String>) -> Self {
+        self.related.push((span, label.into()));
+        self
+    }
+
+    /// What a caller does about it.
+    pub fn kind(&self) -> ErrorKind {
+        match self.code {
+            "NB0111" | "NB0502" | "NB0510" => ErrorKind::Missing,
+            "NB0514" | "NB0515" | "NB0516" => ErrorKind::Limit,
+            code if code.starts_with("NB06") => ErrorKind::Limit,
+            _ => ErrorKind::Invalid,
+        }
+    }
+}
+
+/// The text of a scene and its name in messages.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Source {
+    /// Shown before line and column.
+    pub name: String,
+    /// The text, without a byte order mark.
+    pub text: String,
+}
+
+impl Source {
+    /// Line and column of a byte offset, both from 1; columns count characters.
+    pub fn position(&self, offset: usize) -> (usize, usize) {
+        let offset = floor_boundary(&self.text, offset);
+        let before = &self.text[..offset];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        (1 + before.bytes().filter(|byte| *byte == b'\n').count(), 1 + before[line_start..].chars().count())
+    }
+}
+
+/// The largest character boundary at or below `offset`.
+pub(super) fn floor_boundary(text: &str, offset: usize) -> usize {
+    let mut offset = offset.min(text.len());
+    while !text.is_char_boundary(offset) {
+        offset -= 1;
+    }
+    offset
+}
+
+/// Why a scene was not accepted: everything that is wrong with it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SceneError {
+    /// Errors and warnings, in the order of the text. At least one error.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Findings beyond the ones kept.
+    pub suppressed: usize,
+    /// The text they point into.
+    pub source: Source,
+}
+
+impl SceneError {
+    /// The findings as text for a terminal.
+    pub fn render(&self, color: bool) -> String {
+        let mut text = super::render::render(&self.diagnostics, &self.source, color);
+        if self.suppressed > 0 {
+            text.push_str(&format!("\n... and {} more\n", self.suppressed));
+        }
+        text
+    }
+
+    /// The kind that all errors share; [`ErrorKind::Invalid`] if they differ.
+    pub fn kind(&self) -> ErrorKind {
+        let mut kinds = self.diagnostics.iter().filter(|d| d.severity == Severity::Error).map(Diagnostic::kind);
+        let first = kinds.next().unwrap_or(ErrorKind::Invalid);
+        if kinds.all(|kind| kind == first) { first } else { ErrorKind::Invalid }
+    }
+
+    /// Exit code of the command line.
+    pub fn exit_code(&self) -> u8 {
+        self.kind().exit_code()
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(false))
+    }
+}
+
+impl std::error::Error for SceneError {}

@@ -1,0 +1,235 @@
+//! Generated meshes, and what of a mesh goes into the vertices.
+#![allow(
+    clippy::float_arithmetic,
+    reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
+)]
+
+use super::matrix::{dot, normalize, subtract};
+use super::names::Names;
+use super::*;
+use crate::scene::mesh::{self, Mesh};
+use crate::scene::raw::Numbers;
+use crate::state::{Vertex, VertexColor};
+
+/// A mesh from its description.
+pub(super) fn generate<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Mesh> {
+    let (kind, rest) = reader.variant(raw, "mesh", &["Grid", "Sphere"])?;
+    let opening = reader.range(rest.get(..1).unwrap_or(rest));
+    let count = |reader: &mut Reader<'a>, field: &Option<Raw<'a, u32>>, name: &str, owner: &str| {
+        reader.required(field, name, owner, opening.clone()).and_then(|raw| reader.read(&raw))
+    };
+    let pair = |reader: &mut Reader<'a>, field: &Option<Raw<'a, Numbers>>, name: &str, default: [f32; 2]| match field {
+        Some(raw) => reader.numbers(raw, name, 2, 2, [0.0; 4]).map(|[a, b, ..]| [a, b]),
+        None => Some(default),
+    };
+    let mesh = if kind == 0 {
+        let grid = reader.read(&Raw::<source::Grid<'a>>::new(rest))?;
+        let columns = count(reader, &grid.columns, "columns", "grid");
+        let rows = count(reader, &grid.rows, "rows", "grid");
+        let size = pair(reader, &grid.size, "the size of a grid", [2.0, 2.0]);
+        let repeat = pair(reader, &grid.repeat, "the repeat of a texture", [1.0, 1.0]);
+        mesh::grid(columns?, rows?, size?, repeat?)
+    } else {
+        let sphere = reader.read(&Raw::<source::Sphere<'a>>::new(rest))?;
+        let slices = count(reader, &sphere.slices, "slices", "sphere");
+        let stacks = count(reader, &sphere.stacks, "stacks", "sphere");
+        let radius = match &sphere.radius {
+            Some(raw) => reader.finite(raw),
+            None => Some(1.0),
+        };
+        let repeat = pair(reader, &sphere.repeat, "the repeat of a texture", [1.0, 1.0]);
+        mesh::sphere(slices?, stacks?, radius?, repeat?)
+    };
+    match mesh {
+        Ok(mesh) if mesh.positions.len() <= reader.limits.vertices => Some(mesh),
+        Ok(mesh) => {
+            let place = reader.span(raw);
+            reader.push(vertex::too_many(place, mesh.positions.len(), reader.limits.vertices));
+            None
+        }
+        Err(error) => {
+            let code = if matches!(error, mesh::MeshError::TooFine { .. }) { "NB0603" } else { "NB0206" };
+            let place = reader.span(raw);
+            reader.push(Diagnostic::error(code, place, error.to_string()).label("this mesh"));
+            None
+        }
+    }
+}
+
+/// What of a mesh goes into one output of its vertices.
+pub(super) enum Source {
+    /// The same for all.
+    Color(VertexColor),
+    /// The same for all.
+    Coordinates([f32; 4]),
+    Position,
+    Normal,
+    Tangent,
+    Binormal,
+    TextureCoordinates,
+    /// Toward a light.
+    Light {
+        light: Light,
+        tangent_space: bool,
+    },
+    /// Half-way between a light and the viewer.
+    Half {
+        light: Light,
+        viewer: [f32; 3],
+        tangent_space: bool,
+    },
+}
+
+/// Object space.
+#[derive(Clone, Copy)]
+pub(super) enum Light {
+    Position([f32; 3]),
+    Direction([f32; 3]),
+}
+
+const SOURCES: &[&str] =
+    &["Position", "Normal", "Tangent", "Binormal", "TextureCoordinates", "LightVector", "HalfVector"];
+
+/// Reads the source of an output; `color` says whether the output is a colour.
+pub(super) fn source<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::Attribute>,
+    color: bool,
+) -> Option<Source> {
+    let (head, _) = raw.split();
+    if color && (raw.is_text() || head.is_empty() || head == "Float") {
+        return color::vertex_color(reader, names, &raw.as_other()).map(Source::Color);
+    }
+    if !color && raw.text.starts_with('(') {
+        return vertex::coordinates(reader, &raw.as_other()).map(Source::Coordinates);
+    }
+    let (kind, rest) = reader.variant(raw, "mesh attribute", SOURCES)?;
+    if kind < 5 && !rest.is_empty() {
+        reader.unknown_variant(raw, "mesh attribute", SOURCES);
+        return None;
+    }
+    Some(match kind {
+        0 => Source::Position,
+        1 => Source::Normal,
+        2 => Source::Tangent,
+        3 => Source::Binormal,
+        4 => Source::TextureCoordinates,
+        5 => {
+            let fields = reader.read(&Raw::<source::LightVector<'a>>::new(rest))?;
+            let light = light(reader, rest, &fields.position, &fields.direction);
+            let tangent_space = space(reader, &fields.space);
+            Source::Light { light: light?, tangent_space: tangent_space? }
+        }
+        _ => {
+            let fields = reader.read(&Raw::<source::HalfVector<'a>>::new(rest))?;
+            let light = light(reader, rest, &fields.position, &fields.direction);
+            let place = reader.range(rest.get(..1).unwrap_or(rest));
+            let viewer = reader.required(&fields.viewer, "viewer", "half vector", place);
+            let viewer = viewer.and_then(|raw| point(reader, &raw, "the viewer's position"));
+            let tangent_space = space(reader, &fields.space);
+            Source::Half { light: light?, viewer: viewer?, tangent_space: tangent_space? }
+        }
+    })
+}
+
+fn point<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, what: &str) -> Option<[f32; 3]> {
+    reader.numbers(raw, what, 3, 3, [0.0; 4]).map(|[x, y, z, _]| [x, y, z])
+}
+
+fn light<'a>(
+    reader: &mut Reader<'a>,
+    text: &'a str,
+    position: &Option<Raw<'a, Numbers>>,
+    direction: &Option<Raw<'a, Numbers>>,
+) -> Option<Light> {
+    match (position, direction) {
+        (Some(raw), None) => point(reader, raw, "a light's position").map(Light::Position),
+        (None, Some(raw)) => point(reader, raw, "a light's direction").map(Light::Direction),
+        (both, _) => {
+            let message = match both {
+                Some(_) => "a light has a position or a direction, not both",
+                None => "this light has neither `position` nor `direction`",
+            };
+            let place = reader.range(text.get(..1).unwrap_or(text));
+            reader.push(
+                Diagnostic::error("NB0202", place, message)
+                    .label("in here")
+                    .help("write `position: (x, y, z)` for a lamp, `direction: (x, y, z)` for a far sun (toward it)"),
+            );
+            None
+        }
+    }
+}
+
+fn space<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> Option<bool> {
+    match raw {
+        Some(raw) => reader.variant(raw, "space", &["Tangent", "Object"]).map(|(index, _)| index == 0),
+        None => Some(true),
+    }
+}
+
+/// Where the attributes of a mesh go.
+pub(super) struct Outputs {
+    pub(super) diffuse: Source,
+    pub(super) specular: Source,
+    pub(super) coordinates: [Source; 4],
+}
+
+/// The vertices of a mesh; positions are left in object space.
+pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vec<Vertex> {
+    let vertex = |index: usize| {
+        let [x, y, z] = mesh.positions[index];
+        let color = |source: &Source| match source {
+            Source::Color(color) => *color,
+            source => {
+                let [x, y, z, _] = evaluate(mesh, index, source);
+                VertexColor::Floats([0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.5 + 0.5 * z, 1.0])
+            }
+        };
+        Vertex {
+            position: [x, y, z, 1.0],
+            diffuse: color(&outputs.diffuse),
+            specular: color(&outputs.specular),
+            fog: 1.0,
+            texture_coordinates: [0, 1, 2, 3].map(|set| evaluate(mesh, index, &outputs.coordinates[set])),
+        }
+    };
+    (0..mesh.positions.len()).map(vertex).collect()
+}
+
+fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
+    let extend = |v: [f32; 3]| [v[0], v[1], v[2], 1.0];
+    let position = mesh.positions[index];
+    let toward = |light: &Light| match light {
+        Light::Position(light) => normalize(subtract(*light, position)),
+        Light::Direction(direction) => normalize(*direction),
+    };
+    let into = |vector: [f32; 3], tangent_space: bool| {
+        // A light exactly at the vertex has no direction: zero, not NaN.
+        let vector = if vector.iter().all(|c| c.is_finite()) { vector } else { [0.0; 3] };
+        if !tangent_space {
+            return extend(vector);
+        }
+        let axes = [mesh.tangents[index], mesh.binormals[index], mesh.normals[index]];
+        extend(axes.map(|axis| dot(vector, axis)))
+    };
+    match source {
+        Source::Color(_) => [0.0, 0.0, 0.0, 1.0],
+        Source::Coordinates(values) => *values,
+        Source::Position => extend(position),
+        Source::Normal => extend(mesh.normals[index]),
+        Source::Tangent => extend(mesh.tangents[index]),
+        Source::Binormal => extend(mesh.binormals[index]),
+        Source::TextureCoordinates => {
+            let [s, t] = mesh.texture_coordinates[index];
+            [s, t, 0.0, 1.0]
+        }
+        Source::Light { light, tangent_space } => into(toward(light), *tangent_space),
+        Source::Half { light, viewer, tangent_space } => {
+            let (light, viewer) = (toward(light), normalize(subtract(*viewer, position)));
+            let half = normalize([light[0] + viewer[0], light[1] + viewer[1], light[2] + viewer[2]]);
+            into(half, *tangent_space)
+        }
+    }
+}

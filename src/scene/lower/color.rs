@@ -1,0 +1,121 @@
+//! Colours: bytes as they are, or floats.
+#![allow(clippy::float_arithmetic, reason = "NUM-0: constants given as floats become bytes here")]
+
+use super::names::Names;
+use super::*;
+use crate::scene::raw::{Few, Numbers, Tuple};
+use crate::state::VertexColor;
+
+/// A colour that stays as it was given. `None` once the reason has been recorded.
+pub(super) fn vertex_color<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::Color>,
+) -> Option<VertexColor> {
+    if raw.is_text() { names.color(reader, raw) } else { literal(reader, raw) }
+}
+
+/// A constant colour: four bytes.
+pub(super) fn constant<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::Color>,
+) -> Option<[u8; 4]> {
+    Some(match vertex_color(reader, names, raw)? {
+        VertexColor::Bytes(bytes) => bytes,
+        VertexColor::Floats(floats) => floats.map(byte),
+    })
+}
+
+/// A constant colour that may be absent.
+pub(super) fn constant_or<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Option<Raw<'a, source::Color>>,
+    default: [u8; 4],
+) -> [u8; 4] {
+    raw.as_ref().and_then(|raw| constant(reader, names, raw)).unwrap_or(default)
+}
+
+/// Constants 0 and 1; the ones not written are zero.
+pub(super) fn constants<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, Tuple<'a, source::Color>>,
+) -> [[u8; 4]; 2] {
+    let mut constants = [[0; 4]; 2];
+    let Some(parts) = reader.read(raw) else { return constants };
+    if parts.0.len() > 2 || parts.0.is_empty() {
+        let message = format!("there are two constant colours, not {}", parts.0.len());
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0211", place, message)
+                .label(format!("{} here", parts.0.len()))
+                .help("write `constants: ((255, 0, 0, 255), (0, 255, 0, 255))`"),
+        );
+        return constants;
+    }
+    for (slot, part) in constants.iter_mut().zip(&parts.0) {
+        *slot = constant(reader, names, part).unwrap_or_default();
+    }
+    constants
+}
+
+/// NUM-0: clamped to 0..1, then floor(255 c + 0.5), which is exact in 64 bits.
+fn byte(value: f32) -> u8 {
+    (255.0 * f64::from(value.clamp(0.0, 1.0)) + 0.5).floor() as u8
+}
+
+/// A colour that is not a name.
+pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
+    let (head, rest) = raw.split();
+    if head.is_empty() && raw.text.starts_with('(') {
+        return bytes(reader, raw);
+    }
+    if head != "Float" {
+        let found = if head.is_empty() { raw.text } else { head };
+        let place = reader.range(found);
+        reader.push(
+            Diagnostic::error("NB0205", place, format!("expected a colour, found `{}`", shorten(found)))
+                .label("not a colour")
+                .help(
+                    "write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, or \"the name of a colour\"",
+                ),
+        );
+        return None;
+    }
+    reader.numbers(&Raw::<Numbers>::new(rest), "a colour", 3, 4, [0.0, 0.0, 0.0, 1.0]).map(VertexColor::Floats)
+}
+
+/// Three or four bytes.
+fn bytes<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
+    match Few::<u8>::split(raw.text).or_else(|| reader.attempt(raw.text)) {
+        Some(Few { values: [r, g, b, _], count: 3 }) => return Some(VertexColor::Bytes([r, g, b, 255])),
+        Some(Few { values, count: 4 }) => return Some(VertexColor::Bytes(values)),
+        _ => {}
+    }
+    // Something is wrong: find out what.
+    let parts = reader.read(&raw.as_other::<Tuple<'a, u8>>())?.0;
+    let mut wrong = false;
+    for part in &parts {
+        if reader.attempt::<u8>(part.text).is_none() {
+            wrong = true;
+            let place = reader.span(part);
+            let message = format!("`{}` is not a byte of a colour", shorten(part.text));
+            reader.push(
+                Diagnostic::error("NB0206", place, message)
+                    .label("bytes are whole numbers from 0 to 255")
+                    .help("for 0.0 to 1.0 write `Float(1.0, 0.5, 0.0, 1.0)`"),
+            );
+        }
+    }
+    if !wrong {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0211", place, format!("a colour has 3 or 4 bytes, not {}", parts.len()))
+                .label("R, G, B and perhaps A")
+                .help("write `(255, 128, 0)` or `(255, 128, 0, 255)`"),
+        );
+    }
+    None
+}

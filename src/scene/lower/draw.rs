@@ -1,0 +1,462 @@
+//! Draws, in the order of the text.
+
+use std::collections::HashMap;
+
+use super::attribute::{Outputs, Source};
+use super::names::Names;
+use super::target::Targets;
+use super::texture::Textures;
+use super::*;
+use crate::state::{
+    Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, Texture, TextureImage, Topology, VertexColor,
+    Viewport,
+};
+
+/// Reads the draws, with their places.
+pub(super) fn draws<'a>(
+    reader: &mut Reader<'a>,
+    names: &mut Names<'a>,
+    targets: &Targets,
+    textures: &mut Textures,
+    raw: &Option<Raw<'a, source::List<'a, source::Draw<'a>>>>,
+) -> Vec<(Draw, DrawSpans)> {
+    let list = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    if let Some(raw) = raw
+        && list.len() > reader.limits.draws
+    {
+        let message = format!("{} draws are more than {}", list.len(), reader.limits.draws);
+        reader.push(
+            Diagnostic::error("NB0604", reader.span(raw), message)
+                .label("too many")
+                .help("put several triangles into one draw; `ninebit limits` prints what is allowed"),
+        );
+        return Vec::new();
+    }
+    let mut draws: Vec<(Draw, DrawSpans)> = Vec::with_capacity(list.len());
+    let mut seen: HashMap<String, Range<usize>> = HashMap::new();
+    let mut written = vec![false; targets.list.len()];
+    let mut budget = Budget { vertices: reader.limits.vertices, indices: reader.limits.indices, spent: false };
+    for (index, raw) in list.iter().enumerate() {
+        let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        let Some(fields) = reader.read(raw) else { continue };
+        let mut place = opening.clone();
+        let mut name = format!("draw {index}");
+        if let Some(raw) = &fields.name
+            && let Some(given) = reader.read(raw)
+        {
+            place = reader.span(raw);
+            if let Some(first) = seen.get(&given) {
+                let first = first.clone();
+                reader.push(crate::scene::wording::twice("draw", &given, place.clone(), first));
+            }
+            seen.insert(given.clone(), place.clone());
+            name = given;
+        }
+        let header = Header { name, place, opening };
+        if let Some(draw) = draw(reader, names, targets, textures, &fields, header, &mut budget, &written) {
+            if let Some(flag) = written.get_mut(draw.0.target) {
+                *flag = true;
+            }
+            draws.push(draw);
+        }
+        if budget.spent {
+            break;
+        }
+    }
+    draws
+}
+
+/// Vertices and indices that the scene may still have.
+struct Budget {
+    vertices: usize,
+    indices: usize,
+    spent: bool,
+}
+
+struct Header {
+    name: String,
+    place: Range<usize>,
+    opening: Range<usize>,
+}
+
+/// The vertices of a draw as they were described.
+struct Geometry {
+    positions: Positions,
+    vertices: Vec<crate::state::Vertex>,
+    spans: VertexSpans,
+    /// Of a mesh.
+    triangles: Option<Vec<u32>>,
+}
+
+#[expect(clippy::too_many_arguments, reason = "a draw can refer to everything")]
+fn draw<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    textures: &mut Textures,
+    fields: &source::Draw<'a>,
+    header: Header,
+    budget: &mut Budget,
+    written: &[bool],
+) -> Option<(Draw, DrawSpans)> {
+    let target = match &fields.target {
+        Some(raw) => targets.find(reader, raw),
+        None => Some(0),
+    };
+    reader.reserve(&fields.texture_shader, "texture shaders");
+    reader.reserve(&fields.texgen, "texture coordinate generation");
+    reader.reserve(&fields.texture_matrices, "texture matrices");
+    reader.reserve(&fields.truth, "the draw's truth (light, viewer, material)");
+    let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
+    let geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
+    let (units, unit_places) = unit::units(reader, names, textures, &fields.textures);
+    let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
+    let topology = reader.name_or(&fields.topology, Topology::Triangles);
+    let (combiners, reads) = match &program {
+        Some(Some(program)) => (program.combiners.clone(), program.reads.clone()),
+        _ => (combiner::default_program(), [None, None, None, None]),
+    };
+    let mut draw = Draw {
+        name: header.name,
+        target: target.unwrap_or(0),
+        positions: Positions::Window,
+        vertices: Vec::new(),
+        indices: Vec::new(),
+        topology,
+        shade_model: reader.name_or(&fields.shade_model, ShadeModel::Smooth),
+        provoking_vertex: reader.name_or(&fields.provoking_vertex, ProvokingVertex::Last),
+        perspective: reader.or(&fields.perspective, true),
+        cull: reader.name_or(&fields.cull, Cull::None),
+        front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
+        scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
+        fog: raster::fog(reader, names, &fields.fog),
+        textures: units,
+        combiners,
+        alpha_test: None,
+        depth_test: None,
+        blend: None,
+        blend_constant: [0; 4],
+        color_mask: [true; 4],
+    };
+    raster::operations(reader, names, targets, fields, &mut draw);
+    for (unit, read) in reads.iter().enumerate() {
+        if let (Some(place), None) = (read, &units[unit]) {
+            reader.push(
+                Diagnostic::warning("NB0902", place.clone(), format!("texture unit {unit} is read but has no texture"))
+                    .label("gives black, opaque")
+                    .related(header.place.clone(), "in this draw")
+                    .rule("TEX-16")
+                    .help("give the draw `textures: [...]` with an entry for this unit"),
+            );
+        }
+    }
+    let bound = units.iter().zip(&unit_places).filter_map(|(unit, place)| Some((unit.as_ref()?, place)));
+    for (unit, place) in bound {
+        feedback(reader, targets, &textures.list[unit.texture], draw.target, place, written);
+    }
+    let geometry = geometry?;
+    draw.positions = geometry.positions;
+    draw.vertices = geometry.vertices;
+    draw.indices = indices(reader, fields, geometry.triangles, draw.vertices.len(), topology)?;
+    target?;
+    budget.take(reader, &draw, &header.place)?;
+    Some((draw, DrawSpans { draw: header.place, vertices: geometry.spans }))
+}
+
+impl Budget {
+    fn take(&mut self, reader: &mut Reader<'_>, draw: &Draw, place: &Range<usize>) -> Option<()> {
+        let vertices = self.vertices.checked_sub(draw.vertices.len());
+        let indices = self.indices.checked_sub(draw.indices.len());
+        let (Some(vertices), Some(indices)) = (vertices, indices) else {
+            self.spent = true;
+            if vertices.is_none() {
+                let (most, count) = (reader.limits.vertices, draw.vertices.len());
+                let total = most - self.vertices + count;
+                reader.push(vertex::too_many(place.clone(), total, most));
+            } else {
+                let message = format!("more than {} indices in a scene", reader.limits.indices);
+                reader.push(
+                    Diagnostic::error("NB0609", place.clone(), message)
+                        .label("too many from here")
+                        .help("`ninebit limits` prints what is allowed"),
+                );
+            }
+            return None;
+        };
+        (self.vertices, self.indices) = (vertices, indices);
+        Some(())
+    }
+}
+
+/// A draw may not sample what it draws into, and had better sample something drawn before.
+fn feedback(
+    reader: &mut Reader<'_>,
+    targets: &Targets,
+    texture: &Texture,
+    target: usize,
+    place: &Range<usize>,
+    written: &[bool],
+) {
+    let TextureImage::Target { target: sampled, .. } = texture.image else { return };
+    let name = targets.list.get(sampled).map_or("", |target| target.name.as_str());
+    if sampled == target {
+        reader.push(
+            Diagnostic::error(
+                "NB0217",
+                place.clone(),
+                format!("this draw samples its own target \"{}\"", shorten(name)),
+            )
+            .label("shows the target that is drawn into")
+            .help("draw into another target and sample that one"),
+        );
+    } else if !written.get(sampled).copied().unwrap_or(true) {
+        reader.push(
+            Diagnostic::warning(
+                "NB0904",
+                place.clone(),
+                format!("no earlier draw draws into target \"{}\"", shorten(name)),
+            )
+            .label("shows only the clear colour")
+            .help("draws happen in the order of the text: put the one that fills this target first"),
+        );
+    }
+}
+
+const SOURCES: &[&str] = &["Window", "Matrix", "Program"];
+
+fn geometry<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    target: usize,
+    raw: &Raw<'a, source::VertexSource>,
+) -> Option<Geometry> {
+    let (kind, rest) = reader.variant(raw, "vertex source", SOURCES)?;
+    match kind {
+        0 => {
+            let list = Raw::<crate::scene::raw::Tuple<'a, source::VertexList>>::new(rest);
+            let parts = reader.read(&list)?.0;
+            let [list] = parts[..] else {
+                reader.push(
+                    Diagnostic::error(
+                        "NB0211",
+                        reader.span(&list),
+                        "expected one list of vertices in these parentheses",
+                    )
+                    .label("here")
+                    .help("write `Window([(position: (10, 20)), ...])`"),
+                );
+                return None;
+            };
+            let data = names.vertices(reader, &list)?;
+            Some(Geometry {
+                positions: Positions::Window,
+                vertices: data.vertices.clone(),
+                spans: data.spans.clone(),
+                triangles: None,
+            })
+        }
+        1 => matrix_geometry(reader, names, targets, target, rest),
+        _ => {
+            reader.not_built(reader.range(&raw.text[.."Program".len()]), "vertex programs");
+            None
+        }
+    }
+}
+
+fn matrix_geometry<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    target: usize,
+    text: &'a str,
+) -> Option<Geometry> {
+    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
+    let matrix = reader.required(&fields.matrix, "matrix", "vertex source", opening.clone());
+    let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
+    let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
+    let viewport = viewport(reader, &fields.viewport, size);
+    let (mut vertices, spans, triangles) = match (&fields.vertices, &fields.mesh) {
+        (Some(raw), None) => {
+            let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
+            if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
+                reader.push(
+                    Diagnostic::error("NB0222", reader.span(output), "listed vertices have no mesh attributes")
+                        .label("needs a mesh")
+                        .help("write colours and texture coordinates in the vertices, or use `mesh: ...`"),
+                );
+            }
+            let data = names.vertices(reader, raw)?;
+            (data.vertices.clone(), data.spans.clone(), None)
+        }
+        (None, Some(raw)) => {
+            let mesh = names.mesh(reader, raw);
+            let outputs = outputs(reader, names, &fields);
+            let mesh = mesh?;
+            let vertices = attribute::vertices(&mesh, &outputs);
+            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()))
+        }
+        (both, _) => {
+            let message = match both {
+                Some(_) => "either `vertices` or `mesh`, not both",
+                None => "this vertex source has neither `vertices` nor `mesh`",
+            };
+            reader.push(
+                Diagnostic::error("NB0202", opening, message)
+                    .label("in here")
+                    .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`"),
+            );
+            return None;
+        }
+    };
+    let matrix = matrix?;
+    for vertex in &mut vertices {
+        vertex.position = matrix::transform(&matrix, vertex.position);
+    }
+    if let Some(bad) = vertices.iter().position(|vertex| !vertex.position.iter().all(|value| value.is_finite())) {
+        let spans = DrawSpans { draw: opening, vertices: spans };
+        reader.push(
+            Diagnostic::error("NB0207", spans.vertex(bad), format!("the matrix takes vertex {bad} beyond all numbers"))
+                .label("not finite after the matrix")
+                .rule("RAS-0")
+                .help("use smaller numbers in the matrix or in the position"),
+        );
+        return None;
+    }
+    Some(Geometry { positions: Positions::Clip(viewport), vertices, spans, triangles })
+}
+
+fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::MatrixVertices<'a>) -> Outputs {
+    let mut color = |field: &Option<Raw<'a, source::Attribute>>, default| {
+        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, true));
+        written.unwrap_or(Source::Color(VertexColor::Bytes(default)))
+    };
+    let (diffuse, specular) = (color(&fields.diffuse, [255; 4]), color(&fields.specular, [0; 4]));
+    let coordinates = [&fields.t0, &fields.t1, &fields.t2, &fields.t3].map(|field| {
+        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, false));
+        written.unwrap_or(Source::TextureCoordinates)
+    });
+    Outputs { diffuse, specular, coordinates }
+}
+
+fn viewport<'a>(
+    reader: &mut Reader<'a>,
+    raw: &Option<Raw<'a, source::Viewport<'a>>>,
+    (width, height): (u32, u32),
+) -> Viewport {
+    let mut viewport = Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, near: 0.0, far: 1.0 };
+    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return viewport };
+    for (field, slot, positive) in [
+        (&fields.x, &mut viewport.x, false),
+        (&fields.y, &mut viewport.y, false),
+        (&fields.width, &mut viewport.width, true),
+        (&fields.height, &mut viewport.height, true),
+        (&fields.near, &mut viewport.near, false),
+        (&fields.far, &mut viewport.far, false),
+    ] {
+        let Some(raw) = field else { continue };
+        let Some(value) = reader.finite(raw) else { continue };
+        if positive && value <= 0.0 {
+            reader.push(
+                Diagnostic::error("NB0206", reader.span(raw), "a viewport has a width and a height above 0")
+                    .label("out of range"),
+            );
+        }
+        *slot = value;
+    }
+    for (field, value) in [(&fields.near, viewport.near), (&fields.far, viewport.far)] {
+        if let Some(raw) = field
+            && !(0.0..=1.0).contains(&value)
+            && value.is_finite()
+        {
+            reader.push(
+                Diagnostic::error("NB0206", reader.span(raw), format!("a depth cannot be {value}"))
+                    .label("out of range")
+                    .help("write 0.0 (near) to 1.0 (far)"),
+            );
+        }
+    }
+    viewport
+}
+
+/// The indices: as written, of the mesh, or one for each vertex.
+fn indices<'a>(
+    reader: &mut Reader<'a>,
+    fields: &source::Draw<'a>,
+    triangles: Option<Vec<u32>>,
+    vertices: usize,
+    topology: Topology,
+) -> Option<Vec<u32>> {
+    if let Some(triangles) = triangles {
+        let unwanted = fields.indices.as_ref().map(|raw| reader.span(raw));
+        let topology_raw = fields.topology.as_ref().filter(|_| topology != Topology::Triangles);
+        let unwanted = unwanted.or_else(|| topology_raw.map(|raw| reader.span(raw)));
+        if let Some(place) = unwanted {
+            reader.push(
+                Diagnostic::error("NB0222", place, "a mesh brings its own triangles")
+                    .label("not with a mesh")
+                    .help("leave `indices` and `topology` out"),
+            );
+        }
+        return Some(triangles);
+    }
+    let Some(raw) = &fields.indices else {
+        let count = u32::try_from(vertices).ok()?;
+        fits(reader, fields, vertices, topology);
+        return Some((0..count).collect());
+    };
+    let indices = reader.read(raw)?;
+    if let Some(at) = indices.iter().position(|index| *index as usize >= vertices) {
+        // Read again to find the place.
+        let list = reader.read(&Raw::<source::List<'a, u32>>::new(raw.text));
+        let place = list.and_then(|list| list.get(at).map(|raw| reader.span(raw)));
+        let place = place.unwrap_or_else(|| reader.span(raw));
+        let (index, help) = (
+            indices[at],
+            match vertices {
+                0 => "add vertices first".to_owned(),
+                n => format!("indices run from 0 to {}", n - 1),
+            },
+        );
+        reader.push(
+            Diagnostic::error("NB0212", place, format!("index {index} is past the vertices"))
+                .label(format!("this draw has {vertices} vertices"))
+                .help(help),
+        );
+        return None;
+    }
+    fits(reader, fields, indices.len(), topology);
+    Some(indices)
+}
+
+/// Whether so many indices make whole primitives.
+fn fits<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, count: usize, topology: Topology) {
+    let (fits, wanted) = match topology {
+        Topology::Triangles => (count.is_multiple_of(3), "three for each"),
+        Topology::Quads => (count.is_multiple_of(4), "four for each"),
+        Topology::QuadStrip => (count == 0 || count >= 4 && count.is_multiple_of(2), "four, then two for each more"),
+        Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => {
+            (count == 0 || count >= 3, "at least three")
+        }
+    };
+    if fits {
+        return;
+    }
+    let place = match (&fields.indices, &fields.vertices) {
+        (Some(raw), _) => reader.span(raw),
+        (None, Some(raw)) => reader.span(raw),
+        (None, None) => return,
+    };
+    let what = match (fields.indices.is_some(), count) {
+        (true, 1) => "index does",
+        (true, _) => "indices do",
+        (false, 1) => "vertex does",
+        (false, _) => "vertices do",
+    };
+    reader.push(
+        Diagnostic::error("NB0213", place, format!("{count} {what} not make {}", topology.name()))
+            .label(format!("{} needs {wanted}", topology.name()))
+            .help("add what is missing, or choose another `topology`"),
+    );
+}

@@ -1,0 +1,200 @@
+//! Matrices: four rows, or built from a few parameters. Column vectors: a position p becomes M p.
+#![allow(
+    clippy::float_arithmetic,
+    reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
+)]
+
+use super::names::{Rows, Table};
+use super::*;
+use crate::scene::raw::{Numbers, Tuple};
+
+const IDENTITY: Rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+
+/// Deepest product of products: each level reads its text again.
+const DEEPEST: usize = 16;
+
+const KINDS: &[&str] =
+    &["Identity", "Rows", "Product", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
+
+/// A matrix of a scene, by name or by value. Not a number anywhere in it is an error.
+pub(super) fn evaluate<'a>(
+    reader: &mut Reader<'a>,
+    table: &Table<'a, source::Matrix, Rows>,
+    raw: &Raw<'a, source::Matrix>,
+    depth: usize,
+) -> Option<Rows> {
+    if raw.is_text() {
+        return table.get(reader, raw, &evaluate, depth);
+    }
+    if depth > DEEPEST {
+        let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        reader.push(
+            Diagnostic::error("NB0602", place, format!("more than {DEEPEST} products inside each other"))
+                .label("one level too many")
+                .help("a product takes any number of matrices: write them side by side"),
+        );
+        return None;
+    }
+    let (kind, rest) = reader.variant(raw, "matrix", KINDS)?;
+    let matrix = match KINDS[kind] {
+        "Identity" => IDENTITY,
+        "Rows" => rows(reader, &Raw::new(rest))?,
+        "Product" => product(reader, table, &Raw::new(rest), depth)?,
+        "Translate" => {
+            let [x, y, z, _] = vector(reader, rest, "a translation", 3)?;
+            [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]]
+        }
+        "Scale" => {
+            let [x, y, z, _] = vector(reader, rest, "a scale", 3)?;
+            [[x, 0.0, 0.0, 0.0], [0.0, y, 0.0, 0.0], [0.0, 0.0, z, 0.0], [0.0, 0.0, 0.0, 1.0]]
+        }
+        "Rotate" => rotation(vector(reader, rest, "a rotation (a unit quaternion x, y, z, w)", 4)?),
+        "LookAt" => look_at(reader, &Raw::new(rest))?,
+        kind => projection(reader, &Raw::new(rest), kind == "Frustum")?,
+    };
+    if matrix.iter().flatten().all(|value| value.is_finite()) {
+        return Some(matrix);
+    }
+    let place = reader.span(raw);
+    reader.push(
+        Diagnostic::error("NB0207", place, "this matrix is not finite")
+            .label("a division by zero, or numbers too large")
+            .help(
+                "near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero",
+            ),
+    );
+    None
+}
+
+fn vector<'a>(reader: &mut Reader<'a>, text: &'a str, what: &str, count: usize) -> Option<[f32; 4]> {
+    reader.numbers(&Raw::<Numbers>::new(text), what, count, count, [0.0; 4])
+}
+
+/// Four rows of four numbers.
+fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Option<Rows> {
+    let parts = reader.read(raw)?.0;
+    if parts.len() != 4 {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0211", place, format!("a matrix has four rows, not {}", parts.len()))
+                .label(format!("{} here", parts.len())),
+        );
+        return None;
+    }
+    let mut rows = IDENTITY;
+    for (row, part) in rows.iter_mut().zip(&parts) {
+        *row = reader.numbers(part, "a row of a matrix", 4, 4, [0.0; 4])?;
+    }
+    Some(rows)
+}
+
+/// Matrices multiplied from left to right: the last one acts on a position first.
+fn product<'a>(
+    reader: &mut Reader<'a>,
+    table: &Table<'a, source::Matrix, Rows>,
+    raw: &Raw<'a, Tuple<'a, source::Matrix>>,
+    depth: usize,
+) -> Option<Rows> {
+    let mut result = IDENTITY;
+    for (index, part) in reader.read(raw)?.0.iter().enumerate() {
+        let factor = evaluate(reader, table, part, depth + 1)?;
+        result = if index == 0 { factor } else { multiply(&result, &factor) };
+    }
+    Some(result)
+}
+
+fn multiply(a: &Rows, b: &Rows) -> Rows {
+    let mut result = [[0.0; 4]; 4];
+    for (row, left) in result.iter_mut().zip(a) {
+        for (column, value) in row.iter_mut().enumerate() {
+            *value = left[0] * b[0][column] + left[1] * b[1][column] + left[2] * b[2][column] + left[3] * b[3][column];
+        }
+    }
+    result
+}
+
+/// M p.
+pub(super) fn transform(matrix: &Rows, p: [f32; 4]) -> [f32; 4] {
+    matrix.map(|row| row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * p[3])
+}
+
+/// The rotation of a quaternion of any length but zero.
+fn rotation([x, y, z, w]: [f32; 4]) -> Rows {
+    let s = 2.0 / (x * x + y * y + z * z + w * w);
+    [
+        [1.0 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w), 0.0],
+        [s * (x * y + z * w), 1.0 - s * (x * x + z * z), s * (y * z - x * w), 0.0],
+        [s * (x * z - y * w), s * (y * z + x * w), 1.0 - s * (x * x + y * y), 0.0],
+        [0.0, 0.0, 0.0, 1.0],
+    ]
+}
+
+/// OpenGL's frustum or orthographic box: the viewer looks along -z, depth -1 at `near` and 1 at `far`.
+fn projection<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Frustum<'a>>, perspective: bool) -> Option<Rows> {
+    let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let box_ = reader.read(raw)?;
+    let mut side = |field: &Option<Raw<'a, f32>>, name: &str| {
+        reader.required(field, name, "projection", place.clone()).and_then(|raw| reader.finite(&raw))
+    };
+    let (l, r) = (side(&box_.left, "left"), side(&box_.right, "right"));
+    let (b, t) = (side(&box_.bottom, "bottom"), side(&box_.top, "top"));
+    let (n, f) = (side(&box_.near, "near"), side(&box_.far, "far"));
+    let (l, r, b, t, n, f) = (l?, r?, b?, t?, n?, f?);
+    let (width, height, depth) = (r - l, t - b, f - n);
+    Some(if perspective {
+        [
+            [2.0 * n / width, 0.0, (r + l) / width, 0.0],
+            [0.0, 2.0 * n / height, (t + b) / height, 0.0],
+            [0.0, 0.0, -(f + n) / depth, -2.0 * f * n / depth],
+            [0.0, 0.0, -1.0, 0.0],
+        ]
+    } else {
+        [
+            [2.0 / width, 0.0, 0.0, -(r + l) / width],
+            [0.0, 2.0 / height, 0.0, -(t + b) / height],
+            [0.0, 0.0, -2.0 / depth, -(f + n) / depth],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    })
+}
+
+/// From the world to a viewer at `eye` who looks at `center`.
+fn look_at<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::LookAt<'a>>) -> Option<Rows> {
+    let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let view = reader.read(raw)?;
+    let mut point = |field: &Option<Raw<'a, Numbers>>, name: &str| {
+        let raw = reader.required(field, name, "view", place.clone())?;
+        let [x, y, z, _] = reader.numbers(&raw, name, 3, 3, [0.0; 4])?;
+        Some([x, y, z])
+    };
+    let (eye, center) = (point(&view.eye, "eye"), point(&view.center, "center"));
+    let up = if view.up.is_some() { point(&view.up, "up") } else { Some([0.0, 1.0, 0.0]) };
+    let (eye, center, up) = (eye?, center?, up?);
+    let forward = normalize(subtract(center, eye));
+    let side = normalize(cross(forward, up));
+    let up = cross(side, forward);
+    Some([
+        [side[0], side[1], side[2], -dot(side, eye)],
+        [up[0], up[1], up[2], -dot(up, eye)],
+        [-forward[0], -forward[1], -forward[2], dot(forward, eye)],
+        [0.0, 0.0, 0.0, 1.0],
+    ])
+}
+
+pub(super) fn subtract(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+pub(super) fn dot(a: [f32; 3], b: [f32; 3]) -> f32 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+/// Of unit length; not a number for the zero vector.
+pub(super) fn normalize(v: [f32; 3]) -> [f32; 3] {
+    let length = dot(v, v).sqrt();
+    v.map(|component| component / length)
+}

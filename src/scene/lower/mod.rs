@@ -1,0 +1,168 @@
+//! From the fields of the file to the checked state, one file per part of the scene.
+
+mod attribute;
+mod color;
+mod combiner;
+mod draw;
+mod input;
+mod matrix;
+mod names;
+mod raster;
+mod target;
+mod texture;
+mod unit;
+mod vertex;
+
+use std::ops::Range;
+use std::path::Path;
+
+use super::diagnostic::Diagnostic;
+use super::raw::Raw;
+use super::reader::Reader;
+use super::source;
+use super::wording::{closest, shorten};
+use crate::plan::{Plan, PlanOptions};
+use crate::state::{Profile, Scene};
+use names::Names;
+
+/// Where the draws of a scene stand in its text, for errors that are found later.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DrawSpans {
+    /// The draw's name, or the start of the draw.
+    pub draw: Range<usize>,
+    /// Its vertices; of a generated mesh, the mesh for each.
+    pub vertices: VertexSpans,
+}
+
+/// Places of vertices.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum VertexSpans {
+    /// One for each.
+    Each(Vec<Range<usize>>),
+    /// All were made by what stands here.
+    All(Range<usize>),
+}
+
+impl Default for VertexSpans {
+    fn default() -> Self {
+        VertexSpans::Each(Vec::new())
+    }
+}
+
+impl DrawSpans {
+    /// The place of a vertex; of the draw if there is no such vertex.
+    pub fn vertex(&self, index: usize) -> Range<usize> {
+        match &self.vertices {
+            VertexSpans::Each(spans) => spans.get(index).cloned().unwrap_or_else(|| self.draw.clone()),
+            VertexSpans::All(span) => span.clone(),
+        }
+    }
+}
+
+/// Reads and checks a whole scene. Findings are in the reader; `None` if there are errors.
+pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path) -> Option<(Scene, Vec<DrawSpans>)> {
+    let raw = Raw::<source::Scene<'a>>::new(text);
+    if raw.text.is_empty() {
+        reader.push(
+            Diagnostic::error("NB0101", 0..0, "the scene is empty")
+                .help("a scene starts with `(version: 1, profile: Nv2a, draws: [...])`"),
+        );
+        return None;
+    }
+    // The parser goes through all of the text here: below, brackets are known to match.
+    let file = reader.parse(&raw)?;
+    let opening = opening(text, reader.span(&raw).start);
+    if !version(reader, &file, opening.clone()) {
+        return None;
+    }
+    let profile = reader.required(&file.profile, "profile", "scene", opening);
+    reader.profile = profile.and_then(|raw| reader.name(&raw)).unwrap_or(Profile::Nv2a);
+    reader.reserve(&file.truth, "the scene's truth (light, viewer, material)");
+
+    let mut names = Names::read(reader, &file.names);
+    let targets = target::targets(reader, &names, &file.targets);
+    let mut textures = texture::textures(reader, &names, &targets, &file.textures, folder);
+    let draws = draw::draws(reader, &mut names, &targets, &mut textures, &file.draws);
+    names.warn_unused(reader);
+    textures.warn_unused(reader);
+    if reader.errors > 0 {
+        return None;
+    }
+    let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().unzip();
+    let scene = Scene { profile: reader.profile, targets: targets.list, textures: textures.list, draws };
+    plan(reader, &scene, &spans).then_some((scene, spans))
+}
+
+/// The parenthesis that opens the scene: before it may stand attributes and the scene's type.
+fn opening(text: &str, start: usize) -> Range<usize> {
+    let mut rest = &text[start..];
+    while rest.starts_with("#!") {
+        rest = rest.find(']').map_or("", |end| crate::scene::raw::trim(&rest[end + 1..]));
+    }
+    let start = text.len() - rest.len();
+    rest.find('(').map_or(start..start, |at| start + at..start + at + 1)
+}
+
+/// Whether this program reads that version of the format.
+fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Range<usize>) -> bool {
+    let Some(raw) = &file.version else {
+        reader.push(
+            Diagnostic::error("NB0202", opening, "this scene has no `version`")
+                .label("`version` is missing")
+                .help("add `version: 1`"),
+        );
+        return false;
+    };
+    let place = reader.range(raw.text);
+    let version = reader.read(raw);
+    if let Some(version) = version
+        && version != 1
+    {
+        reader.push(
+            Diagnostic::error("NB0214", place, format!("version {version} of the scene format is not known"))
+                .label("not known")
+                .help("this program reads version 1"),
+        );
+    }
+    version == Some(1)
+}
+
+/// What only the plan sees: positions and coordinates outside the rasteriser's domain.
+fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> bool {
+    let Err(errors) = Plan::compile(scene, &PlanOptions::default()) else { return true };
+    for error in errors {
+        let span = spans.get(error.draw).map(|draw| match error.vertex {
+            Some(vertex) => draw.vertex(vertex),
+            None => draw.draw.clone(),
+        });
+        let label = match (error.vertex, scene.draws.get(error.draw)) {
+            (Some(vertex), Some(draw)) => format!("vertex {vertex} of `{}`", shorten(&draw.name)),
+            _ => "this draw".to_owned(),
+        };
+        reader.push(Diagnostic::error("NB0322", span, error.message).label(label).rule(error.rule).help(error.help));
+    }
+    false
+}
+
+/// The finding that a name is not defined.
+fn unknown_name<'n>(
+    reader: &mut Reader<'_>,
+    place: Range<usize>,
+    what: &str,
+    name: &str,
+    known: impl Iterator<Item = &'n str> + Clone,
+    define: &str,
+) {
+    let help = match closest(name, known.clone()) {
+        Some(known) => format!("did you mean \"{}\"?", shorten(known)),
+        None => {
+            let list: Vec<String> = known.take(8).map(|name| format!("\"{}\"", shorten(name))).collect();
+            if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
+        }
+    };
+    reader.push(
+        Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
+            .label("not defined")
+            .help(help),
+    );
+}

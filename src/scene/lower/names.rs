@@ -1,0 +1,260 @@
+//! The tables of values that are defined once and used by name.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+
+use super::combiner::ProgramData;
+use super::vertex::VertexData;
+use super::*;
+use crate::scene::mesh::Mesh;
+use crate::scene::reader::Entry;
+use crate::state::{Blend, VertexColor};
+
+/// Longest chain of names that stand for names.
+const LONGEST_CHAIN: usize = 32;
+
+/// How a definition of the table is read. The last argument counts the names followed so far.
+pub(super) type Evaluate<'e, 'a, S, T> = &'e dyn Fn(&mut Reader<'a>, &Table<'a, S, T>, &Raw<'a, S>, usize) -> Option<T>;
+
+enum State<T> {
+    Waiting,
+    Active,
+    /// `None`: the definition is wrong, which has been recorded.
+    Done(Option<T>),
+}
+
+/// One table: definitions written as `S` that mean a `T`.
+pub(super) struct Table<'a, S, T> {
+    what: &'static str,
+    table: &'static str,
+    entries: Vec<Entry<'a, S>>,
+    by_name: HashMap<String, usize>,
+    states: RefCell<Vec<State<T>>>,
+    used: RefCell<Vec<bool>>,
+}
+
+impl<'a, S, T: Clone> Table<'a, S, T> {
+    fn new(what: &'static str, table: &'static str, entries: Vec<Entry<'a, S>>) -> Self {
+        let by_name = entries.iter().enumerate().map(|(index, entry)| (entry.name.clone(), index)).collect();
+        let states = RefCell::new(entries.iter().map(|_| State::Waiting).collect());
+        let used = RefCell::new(vec![false; entries.len()]);
+        Table { what, table, entries, by_name, states, used }
+    }
+
+    /// Reads every definition, used or not.
+    fn evaluate_all(&self, reader: &mut Reader<'a>, evaluate: Evaluate<'_, 'a, S, T>) {
+        for index in 0..self.entries.len() {
+            self.entry(reader, index, evaluate, 0);
+        }
+    }
+
+    fn entry(
+        &self,
+        reader: &mut Reader<'a>,
+        index: usize,
+        evaluate: Evaluate<'_, 'a, S, T>,
+        depth: usize,
+    ) -> Option<T> {
+        let entry = &self.entries[index];
+        match &self.states.borrow()[index] {
+            State::Done(value) => return value.clone(),
+            State::Active => {
+                reader.push(
+                    Diagnostic::error(
+                        "NB0210",
+                        entry.place.clone(),
+                        format!("the {} \"{}\" is defined by itself", self.what, shorten(&entry.name)),
+                    )
+                    .label("leads back to itself")
+                    .help("give one of the names in the circle a value of its own"),
+                );
+                return None;
+            }
+            State::Waiting => {}
+        }
+        if depth > LONGEST_CHAIN {
+            reader.push(
+                Diagnostic::error(
+                    "NB0602",
+                    entry.place.clone(),
+                    format!("more than {LONGEST_CHAIN} names that stand for names"),
+                )
+                .label("the chain is too long here")
+                .help("refer to the value more directly"),
+            );
+            return None;
+        }
+        self.states.borrow_mut()[index] = State::Active;
+        let value = evaluate(reader, self, &entry.value, depth + 1);
+        self.states.borrow_mut()[index] = State::Done(value.clone());
+        value
+    }
+
+    /// The value of a name.
+    pub(super) fn get(
+        &self,
+        reader: &mut Reader<'a>,
+        raw: &Raw<'a, S>,
+        evaluate: Evaluate<'_, 'a, S, T>,
+        depth: usize,
+    ) -> Option<T> {
+        let name = reader.read(&raw.as_other::<String>())?;
+        let Some(index) = self.by_name.get(&name).copied() else {
+            let known = self.entries.iter().map(|entry| entry.name.as_str());
+            let define = format!("define it in `names: ({}: {{ ... }})`", self.table);
+            unknown_name(reader, reader.span(raw), self.what, &name, known, &define);
+            return None;
+        };
+        self.used.borrow_mut()[index] = true;
+        self.entry(reader, index, evaluate, depth)
+    }
+
+    fn warn_unused(&self, reader: &mut Reader<'a>) {
+        for (entry, used) in self.entries.iter().zip(&*self.used.borrow()) {
+            if !used {
+                reader.push(unused(self.what, &entry.name, entry.place.clone()));
+            }
+        }
+    }
+}
+
+/// The finding that nothing uses a definition.
+pub(super) fn unused(what: &str, name: &str, place: Range<usize>) -> Diagnostic {
+    Diagnostic::warning("NB0901", place, format!("the {what} \"{}\" is not used", shorten(name)))
+        .label("nothing refers to it")
+        .help("remove it, or check the spelling where it was meant to be used")
+}
+
+/// Four rows of a matrix.
+pub(super) type Rows = [[f32; 4]; 4];
+
+/// All tables.
+pub(super) struct Names<'a> {
+    colors: Table<'a, source::Color, VertexColor>,
+    matrices: Table<'a, source::Matrix, Rows>,
+    vertices: Table<'a, source::VertexList, Rc<VertexData>>,
+    meshes: Table<'a, source::MeshSource, Rc<Mesh>>,
+    programs: Table<'a, source::Program, Rc<ProgramData>>,
+    blends: Table<'a, source::BlendSource, Blend>,
+}
+
+impl<'a> Names<'a> {
+    /// Reads every table and every definition.
+    pub(super) fn read(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Names<'a>>>) -> Self {
+        let tables = raw.as_ref().and_then(|raw| reader.read(raw));
+        macro_rules! table {
+            ($field:ident, $what:literal) => {{
+                let entries = match &tables {
+                    Some(tables) => reader.table($what, &tables.$field),
+                    None => Vec::new(),
+                };
+                Table::new($what, stringify!($field), entries)
+            }};
+        }
+        let names = Names {
+            colors: table!(colors, "colour"),
+            matrices: table!(matrices, "matrix"),
+            vertices: table!(vertices, "vertex list"),
+            meshes: table!(meshes, "mesh"),
+            programs: table!(programs, "program"),
+            blends: table!(blends, "blend function"),
+        };
+        names.colors.evaluate_all(reader, &evaluate_color);
+        names.matrices.evaluate_all(reader, &matrix::evaluate);
+        names.vertices.evaluate_all(reader, &|reader, _, raw, _| {
+            value(reader, raw)?;
+            vertex::list(reader, &names, raw).map(Rc::new)
+        });
+        names.meshes.evaluate_all(reader, &|reader, _, raw, _| {
+            value(reader, raw)?;
+            attribute::generate(reader, raw).map(Rc::new)
+        });
+        names.programs.evaluate_all(reader, &|reader, _, raw, _| {
+            value(reader, raw)?;
+            combiner::program(reader, &names, raw).map(Rc::new)
+        });
+        names.blends.evaluate_all(reader, &|reader, _, raw, _| {
+            value(reader, raw)?;
+            raster::blend_function(reader, raw)
+        });
+        names
+    }
+
+    pub(super) fn color(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
+        self.colors.get(reader, raw, &evaluate_color, 0)
+    }
+
+    pub(super) fn matrix(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>) -> Option<Rows> {
+        matrix::evaluate(reader, &self.matrices, raw, 0)
+    }
+
+    pub(super) fn vertices(
+        &self,
+        reader: &mut Reader<'a>,
+        raw: &Raw<'a, source::VertexList>,
+    ) -> Option<Rc<VertexData>> {
+        if raw.is_text() {
+            self.vertices.get(reader, raw, &|_, _, _, _| None, 0)
+        } else {
+            vertex::list(reader, self, raw).map(Rc::new)
+        }
+    }
+
+    pub(super) fn mesh(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Rc<Mesh>> {
+        if raw.is_text() {
+            self.meshes.get(reader, raw, &|_, _, _, _| None, 0)
+        } else {
+            attribute::generate(reader, raw).map(Rc::new)
+        }
+    }
+
+    pub(super) fn program(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Program>) -> Option<Rc<ProgramData>> {
+        if raw.is_text() {
+            self.programs.get(reader, raw, &|_, _, _, _| None, 0)
+        } else {
+            combiner::program(reader, self, raw).map(Rc::new)
+        }
+    }
+
+    pub(super) fn blend(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
+        if raw.is_text() {
+            self.blends.get(reader, raw, &|_, _, _, _| None, 0)
+        } else {
+            raster::blend_function(reader, raw)
+        }
+    }
+
+    /// Warns of what nothing refers to.
+    pub(super) fn warn_unused(&self, reader: &mut Reader<'a>) {
+        self.colors.warn_unused(reader);
+        self.matrices.warn_unused(reader);
+        self.vertices.warn_unused(reader);
+        self.meshes.warn_unused(reader);
+        self.programs.warn_unused(reader);
+        self.blends.warn_unused(reader);
+    }
+}
+
+fn evaluate_color<'a>(
+    reader: &mut Reader<'a>,
+    table: &Table<'a, source::Color, VertexColor>,
+    raw: &Raw<'a, source::Color>,
+    depth: usize,
+) -> Option<VertexColor> {
+    if raw.is_text() { table.get(reader, raw, &evaluate_color, depth) } else { color::literal(reader, raw) }
+}
+
+/// Refuses a definition that is only another name, in the tables where that would say nothing.
+fn value<S>(reader: &mut Reader<'_>, raw: &Raw<'_, S>) -> Option<()> {
+    if !raw.is_text() {
+        return Some(());
+    }
+    let place = reader.range(raw.text);
+    reader.push(
+        Diagnostic::error("NB0205", place, "a definition here is a value, not another name")
+            .label("a name")
+            .help("use that name directly in the draws"),
+    );
+    None
+}

@@ -1,0 +1,202 @@
+//! Render targets.
+#![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
+
+use std::collections::HashMap;
+
+use super::names::Names;
+use super::*;
+use crate::state::{DepthBuffer, DepthFormat, SurfaceFormat, Target};
+
+/// The targets, and where they were named.
+pub(super) struct Targets {
+    pub(super) list: Vec<Target>,
+    by_name: HashMap<String, usize>,
+    places: Vec<Range<usize>>,
+}
+
+impl Targets {
+    /// The target of that name; `None` once the reason has been recorded.
+    pub(super) fn find<'a>(&self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
+        let name = reader.read(raw)?;
+        let found = self.by_name.get(&name).copied();
+        if found.is_none() {
+            let place = reader.span(raw);
+            let known = self.list.iter().map(|target| target.name.as_str());
+            unknown_name(reader, place, "target", &name, known, "define it in `targets: [(name: \"...\")]`");
+        }
+        found
+    }
+
+    /// Where the target is described.
+    pub(super) fn place(&self, index: usize) -> Range<usize> {
+        self.places.get(index).cloned().unwrap_or_default()
+    }
+}
+
+/// Reads the targets; one of 640 x 480 named "frame" if the scene has none.
+pub(super) fn targets<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Option<Raw<'a, source::List<'a, source::Target<'a>>>>,
+) -> Targets {
+    let mut targets = Targets { list: Vec::new(), by_name: HashMap::new(), places: Vec::new() };
+    let list = match raw {
+        Some(raw) => {
+            let list = reader.read(raw).unwrap_or_default();
+            let place = reader.span(raw);
+            if list.len() > reader.limits.targets {
+                let message = format!("{} render targets are more than {}", list.len(), reader.limits.targets);
+                reader.push(
+                    Diagnostic::error("NB0608", place, message)
+                        .label("too many")
+                        .help("`ninebit limits` prints what is allowed"),
+                );
+                return targets;
+            }
+            if list.is_empty() {
+                reader.push(
+                    Diagnostic::error("NB0202", place, "a scene needs a render target")
+                        .label("empty")
+                        .help("leave `targets` out to get one of 640 x 480, or write `[(width: 256, height: 256)]`"),
+                );
+            }
+            list
+        }
+        None => {
+            targets.add("frame".to_owned(), 0..0, default_target("frame".to_owned()));
+            return targets;
+        }
+    };
+    let mut bytes = 0;
+    for raw in &list {
+        let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        let Some(fields) = reader.read(raw) else { continue };
+        let (name, place) = match &fields.name {
+            Some(raw) => (reader.read(raw), reader.span(raw)),
+            None if targets.list.is_empty() => (Some("frame".to_owned()), place),
+            None => {
+                reader.required(&fields.name, "name", "target", place.clone());
+                (None, place)
+            }
+        };
+        let Some(name) = name else { continue };
+        if let Some(first) = targets.by_name.get(&name) {
+            let first = targets.place(*first);
+            reader.push(crate::scene::wording::twice("target", &name, place, first));
+            continue;
+        }
+        let target = target(reader, names, &fields, name.clone());
+        bytes += u64::from(target.width) * u64::from(target.height) * if target.depth.is_some() { 8 } else { 4 };
+        targets.add(name, place, target);
+    }
+    if let Some(raw) = raw
+        && bytes > reader.limits.surface_bytes
+    {
+        let message = format!("the targets take {bytes} bytes; {} are allowed", reader.limits.surface_bytes);
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0607", place, message)
+                .label("too large together")
+                .help("make the targets smaller, or fewer; `ninebit limits` prints what is allowed"),
+        );
+    }
+    targets
+}
+
+impl Targets {
+    fn add(&mut self, name: String, place: Range<usize>, target: Target) {
+        self.by_name.insert(name, self.list.len());
+        self.list.push(target);
+        self.places.push(place);
+    }
+}
+
+fn default_target(name: String) -> Target {
+    Target { name, width: 640, height: 480, format: SurfaceFormat::A8R8G8B8, clear_color: [0, 0, 0, 255], depth: None }
+}
+
+fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Target<'a>, name: String) -> Target {
+    let mut target = default_target(name);
+    for (field, side, what) in [
+        (&fields.width, &mut target.width, "the width of a target"),
+        (&fields.height, &mut target.height, "the height of a target"),
+    ] {
+        if let Some(raw) = field
+            && let Some(value) = reader.read(raw)
+        {
+            let (limit, place) = (reader.limits.target_side, reader.span(raw));
+            if value == 0 {
+                reader.push(
+                    Diagnostic::error("NB0206", place, format!("{what} cannot be 0"))
+                        .label("out of range")
+                        .help(format!("write 1 to {limit}")),
+                );
+            } else if value > limit {
+                reader.push(
+                    Diagnostic::error("NB0606", place, format!("{what} is {value}; {limit} are allowed"))
+                        .label("too large")
+                        .help(format!("write 1 to {limit}; `ninebit limits` prints what is allowed")),
+                );
+            } else {
+                *side = value;
+            }
+        }
+    }
+    if let Some(raw) = &fields.format
+        && let Some(format) = reader.name(raw)
+    {
+        let nv2a = matches!(
+            format,
+            SurfaceFormat::X1R5G5B5Z
+                | SurfaceFormat::X1R5G5B5O
+                | SurfaceFormat::X1A7R8G8B8Z
+                | SurfaceFormat::X1A7R8G8B8O
+                | SurfaceFormat::G8B8
+        );
+        if nv2a && reader.profile == Profile::Nv10 {
+            let place = reader.span(raw);
+            reader.push(only_nv2a("NB0314", place, "this surface format", "ROP-5"));
+        }
+        target.format = format;
+    }
+    let depth = fields.depth.as_ref().and_then(|raw| reader.name(raw));
+    let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw));
+    target.depth = depth.map(|format| DepthBuffer { format, clear: all_ones(format) });
+    if let Some(clear) = clear {
+        target.clear_color = color::constant_or(reader, names, &clear.color, target.clear_color);
+        reader.reserve(&clear.stencil, "the stencil buffer");
+        if let Some(raw) = &clear.depth {
+            let place = reader.span(raw);
+            match (reader.finite(raw), &mut target.depth) {
+                (Some(value), Some(buffer)) if (0.0..=1.0).contains(&value) => {
+                    // A scene's 0..1 becomes floor(z (2^n - 1)); both factors are exact in f64.
+                    buffer.clear = (f64::from(value) * f64::from(all_ones(buffer.format))) as u32;
+                }
+                (Some(value), Some(_)) => reader.push(
+                    Diagnostic::error("NB0206", place, format!("a depth cannot be {value}"))
+                        .label("out of range")
+                        .help("write 0.0 (near) to 1.0 (far)"),
+                ),
+                (Some(_), None) => reader.push(
+                    Diagnostic::error("NB0216", place, "this target has no depth buffer to clear")
+                        .label("no depth buffer")
+                        .help("add `depth: Z24S8` (or `Z16`) to the target, or leave this out"),
+                ),
+                (None, _) => {}
+            }
+        }
+    }
+    target
+}
+
+fn all_ones(format: DepthFormat) -> u32 {
+    (1 << format.bits()) - 1
+}
+
+/// The finding that something needs the larger chip.
+pub(super) fn only_nv2a(code: &'static str, place: Range<usize>, what: &str, rule: &'static str) -> Diagnostic {
+    Diagnostic::error(code, place, format!("{what} does not exist on Nv10"))
+        .label("not on this chip")
+        .rule(rule)
+        .help("profile Nv2a has it: write `profile: Nv2a`, or use what Nv10 has")
+}

@@ -1,0 +1,123 @@
+//! Texture units of a draw.
+
+use super::names::Names;
+use super::texture::Textures;
+use super::*;
+use crate::state::{AddressMode, Filter, TEXTURE_UNITS, TextureUnit};
+
+/// Reads the units of a draw. The place of each texture's name comes with it.
+pub(super) fn units<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    textures: &mut Textures,
+    raw: &Option<Raw<'a, source::List<'a, source::Unit>>>,
+) -> ([Option<TextureUnit>; TEXTURE_UNITS], [Range<usize>; TEXTURE_UNITS]) {
+    let mut units = [None; TEXTURE_UNITS];
+    let mut places = [0..0, 0..0, 0..0, 0..0];
+    let list = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    let available = reader.profile.texture_units();
+    for (index, raw) in list.iter().enumerate() {
+        if matches!(raw.split(), ("Unbound", "")) {
+            continue;
+        }
+        let place = reader.span(raw);
+        if index >= TEXTURE_UNITS {
+            reader.push(
+                Diagnostic::error("NB0319", place, format!("there is no texture unit {index}"))
+                    .label("one too many")
+                    .rule("CMB-12")
+                    .help("units 0 to 3 are the entries of this list"),
+            );
+            break;
+        }
+        if index >= available {
+            reader.push(target::only_nv2a("NB0319", place.clone(), &format!("texture unit {index}"), "CMB-12"));
+        }
+        if let Some((unit, place)) = unit(reader, names, textures, raw, index) {
+            units[index] = Some(unit);
+            places[index] = place;
+        }
+    }
+    (units, places)
+}
+
+fn unit<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    textures: &mut Textures,
+    raw: &Raw<'a, source::Unit>,
+    index: usize,
+) -> Option<(TextureUnit, Range<usize>)> {
+    let mut unit = TextureUnit {
+        texture: 0,
+        coordinate_set: index,
+        address_s: AddressMode::Wrap,
+        address_t: AddressMode::Wrap,
+        filter: Filter::Linear,
+        border_color: [0; 4],
+        signed: [false; 4],
+    };
+    if raw.is_text() {
+        unit.texture = textures.find(reader, &raw.as_other())?;
+        return Some((unit, reader.span(raw)));
+    }
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let fields = reader.read(&raw.as_other::<source::UnitState<'a>>())?;
+    let texture = reader.required(&fields.texture, "texture", "texture unit", opening);
+    let found = texture.as_ref().and_then(|raw| textures.find(reader, raw));
+    if let Some(raw) = &fields.coordinates {
+        unit.coordinate_set = reader.whole(raw, "a set of texture coordinates", 0..=3).unwrap_or(0) as usize;
+    }
+    let both = reader.name_or(&fields.address, AddressMode::Wrap);
+    unit.address_s = reader.name_or(&fields.address_s, both);
+    unit.address_t = reader.name_or(&fields.address_t, both);
+    for (field, mode) in
+        [(&fields.address, both), (&fields.address_s, unit.address_s), (&fields.address_t, unit.address_t)]
+    {
+        if let Some(raw) = field
+            && mode == AddressMode::ClampToBorder
+            && reader.profile == Profile::Nv10
+        {
+            reader.push(target::only_nv2a("NB0317", reader.span(raw), "a border colour", "TEX-7"));
+        }
+    }
+    unit.border_color = color::constant_or(reader, names, &fields.border_color, [0; 4]);
+    if let Some(raw) = &fields.border_color
+        && reader.profile == Profile::Nv10
+    {
+        reader.push(target::only_nv2a("NB0317", reader.span(raw), "a border colour", "TEX-7"));
+    }
+    filters(reader, &fields, &mut unit);
+    if let Some(raw) = &fields.signed {
+        unit.signed = raster::four_flags(reader, raw, "signed", false);
+        if unit.signed != [false; 4] && reader.profile == Profile::Nv10 {
+            reader.push(target::only_nv2a("NB0318", reader.span(raw), "a signed texture channel", "TEX-18"));
+        }
+    }
+    reader.reserve(&fields.lod_bias, "level of detail bias");
+    reader.reserve(&fields.min_lod, "level of detail limits");
+    reader.reserve(&fields.max_lod, "level of detail limits");
+    reader.reserve(&fields.anisotropy, "anisotropic filtering");
+    reader.reserve(&fields.color_key, "colour keys");
+    unit.texture = found?;
+    let place = texture.map_or(0..0, |raw| reader.span(&raw));
+    Some((unit, place))
+}
+
+/// Three fields; built is one filter for both directions, without mipmaps.
+fn filters<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
+    let min = fields.min_filter.as_ref().and_then(|raw| reader.name(raw));
+    let mag = fields.mag_filter.as_ref().and_then(|raw| reader.name(raw));
+    unit.filter = mag.or(min).unwrap_or(Filter::Linear);
+    if let (Some(min), Some(mag), Some(raw)) = (min, mag, &fields.min_filter)
+        && min != mag
+    {
+        reader.not_built(reader.span(raw), "a minification filter that differs from the magnification filter");
+    }
+    if let Some(raw) = &fields.mip_filter
+        && let Some((mip, _)) = reader.variant(raw, "mip filter", &["None", "Nearest", "Linear"])
+        && mip > 0
+    {
+        reader.not_built(reader.span(raw), "mipmapping");
+    }
+}

@@ -1,0 +1,89 @@
+//! Lists of vertices as written.
+
+use super::names::Names;
+use super::*;
+use crate::scene::raw::Numbers;
+use crate::state::{Vertex, VertexColor};
+
+/// Vertices and where each stands.
+pub(super) struct VertexData {
+    pub(super) vertices: Vec<Vertex>,
+    pub(super) spans: VertexSpans,
+}
+
+/// Reads a list of vertices. Findings do not end it: the list keeps its length, so that indices can be checked.
+pub(super) fn list<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::VertexList>,
+) -> Option<VertexData> {
+    let list = reader.read(&raw.as_other::<source::List<'a, source::Vertex<'a>>>())?;
+    if list.len() > reader.limits.vertices {
+        reader.push(too_many(reader.span(raw), list.len(), reader.limits.vertices));
+        return None;
+    }
+    let mut vertices = Vec::with_capacity(list.len());
+    let mut spans = Vec::with_capacity(list.len());
+    for raw in &list {
+        vertices.push(vertex(reader, names, raw).unwrap_or_default());
+        spans.push(reader.span(raw));
+    }
+    Some(VertexData { vertices, spans: VertexSpans::Each(spans) })
+}
+
+/// The finding that the scene has more vertices than it may.
+pub(super) fn too_many(place: Range<usize>, count: usize, limit: usize) -> Diagnostic {
+    Diagnostic::error("NB0603", place, format!("{count} vertices are more than the {limit} that a scene may have"))
+        .label("too many")
+        .help("use indices to share vertices, or split the scene; `ninebit limits` prints what is allowed")
+}
+
+fn vertex<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Option<Vertex> {
+    let place = reader.span(raw);
+    let fields = reader.read(raw)?;
+    let mut vertex = Vertex::default();
+    if let Some(position) = reader.required(&fields.position, "position", "vertex", place)
+        && let Some(values) = reader.numbers(&position, "a position", 2, 4, vertex.position)
+    {
+        vertex.position = values;
+    }
+    if let Some(color) = &fields.diffuse {
+        vertex.diffuse = color::vertex_color(reader, names, color).unwrap_or(vertex.diffuse);
+    }
+    if let Some(color) = &fields.specular {
+        // Three numbers leave alpha at its usual 1; an absent specular colour is 0 throughout.
+        vertex.specular = color::vertex_color(reader, names, color).unwrap_or(VertexColor::Bytes([0; 4]));
+    }
+    if let Some(fog) = &fields.fog {
+        vertex.fog = fog_factor(reader, fog).unwrap_or(vertex.fog);
+    }
+    reader.reserve(&fields.fog_coordinate, "fog coordinates");
+    for (set, field) in vertex.texture_coordinates.iter_mut().zip([&fields.t0, &fields.t1, &fields.t2, &fields.t3]) {
+        if let Some(raw) = field
+            && let Some(values) = coordinates(reader, raw)
+        {
+            *set = values;
+        }
+    }
+    Some(vertex)
+}
+
+/// One to four texture coordinates s, t, r, q.
+pub(super) fn coordinates<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>) -> Option<[f32; 4]> {
+    reader.numbers(raw, "a set of texture coordinates", 1, 4, [0.0, 0.0, 0.0, 1.0])
+}
+
+fn fog_factor<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, f32>) -> Option<f32> {
+    let value = reader.finite(raw)?;
+    if (0.0..=1.0).contains(&value) {
+        return Some(value);
+    }
+    let place = reader.span(raw);
+    reader.push(
+        Diagnostic::error("NB0206", place, format!("a fog factor cannot be {value}"))
+            .label("out of range")
+            .rule("NUM-6")
+            .help("write 0.0 (all fog) to 1.0 (no fog)"),
+    );
+    None
+}

@@ -1,0 +1,425 @@
+//! Reads raw values, gathers what is wrong with them, and says it in the words of the format.
+
+use std::ops::Range;
+
+use ron::Options;
+use ron::error::{Error, SpannedError};
+use ron::extensions::Extensions;
+use serde::Deserialize;
+
+use super::diagnostic::Diagnostic;
+use super::raw::{Entries, Numbers, Raw, Reserved, Tuple, trim};
+use super::source::Expected;
+use super::wording::{closest, describe, offset, shorten, twice, unclosed, words};
+use crate::limits::Limits;
+use crate::state::{Named, Profile};
+
+/// Findings beyond this many are only counted.
+const MOST_DIAGNOSTICS: usize = 64;
+
+/// The text under examination and the findings so far.
+pub(super) struct Reader<'a> {
+    pub(super) text: &'a str,
+    pub(super) limits: &'a Limits,
+    /// Set as soon as it is known; nv2a before, which allows more.
+    pub(super) profile: Profile,
+    options: Options,
+    pub(super) diagnostics: Vec<Diagnostic>,
+    pub(super) errors: usize,
+    pub(super) suppressed: usize,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(text: &'a str, limits: &'a Limits) -> Self {
+        // The parser counts two levels for a bracket inside an optional field.
+        let options = Options::default()
+            .with_default_extension(Extensions::IMPLICIT_SOME)
+            .with_recursion_limit(limits.nesting.saturating_mul(2));
+        let diagnostics = Vec::new();
+        Reader { text, limits, profile: Profile::Nv2a, options, diagnostics, errors: 0, suppressed: 0 }
+    }
+
+    pub(super) fn push(&mut self, diagnostic: Diagnostic) {
+        let error = diagnostic.severity == super::Severity::Error;
+        if error && self.errors == 0 {
+            // Warnings come again when the errors are gone; until then they would only hide them.
+            self.diagnostics.clear();
+            self.suppressed = 0;
+        }
+        if !error && self.errors > 0 {
+            return;
+        }
+        self.errors += usize::from(error);
+        if self.diagnostics.len() < MOST_DIAGNOSTICS {
+            self.diagnostics.push(diagnostic);
+        } else {
+            self.suppressed += 1;
+        }
+    }
+
+    /// Where in the file a part of its text lies.
+    pub(super) fn range(&self, part: &str) -> Range<usize> {
+        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len());
+        start..(start + part.len()).min(self.text.len())
+    }
+
+    pub(super) fn span<T>(&self, raw: &Raw<'a, T>) -> Range<usize> {
+        self.range(raw.text)
+    }
+
+    /// Reads the value, which is known to be well formed; `None` once the reason has been recorded.
+    pub(super) fn read<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+        T::split(raw.text).or_else(|| self.parse(raw))
+    }
+
+    /// Reads the value with the parser, down to its innermost bracket.
+    pub(super) fn parse<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+        match self.options.from_str::<T>(raw.text) {
+            Ok(value) => Some(value),
+            Err(error) => {
+                let diagnostic = self.translate(raw.text, &error, T::EXPECTED);
+                self.push(diagnostic);
+                None
+            }
+        }
+    }
+
+    /// Reads the value if it can be read; says nothing otherwise.
+    pub(super) fn attempt<T: Deserialize<'a>>(&self, text: &'a str) -> Option<T> {
+        self.options.from_str(text).ok()
+    }
+
+    /// The value of an optional field; `default` if it is absent or wrong.
+    pub(super) fn or<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Option<Raw<'a, T>>, default: T) -> T {
+        raw.as_ref().and_then(|raw| self.read(raw)).unwrap_or(default)
+    }
+
+    /// The value of a field that must be there.
+    pub(super) fn required<T>(
+        &mut self,
+        raw: &Option<Raw<'a, T>>,
+        field: &str,
+        owner: &str,
+        place: Range<usize>,
+    ) -> Option<Raw<'a, T>> {
+        if raw.is_none() {
+            self.push(
+                Diagnostic::error("NB0202", place, format!("this {owner} has no `{field}`"))
+                    .label(format!("`{field}` is missing"))
+                    .help(format!("add `{field}: ...`; it has no default")),
+            );
+        }
+        *raw
+    }
+
+    /// A name out of a state enumeration.
+    pub(super) fn name<T: Named>(&mut self, raw: &Raw<'a, Name<T>>) -> Option<T> {
+        let (head, rest) = raw.split();
+        if let (Some(value), "") = (T::from_name(head), rest) {
+            return Some(value);
+        }
+        self.unknown_variant(raw, &words(T::TYPE), T::NAMES);
+        None
+    }
+
+    pub(super) fn name_or<T: Named>(&mut self, raw: &Option<Raw<'a, Name<T>>>, default: T) -> T {
+        raw.as_ref().and_then(|raw| self.name(raw)).unwrap_or(default)
+    }
+
+    /// Splits `Variant(...)`: the index in `variants`, and the text after the identifier. `None` once the reason has been
+    /// recorded.
+    pub(super) fn variant<T>(
+        &mut self,
+        raw: &Raw<'a, T>,
+        what: &str,
+        variants: &[&'static str],
+    ) -> Option<(usize, &'a str)> {
+        let (head, rest) = raw.split();
+        let found = variants.iter().position(|variant| *variant == head);
+        if found.is_none() {
+            self.unknown_variant(raw, what, variants);
+        }
+        found.map(|index| (index, rest))
+    }
+
+    /// Records that the value is none of `known`.
+    pub(super) fn unknown_variant<T>(&mut self, raw: &Raw<'a, T>, what: &str, known: &[&'static str]) {
+        let (head, rest) = raw.split();
+        let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        let diagnostic = if head.is_empty() {
+            Diagnostic::error("NB0205", self.span(raw), format!("expected a {what}, found {}", describe(raw.text)))
+                .label("wrong kind of value")
+                .help(format!("write one of {list}"))
+        } else if known.contains(&head) {
+            Diagnostic::error("NB0205", self.range(rest), format!("`{head}` takes nothing in parentheses"))
+                .label("not expected here")
+                .help(format!("write just `{head}`"))
+        } else {
+            let help = match closest(head, known.iter().copied()) {
+                Some(name) => format!("did you mean `{name}`? All of them: {list}"),
+                None => format!("write one of {list}"),
+            };
+            Diagnostic::error("NB0204", self.range(head), format!("there is no {what} `{}`", shorten(head)))
+                .label("not known")
+                .help(help)
+        };
+        self.push(diagnostic);
+    }
+
+    /// `least..=most` finite numbers in parentheses; those not written keep `defaults`.
+    pub(super) fn numbers(
+        &mut self,
+        raw: &Raw<'a, Numbers>,
+        what: &str,
+        least: usize,
+        most: usize,
+        defaults: [f32; 4],
+    ) -> Option<[f32; 4]> {
+        if let Some(numbers) = Numbers::split(raw.text).or_else(|| self.attempt(raw.text))
+            && (least..=most).contains(&numbers.count)
+            && numbers.values.iter().all(|value| value.is_finite())
+        {
+            let mut values = defaults;
+            values[..numbers.count].copy_from_slice(&numbers.values[..numbers.count]);
+            return Some(values);
+        }
+        // Something is wrong: read it again, number by number, to find out which.
+        let parts = self.read(&raw.as_other::<Tuple<'a, f32>>())?.0;
+        if !(least..=most).contains(&parts.len()) {
+            let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
+            self.push(
+                Diagnostic::error(
+                    "NB0211",
+                    self.span(raw),
+                    format!("{what} has {wanted} numbers, not {}", parts.len()),
+                )
+                .label(if parts.len() == 1 {
+                    "1 number".to_owned()
+                } else {
+                    format!("{} numbers", parts.len())
+                }),
+            );
+            return None;
+        }
+        for part in &parts {
+            self.finite(part);
+        }
+        None
+    }
+
+    /// A number that is neither infinite nor NaN.
+    pub(super) fn finite(&mut self, raw: &Raw<'a, f32>) -> Option<f32> {
+        let value = self.read(raw)?;
+        if value.is_finite() {
+            return Some(value);
+        }
+        let message = if value.is_nan() { "NaN is not a position, colour or size" } else { "this number is infinite" };
+        self.push(
+            Diagnostic::error("NB0207", self.span(raw), message)
+                .label("not a finite number")
+                .rule("NUM-0")
+                .help("numbers are 32-bit floats: at most about 3.4e38 away from zero"),
+        );
+        None
+    }
+
+    /// A whole number in `range`.
+    pub(super) fn whole(
+        &mut self,
+        raw: &Raw<'a, u32>,
+        what: &str,
+        range: std::ops::RangeInclusive<u32>,
+    ) -> Option<u32> {
+        let value = self.read(raw)?;
+        if range.contains(&value) {
+            return Some(value);
+        }
+        let (least, most) = (range.start(), range.end());
+        self.push(
+            Diagnostic::error("NB0206", self.span(raw), format!("{what} cannot be {value}"))
+                .label("out of range")
+                .help(format!("write {least} to {most}")),
+        );
+        None
+    }
+
+    /// Records that the format reserves something that is not built.
+    pub(super) fn not_built(&mut self, span: Range<usize>, what: &str) {
+        self.push(
+            Diagnostic::error("NB0401", span, format!("not built yet: {what}"))
+                .label("reserved for a later version")
+                .note("the format reserves this so that it can be added without a change of version")
+                .help("leave it out"),
+        );
+    }
+
+    /// Refuses a field that is reserved.
+    pub(super) fn reserve(&mut self, field: &Option<Raw<'a, Reserved>>, what: &str) {
+        if let Some(raw) = field {
+            self.not_built(self.span(raw), what);
+        }
+    }
+
+    /// The entries of a table, without the ones whose key is wrong or was there before.
+    pub(super) fn table<T>(&mut self, what: &str, field: &Option<Raw<'a, Entries<'a, T>>>) -> Vec<Entry<'a, T>> {
+        let Some(entries) = field.as_ref().and_then(|raw| self.read(raw)) else { return Vec::new() };
+        let mut seen: std::collections::HashMap<String, Range<usize>> = std::collections::HashMap::new();
+        let mut table = Vec::with_capacity(entries.0.len());
+        for (key, value) in entries.0 {
+            let place = self.span(&key);
+            let Some(name) = self.read(&key) else { continue };
+            if let Some(first) = seen.get(&name) {
+                let first = first.clone();
+                self.push(twice(what, &name, place, first));
+            } else {
+                seen.insert(name.clone(), place.clone());
+                table.push(Entry { name, place, value });
+            }
+        }
+        table
+    }
+
+    /// Puts a parser's error in the words of the format.
+    fn translate(&self, text: &'a str, error: &SpannedError, expected: &str) -> Diagnostic {
+        let base = self.range(text).start;
+        let start = base + offset(text, error.span.start.line, error.span.start.col);
+        let end = base + offset(text, error.span.end.line, error.span.end.col);
+        let whole = self.range(text);
+        match &error.code {
+            Error::NoSuchStructField { expected, found, .. } => {
+                let list = expected.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                let help = match closest(found, expected.iter().copied()) {
+                    Some(name) => format!("did you mean `{name}`? Fields here: {list}"),
+                    None => format!("fields here: {list}"),
+                };
+                let place = self.word_before(found, start, end);
+                Diagnostic::error("NB0201", place, format!("there is no field `{}` here", shorten(found)))
+                    .label("unknown field")
+                    .help(help)
+            }
+            Error::DuplicateStructField { field, .. } => {
+                let place = self.word_before(field, start, end);
+                Diagnostic::error("NB0203", place, format!("`{field}` is given twice"))
+                    .label("again here")
+                    .help("keep one of them")
+            }
+            Error::ExceededRecursionLimit => Diagnostic::error(
+                "NB0602",
+                start..end.max(start + 1),
+                format!("more than {} levels of brackets inside each other", self.limits.nesting),
+            )
+            .label("one level too many")
+            .help("no part of a scene needs more than a dozen levels: look for brackets that were not closed"),
+            Error::IntegerOutOfBounds => {
+                Diagnostic::error("NB0206", whole, format!("expected {expected}, found {}", describe(text)))
+                    .label("out of range")
+            }
+            Error::ExpectedInteger
+            | Error::ExpectedFloat
+            | Error::ExpectedBoolean
+            | Error::ExpectedString
+            | Error::ExpectedStringEnd
+            | Error::ExpectedArray
+            | Error::ExpectedMap
+            | Error::ExpectedStructLike
+            | Error::ExpectedNamedStructLike(_)
+            | Error::ExpectedDifferentStructName { .. }
+            | Error::ExpectedIdentifier
+            | Error::InvalidValueForType { .. }
+            | Error::ExpectedDifferentLength { .. }
+            | Error::InvalidIntegerDigit { .. }
+            | Error::TrailingCharacters
+            | Error::UnderscoreAtBeginning
+                if text.len() < trim(self.text).len() =>
+            {
+                Diagnostic::error("NB0205", whole, format!("expected {expected}, found {}", describe(text)))
+                    .label("wrong kind of value")
+            }
+            code => self.syntax(code, start, end),
+        }
+    }
+
+    /// An error of the notation itself.
+    fn syntax(&self, code: &Error, start: usize, end: usize) -> Diagnostic {
+        let ended = self.text.trim_end().len();
+        let early = matches!(code, Error::Eof);
+        let (start, end) = if early { (ended, ended) } else { (start, end) };
+        let at_end = trim(&self.text[super::diagnostic::floor_boundary(self.text, start)..]).is_empty();
+        let (message, help) = match code {
+            Error::Eof => ("the scene ends too early".to_owned(), "close the brackets that are still open"),
+            _ if at_end && !matches!(code, Error::UnclosedBlockComment) => {
+                ("the scene ends too early".to_owned(), "close the brackets that are still open")
+            }
+            Error::ExpectedComma => {
+                ("a comma or a closing bracket is missing".to_owned(), "put a comma between the values")
+            }
+            Error::ExpectedMapColon => {
+                ("a colon is missing".to_owned(), "write `field: value` in parentheses, `\"name\": value` in braces")
+            }
+            Error::ExpectedStructLikeEnd | Error::ExpectedOptionEnd => {
+                ("a closing `)` is missing".to_owned(), "close the parenthesis, or put a comma before another value")
+            }
+            Error::ExpectedArrayEnd => {
+                ("a closing `]` is missing".to_owned(), "close the list, or put a comma before another value")
+            }
+            Error::ExpectedMapEnd => {
+                ("a closing `}` is missing".to_owned(), "close the table, or put a comma before another entry")
+            }
+            Error::ExpectedStringEnd => ("a closing quote is missing".to_owned(), "end the text with `\"`"),
+            Error::UnclosedBlockComment => ("a comment is not closed".to_owned(), "end it with `*/`"),
+            Error::TrailingCharacters => (
+                "something follows the end of the scene".to_owned(),
+                "a scene is one value in parentheses: look for a bracket that was closed too early",
+            ),
+            Error::ExpectedStructLike
+            | Error::ExpectedNamedStructLike(_)
+            | Error::ExpectedDifferentStructName { .. } => (
+                "a scene starts with an opening parenthesis".to_owned(),
+                "write `(version: 1, profile: Nv2a, draws: [...])`",
+            ),
+            Error::UnexpectedChar(c) => {
+                (format!("`{}` is not expected here", c.escape_debug()), "see docs/scene-format.md for examples")
+            }
+            Error::NoSuchExtension(name) => {
+                (format!("there is no RON extension `{}`", shorten(name)), "leave the `#![enable(...)]` line out")
+            }
+            other => {
+                let mut text = shorten(&other.to_string());
+                if let Some(first) = text.get(..1).map(str::to_lowercase) {
+                    text.replace_range(..1, &first);
+                }
+                (text, "see docs/scene-format.md for examples")
+            }
+        };
+        let label = match code {
+            Error::ExpectedComma if !at_end => "a comma before this?",
+            _ => "here",
+        };
+        let finding = Diagnostic::error("NB0101", start..end.max(start), message).label(label).help(help);
+        match unclosed(self.text) {
+            Some(open) if at_end => finding.related(open..open + 1, "this bracket is still open"),
+            _ => finding,
+        }
+    }
+
+    /// The place of `word` at or shortly before `start..end`: the parser stops behind the field that it objects to.
+    fn word_before(&self, word: &str, start: usize, end: usize) -> Range<usize> {
+        let from = super::diagnostic::floor_boundary(self.text, start.saturating_sub(word.len() + 8));
+        let to = super::diagnostic::floor_boundary(self.text, end.max(start) + word.len());
+        match self.text[from..to].rfind(word) {
+            Some(at) => from + at..from + at + word.len(),
+            None => start..end.max(start),
+        }
+    }
+}
+
+/// An entry of a table.
+pub(super) struct Entry<'a, T> {
+    pub(super) name: String,
+    /// Of the name.
+    pub(super) place: Range<usize>,
+    pub(super) value: Raw<'a, T>,
+}
+
+/// Marks a value that is a name out of the state enumeration `T`.
+pub(super) struct Name<T>(std::marker::PhantomData<fn() -> T>);

@@ -1,0 +1,286 @@
+//! What may be written where: the fields of a scene file, as they are read.
+//!
+//! Every field is the unread text of a value ([`Raw`]). Fields are optional here; what happens to an absent one stands where it is
+//! used, and in `docs/scene-format.md`. Variants (`Window(...)`, `File(...)`) are taken apart by their readers.
+
+use serde::Deserialize;
+
+use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
+use super::reader::Name;
+use super::split;
+use crate::state;
+
+/// What a value of a type looks like, for "expected ...".
+pub(super) trait Expected<'a>: Sized {
+    /// In the singular, with its article.
+    const EXPECTED: &'static str;
+
+    /// Takes well-formed text apart without the parser; `None` leaves it to the parser, errors included.
+    fn split(_text: &'a str) -> Option<Self> {
+        None
+    }
+}
+
+macro_rules! expected {
+    ($($type:ty: $text:literal),+ $(,)?) => { $(impl Expected<'_> for $type { const EXPECTED: &'static str = $text; })+ };
+}
+expected! {
+    String: "a text in double quotes",
+    u8: "a whole number from 0 to 255",
+    u32: "a whole number from 0 to 4294967295",
+    f32: "a number",
+    bool: "`true` or `false`",
+}
+impl Expected<'_> for Vec<u32> {
+    const EXPECTED: &'static str = "a list of whole numbers, such as `[0, 1, 2]`";
+    fn split(text: &str) -> Option<Self> {
+        split::items(text, b'[', b']')?.into_iter().map(u32::plain).collect()
+    }
+}
+impl<'a, T> Expected<'a> for Vec<Raw<'a, T>> {
+    const EXPECTED: &'static str = "a list in square brackets";
+    fn split(text: &'a str) -> Option<Self> {
+        Some(split::items(text, b'[', b']')?.into_iter().map(Raw::new).collect())
+    }
+}
+impl<'a, T> Expected<'a> for Entries<'a, T> {
+    const EXPECTED: &'static str = "a table in braces, such as `{ \"name\": ... }`";
+    fn split(text: &'a str) -> Option<Self> {
+        let entries = split::entries(text)?;
+        Some(Entries(entries.into_iter().map(|(key, value)| (Raw::new(key), Raw::new(value))).collect()))
+    }
+}
+impl<'a, T> Expected<'a> for Tuple<'a, T> {
+    const EXPECTED: &'static str = "values in parentheses, such as `(1, 2, 3)`";
+    fn split(text: &'a str) -> Option<Self> {
+        let items = split::items(text, b'(', b')')?;
+        // Named fields are not what is wanted: the parser says so.
+        let named = |item: &&str| Raw::<()>::new(item).split().1.starts_with(':');
+        (!items.iter().any(named)).then(|| Tuple(items.into_iter().map(Raw::new).collect()))
+    }
+}
+
+macro_rules! source {
+    ($($(#[$meta:meta])* struct $name:ident { $($field:ident : $type:ty),* $(,)? })+) => { $(
+        $(#[$meta])*
+        #[derive(Deserialize)]
+        #[serde(deny_unknown_fields, bound(deserialize = "'de: 'a"))]
+        pub(super) struct $name<'a> { $(pub(super) $field: Option<Raw<'a, $type>>),* }
+        impl<'a> Expected<'a> for $name<'a> {
+            const EXPECTED: &'static str = "fields in parentheses, `(field: value, ...)`";
+            fn split(text: &'a str) -> Option<Self> {
+                let mut fields = $name { $($field: None),* };
+                for (name, value) in split::fields(text)? {
+                    match name {
+                        $(stringify!($field) if fields.$field.is_none() => fields.$field = Some(Raw::new(value)),)*
+                        _ => return None,
+                    }
+                }
+                Some(fields)
+            }
+        }
+    )+ };
+}
+
+/// A list of values.
+pub(super) type List<'a, T> = Vec<Raw<'a, T>>;
+
+/// A colour: bytes, `Float(...)`, or a name.
+pub(super) struct Color;
+/// A matrix, or a name.
+pub(super) struct Matrix;
+/// A mesh, or a name.
+pub(super) struct MeshSource;
+/// `Window(...)`, `Matrix(...)`.
+pub(super) struct VertexSource;
+/// A list of vertices, or a name.
+pub(super) struct VertexList;
+/// A pixel program, or a name.
+pub(super) struct Program;
+/// A blend function, or a name.
+pub(super) struct BlendSource;
+/// `File(...)`, `Texels(...)` and so on.
+pub(super) struct ImageSource;
+/// The state of a unit, or just the name of its texture.
+pub(super) struct Unit;
+/// What of a mesh goes into a vertex.
+pub(super) struct Attribute;
+/// An input of a combiner portion.
+pub(super) struct Input;
+/// An input of the final combiner.
+pub(super) struct FinalInput;
+/// A destination of a combiner portion.
+pub(super) struct Output;
+/// A word without further meaning to the types: one of a few.
+pub(super) struct Word;
+
+source! {
+    /// The whole file.
+    struct Scene {
+        version: u32,
+        profile: Name<state::Profile>,
+        names: Names<'a>,
+        targets: List<'a, Target<'a>>,
+        textures: Entries<'a, Texture<'a>>,
+        draws: List<'a, Draw<'a>>,
+        truth: Reserved,
+    }
+    /// Values that repeat.
+    struct Names {
+        colors: Entries<'a, Color>,
+        matrices: Entries<'a, Matrix>,
+        vertices: Entries<'a, VertexList>,
+        meshes: Entries<'a, MeshSource>,
+        programs: Entries<'a, Program>,
+        blends: Entries<'a, BlendSource>,
+    }
+    struct Target {
+        name: String,
+        width: u32,
+        height: u32,
+        format: Name<state::SurfaceFormat>,
+        clear: Clear<'a>,
+        depth: Name<state::DepthFormat>,
+    }
+    struct Clear { color: Color, depth: f32, stencil: Reserved }
+    struct Texture {
+        kind: Word,
+        format: Name<state::TextureFormat>,
+        source: ImageSource,
+        levels: Reserved,
+        palette: Reserved,
+        border: Reserved,
+    }
+    struct TexelRows { width: u32, height: u32, rows: List<'a, String> }
+    struct SolidImage { width: u32, height: u32, color: Color }
+    struct CheckerImage { width: u32, height: u32, cell: u32, colors: Tuple<'a, Color> }
+    struct RampImage { width: u32, height: u32, from: Color, to: Color, axis: Word }
+    struct Draw {
+        name: String,
+        target: String,
+        vertices: VertexSource,
+        indices: Vec<u32>,
+        topology: Name<state::Topology>,
+        shade_model: Name<state::ShadeModel>,
+        provoking_vertex: Name<state::ProvokingVertex>,
+        perspective: bool,
+        cull: Name<state::Cull>,
+        front_face: Name<state::FrontFace>,
+        scissor: Rectangle<'a>,
+        fog: Fog<'a>,
+        textures: List<'a, Unit>,
+        program: Program,
+        alpha_test: AlphaTest<'a>,
+        depth_test: DepthTest<'a>,
+        blend: BlendSource,
+        blend_constant: Color,
+        color_mask: Tuple<'a, bool>,
+        dither: bool,
+        stencil_test: Reserved,
+        logic_op: Reserved,
+        texture_shader: Reserved,
+        texgen: Reserved,
+        texture_matrices: Reserved,
+        truth: Reserved,
+    }
+    struct Vertex {
+        position: Numbers,
+        diffuse: Color,
+        specular: Color,
+        fog: f32,
+        fog_coordinate: Reserved,
+        t0: Numbers,
+        t1: Numbers,
+        t2: Numbers,
+        t3: Numbers,
+    }
+    struct MatrixVertices {
+        matrix: Matrix,
+        viewport: Viewport<'a>,
+        vertices: VertexList,
+        mesh: MeshSource,
+        diffuse: Attribute,
+        specular: Attribute,
+        t0: Attribute,
+        t1: Attribute,
+        t2: Attribute,
+        t3: Attribute,
+    }
+    struct Viewport { x: f32, y: f32, width: f32, height: f32, near: f32, far: f32 }
+    struct Grid { columns: u32, rows: u32, size: Numbers, repeat: Numbers }
+    struct Sphere { slices: u32, stacks: u32, radius: f32, repeat: Numbers }
+    struct LightVector { position: Numbers, direction: Numbers, space: Word }
+    struct HalfVector { position: Numbers, direction: Numbers, viewer: Numbers, space: Word }
+    struct Frustum { left: f32, right: f32, bottom: f32, top: f32, near: f32, far: f32 }
+    struct LookAt { eye: Numbers, center: Numbers, up: Numbers }
+    struct Rectangle { x: u32, y: u32, width: u32, height: u32 }
+    struct Fog {
+        enabled: bool,
+        color: Color,
+        mode: Reserved,
+        density: Reserved,
+        start: Reserved,
+        end: Reserved,
+        coordinate_source: Reserved,
+    }
+    struct UnitState {
+        texture: String,
+        coordinates: u32,
+        address: Name<state::AddressMode>,
+        address_s: Name<state::AddressMode>,
+        address_t: Name<state::AddressMode>,
+        min_filter: Name<state::Filter>,
+        mag_filter: Name<state::Filter>,
+        mip_filter: Word,
+        border_color: Color,
+        signed: Tuple<'a, bool>,
+        lod_bias: Reserved,
+        min_lod: Reserved,
+        max_lod: Reserved,
+        anisotropy: Reserved,
+        color_key: Reserved,
+    }
+    struct AlphaTest { function: Name<state::CompareFunction>, reference: u32 }
+    struct DepthTest { function: Name<state::CompareFunction>, write: bool }
+    struct Blend {
+        equation: Name<state::BlendEquation>,
+        source: Name<state::BlendFactor>,
+        destination: Name<state::BlendFactor>,
+    }
+    struct Combiners {
+        constants: Tuple<'a, Color>,
+        mux_select: Name<state::MuxSelect>,
+        stages: List<'a, Stage<'a>>,
+        final_combiner: FinalCombiner<'a>,
+    }
+    struct Stage { rgb: Portion<'a>, alpha: Portion<'a>, constants: Tuple<'a, Color> }
+    struct Portion {
+        a: Input,
+        b: Input,
+        c: Input,
+        d: Input,
+        ab: Output,
+        cd: Output,
+        sum: Output,
+        ab_dot: bool,
+        cd_dot: bool,
+        mux: bool,
+        scale: Name<state::Scale>,
+        bias: Name<state::Bias>,
+        ab_blue_to_alpha: bool,
+        cd_blue_to_alpha: bool,
+    }
+    struct FinalCombiner {
+        a: FinalInput,
+        b: FinalInput,
+        c: FinalInput,
+        d: FinalInput,
+        e: FinalInput,
+        f: FinalInput,
+        g: FinalInput,
+        color_sum_clamp: bool,
+        invert_spare0: bool,
+        invert_secondary: bool,
+        constants: Tuple<'a, Color>,
+    }
+}

@@ -1,0 +1,85 @@
+//! Broken scenes and every character of what is said about them.
+//!
+//! `tests/bad/NAME.ron` is refused (or warned about) with the text in `NAME.txt`. `BLESS=1` writes the texts anew: read the
+//! difference before you keep it.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::Path;
+
+use ninebit::limits::Limits;
+use ninebit::scene::{self, ErrorKind};
+
+#[test]
+fn every_broken_scene_says_what_is_wrong() {
+    let bless = std::env::var_os("BLESS").is_some();
+    let mut names: Vec<String> = fs::read_dir("tests/bad")
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter_map(|name| name.strip_suffix(".ron").map(str::to_owned))
+        .collect();
+    names.sort();
+    assert!(names.len() >= 30);
+    let mut wrong = Vec::new();
+    for name in names {
+        let path = format!("tests/bad/{name}.ron");
+        let said = match scene::load(Path::new(&path), &Limits::default()) {
+            Ok(loaded) => format!("accepted\n\n{}", loaded.render_warnings(false)),
+            Err(error) => format!("exit code {}\n\n{}", error.exit_code(), error.render(false)),
+        };
+        let pinned = format!("tests/bad/{name}.txt");
+        if bless {
+            fs::write(&pinned, &said).unwrap();
+        } else if fs::read_to_string(&pinned).unwrap_or_default() != said {
+            wrong.push(format!("{path} now says:\n{said}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}\nBLESS=1 accepts what is said now", wrong.join("\n"));
+}
+
+#[test]
+fn codes_are_listed_and_every_listed_code_is_unique() {
+    let mut codes: Vec<&str> = scene::code::CODES.iter().map(|(code, _)| *code).collect();
+    let count = codes.len();
+    codes.sort_unstable();
+    codes.dedup();
+    assert_eq!(codes.len(), count);
+    for entry in fs::read_dir("tests/bad").unwrap() {
+        let path = entry.unwrap().path();
+        if path.extension().is_some_and(|extension| extension == "txt") {
+            let text = fs::read_to_string(&path).unwrap();
+            for code in text.split('[').skip(1).filter_map(|rest| rest.split_once(']')).map(|(code, _)| code) {
+                if code.starts_with("NB") {
+                    assert!(scene::code::meaning(code).is_some(), "{code} of {} is not listed", path.display());
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_missing_scene_is_missing() {
+    let error = scene::load(Path::new("tests/bad/there-is-none.ron"), &Limits::default()).unwrap_err();
+    assert_eq!(error.kind(), ErrorKind::Missing);
+    assert_eq!(
+        error.render(false),
+        "error[NB0111]: there is no such scene file\n--> tests/bad/there-is-none.ron\n = help: check the spelling and \
+         the folder; upper and lower case count\n"
+    );
+}
+
+#[test]
+fn a_folder_is_no_scene() {
+    let error = scene::load(Path::new("tests/bad"), &Limits::default()).unwrap_err();
+    assert_eq!((error.exit_code(), error.diagnostics[0].code), (3, "NB0112"));
+}
+
+#[test]
+fn a_scene_of_20_megabytes_is_refused_unread() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("large.ron");
+    fs::write(&path, vec![b' '; 20 << 20]).unwrap();
+    let error = scene::load(&path, &Limits::default()).unwrap_err();
+    assert_eq!((error.exit_code(), error.diagnostics[0].code), (5, "NB0601"));
+    assert!(error.render(false).contains("larger than 8388608 bytes"));
+}
