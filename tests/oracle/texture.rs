@@ -39,6 +39,7 @@ pub fn texel_bytes(format: TextureFormat, word: u32) -> [i128; 4] {
             [five(11), six << 2 | six >> 4, five(0), 255]
         }
         TextureFormat::X1R5G5B5 => [five(10), five(5), five(0), 255],
+        TextureFormat::A1R5G5B5 => [five(10), five(5), five(0), if word >> 15 & 1 == 1 { 255 } else { 0 }],
         TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
         TextureFormat::A8 => [255, 255, 255, byte(0)],
         TextureFormat::G8B8 => [byte(0), byte(1), byte(0), byte(1)],
