@@ -22,7 +22,7 @@ where
 {
     let a = texture.map(expand_normal);
     let b = primary.map(expand_normal);
-    unsigned_identity(output(dot_product(a, b), Bias::None, Scale::One, RegisterFloor::Full))
+    unsigned_identity(output(dot_product(a, b), Bias::None, Scale::One, RegisterFloor::Full, |_, v| v))
 }
 
 type Block = [[i16; PIXELS]; 3];

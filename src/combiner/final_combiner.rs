@@ -3,7 +3,7 @@
 use super::registers::{self, Registers, channel_name};
 use crate::number::{Factor, Lane, Sum};
 use crate::state::{Component, FinalCombiner, FinalInput, FinalRegister, LerpRounding, Policies, Profile, Register};
-use crate::trace::{Observer, Operand, Step, report};
+use crate::trace::{Observer, Operand, Rule, Step, Work, report};
 
 /// The final combiner with what the plan found out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,12 +35,19 @@ pub fn input<L: Lane>(x: L, invert: bool) -> L {
 
 /// FIN-2: clamp(A B + (1 - A) C + D), the unclamped value first.
 #[inline(always)]
-pub fn lerp_add<L: Lane>(a: L, b: L, c: L, d: L, rounding: LerpRounding) -> L {
+pub fn lerp_add<L: Lane, O: Observer>([a, b, c, d]: [L; 4], rounding: LerpRounding, observer: &mut O) -> L {
     let ab = a.factor().product(b.factor());
     let ac = (L::ONE - a).factor().product(c.factor());
+    observer.count(Work::Products, 2);
     match rounding {
-        LerpRounding::Once => (ab + ac).rounded() + d,
-        LerpRounding::Twice => ab.rounded() + ac.rounded() + d,
+        LerpRounding::Once => {
+            observer.count(Work::Roundings, 1);
+            observer.settle(Rule::Fin2, (ab + ac).rounded()) + d
+        }
+        LerpRounding::Twice => {
+            observer.count(Work::Roundings, 2);
+            observer.settle(Rule::Fin2, ab.rounded()) + observer.settle(Rule::Fin2, ac.rounded()) + d
+        }
     }
 }
 
@@ -81,7 +88,9 @@ pub fn run<L: Lane, O: Observer>(
     }
     for channel in (0..3).filter(|c| planned.product >> c & 1 != 0) {
         let [e, f] = [4, 5].map(|n| read(&state.inputs[n], n, channel, registers, &specials, observer));
-        specials.product[channel] = product(e, f);
+        observer.count(Work::Products, 1);
+        observer.count(Work::Roundings, 1);
+        specials.product[channel] = observer.settle(Rule::Fin4, product(e, f));
         if O::ON {
             let suffix = channel_name(channel);
             let inputs = vec![
@@ -102,7 +111,7 @@ pub fn run<L: Lane, O: Observer>(
             continue;
         }
         let [a, b, c, d] = [0, 1, 2, 3].map(|n| read(&state.inputs[n], n, channel, registers, &specials, observer));
-        let raw = lerp_add(a.least(L::ONE), b, c, d, policies.lerp_rounding);
+        let raw = lerp_add([a.least(L::ONE), b, c, d], policies.lerp_rounding, observer);
         out[channel] = raw.clamped();
         if O::ON {
             report_rgb(channel, [a, b, c, d], raw, out[channel], profile, policies, observer);

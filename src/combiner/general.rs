@@ -10,7 +10,7 @@ use crate::state::{
     Bias, CombinerInput, Component, DotRounding, MuxNegative, MuxSelect, OutputRounding, Policies, Portion, Register,
     RegisterFloor, Scale, SumRounding,
 };
-use crate::trace::Observer;
+use crate::trace::{Decision, Observer, Rule, Work};
 
 /// CMB-8: the sum of three full-width products, not yet rounded.
 #[inline(always)]
@@ -18,13 +18,32 @@ pub fn dot_product<F: Factor>(a: [F; 3], b: [F; 3]) -> F::Sum {
     a[0].product(b[0]) + a[1].product(b[1]) + a[2].product(b[2])
 }
 
-/// CMB-9: rounded, biased, scaled, saturated.
+/// CMB-9: rounded, biased, scaled, saturated. `settle` is told what each rule yields and returns what goes on.
 #[inline(always)]
-pub fn output<S: Sum>(raw: S, bias: Bias, scale: Scale, floor: RegisterFloor) -> S::Register
+pub fn output<S: Sum>(
+    raw: S,
+    bias: Bias,
+    scale: Scale,
+    floor: RegisterFloor,
+    mut settle: impl FnMut(OutputStep, S::Register) -> S::Register,
+) -> S::Register
 where
     S::Register: crate::number::Register,
 {
-    scaled(biased(raw.rounded(), bias), scale).saturated(floor)
+    let v = settle(OutputStep::Rounded, raw.rounded());
+    let v = settle(OutputStep::Scaled, scaled(biased(v, bias), scale));
+    settle(OutputStep::Saturated, v.saturated(floor))
+}
+
+/// What [`output`] has done to a value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OutputStep {
+    /// NUM-2.
+    Rounded,
+    /// CMB-9.
+    Scaled,
+    /// NUM-3.
+    Saturated,
 }
 
 #[inline(always)]
@@ -63,7 +82,10 @@ pub(super) fn rounded_after<L: Lane>(raw: L::Full, bias: Bias, scale: Scale) -> 
 /// CMB-10: whether the mux takes CD.
 #[inline]
 pub fn mux_takes_cd<L: Lane>(spare0_alpha: L, select: MuxSelect, policies: &Policies) -> bool {
-    let v = spare0_alpha.decision();
+    takes_cd(spare0_alpha.decision(), select, policies)
+}
+
+fn takes_cd(v: i32, select: MuxSelect, policies: &Policies) -> bool {
     match select {
         MuxSelect::Lsb => v & 1 != 0,
         MuxSelect::Msb => match policies.mux_negative {
@@ -143,10 +165,15 @@ pub fn run<L: Lane, O: Observer>(
     }
     let spare0 = registers.read(Register::Spare0, 3);
     let takes_cd = mux_takes_cd(spare0, mux_select, policies);
-    let rgb = evaluate::<L, 3>(&stage.rgb, takes_cd, policies, registers);
-    let alpha = evaluate::<L, 1>(&stage.alpha, takes_cd, policies, registers);
+    let muxes = [&stage.rgb, &stage.alpha].into_iter().any(|p| p.portion.mux && p.live[2] != 0);
+    if O::MEASURES && muxes {
+        let ideal = || i64::from(self::takes_cd(spare0.ideal_decision(), mux_select, policies));
+        observer.decided(Decision::Mux, i64::from(takes_cd), ideal);
+    }
+    let rgb = evaluate::<L, O, 3>(&stage.rgb, takes_cd, policies, registers, observer);
+    let alpha = evaluate::<L, O, 1>(&stage.alpha, takes_cd, policies, registers, observer);
     if O::ON {
-        if [&stage.rgb, &stage.alpha].into_iter().any(|p| p.portion.mux && p.live[2] != 0) {
+        if muxes {
             StageReport::new(stage.index, false).mux(spare0, mux_select, policies, takes_cd, observer);
         }
         for (portion, report) in [(&stage.rgb, false), (&stage.alpha, true)] {
@@ -164,26 +191,34 @@ pub fn run<L: Lane, O: Observer>(
 
 /// One portion. Channels that nobody reads are computed along where that is cheaper than asking.
 #[inline(always)]
-fn evaluate<L: Lane, const N: usize>(
+fn evaluate<L: Lane, O: Observer, const N: usize>(
     planned: &PlannedPortion,
     takes_cd: bool,
     policies: &Policies,
     registers: &Registers<L>,
+    observer: &mut O,
 ) -> Values<L, N> {
     let portion = &planned.portion;
-    let (a, b, ab) = product::<L, N>(planned, 0, policies, registers);
-    let (c, d, cd) = product::<L, N>(planned, 1, policies, registers);
+    let (a, b, ab) = product::<L, O, N>(planned, 0, policies, registers, observer);
+    let (c, d, cd) = product::<L, O, N>(planned, 1, policies, registers, observer);
     let takes_cd = portion.mux.then_some(takes_cd);
+    let [rule_ab, rule_cd] =
+        [portion.ab_dot_product, portion.cd_dot_product].map(|dot| if dot { Rule::Cmb8 } else { Rule::Cmb6 });
     let third = if planned.live[2] == 0 {
         [L::ZERO.widened(); N]
     } else {
-        std::array::from_fn(|n| third::<L>(ab[n], cd[n], takes_cd, policies))
+        std::array::from_fn(|n| third::<L, O>([ab[n], cd[n]], [rule_ab, rule_cd], takes_cd, policies, observer))
     };
-    let [same_ab, same_cd] = [portion.ab_dot_product, portion.cd_dot_product];
+    let rule_third = match takes_cd {
+        None => Rule::Cmb7,
+        Some(true) => rule_cd,
+        Some(false) => rule_ab,
+    };
+    let same = [portion.ab_dot_product, portion.cd_dot_product];
     let outputs = [
-        finish_all::<L, N>(planned, 0, ab, same_ab, policies),
-        finish_all::<L, N>(planned, 1, cd, same_cd, policies),
-        finish_all::<L, N>(planned, 2, third, same_ab && same_cd, policies),
+        finish_all::<L, O, N>(planned, 0, ab, same[0], rule_ab, policies, observer),
+        finish_all::<L, O, N>(planned, 1, cd, same[1], rule_cd, policies, observer),
+        finish_all::<L, O, N>(planned, 2, third, same[0] && same[1], rule_third, policies, observer),
     ];
     Values { factors: [a, b, c, d], products: [ab, cd], third, outputs }
 }
@@ -191,39 +226,54 @@ fn evaluate<L: Lane, const N: usize>(
 /// The factors of AB (0) or CD (1), and their product or dot product at full width; zeros where nobody asks.
 #[inline(always)]
 #[allow(clippy::type_complexity, reason = "two factors and their product, unpacked at once")]
-fn product<L: Lane, const N: usize>(
+fn product<L: Lane, O: Observer, const N: usize>(
     planned: &PlannedPortion,
     which: usize,
     policies: &Policies,
     registers: &Registers<L>,
+    observer: &mut O,
 ) -> ([L::Mapped; N], [L::Mapped; N], [L::Full; N]) {
     if planned.product_channels(which) == 0 {
         let zero = [L::ZERO.factor(); N];
         return (zero, zero, [L::ZERO.widened(); N]);
     }
     let portion = &planned.portion;
-    let factor = |input: &CombinerInput| mapping::map(channels::<L, N>(input, registers), input.mapping, policies);
+    let mut factor = |input: &CombinerInput| {
+        let factors = mapping::map(channels::<L, N>(input, registers), input.mapping, policies);
+        if O::MEASURES {
+            factors.map(|factor| observer.settle_factor::<L>(mapping::rule(input.mapping), factor))
+        } else {
+            factors
+        }
+    };
     let (a, b) = (factor(&portion.inputs[2 * which]), factor(&portion.inputs[2 * which + 1]));
+    observer.count(Work::Products, N as u64);
     let dot_product = if which == 0 { portion.ab_dot_product } else { portion.cd_dot_product };
-    let raw = if dot_product { [dot::<L>(&a, &b, policies); N] } else { std::array::from_fn(|c| a[c].product(b[c])) };
+    let raw = if dot_product {
+        [dot::<L, O>(&a, &b, policies, observer); N]
+    } else {
+        std::array::from_fn(|c| a[c].product(b[c]))
+    };
     (a, b, raw)
 }
 
 /// Output `n` of every channel; `same` says that the channels are equal, as a dot product's are.
 #[inline(always)]
-fn finish_all<L: Lane, const N: usize>(
+fn finish_all<L: Lane, O: Observer, const N: usize>(
     planned: &PlannedPortion,
     n: usize,
     raw: [L::Full; N],
     same: bool,
+    rule: Rule,
     policies: &Policies,
+    observer: &mut O,
 ) -> [L; N] {
     if planned.live[n] == 0 && !(n < 2 && planned.blue_to_alpha[n]) {
         [L::ZERO; N]
     } else if same {
-        [finish::<L>(raw[0], &planned.portion, policies); N]
+        [finish::<L, O>(raw[0], &planned.portion, rule, policies, observer); N]
     } else {
-        raw.map(|raw| finish::<L>(raw, &planned.portion, policies))
+        raw.map(|raw| finish::<L, O>(raw, &planned.portion, rule, policies, observer))
     }
 }
 
@@ -240,13 +290,14 @@ fn channels<L: Lane, const N: usize>(input: &CombinerInput, registers: &Register
 
 /// CMB-8 with its alternative. Only RGB portions have dot products, so there are three channels.
 #[inline(always)]
-fn dot<L: Lane>(a: &[L::Mapped], b: &[L::Mapped], policies: &Policies) -> L::Full {
+fn dot<L: Lane, O: Observer>(a: &[L::Mapped], b: &[L::Mapped], policies: &Policies, observer: &mut O) -> L::Full {
     let ([a0, a1, a2], [b0, b1, b2]) = (a, b) else { return L::ZERO.widened() };
     let (a, b) = ([*a0, *a1, *a2], [*b0, *b1, *b2]);
     match policies.dot_rounding {
         DotRounding::Once => dot_product(a, b),
         DotRounding::Each => {
-            let term = |n: usize| a[n].product(b[n]).rounded();
+            observer.count(Work::Roundings, 3);
+            let mut term = |n: usize| observer.settle(Rule::Cmb8, a[n].product(b[n]).rounded());
             (term(0) + term(1) + term(2)).widened()
         }
     }
@@ -254,22 +305,46 @@ fn dot<L: Lane>(a: &[L::Mapped], b: &[L::Mapped], policies: &Policies) -> L::Ful
 
 /// CMB-7, or CMB-10 where `takes_cd` is given: the third output before bias and scale.
 #[inline(always)]
-fn third<L: Lane>(ab: L::Full, cd: L::Full, takes_cd: Option<bool>, policies: &Policies) -> L::Full {
+fn third<L: Lane, O: Observer>(
+    [ab, cd]: [L::Full; 2],
+    rules: [Rule; 2],
+    takes_cd: Option<bool>,
+    policies: &Policies,
+    observer: &mut O,
+) -> L::Full {
     match (takes_cd, policies.sum_rounding) {
         (Some(true), _) => cd,
         (Some(false), _) => ab,
         (None, SumRounding::Once) => ab + cd,
-        (None, SumRounding::Each) => (ab.rounded() + cd.rounded()).widened(),
+        (None, SumRounding::Each) => {
+            observer.count(Work::Roundings, 2);
+            let [ab, cd] = [(ab, rules[0]), (cd, rules[1])].map(|(v, rule)| observer.settle(rule, v.rounded()));
+            (ab + cd).widened()
+        }
     }
 }
 
 /// CMB-9 with its alternative.
 #[inline(always)]
-fn finish<L: Lane>(raw: L::Full, portion: &Portion, policies: &Policies) -> L {
+fn finish<L: Lane, O: Observer>(
+    raw: L::Full,
+    portion: &Portion,
+    rule: Rule,
+    policies: &Policies,
+    observer: &mut O,
+) -> L {
+    observer.count(Work::Roundings, 1);
     match policies.output_rounding {
-        OutputRounding::BeforeScale => output(raw, portion.bias, portion.scale, policies.register_floor),
+        OutputRounding::BeforeScale => {
+            output(raw, portion.bias, portion.scale, policies.register_floor, |step, v| match step {
+                OutputStep::Rounded => observer.settle(rule, v),
+                OutputStep::Scaled => observer.settle(Rule::Cmb9, v),
+                OutputStep::Saturated => observer.settle(Rule::Num3, v),
+            })
+        }
         OutputRounding::AfterScale => {
-            rounded_after::<L>(raw, portion.bias, portion.scale).saturated(policies.register_floor)
+            let v = observer.settle(Rule::Cmb9, rounded_after::<L>(raw, portion.bias, portion.scale));
+            observer.settle(Rule::Num3, v.saturated(policies.register_floor))
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::number::{Lane, Register};
 use crate::state::{ExpandCentre, HalfBiasConstant, InputMapping, Policies};
+use crate::trace::Rule;
 
 /// CMB-2: max(0, x).
 #[inline(always)]
@@ -59,12 +60,12 @@ fn half_bias<L: Lane>(x: L, half: L, policies: &Policies) -> L::Mapped {
 }
 
 /// The rule that a mapping belongs to.
-pub fn rule(mapping: InputMapping) -> &'static str {
+pub fn rule(mapping: InputMapping) -> Rule {
     match mapping {
-        InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert => "CMB-2",
-        InputMapping::ExpandNormal | InputMapping::ExpandNegate => "CMB-3",
-        InputMapping::HalfBiasNormal | InputMapping::HalfBiasNegate => "CMB-4",
-        InputMapping::SignedIdentity | InputMapping::SignedNegate => "CMB-5",
+        InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert => Rule::Cmb2,
+        InputMapping::ExpandNormal | InputMapping::ExpandNegate => Rule::Cmb3,
+        InputMapping::HalfBiasNormal | InputMapping::HalfBiasNegate => Rule::Cmb4,
+        InputMapping::SignedIdentity | InputMapping::SignedNegate => Rule::Cmb5,
     }
 }
 

@@ -5,8 +5,8 @@ use super::mapping;
 use super::registers::{self, Registers, channel_name};
 use crate::number::{Lane, Sum};
 use crate::state::{
-    Bias, DotRounding, MuxNegative, MuxSelect, OutputRounding, Policies, Portion, Register, RegisterFloor, Scale,
-    SumRounding,
+    Bias, DotRounding, MuxNegative, MuxSelect, Named, OutputRounding, Policies, Portion, Register, RegisterFloor,
+    Scale, SumRounding,
 };
 use crate::trace::{Observer, Step, plain, report};
 
@@ -70,7 +70,7 @@ impl StageReport {
                 let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
                 let operand = format!("{}.{}", registers::name(input.register), channel_name(source));
                 observer.step(
-                    report::factor_step::<L>(&self.block, mapping::rule(input.mapping), name, factor)
+                    report::factor_step::<L>(&self.block, mapping::rule(input.mapping).name(), name, factor)
                         .by(mapping::operation(input.mapping), vec![report::register(operand, x)]),
                 );
             }

@@ -13,7 +13,8 @@ pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
 use crate::frame::{Frames, Surface};
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::{Target, TextureImage};
+use crate::state::{Target, Texture, TextureImage};
+use crate::texture::unit::Image;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -85,15 +86,13 @@ pub(crate) fn cleared(plan: &Plan) -> Frames {
     Frames { surfaces: plan.targets.iter().map(clear).collect() }
 }
 
-/// The words of each texture at this moment.
-pub(crate) fn texture_words<'a>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<&'a [u32]> {
-    plan.textures
-        .iter()
-        .map(|t| match &t.image {
-            TextureImage::Texels { words, .. } => words,
-            TextureImage::Target { target, .. } => surfaces[*target].words.as_slice(),
-        })
-        .collect()
+/// Each texture as it stands at this moment.
+pub(crate) fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Image<'a, L>> {
+    let words = |texture: &'a Texture| match &texture.image {
+        TextureImage::Texels { words, .. } => &words[..],
+        TextureImage::Target { target, .. } => &surfaces[*target].words,
+    };
+    plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
 }
 
 /// Runs one draw on its target; covered pixels.
@@ -109,7 +108,7 @@ pub(crate) fn draw(
     let width = target.width as usize;
     // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
     let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
-    let textures = texture_words(plan, &frames.surfaces);
+    let textures = images(plan, &frames.surfaces);
     let band_of = |number: usize, words, depth| walk::Band { first_row: number * BAND, width, words, depth };
     let shaded = {
         let bands: Vec<walk::Band<'_>> = if depth.is_empty() {

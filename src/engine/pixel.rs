@@ -10,51 +10,53 @@ use crate::raster::setup::Triangle;
 use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
 use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
-use crate::texture::unit::{self, Coordinates};
-use crate::trace::{Observer, Operand, Step, plain, report};
+use crate::texture::unit::{self, Coordinates, Image};
+use crate::trace::{Decision, Observer, Operand, Rule, Step, Work, plain, report};
 
 /// A triangle of a draw, set up.
-pub(super) struct TriangleContext<'a> {
+pub(crate) struct TriangleContext<'a> {
     plan: &'a Plan,
-    pub(super) draw: &'a PlannedDraw,
+    pub(crate) draw: &'a PlannedDraw,
     /// Its number in the draw.
-    pub(super) number: usize,
-    pub(super) triangle: Triangle,
-    pub(super) vertices: [&'a Vertex; 3],
+    pub(crate) number: usize,
+    pub(crate) triangle: Triangle,
+    pub(crate) vertices: [&'a Vertex; 3],
     /// The vertices whose diffuse and specular are taken: all three, or the provoking one thrice.
     colored: [&'a Vertex; 3],
     primary: [[u8; 4]; 3],
     secondary: [[u8; 4]; 3],
     coordinates: [Option<Coordinates>; 4],
     fog: [i64; 3],
-    pub(super) z: [i64; 3],
+    pub(crate) z: [i64; 3],
 }
 
 /// A covered pixel before shading.
-pub(super) struct Fragment {
+pub(crate) struct Fragment {
     /// Column and row.
-    pub(super) pixel: (i64, i64),
+    pub(crate) pixel: (i64, i64),
     /// Edge functions.
-    pub(super) e: [i64; 3],
+    pub(crate) e: [i64; 3],
     /// What the surface holds.
-    pub(super) stored: u32,
-    /// What the depth buffer holds.
-    pub(super) stored_depth: u32,
+    pub(crate) stored: u32,
+    /// What the depth buffer holds, as the lane keeps it.
+    pub(crate) stored_depth: i64,
+    /// The ideal's weights of the vertices, where they are not those of the snapped triangle.
+    pub(crate) weights: Option<[f64; 3]>,
 }
 
 /// What a fragment leaves behind.
-pub(super) struct Stored<L> {
+pub(crate) struct Stored<L> {
     /// The surface's new word.
-    pub(super) word: u32,
-    /// The new depth, if it is written.
-    pub(super) depth: Option<u32>,
+    pub(crate) word: u32,
+    /// The new depth, if it is written, as the lane keeps it.
+    pub(crate) depth: Option<i64>,
     /// The blended channels before the store, and which of them the mask lets through: what an ideal surface would hold.
-    pub(super) channels: [L; 4],
+    pub(crate) channels: [L; 4],
 }
 
 impl<'a> TriangleContext<'a> {
     /// Sets up triangle `number`; `None` when it is culled, empty, or outside `rows`.
-    pub(super) fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
+    pub(crate) fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
         let Assembled { vertices, provoking } = draw.assembly.triangles[number];
         let all = &draw.assembly.vertices;
         let vertices = vertices.map(|v| &all[v as usize]);
@@ -97,15 +99,15 @@ impl<'a> TriangleContext<'a> {
     ///
     /// `destination` is the ideal's stored colour, where the lane has one; without it the stored word counts.
     #[inline]
-    pub(super) fn shade<L: Lane, O: Observer>(
+    pub(crate) fn shade<L: Lane, O: Observer>(
         &self,
         fragment: &Fragment,
         destination: Option<[L; 4]>,
-        textures: &[&[u32]],
+        textures: &[Image<'_, L>],
         observer: &mut O,
     ) -> Option<Stored<L>> {
         let draw = self.draw;
-        let sample = Sample::new(&self.triangle, fragment.e);
+        let sample = Sample { ideal: fragment.weights, ..Sample::new(&self.triangle, fragment.e) };
         if O::ON {
             reports::setup(&self.triangle, &sample, fragment.pixel, observer);
         }
@@ -165,11 +167,12 @@ impl<'a> TriangleContext<'a> {
                 self.colored.map(|v| if register == Register::PrimaryColor { &v.diffuse } else { &v.specular });
             let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
                 std::array::from_fn(|k| {
-                    L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel))
+                    let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel));
+                    observer.settle(Rule::Num4, corner)
                 })
             });
             let value = if O::ON || !constant(colors) {
-                corners.map(|c| interpolate::color(c, w0, w2))
+                corners.map(|c| observer.settle(Rule::Int2, interpolate::color(c, w0, w2)))
             } else {
                 corners.map(|c| c[0])
             };
@@ -192,7 +195,7 @@ impl<'a> TriangleContext<'a> {
         let factor = if draw.fog.enabled && draw.fog_channels & 8 != 0 {
             let v = sample.factor(&self.fog);
             let ideal = || ideal::factor(self.barycentrics(sample), self.vertices.map(|v| v.fog));
-            let factor = L::value(i32::from(convert::factor_byte(v)), ideal);
+            let factor = observer.settle(Rule::Num6, L::value(i32::from(convert::factor_byte(v)), ideal));
             if O::ON {
                 for (k, g) in self.fog.iter().enumerate() {
                     observer.step(Step::given("fog", "INT-5", format!("fog.G{k}"), *g));
@@ -228,7 +231,7 @@ impl<'a> TriangleContext<'a> {
         &self,
         sample: &Sample<'_>,
         registers: &mut Registers<L>,
-        textures: &[&[u32]],
+        textures: &[Image<'_, L>],
         observer: &mut O,
     ) {
         const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
@@ -253,8 +256,8 @@ impl<'a> TriangleContext<'a> {
                 let sets = self.vertices.map(|v| v.texture_coordinates[planned.state.coordinate_set]);
                 ideal::texel_coordinates(self.barycentrics(sample), sets, [planned.width, planned.height])
             };
-            let words = textures[planned.state.texture];
-            let value = unit::sample::<L, O>(planned, words, coordinates, sample, ideal, observer);
+            let image = &textures[planned.state.texture];
+            let value = unit::sample::<L, O>(planned, image, coordinates, sample, ideal, observer);
             registers.load(UNITS[planned.index], value);
         }
         if O::ON {
@@ -289,8 +292,9 @@ impl<'a> TriangleContext<'a> {
         }
         let mut depth = None;
         if let Some(test) = &draw.depth_test {
-            let z = sample.depth(self.z, draw.depth_full) as u32;
+            let z = L::depth(sample.depth(self.z, draw.depth_full), || self.ideal_depth(sample));
             let passed = test.function.passes(z, fragment.stored_depth);
+            observer.decided(Decision::DepthTest, i64::from(passed), || i64::from(passed));
             if O::ON {
                 self.report_depth(sample, z, fragment.stored_depth, passed, observer);
             }
@@ -303,10 +307,19 @@ impl<'a> TriangleContext<'a> {
         let channels = match &draw.blend {
             None => source,
             Some(state) => {
-                let truncated: [L; 4] =
-                    std::array::from_fn(|n| if n < 3 { source[n].truncated(dropped[n]) } else { source[n] });
+                let truncated: [L; 4] = std::array::from_fn(|n| {
+                    if n < 3 && dropped[n] != 0 {
+                        observer.settle(Rule::Rop5, source[n].truncated(dropped[n]))
+                    } else {
+                        source[n]
+                    }
+                });
+                observer.count(Work::BytesRead, u64::from(draw.surface.bytes()));
                 let stored = surface::read(draw.surface, fragment.stored);
-                let destination = destination.unwrap_or(stored.map(L::byte));
+                let destination = match destination {
+                    Some(held) => held.map(|held| observer.settle(Rule::Rop5, held)),
+                    None => stored.map(L::byte),
+                };
                 if O::ON {
                     self.report_blend_operands(&source, &truncated, fragment.stored, &destination, observer);
                 }
@@ -316,14 +329,27 @@ impl<'a> TriangleContext<'a> {
         };
         let word = surface::pack(draw.surface, channels.map(|c| c.decision().clamp(0, 255) as u8));
         let word = (fragment.stored & !draw.write_mask) | (word & draw.write_mask);
+        observer.count(Work::BytesWritten, u64::from(draw.surface.bytes()));
         if O::ON {
             self.report_store(&channels, fragment.stored, word, depth, observer);
         }
         Some(Stored { word, depth, channels })
     }
 
+    /// The ideal's depth in units of the buffer's last bit.
+    pub(super) fn ideal_depth(&self, sample: &Sample<'_>) -> f64 {
+        let linear = sample.ideal.map_or_else(
+            || ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false),
+            |weights| ideal::linear(weights, self.vertices.map(|v| v.position[3]), self.draw.perspective),
+        );
+        ideal::depth(linear, self.vertices.map(|v| v.position[2]), self.draw.depth_full)
+    }
+
     /// The ideal's weights of the three vertices.
     fn barycentrics(&self, sample: &Sample<'_>) -> [f64; 3] {
+        if let Some(weights) = sample.ideal {
+            return weights;
+        }
         ideal::barycentrics(&self.triangle, sample.e, self.vertices.map(|v| v.position[3]), self.draw.perspective)
     }
 }

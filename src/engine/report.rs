@@ -5,7 +5,7 @@ use crate::combiner::registers::{self, channel_name};
 use crate::number::Lane;
 use crate::plan::PlannedDraw;
 use crate::raster::interpolate::{Sample, Settled};
-use crate::raster::{ideal, setup};
+use crate::raster::setup;
 use crate::rop::{blend, surface};
 use crate::state::{Named, Register, VertexColor};
 use crate::trace::{Observer, Operand, Step, byte, part, plain, report};
@@ -128,8 +128,8 @@ impl TriangleContext<'_> {
     pub(super) fn report_depth<O: Observer>(
         &self,
         sample: &Sample<'_>,
-        z: u32,
-        stored: u32,
+        z: i64,
+        stored: i64,
         passed: bool,
         observer: &mut O,
     ) {
@@ -144,12 +144,10 @@ impl TriangleContext<'_> {
         }
         inputs.extend((0..3).map(|k| plain(format!("E{k}"), sample.e[k])));
         inputs.push(plain("z_max", draw.depth_full));
-        let linear = ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false);
-        let real = ideal::depth(linear, self.vertices.map(|v| v.position[2]), draw.depth_full);
-        let step = Step::given(BLOCK, "DEP-1", "z", i64::from(z)).per(draw.depth_full).by("depth", inputs);
-        observer.step(step.ideal(Some(real)));
-        observer.step(Step::given(BLOCK, "", "z.stored", i64::from(stored)).per(draw.depth_full));
-        let depth = |name: &str, value: u32| Operand { per_one: draw.depth_full, ..plain(name, i64::from(value)) };
+        let step = Step::given(BLOCK, "DEP-1", "z", z).per(draw.depth_full).by("depth", inputs);
+        observer.step(step.ideal(Some(self.ideal_depth(sample))));
+        observer.step(Step::given(BLOCK, "", "z.stored", stored).per(draw.depth_full));
+        let depth = |name: &str, value: i64| Operand { per_one: draw.depth_full, ..plain(name, value) };
         let inputs = vec![depth("z", z), depth("z.stored", stored)];
         observer.step(
             Step::given(BLOCK, "DEP-2", "depth_test.passed", i64::from(passed))
@@ -201,7 +199,7 @@ impl TriangleContext<'_> {
         channels: &[L; 4],
         old: u32,
         word: u32,
-        depth: Option<u32>,
+        depth: Option<i64>,
         observer: &mut O,
     ) {
         const BLOCK: &str = "store";
@@ -238,9 +236,8 @@ impl TriangleContext<'_> {
             );
         }
         if let Some(z) = depth {
-            let inputs = vec![Operand { per_one: draw.depth_full, ..plain("z", i64::from(z)) }];
-            observer
-                .step(Step::given(BLOCK, "DEP-2", "stored.z", i64::from(z)).per(draw.depth_full).by("write", inputs));
+            let inputs = vec![Operand { per_one: draw.depth_full, ..plain("z", z) }];
+            observer.step(Step::given(BLOCK, "DEP-2", "stored.z", z).per(draw.depth_full).by("write", inputs));
         }
     }
 }

@@ -1,11 +1,12 @@
 //! The trace of one pixel: the same walk, the lane that carries the ideal beside the definition, and a recorder.
 
 use super::pixel::{Fragment, TriangleContext};
-use super::{cleared, draw, texture_words};
+use super::{cleared, draw, images};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::TextureImage;
+use crate::texture::unit::Image;
 use crate::trace::{Observer, Step};
 
 /// Everything that happened to one pixel of a render target.
@@ -114,7 +115,7 @@ pub fn trace(plan: &Plan, target: usize, (x, y): (u32, u32), only: Option<usize>
     let mut draws = Vec::new();
     for (index, planned) in plan.draws.iter().enumerate() {
         if planned.target == target {
-            let textures = texture_words(plan, &frames.surfaces);
+            let textures = images(plan, &frames.surfaces);
             let traced = pixel.draw(plan, planned, index, (x, y), &textures);
             draws.extend(traced.into_iter().filter(|_| only.is_none_or(|d| d == index)));
         }
@@ -141,7 +142,7 @@ impl Pixel {
         planned: &PlannedDraw,
         index: usize,
         (x, y): (u32, u32),
-        textures: &[&[u32]],
+        textures: &[Image<'_, Paired>],
     ) -> Vec<DrawTrace> {
         let window = &planned.window;
         let inside =
@@ -158,13 +159,14 @@ impl Pixel {
                 continue;
             }
             let mut recorder = Recorder::default();
-            let fragment = Fragment { pixel: (i, j), e, stored: self.word, stored_depth: self.depth };
+            let fragment =
+                Fragment { pixel: (i, j), e, stored: self.word, stored_depth: i64::from(self.depth), weights: None };
             let fixed = surface::read(planned.surface, self.word);
             let destination = std::array::from_fn(|n| Paired { fixed: i32::from(fixed[n]), ideal: self.ideal[n] });
             let stored = context.shade(&fragment, Some(destination), textures, &mut recorder);
             if let Some(stored) = &stored {
                 self.word = stored.word;
-                self.depth = stored.depth.unwrap_or(self.depth);
+                self.depth = stored.depth.map_or(self.depth, |depth| depth as u32);
                 let bits = surface::channel_bits(planned.surface);
                 for n in 0..4 {
                     if bits[n] & planned.write_mask != 0 && (n < 3 || surface::stores_alpha(planned.surface)) {

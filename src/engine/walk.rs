@@ -2,6 +2,7 @@
 
 use super::pixel::{Fragment, TriangleContext};
 use crate::plan::{Plan, PlannedDraw};
+use crate::texture::unit::Image;
 use crate::trace::Silent;
 
 /// Some rows of a surface.
@@ -24,7 +25,7 @@ impl Band<'_> {
 }
 
 /// Draws what of a draw falls into a band; covered pixels.
-pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[&[u32]], band: &mut Band<'_>) -> u64 {
+pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[Image<'_, i32>], band: &mut Band<'_>) -> u64 {
     let window = &planned.window;
     let columns = (i64::from(window.x), i64::from(window.x + window.width));
     let (first, end) = band.rows();
@@ -63,18 +64,19 @@ pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[&[u32]], band
 }
 
 #[inline]
-fn pixel(context: &TriangleContext<'_>, textures: &[&[u32]], band: &mut Band<'_>, i: i64, j: i64) {
+fn pixel(context: &TriangleContext<'_>, textures: &[Image<'_, i32>], band: &mut Band<'_>, i: i64, j: i64) {
     let at = (j as usize - band.first_row) * band.width + i as usize;
     let depth = band.depth.get(at).copied();
     let fragment = Fragment {
         pixel: (i, j),
         e: context.triangle.edges(i, j),
         stored: band.words[at],
-        stored_depth: depth.unwrap_or(0),
+        stored_depth: i64::from(depth.unwrap_or(0)),
+        weights: None,
     };
     let Some(result) = context.shade::<i32, Silent>(&fragment, None, textures, &mut Silent) else { return };
     band.words[at] = result.word;
     if let (Some(depth), Some(slot)) = (result.depth, band.depth.get_mut(at)) {
-        *slot = depth;
+        *slot = depth as u32;
     }
 }

@@ -8,7 +8,8 @@
 //! |---|---|---|
 //! | `i32` | the definition | the scalar engine |
 //! | [`Paired`] | the definition and the ideal side by side; the definition takes every decision | traces |
-//! | `f64` | the ideal: the vendor's real-number text, nothing rounded | the second half of [`Paired`] |
+//! | `f64` | the ideal: the vendor's real-number text, nothing rounded | comparisons, the second half of [`Paired`] |
+//! | [`Paired`] of [`Strands`] | the definition and several ideals, which tell the errors of the rules apart | comparisons |
 //! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | `benches/stage.rs` |
 //! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | `benches/stage.rs` |
 //!
@@ -19,12 +20,15 @@ pub mod convert;
 mod paired;
 mod real;
 mod scalar;
+mod strands;
 
 pub use block::{Halved, Narrow, Quarter};
 pub use paired::{Paired, PairedFactor, PairedSum};
 pub use scalar::{Halves, Quarters};
+pub use strands::{STRANDS, Strands};
 
 use crate::state::RegisterFloor;
+use crate::trace::Part;
 use std::ops::{Add, Sub};
 
 /// A value that is mixed by weights of 256ths: interpolated colours and filtered texels.
@@ -117,6 +121,32 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     fn decision(self) -> i32;
     /// The high bits that a surface keeps: v >> shift << shift (ROP-5); the ideal keeps all.
     fn truncated(self, shift: u32) -> Self;
+    /// Whether the lane decides by its own numbers where the definition has integers of its own: texels, depth.
+    const DECIDES: bool = false;
+    /// What the ideal would decide by, where the lane has one.
+    fn ideal_decision(self) -> i32 {
+        self.decision()
+    }
+    /// A depth as it is tested, from the definition's integer and the ideal's real number of the buffer's last bits.
+    fn depth(fixed: i64, _ideal: impl FnOnce() -> f64) -> i64 {
+        fixed
+    }
+    /// This texel channel, read from a surface of which the lane holds `memory`; `signed` as in TEX-18.
+    fn remember(self, _memory: Self, _signed: bool) -> Self {
+        self
+    }
+    /// A rule of `part` has yielded this value: its own error, in lanes that tell errors apart.
+    fn settle(self, _part: Part) -> (Self, f64) {
+        (self, 0.0)
+    }
+    /// [`settle`](Self::settle) for a factor.
+    fn settle_factor(factor: Self::Mapped, _part: Part) -> (Self::Mapped, f64) {
+        (factor, 0.0)
+    }
+    /// [`settle`](Self::settle) for a weight, in 256ths.
+    fn settle_weight(weight: Self::Weight, _part: Part) -> (Self::Weight, f64) {
+        (weight, 0.0)
+    }
     /// The integer and, where the lane has one, the ideal, for observers.
     fn observe(self) -> (i64, Option<f64>);
     /// A factor for observers, in halves of a step.
@@ -125,4 +155,22 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     fn observe_sum(sum: Self::Full) -> (i64, Option<f64>);
     /// A weight for observers.
     fn observe_weight(weight: Self::Weight) -> (i64, Option<f64>);
+}
+
+/// A lane of real numbers: the second half of [`Paired`].
+pub trait Ideal:
+    Lane<Mapped = Self, Full = Self>
+    + Blend<Weight = Self>
+    + Register<Factor = Self, Expanded = Self>
+    + Factor<Sum = Self, Register = Self>
+    + Sum<Register = Self>
+{
+    /// A real number of this lane's unit.
+    fn of(real: f64) -> Self;
+    /// The ideal.
+    fn real(self) -> f64;
+    /// A rule of `part` has yielded this where the definition has `fixed`: the error of that rule alone, if the lane knows it.
+    fn absorb(self, fixed: f64, part: Part) -> (Self, f64);
+    /// What a texture unit reads of a surface that holds this, the definition reading `fixed` (TEX-18 if signed).
+    fn remembered(self, fixed: i32, signed: bool) -> Self;
 }

@@ -1,8 +1,9 @@
 //! The ideal: `f64` in steps of 1/255, nothing rounded. 2x - 1, one half is 127.5, 5-bit channels are v/31.
 #![allow(clippy::float_arithmetic, reason = "this lane is the real-number reference; it never feeds a stored byte")]
 
-use super::{Blend, Factor, Lane, Register, Sum};
+use super::{Blend, Factor, Ideal, Lane, Register, Sum};
 use crate::state::RegisterFloor;
+use crate::trace::Part;
 
 impl Blend for f64 {
     type Weight = f64;
@@ -123,6 +124,13 @@ impl Lane for f64 {
     fn truncated(self, _shift: u32) -> f64 {
         self
     }
+    const DECIDES: bool = true;
+    fn depth(_fixed: i64, ideal: impl FnOnce() -> f64) -> i64 {
+        (ideal() * DEPTH_SCALE).floor() as i64
+    }
+    fn remember(self, memory: f64, signed: bool) -> f64 {
+        memory.remembered(if memory.decision() >= 128 { -1 } else { 0 }, signed)
+    }
     fn observe(self) -> (i64, Option<f64>) {
         (i64::from(self.decision()), Some(self))
     }
@@ -134,5 +142,31 @@ impl Lane for f64 {
     }
     fn observe_weight(weight: f64) -> (i64, Option<f64>) {
         (i64::from(weight.decision()), Some(weight))
+    }
+}
+
+/// The ideal's depths are kept in parts of the buffer's last bit.
+pub(super) const DEPTH_SCALE: f64 = 65536.0;
+
+impl Ideal for f64 {
+    #[inline(always)]
+    fn of(real: f64) -> f64 {
+        real
+    }
+    #[inline(always)]
+    fn real(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn absorb(self, _fixed: f64, _part: Part) -> (f64, f64) {
+        (self, 0.0)
+    }
+    #[inline(always)]
+    fn remembered(self, fixed: i32, signed: bool) -> f64 {
+        match (signed, fixed < 0) {
+            (false, _) => self,
+            (true, true) => (self - 256.0) * 255.0 / 128.0,
+            (true, false) => self * 255.0 / 128.0,
+        }
     }
 }

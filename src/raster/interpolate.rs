@@ -23,6 +23,8 @@ pub struct Sample<'a> {
     pub n: [i64; 3],
     /// D = N_0 + N_1 + N_2.
     pub d: i64,
+    /// The ideal's weights of the vertices, where they are not those of this triangle (its vertices are snapped).
+    pub ideal: Option<[f64; 3]>,
 }
 
 /// A quotient's floor, and what a tie did to it.
@@ -42,7 +44,7 @@ impl<'a> Sample<'a> {
     #[inline]
     pub fn new(triangle: &'a Triangle, e: [i64; 3]) -> Self {
         let n: [i64; 3] = std::array::from_fn(|k| triangle.p[k] * e[k]);
-        Sample { triangle, e, n, d: n[0] + n[1] + n[2] }
+        Sample { triangle, e, n, d: n[0] + n[1] + n[2], ideal: None }
     }
 
     /// INT-3's dominant weight: the largest binary exponent, a power of two counting as just below itself.

@@ -3,7 +3,7 @@
 use crate::combiner::registers::channel_name;
 use crate::number::{Factor, Lane, Sum};
 use crate::state::{AlphaTest, Blend, BlendEquation, BlendFactor};
-use crate::trace::{Observer, Operand, report};
+use crate::trace::{Decision, Observer, Operand, Rule, Work, report};
 
 const BLOCK: &str = "blend";
 
@@ -58,6 +58,11 @@ fn twos_complement<L: Lane>(s: L) -> L {
     if s.decision() >= 128 { s - L::value(256, || 256.0) } else { s }
 }
 
+/// Whether the equation takes the source as two's complement (ROP-3).
+pub fn is_signed(equation: BlendEquation) -> bool {
+    matches!(equation, BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract)
+}
+
 /// Whether the equation takes its factors into account.
 pub fn uses_factors(equation: BlendEquation) -> bool {
     matches!(equation, BlendEquation::Add | BlendEquation::Subtract | BlendEquation::ReverseSubtract)
@@ -79,7 +84,13 @@ pub fn run<L: Lane, O: Observer>(
     let mut out = *source;
     for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
         let [fs, fd] = [blend.source, blend.destination].map(|f| factor(f, channel, source, destination, &constant));
-        let raw = equation(blend.equation, source[channel], destination[channel], fs, fd);
+        if O::MEASURES && is_signed(blend.equation) {
+            let negative = |byte: i32| i64::from(byte >= 128);
+            let s = source[channel];
+            observer.decided(Decision::Sign, negative(s.decision()), || negative(s.ideal_decision()));
+        }
+        observer.count(Work::Blends, 1);
+        let raw = observer.settle(Rule::Rop2, equation(blend.equation, source[channel], destination[channel], fs, fd));
         out[channel] = raw.clamped();
         if O::ON {
             report_channel(blend, channel, source, destination, &constant, [fs, fd], raw, out[channel], observer);
@@ -91,7 +102,9 @@ pub fn run<L: Lane, O: Observer>(
 /// ROP-1.
 #[inline]
 pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &mut O) -> bool {
-    let passed = test.function.passes(alpha.decision().clamp(0, 255) as u32, u32::from(test.reference));
+    let passes = |alpha: i32| test.function.passes(i64::from(alpha.clamp(0, 255)), i64::from(test.reference));
+    let passed = passes(alpha.decision());
+    observer.decided(Decision::AlphaTest, i64::from(passed), || i64::from(passes(alpha.ideal_decision())));
     if O::ON {
         let inputs = vec![
             report::register("fragment.a", alpha),

@@ -20,16 +20,18 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Declares a field-less enumeration and implements [`Named`] for it.
+/// Declares a field-less enumeration and implements [`Named`] for it. A variant is named as it is spelled, or `= "otherwise"`.
 macro_rules! named {
-    ($(#[$meta:meta])* $vis:vis enum $name:ident { $($(#[$vmeta:meta])* $variant:ident),+ $(,)? }) => {
+    (@name $variant:ident) => { stringify!($variant) };
+    (@name $variant:ident $text:literal) => { $text };
+    ($(#[$meta:meta])* $vis:vis enum $name:ident { $($(#[$vmeta:meta])* $variant:ident $(= $text:literal)?),+ $(,)? }) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
         $vis enum $name { $($(#[$vmeta])* $variant),+ }
         impl $crate::state::Named for $name {
             const TYPE: &'static str = stringify!($name);
             const ALL: &'static [Self] = &[$($name::$variant),+];
-            const NAMES: &'static [&'static str] = &[$(stringify!($variant)),+];
+            const NAMES: &'static [&'static str] = &[$($crate::state::named!(@name $variant $($text)?)),+];
         }
     };
 }

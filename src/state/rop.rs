@@ -26,7 +26,7 @@ named! {
 
 impl CompareFunction {
     /// Whether `incoming` passes against `stored`.
-    pub fn passes(self, incoming: u32, stored: u32) -> bool {
+    pub fn passes<T: PartialOrd>(self, incoming: T, stored: T) -> bool {
         match self {
             CompareFunction::Never => false,
             CompareFunction::Less => incoming < stored,

@@ -5,10 +5,10 @@ use super::filter::{bilinear, lerp, linear, nearest};
 use super::format;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
-use crate::raster::interpolate::{Sample, Settled};
+use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
 use crate::raster::setup::Triangle;
 use crate::state::{AddressMode, Filter, TextureFormat, TextureUnit};
-use crate::trace::{Observer, Operand, Step, part, plain, report};
+use crate::trace::{Decision, Observer, Operand, Rule, Step, Work, part, plain, report};
 
 /// A texture unit with the image it samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,18 +61,34 @@ impl Coordinates {
 /// One texel of the footprint: where it is, `None` for the border colour, and its raw word.
 type Texel = (Option<(u32, u32)>, u32);
 
+/// The image that a unit samples, as it stands when a draw begins.
+#[derive(Clone, Copy, Debug)]
+pub struct Image<'a, L> {
+    /// Its words.
+    pub words: &'a [u32],
+    /// What the lane holds of them, where the image is a surface read in its own format.
+    pub memory: Option<&'a [[L; 4]]>,
+}
+
 /// Samples a unit. `ideal` gives u and v in 1/256 texel as real numbers; it is called only by lanes that have an ideal.
 #[inline]
 pub fn sample<L: Lane, O: Observer>(
     unit: &PlannedUnit,
-    words: &[u32],
+    image: &Image<'_, L>,
     coordinates: &Coordinates,
     at: &Sample<'_>,
     ideal: impl Fn() -> [f64; 2],
     observer: &mut O,
 ) -> [L; 4] {
     let settled = coordinates.at(at, unit);
-    let [u, v] = settled.map(|c| c.value);
+    let [u, v] = if L::DECIDES { ideal().map(floored) } else { settled.map(|c| c.value) };
+    if O::MEASURES {
+        let texel = |[u, v]: [i64; 2]| match unit.state.filter {
+            Filter::Nearest => nearest(u) << 32 ^ nearest(v),
+            Filter::Linear => linear(u).0 << 32 ^ linear(v).0,
+        };
+        observer.decided(Decision::Texel, texel([u, v]), || texel(ideal().map(floored)));
+    }
     let report = Report { unit };
     if O::ON {
         report.coordinates(coordinates, at, settled, &ideal, observer);
@@ -83,8 +99,8 @@ pub fn sample<L: Lane, O: Observer>(
             if O::ON {
                 report.nearest([u, v], [x, y], observer);
             }
-            let texel = fetch(unit, words, x, y);
-            let channels = lanes::<L>(unit, &texel);
+            let texel = fetch(unit, image.words, x, y);
+            let channels = lanes::<L, O>(unit, image, &texel, observer);
             if O::ON {
                 report.texel(&texel, [("", x), ("", y)], "", &channels, observer);
             }
@@ -97,13 +113,16 @@ pub fn sample<L: Lane, O: Observer>(
                 let fraction = ideal()[axis] - 128.0 - (texel * 256) as f64;
                 fraction
             };
-            let weights = [L::weight(wu, || fraction(0, x)), L::weight(wv, || fraction(1, y))];
+            let rule = if matches!(coordinates, Coordinates::Plane(_)) { Rule::Int4 } else { Rule::Tex15 };
+            let weights = [L::weight(wu, || fraction(0, x)), L::weight(wv, || fraction(1, y))]
+                .map(|weight| observer.settle_weight::<L>(rule, weight));
             if O::ON {
                 report.linear::<L, O>([u, v], [x, y], weights, observer);
             }
-            let texels = footprint(unit, words, x, y);
+            let texels = footprint(unit, image.words, x, y);
+            let mut expand = |texel| lanes::<L, O>(unit, image, texel, observer);
             let [t0, t1, t2, t3] = &texels;
-            let channels = [lanes::<L>(unit, t0), lanes::<L>(unit, t1), lanes::<L>(unit, t2), lanes::<L>(unit, t3)];
+            let channels = [expand(t0), expand(t1), expand(t2), expand(t3)];
             if O::ON {
                 for (n, (dx, dy)) in [("0", "0"), ("1", "0"), ("0", "1"), ("1", "1")].into_iter().enumerate() {
                     let index = [x + (n & 1) as i64, y + (n >> 1) as i64];
@@ -117,8 +136,13 @@ pub fn sample<L: Lane, O: Observer>(
                 }
             }
             // All four channels: cheaper than asking which are read.
-            let out: [L; 4] =
-                std::array::from_fn(|channel| bilinear(channels.map(|texel| texel[channel]), weights[0], weights[1]));
+            observer.count(Work::Lerps, 12);
+            let out: [L; 4] = std::array::from_fn(|channel| {
+                bilinear(channels.map(|texel| texel[channel]), weights[0], weights[1], |v| {
+                    // A signed channel counts in another unit until it becomes a register (TEX-18).
+                    if O::MEASURES && !unit.state.signed[channel] { observer.settle(Rule::Tex6, v) } else { v }
+                })
+            });
             if O::ON {
                 for channel in (0..4).filter(|c| unit.live >> c & 1 != 0) {
                     report.filter(channel, channels.map(|t| t[channel]), weights, out[channel], observer);
@@ -130,7 +154,7 @@ pub fn sample<L: Lane, O: Observer>(
     let mut register = value;
     for channel in 0..4 {
         if unit.state.signed[channel] {
-            register[channel] = value[channel].signed_texel();
+            register[channel] = observer.settle(Rule::Tex18, value[channel].signed_texel());
         }
         if O::ON && unit.live >> channel & 1 != 0 {
             report.register(channel, value[channel], register[channel], observer);
@@ -166,9 +190,32 @@ fn texel(unit: &PlannedUnit, words: &[u32], x: Option<u32>, y: Option<u32>) -> T
 }
 
 #[inline(always)]
-fn lanes<L: Lane>(unit: &PlannedUnit, texel: &Texel) -> [L; 4] {
+fn lanes<L: Lane, O: Observer>(unit: &PlannedUnit, image: &Image<'_, L>, texel: &Texel, observer: &mut O) -> [L; 4] {
     let format = if texel.0.is_some() { unit.format } else { TextureFormat::A8R8G8B8 };
-    format::lanes(format, texel.1, &unit.state.signed)
+    let mut lanes = format::lanes::<L>(format, texel.1, &unit.state.signed);
+    observer.count(Work::Texels, 1);
+    let mut rule = Rule::Tex1;
+    if let Some((x, y)) = texel.0 {
+        observer.fetched(unit.state.texture, (x, y));
+        if let Some(memory) = image.memory {
+            let held = &memory[y as usize * unit.width as usize + x as usize];
+            lanes = std::array::from_fn(|n| lanes[n].remember(held[n], unit.state.signed[n]));
+            rule = Rule::Rop5;
+        }
+    }
+    if O::MEASURES {
+        for channel in (0..4).filter(|n| !unit.state.signed[*n]) {
+            lanes[channel] = observer.settle(rule, lanes[channel]);
+        }
+    }
+    lanes
+}
+
+/// The ideal's coordinate in whole 256ths of a texel, for the texel that it lies in.
+#[allow(clippy::float_arithmetic, reason = "the ideal's texel")]
+fn floored(coordinate: f64) -> i64 {
+    let limit = COORDINATE_LIMIT as f64;
+    if coordinate.is_nan() { 0 } else { coordinate.floor().clamp(-limit, limit) as i64 }
 }
 
 /// What a unit tells an observer.

@@ -3,12 +3,41 @@
 //! A trace is not another code path. The functions of the pipe take an [`Observer`]; [`Silent`] makes the reports vanish, a recorder keeps
 //! them. Each [`Step`] names the rule, what it computed from what, the integer, the real number that it stands for, and the ideal.
 
+mod rule;
+
+pub use rule::{Decision, Part, Rule, Work};
+
+use crate::number::Lane;
+
 /// Receives the steps of a pixel.
+///
+/// There are two kinds of reports: [`step`](Observer::step) in words, for traces, and the others in passing, for measurements of whole
+/// frames. What an observer does not want costs nothing.
 pub trait Observer {
-    /// Whether anybody listens; `false` lets the compiler drop the reports.
+    /// Whether anybody listens; `false` lets the compiler drop the steps.
     const ON: bool;
+    /// Whether rules, decisions and work are wanted; `false` lets the compiler drop them.
+    const MEASURES: bool = false;
     /// One rule has been applied.
     fn step(&mut self, step: Step);
+    /// A rule has yielded a value; what is returned goes on in its place. It may differ in the ideal only.
+    fn settle<L: Lane>(&mut self, _rule: Rule, value: L) -> L {
+        value
+    }
+    /// A rule has yielded a factor.
+    fn settle_factor<L: Lane>(&mut self, _rule: Rule, factor: L::Mapped) -> L::Mapped {
+        factor
+    }
+    /// A rule has yielded a weight.
+    fn settle_weight<L: Lane>(&mut self, _rule: Rule, weight: L::Weight) -> L::Weight {
+        weight
+    }
+    /// A decision has been taken; `ideal` is what the ideal would have decided.
+    fn decided(&mut self, _decision: Decision, _outcome: i64, _ideal: impl FnOnce() -> i64) {}
+    /// A texel of a texture was looked up, at its place inside the image.
+    fn fetched(&mut self, _texture: usize, _at: (u32, u32)) {}
+    /// Work was done.
+    fn count(&mut self, _work: Work, _amount: u64) {}
 }
 
 /// Nobody listens.

@@ -1,0 +1,118 @@
+//! What an observer is told without words: which rule yielded a value, which decision was taken, how much work was done.
+
+use crate::state::named;
+
+named! {
+    /// The rules that can move a value away from the ideal, by the ids of `docs/numerics.md`.
+    pub enum Rule {
+        /// Vertex colours given as floats.
+        Num4 = "NUM-4",
+        /// Fog factors.
+        Num6 = "NUM-6",
+        /// Interpolated colours.
+        Int2 = "INT-2",
+        /// Texture coordinates, as the weights of the filter.
+        Int4 = "INT-4",
+        /// The same of projective coordinates.
+        Tex15 = "TEX-15",
+        /// Texels of few bits.
+        Tex1 = "TEX-1",
+        /// One linear step of the filter.
+        Tex6 = "TEX-6",
+        /// Signed texels, filtered.
+        Tex18 = "TEX-18",
+        /// Unsigned mappings.
+        Cmb2 = "CMB-2",
+        /// Expand mappings.
+        Cmb3 = "CMB-3",
+        /// Half-bias mappings.
+        Cmb4 = "CMB-4",
+        /// Signed mappings.
+        Cmb5 = "CMB-5",
+        /// Products.
+        Cmb6 = "CMB-6",
+        /// Sums of products.
+        Cmb7 = "CMB-7",
+        /// Dot products.
+        Cmb8 = "CMB-8",
+        /// Bias and scale.
+        Cmb9 = "CMB-9",
+        /// Saturation.
+        Num3 = "NUM-3",
+        /// The final lerp.
+        Fin2 = "FIN-2",
+        /// E times F.
+        Fin4 = "FIN-4",
+        /// Blend equations.
+        Rop2 = "ROP-2",
+        /// What a surface keeps.
+        Rop5 = "ROP-5",
+    }
+}
+
+named! {
+    /// Where on its way a value picks up an error.
+    pub enum Part {
+        /// Vertex colours, weights, coordinates, fog.
+        Interpolation = "interpolation",
+        /// Texels and their filter.
+        Filtering = "filtering",
+        /// Input mappings.
+        Expansion = "expansion",
+        /// Products, sums, bias, scale, saturation, the final combiner.
+        Product = "product and sum",
+        /// Blend and store.
+        Store = "store",
+    }
+}
+
+impl Rule {
+    /// The part that the rule's error counts in.
+    pub fn part(self) -> Part {
+        match self {
+            Rule::Num4 | Rule::Num6 | Rule::Int2 | Rule::Int4 | Rule::Tex15 => Part::Interpolation,
+            Rule::Tex1 | Rule::Tex6 | Rule::Tex18 => Part::Filtering,
+            Rule::Cmb2 | Rule::Cmb3 | Rule::Cmb4 | Rule::Cmb5 => Part::Expansion,
+            Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 | Rule::Cmb9 | Rule::Num3 | Rule::Fin2 | Rule::Fin4 => Part::Product,
+            Rule::Rop2 | Rule::Rop5 => Part::Store,
+        }
+    }
+}
+
+named! {
+    /// Something that is decided and not computed.
+    pub enum Decision {
+        /// Which pixels a triangle covers.
+        Coverage = "coverage",
+        /// Which texels are read.
+        Texel = "texel",
+        /// What a mux takes.
+        Mux = "mux",
+        /// The alpha test.
+        AlphaTest = "alpha test",
+        /// The depth test.
+        DepthTest = "depth test",
+        /// The sign of a source byte (ROP-3).
+        Sign = "sign of a source",
+    }
+}
+
+named! {
+    /// Work that is counted.
+    pub enum Work {
+        /// Texels looked up, border colours included.
+        Texels = "texels",
+        /// Linear steps of filters.
+        Lerps = "filter steps",
+        /// Products of general stages and of the final combiner.
+        Products = "products",
+        /// Roundings to 255ths.
+        Roundings = "roundings",
+        /// Channels blended.
+        Blends = "blended channels",
+        /// Bytes of colour read from surfaces.
+        BytesRead = "bytes read",
+        /// Bytes of colour written to surfaces.
+        BytesWritten = "bytes written",
+    }
+}
