@@ -84,6 +84,7 @@
 //! ```
 
 pub mod combiner;
+pub mod compare;
 pub mod engine;
 pub mod expectation;
 pub mod frame;

@@ -9,6 +9,8 @@ use ninebit::scene::image::ImageError;
 pub(crate) enum Exit {
     /// Everything is as expected.
     Success = 0,
+    /// A difference was found.
+    Difference = 1,
     /// The command line is wrong.
     Usage = 2,
     /// A scene or one of its assets is invalid.

@@ -1,6 +1,7 @@
 //! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
 
 mod check;
+mod compare;
 mod cost;
 mod exit;
 mod generate;
@@ -40,6 +41,8 @@ enum Command {
     Render(render::Arguments),
     /// Print how one pixel came to be, integer by integer
     Trace(trace::Arguments),
+    /// Compare a scene with float64 arithmetic of the vendor's real-number text
+    Compare(compare::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -89,6 +92,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Check(arguments) => check::run(&arguments, context),
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
+        Command::Compare(arguments) => compare::run(&arguments, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Generate(command) => generate::run(&command),

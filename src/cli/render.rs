@@ -101,7 +101,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     Ok(())
 }
 
-fn threads(text: &str) -> Result<usize, String> {
+/// A number of threads.
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
     text.parse()
         .ok()
         .filter(|count| *count <= MAXIMUM_THREADS)

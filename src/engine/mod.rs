@@ -3,10 +3,10 @@
 //! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; this module walks
 //! draws, bands of rows, triangles and quads. A pixel's result is a pure function of the plan, whatever the bands and threads.
 
-mod pixel;
+pub(crate) mod pixel;
 mod report;
 mod tracing;
-mod walk;
+pub(crate) mod walk;
 
 pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
 
@@ -84,6 +84,14 @@ pub(crate) fn cleared(plan: &Plan) -> Frames {
         }
     };
     Frames { surfaces: plan.targets.iter().map(clear).collect() }
+}
+
+/// What the ideal's surface holds after the clear, R, G, B, A in 255ths: the colour as it was given, and what blending reads of
+/// channels that the format does not keep.
+pub(crate) fn cleared_colors(target: &Target) -> [u8; 4] {
+    let read = surface::read(target.format, surface::pack(target.format, target.clear_color));
+    let kept = surface::kept_channels(target.format);
+    std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
 /// Each texture as it stands at this moment.

@@ -168,11 +168,25 @@ impl<'a> TriangleContext<'a> {
             let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
                 std::array::from_fn(|k| {
                     let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel));
-                    observer.settle(Rule::Num4, corner)
+                    // Bytes are as they were given.
+                    if O::MEASURES && matches!(sources[k], VertexColor::Floats(_)) {
+                        observer.settle(Rule::Num4, corner)
+                    } else {
+                        corner
+                    }
                 })
             });
             let value = if O::ON || !constant(colors) {
-                corners.map(|c| observer.settle(Rule::Int2, interpolate::color(c, w0, w2)))
+                let mut channel = 0;
+                corners.map(|c| {
+                    let value = interpolate::color(c, w0, w2);
+                    channel += 1;
+                    if O::MEASURES && live >> (channel - 1) & 1 != 0 {
+                        observer.settle(Rule::Int2, value)
+                    } else {
+                        value
+                    }
+                })
             } else {
                 corners.map(|c| c[0])
             };

@@ -221,7 +221,7 @@ impl TriangleContext<'_> {
         let shown = surface::show(draw.surface, word);
         for channel in 0..4 {
             let name = format!("stored.{}", channel_name(channel));
-            let kept = bits[channel] & draw.write_mask != 0 && (channel < 3 || surface::stores_alpha(draw.surface));
+            let kept = draw.written >> channel & 1 != 0;
             let ideal = channels[channel].observe().1.filter(|_| kept);
             let inputs = vec![
                 plain("stored.word", i64::from(word)),

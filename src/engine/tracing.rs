@@ -1,7 +1,7 @@
 //! The trace of one pixel: the same walk, the lane that carries the ideal beside the definition, and a recorder.
 
 use super::pixel::{Fragment, TriangleContext};
-use super::{cleared, draw, images};
+use super::{cleared, cleared_colors, draw, images};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
@@ -109,7 +109,7 @@ pub fn trace(plan: &Plan, target: usize, (x, y): (u32, u32), only: Option<usize>
     let at = y as usize * description.width as usize + x as usize;
     let word = frames.surfaces[target].words[at];
     let depth = frames.surfaces[target].depth.get(at).copied().unwrap_or(0);
-    let clear = surface::read(description.format, word).map(f64::from);
+    let clear = cleared_colors(description).map(f64::from);
     let mut pixel = Pixel { word, depth, ideal: clear };
     let cleared = surface::show(description.format, word);
     let mut draws = Vec::new();
@@ -167,11 +167,8 @@ impl Pixel {
             if let Some(stored) = &stored {
                 self.word = stored.word;
                 self.depth = stored.depth.map_or(self.depth, |depth| depth as u32);
-                let bits = surface::channel_bits(planned.surface);
-                for n in 0..4 {
-                    if bits[n] & planned.write_mask != 0 && (n < 3 || surface::stores_alpha(planned.surface)) {
-                        self.ideal[n] = stored.channels[n].ideal.clamp(0.0, 255.0);
-                    }
+                for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
+                    self.ideal[n] = stored.channels[n].ideal.clamp(0.0, 255.0);
                 }
             }
             traces.push(DrawTrace {

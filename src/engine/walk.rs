@@ -26,14 +26,33 @@ impl Band<'_> {
 
 /// Draws what of a draw falls into a band; covered pixels.
 pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[Image<'_, i32>], band: &mut Band<'_>) -> u64 {
+    let mut shaded = 0;
+    covered(plan, planned, band.rows(), |context, i, j| {
+        pixel(context, textures, band, i, j);
+        shaded += 1;
+    });
+    shaded
+}
+
+/// The part of some rows, as a half-open range, that lies in a draw's window, and its columns.
+pub(crate) fn window(planned: &PlannedDraw, rows: (i64, i64)) -> ((i64, i64), (i64, i64)) {
     let window = &planned.window;
     let columns = (i64::from(window.x), i64::from(window.x + window.width));
-    let (first, end) = band.rows();
-    let rows = (first.max(i64::from(window.y)), end.min(i64::from(window.y + window.height)));
+    ((rows.0.max(i64::from(window.y)), rows.1.min(i64::from(window.y + window.height))), columns)
+}
+
+/// Visits every pixel of some rows that a draw covers, once for each triangle that covers it.
+#[inline(always)]
+pub(crate) fn covered(
+    plan: &Plan,
+    planned: &PlannedDraw,
+    rows: (i64, i64),
+    mut visit: impl FnMut(&TriangleContext<'_>, i64, i64),
+) {
+    let (rows, columns) = window(planned, rows);
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
-        return 0;
+        return;
     }
-    let mut shaded = 0;
     for number in 0..planned.assembly.triangles.len() {
         let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
         let triangle = &context.triangle;
@@ -50,8 +69,7 @@ pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[Image<'_, i32
                 for (j, span) in [(top, spans[0]), (top + 1, spans[1])] {
                     for i in [i, i + 1] {
                         if span.0 <= i && i < span.1 {
-                            pixel(&context, textures, band, i, j);
-                            shaded += 1;
+                            visit(&context, i, j);
                         }
                     }
                 }
@@ -60,7 +78,6 @@ pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[Image<'_, i32
             top += 2;
         }
     }
-    shaded
 }
 
 #[inline]

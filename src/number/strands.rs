@@ -6,185 +6,189 @@ use crate::state::{Named, RegisterFloor};
 use crate::trace::Part;
 use std::ops::{Add, Sub};
 
-/// Number of [`Strands`]: one of single rules, one without any error, one for each part up to which errors are let in.
-pub const STRANDS: usize = 2 + Part::ALL.len();
+/// Number of [`Strands`] that tell everything apart: the ideal, and one for each part up to which errors are let in.
+pub const STRANDS: usize = 1 + Part::ALL.len();
 
 /// Real-number evaluations side by side, each in steps of 1/255.
 ///
-/// * Strand 0 starts from the definition's integers at each rule: what it is off by is the error of that rule alone.
-/// * Strand 1 is the ideal.
-/// * Strand 2 + k receives the errors of all rules of the first k + 1 [`Part`]s, as the definition makes them, and is ideal otherwise.
-///   The last one therefore equals the definition, and the differences of neighbours add up to the whole error.
+/// * Strand 0 is the ideal.
+/// * Strand 1 + k receives the errors of all rules of the first k + 1 [`Part`]s, as the definition makes them, and is ideal otherwise.
+///   The differences of neighbours add up to the whole error.
+/// * The last strand therefore starts from the definition's integers at each rule: what it is off by is the error of that rule alone.
+///
+/// `Strands<1>` is the last one alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Strands(pub [f64; STRANDS]);
+pub struct Strands<const N: usize>(pub [f64; N]);
 
-impl Strands {
+impl<const N: usize> Strands<N> {
     #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> Strands {
+    fn each(self, f: impl Fn(f64) -> f64) -> Self {
         Strands(std::array::from_fn(|n| f(self.0[n])))
     }
 
     #[inline(always)]
-    fn both(self, other: Strands, f: impl Fn(f64, f64) -> f64) -> Strands {
+    fn both(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Strands(std::array::from_fn(|n| f(self.0[n], other.0[n])))
-    }
-
-    /// What each part adds to the error of a value, in the order of [`Part::ALL`].
-    pub fn parts(self) -> [f64; Part::ALL.len()] {
-        std::array::from_fn(|n| self.0[n + 2] - self.0[n + 1])
     }
 }
 
-impl Ideal for Strands {
+impl Strands<STRANDS> {
+    /// What each part adds to the error of a value, in the order of [`Part::ALL`].
+    pub fn parts(self) -> [f64; Part::ALL.len()] {
+        std::array::from_fn(|n| self.0[n + 1] - self.0[n])
+    }
+}
+
+impl<const N: usize> Ideal for Strands<N> {
     #[inline(always)]
-    fn of(real: f64) -> Strands {
-        Strands([real; STRANDS])
+    fn of(real: f64) -> Self {
+        Strands([real; N])
     }
     #[inline(always)]
     fn real(self) -> f64 {
-        self.0[1]
+        self.0[0]
     }
     #[inline(always)]
-    fn absorb(mut self, fixed: f64, part: Part) -> (Strands, f64) {
-        let error = fixed - self.0[0];
-        self.0[0] = fixed;
-        for strand in &mut self.0[2 + part as usize..] {
+    fn absorb(mut self, fixed: f64, part: Part) -> (Self, f64) {
+        let error = fixed - self.0[N - 1];
+        for strand in self.0.iter_mut().skip(1 + part as usize) {
             *strand += error;
         }
+        self.0[N - 1] = fixed;
         (self, error)
     }
     #[inline(always)]
-    fn remembered(self, fixed: i32, signed: bool) -> Strands {
+    fn remembered(self, fixed: i32, signed: bool) -> Self {
         let remembered = self.each(|memory| memory.remembered(fixed, signed));
         // What the store lost of a signed channel shows here, before its unit changes.
         if signed { remembered.absorb(f64::from(fixed) * 255.0 / 128.0, Part::Store).0 } else { remembered }
     }
 }
 
-impl Add for Strands {
-    type Output = Strands;
+impl<const N: usize> Add for Strands<N> {
+    type Output = Self;
     #[inline(always)]
-    fn add(self, other: Strands) -> Strands {
+    fn add(self, other: Self) -> Self {
         self.both(other, |a, b| a + b)
     }
 }
 
-impl Sub for Strands {
-    type Output = Strands;
+impl<const N: usize> Sub for Strands<N> {
+    type Output = Self;
     #[inline(always)]
-    fn sub(self, other: Strands) -> Strands {
+    fn sub(self, other: Self) -> Self {
         self.both(other, |a, b| a - b)
     }
 }
 
-impl Blend for Strands {
-    type Weight = Strands;
-    const WHOLE: Strands = Strands([f64::WHOLE; STRANDS]);
+impl<const N: usize> Blend for Strands<N> {
+    type Weight = Self;
+    const WHOLE: Self = Strands([f64::WHOLE; N]);
     #[inline(always)]
-    fn times(self, weight: Strands) -> Strands {
+    fn times(self, weight: Self) -> Self {
         self.both(weight, f64::times)
     }
     #[inline(always)]
-    fn round8(self) -> Strands {
+    fn round8(self) -> Self {
         self.each(f64::round8)
     }
 }
 
-impl Register for Strands {
-    type Factor = Strands;
-    type Expanded = Strands;
-    const ZERO: Strands = Strands([0.0; STRANDS]);
-    const ONE: Strands = Strands([f64::ONE; STRANDS]);
-    const HALF: Strands = Strands([f64::HALF; STRANDS]);
+impl<const N: usize> Register for Strands<N> {
+    type Factor = Self;
+    type Expanded = Self;
+    const ZERO: Self = Strands([0.0; N]);
+    const ONE: Self = Strands([f64::ONE; N]);
+    const HALF: Self = Strands([f64::HALF; N]);
     #[inline(always)]
-    fn max0(self) -> Strands {
+    fn max0(self) -> Self {
         self.each(Register::max0)
     }
     #[inline(always)]
-    fn factor(self) -> Strands {
+    fn factor(self) -> Self {
         self
     }
     #[inline(always)]
-    fn twice(self) -> Strands {
+    fn twice(self) -> Self {
         self.each(Register::twice)
     }
     #[inline(always)]
-    fn halved(self) -> Strands {
+    fn halved(self) -> Self {
         self.each(Register::halved)
     }
     #[inline(always)]
-    fn saturated(self, floor: RegisterFloor) -> Strands {
+    fn saturated(self, floor: RegisterFloor) -> Self {
         self.each(|x| x.saturated(floor))
     }
 }
 
-impl Factor for Strands {
-    type Sum = Strands;
-    type Register = Strands;
+impl<const N: usize> Factor for Strands<N> {
+    type Sum = Self;
+    type Register = Self;
     #[inline(always)]
-    fn product(self, other: Strands) -> Strands {
+    fn product(self, other: Self) -> Self {
         self.both(other, Factor::product)
     }
 }
 
-impl Sum for Strands {
-    type Register = Strands;
+impl<const N: usize> Sum for Strands<N> {
+    type Register = Self;
     #[inline(always)]
-    fn rounded(self) -> Strands {
+    fn rounded(self) -> Self {
         self.each(Sum::rounded)
     }
 }
 
-impl Lane for Strands {
-    type Mapped = Strands;
-    type Full = Strands;
-    const STEP: Strands = Strands([f64::STEP; STRANDS]);
+impl<const N: usize> Lane for Strands<N> {
+    type Mapped = Self;
+    type Full = Self;
+    const STEP: Self = Strands([f64::STEP; N]);
     #[inline(always)]
-    fn byte(value: u8) -> Strands {
-        Strands::of(f64::from(value))
+    fn byte(value: u8) -> Self {
+        Self::of(f64::from(value))
     }
     #[inline(always)]
-    fn texel(value: i32, numerator: i32, denominator: i32) -> Strands {
-        Strands::of(f64::texel(value, numerator, denominator))
+    fn texel(value: i32, numerator: i32, denominator: i32) -> Self {
+        Self::of(f64::texel(value, numerator, denominator))
     }
     #[inline(always)]
-    fn signed_texel(self) -> Strands {
+    fn signed_texel(self) -> Self {
         self.each(Lane::signed_texel)
     }
     #[inline(always)]
-    fn weight(_fixed: i32, ideal: impl FnOnce() -> f64) -> Strands {
-        Strands::of(ideal())
+    fn weight(_fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
+        Self::of(ideal())
     }
     #[inline(always)]
-    fn value(_fixed: i32, ideal: impl FnOnce() -> f64) -> Strands {
-        Strands::of(ideal())
+    fn value(_fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
+        Self::of(ideal())
     }
     #[inline(always)]
-    fn halfway(a: Strands, b: Strands) -> Strands {
+    fn halfway(a: Self, b: Self) -> Self {
         a.both(b, f64::halfway)
     }
     #[inline(always)]
-    fn negated(factor: Strands) -> Strands {
+    fn negated(factor: Self) -> Self {
         factor.each(f64::negated)
     }
     #[inline(always)]
-    fn widened(self) -> Strands {
+    fn widened(self) -> Self {
         self.each(Lane::widened)
     }
     #[inline(always)]
-    fn rounded_half(sum: Strands) -> Strands {
+    fn rounded_half(sum: Self) -> Self {
         sum.each(f64::rounded_half)
     }
     #[inline(always)]
-    fn clamped(self) -> Strands {
+    fn clamped(self) -> Self {
         self.each(Lane::clamped)
     }
     #[inline(always)]
-    fn least(self, other: Strands) -> Strands {
+    fn least(self, other: Self) -> Self {
         self.both(other, f64::min)
     }
     #[inline(always)]
-    fn greatest(self, other: Strands) -> Strands {
+    fn greatest(self, other: Self) -> Self {
         self.both(other, f64::max)
     }
     #[inline(always)]
@@ -192,19 +196,19 @@ impl Lane for Strands {
         self.real().decision()
     }
     #[inline(always)]
-    fn truncated(self, _shift: u32) -> Strands {
+    fn truncated(self, _shift: u32) -> Self {
         self
     }
     fn observe(self) -> (i64, Option<f64>) {
         self.real().observe()
     }
-    fn observe_factor(factor: Strands) -> (i64, Option<f64>) {
+    fn observe_factor(factor: Self) -> (i64, Option<f64>) {
         f64::observe_factor(factor.real())
     }
-    fn observe_sum(sum: Strands) -> (i64, Option<f64>) {
+    fn observe_sum(sum: Self) -> (i64, Option<f64>) {
         f64::observe_sum(sum.real())
     }
-    fn observe_weight(weight: Strands) -> (i64, Option<f64>) {
+    fn observe_weight(weight: Self) -> (i64, Option<f64>) {
         f64::observe_weight(weight.real())
     }
 }

@@ -122,6 +122,8 @@ pub struct PlannedDraw {
     pub blend_constant: [u8; 4],
     /// Bits of the stored word that are written.
     pub write_mask: u32,
+    /// Channels that those bits keep, bits R, G, B, A.
+    pub written: u8,
 }
 
 impl Plan {
@@ -256,11 +258,12 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         blended,
         blend_constant: draw.blend_constant,
         write_mask,
+        written,
     }
 }
 
 /// Channels R, G, B, A of the fragment that the written bits keep.
 fn written_channels(format: SurfaceFormat, write_mask: u32) -> u8 {
-    let bits = surface::channel_bits(format);
-    (0..4).filter(|n| bits[*n] & write_mask != 0 && (*n < 3 || surface::stores_alpha(format))).map(|n| 1 << n).sum()
+    let (bits, kept) = (surface::channel_bits(format), surface::kept_channels(format));
+    (0..4).filter(|n| bits[*n] & write_mask != 0 && kept >> n & 1 != 0).map(|n| 1 << n).sum()
 }

@@ -57,3 +57,85 @@ pub fn factor(weights: [f64; 3], factors: [f32; 3]) -> f64 {
 pub fn depth(weights: [f64; 3], z: [f32; 3], full: i64) -> f64 {
     mix(weights, z.map(|z| f64::from(z).clamp(0.0, 1.0))) * full as f64
 }
+
+/// A triangle as it is before its vertices are snapped, in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Outline {
+    /// Edge functions, x, y and the rest: positive inside.
+    edges: [[f64; 3]; 3],
+    /// Whether samples on an edge belong to the triangle: left edges and horizontal top edges.
+    owns: [bool; 3],
+    /// Reciprocals of the vertices' w; 1 without perspective.
+    reciprocals: [f64; 3],
+    /// Rows whose centres it may cover, half-open.
+    pub rows: (i64, i64),
+    /// Which way it turns on the screen.
+    pub counter_clockwise: bool,
+}
+
+impl Outline {
+    /// From window positions; none if there is no area.
+    pub fn new(positions: [[f32; 4]; 3], perspective: bool) -> Option<Outline> {
+        let [x, y] = [0, 1].map(|n| positions.map(|p| f64::from(p[n])));
+        let mut edges = [[0.0; 3]; 3];
+        let mut area = 0.0;
+        for k in 0..3 {
+            let (s, t) = ((k + 1) % 3, (k + 2) % 3);
+            let (a, b) = (y[s] - y[t], x[t] - x[s]);
+            edges[k] = [a, b, -(a * x[s] + b * y[s])];
+            area = a * x[k] + b * y[k] + edges[k][2];
+        }
+        if area == 0.0 || !area.is_finite() {
+            return None;
+        }
+        let edges = edges.map(|edge| edge.map(|n| n * area.signum()));
+        let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+        Some(Outline {
+            edges,
+            owns: edges.map(|[a, b, _]| a > 0.0 || (a == 0.0 && b > 0.0)),
+            reciprocals: positions.map(|p| if perspective { 1.0 / f64::from(p[3]) } else { 1.0 }),
+            rows: ((low - 0.5).floor() as i64, (high - 0.5).ceil() as i64 + 1),
+            counter_clockwise: area < 0.0,
+        })
+    }
+
+    fn at(&self, i: i64, j: i64) -> [f64; 3] {
+        self.edges.map(|[a, b, c]| a * (i as f64 + 0.5) + b * (j as f64 + 0.5) + c)
+    }
+
+    fn covers(&self, i: i64, j: i64) -> bool {
+        let e = self.at(i, j);
+        (0..3).all(|k| e[k] > 0.0 || (e[k] == 0.0 && self.owns[k]))
+    }
+
+    /// Columns of row j that it covers, as a half-open range within `columns`.
+    pub fn span(&self, j: i64, columns: (i64, i64)) -> (i64, i64) {
+        let (mut low, mut high) = (columns.0 as f64, columns.1 as f64);
+        for [a, b, c] in self.edges {
+            let zero = -(b * (j as f64 + 0.5) + c) / a - 0.5;
+            if a > 0.0 {
+                low = low.max(zero);
+            } else if a < 0.0 {
+                high = high.min(zero);
+            }
+        }
+        // One column of leeway on either side; the edge functions settle it.
+        let mut low = (low.floor() as i64 - 1).max(columns.0);
+        let mut high = (high.ceil() as i64 + 2).min(columns.1);
+        while low < high && !self.covers(low, j) {
+            low += 1;
+        }
+        while low < high && !self.covers(high - 1, j) {
+            high -= 1;
+        }
+        (low, high.max(low))
+    }
+
+    /// Weights of the vertices at the centre of a pixel that it covers, perspective-corrected if it was asked for.
+    pub fn weights(&self, i: i64, j: i64) -> [f64; 3] {
+        let e = self.at(i, j);
+        let weighted: [f64; 3] = std::array::from_fn(|k| e[k] * self.reciprocals[k]);
+        let sum = weighted[0] + weighted[1] + weighted[2];
+        weighted.map(|e| e / sum)
+    }
+}

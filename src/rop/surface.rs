@@ -20,8 +20,15 @@ pub fn dropped_bits(format: SurfaceFormat) -> [u32; 3] {
 }
 
 /// Whether the surface stores alpha.
-pub fn stores_alpha(format: SurfaceFormat) -> bool {
+fn stores_alpha(format: SurfaceFormat) -> bool {
     matches!(format, SurfaceFormat::A8R8G8B8 | SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O)
+}
+
+/// Channels that the surface keeps, bits R, G, B, A; unused bits are no channel.
+pub fn kept_channels(format: SurfaceFormat) -> u8 {
+    let bits = channel_bits(format);
+    let kept = |n: usize| if n == 3 { stores_alpha(format) } else { bits[n] != 0 };
+    (0..4).filter(|n| kept(*n)).map(|n| 1 << n).sum()
 }
 
 /// Whether blending is allowed.

@@ -36,6 +36,11 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
     }
 }
 
+/// Whether channels of the format have less than 8 bits, so that widening them is off.
+pub fn is_narrow(format: TextureFormat) -> bool {
+    matches!(format, TextureFormat::R5G6B5 | TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5)
+}
+
 /// [`expand`] in a lane, whose ideal takes 5-bit channels as v/31. Signed channels (TEX-18) come as their two's complement value,
 /// s/128 in the ideal.
 #[inline(always)]

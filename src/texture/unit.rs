@@ -70,28 +70,30 @@ pub struct Image<'a, L> {
     pub memory: Option<&'a [[L; 4]]>,
 }
 
-/// Samples a unit. `ideal` gives u and v in 1/256 texel as real numbers; it is called only by lanes that have an ideal.
+/// Samples a unit. `ideal` gives u and v in 1/256 texel as real numbers; it is called only where somebody wants it.
 #[inline]
 pub fn sample<L: Lane, O: Observer>(
     unit: &PlannedUnit,
     image: &Image<'_, L>,
     coordinates: &Coordinates,
     at: &Sample<'_>,
-    ideal: impl Fn() -> [f64; 2],
+    ideal: impl FnOnce() -> [f64; 2],
     observer: &mut O,
 ) -> [L; 4] {
     let settled = coordinates.at(at, unit);
-    let [u, v] = if L::DECIDES { ideal().map(floored) } else { settled.map(|c| c.value) };
+    // Asked for once, by those who want it.
+    let real = if O::ON || O::MEASURES || L::DECIDES { ideal() } else { [0.0; 2] };
+    let [u, v] = if L::DECIDES { real.map(floored) } else { settled.map(|c| c.value) };
     if O::MEASURES {
         let texel = |[u, v]: [i64; 2]| match unit.state.filter {
             Filter::Nearest => nearest(u) << 32 ^ nearest(v),
             Filter::Linear => linear(u).0 << 32 ^ linear(v).0,
         };
-        observer.decided(Decision::Texel, texel([u, v]), || texel(ideal().map(floored)));
+        observer.decided(Decision::Texel, texel([u, v]), || texel(real.map(floored)));
     }
     let report = Report { unit };
     if O::ON {
-        report.coordinates(coordinates, at, settled, &ideal, observer);
+        report.coordinates(coordinates, at, settled, real, observer);
     }
     let value = match unit.state.filter {
         Filter::Nearest => {
@@ -110,7 +112,7 @@ pub fn sample<L: Lane, O: Observer>(
             let ((x, wu), (y, wv)) = (linear(u), linear(v));
             let fraction = |axis: usize, texel: i64| {
                 #[allow(clippy::float_arithmetic, reason = "the ideal's weight, never the definition's")]
-                let fraction = ideal()[axis] - 128.0 - (texel * 256) as f64;
+                let fraction = real[axis] - 128.0 - (texel * 256) as f64;
                 fraction
             };
             let rule = if matches!(coordinates, Coordinates::Plane(_)) { Rule::Int4 } else { Rule::Tex15 };
@@ -138,6 +140,9 @@ pub fn sample<L: Lane, O: Observer>(
             // All four channels: cheaper than asking which are read.
             observer.count(Work::Lerps, 12);
             let out: [L; 4] = std::array::from_fn(|channel| {
+                if O::MEASURES && unit.live >> channel & 1 == 0 {
+                    return L::ZERO;
+                }
                 bilinear(channels.map(|texel| texel[channel]), weights[0], weights[1], |v| {
                     // A signed channel counts in another unit until it becomes a register (TEX-18).
                     if O::MEASURES && !unit.state.signed[channel] { observer.settle(Rule::Tex6, v) } else { v }
@@ -203,8 +208,8 @@ fn lanes<L: Lane, O: Observer>(unit: &PlannedUnit, image: &Image<'_, L>, texel: 
             rule = Rule::Rop5;
         }
     }
-    if O::MEASURES {
-        for channel in (0..4).filter(|n| !unit.state.signed[*n]) {
+    if O::MEASURES && (image.memory.is_some() || format::is_narrow(format)) {
+        for channel in (0..4).filter(|n| !unit.state.signed[*n] && unit.live >> n & 1 != 0) {
             lanes[channel] = observer.settle(rule, lanes[channel]);
         }
     }
@@ -237,10 +242,10 @@ impl Report<'_> {
         coordinates: &Coordinates,
         at: &Sample<'_>,
         settled: [Settled; 2],
-        ideal: &impl Fn() -> [f64; 2],
+        ideal: [f64; 2],
         observer: &mut O,
     ) {
-        let (block, ideal) = (self.block(), ideal());
+        let block = self.block();
         let sizes = [self.unit.width, self.unit.height];
         for (axis, letter) in ["u", "v"].into_iter().enumerate() {
             let mut inputs: Vec<Operand> = Vec::new();

@@ -1,0 +1,103 @@
+//! `ninebit compare`.
+
+use std::ffi::OsString;
+
+use clap::{Args, ValueEnum};
+use ninebit::compare::{CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map};
+use ninebit::output::{Compression, Destination, encode_png, write_stdout};
+
+use super::exit::{Exit, Failure, Report};
+use super::scene::{SceneArguments, chosen_target, refuse_overwriting};
+use super::{Context, Format};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// What the ideal decides by itself
+    #[arg(long, value_enum, value_name = "MODE", default_value_t = ModeArgument::Free)]
+    mode: ModeArgument,
+    /// Which render target to compare [default: the scene's first]
+    #[arg(long, value_name = "NAME")]
+    target: Option<String>,
+    /// A picture of the errors with its scale, a PNG; `-` is stdout
+    #[arg(long, value_name = "DIFF.png")]
+    heatmap: Option<OsString>,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "json")]
+    format: Format,
+    /// The same as `--format json`
+    #[arg(long)]
+    json: bool,
+    /// Threads; 0 takes all cores
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = super::render::threads)]
+    threads: usize,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ModeArgument {
+    /// Everything, end to end; pixels where it decides differently are left out
+    Free,
+    /// Nothing: accumulated quantisation alone, told apart by its origin
+    Follow,
+    /// Nothing, and it starts from the model's integers at each rule: the error of each rule
+    PerOp,
+}
+
+/// Compares a scene with its ideal.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let destination = arguments.heatmap.as_deref().map(Destination::from);
+    if destination == Some(Destination::Stdout) {
+        return Err(Failure::usage(
+            "the picture and the report cannot both go to stdout",
+            "write the picture to a file",
+        ));
+    }
+    if let Some(destination) = &destination {
+        refuse_overwriting(&arguments.scene.scene, destination)?;
+    }
+    let mode = match arguments.mode {
+        ModeArgument::Free => Mode::Free,
+        ModeArgument::Follow => Mode::Follow,
+        ModeArgument::PerOp => Mode::PerOp,
+    };
+    let (scene, plan) = arguments.scene.load(context)?;
+    let target = chosen_target(&scene, arguments.target.as_deref())?;
+    let comparison = compare(&plan, &CompareOptions { mode, target, threads: arguments.threads });
+    if let Some(destination) = destination {
+        let (width, height, pixels) = heat_map(&comparison).map_err(|error| no_picture(&error))?;
+        destination.write(&encode_png(width, height, &pixels, Compression::Small)?)?;
+    }
+    let text = match (arguments.json, arguments.format) {
+        (false, Format::Text) => comparison_text(&plan, &comparison),
+        (true, _) | (_, Format::Json) => comparison_json(&plan, &comparison),
+    };
+    write_stdout(text.as_bytes())?;
+    if comparison.rules.iter().any(|rule| rule.exceeds()) {
+        return Err(Failure {
+            exit: Exit::Difference,
+            report: Report::Message {
+                code: Some("NB0501"),
+                message: "a rule is further from the ideal than docs/numerics.md says".to_owned(),
+                help: Some("the table above names it: please report it with the scene".to_owned()),
+            },
+        });
+    }
+    Ok(())
+}
+
+fn no_picture(error: &HeatError) -> Failure {
+    match error {
+        HeatError::NoDifference => Failure {
+            exit: Exit::Invalid,
+            report: Report::Message {
+                code: Some("NB0502"),
+                message: error.to_string(),
+                help: Some("leave out `--heatmap`; `ninebit compare` reports the frame as exact".to_owned()),
+            },
+        },
+        HeatError::NoPixels => {
+            Failure::usage(error.to_string(), "`--heatmap` goes with `--mode free` and `--mode follow`")
+        }
+    }
+}

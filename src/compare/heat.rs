@@ -1,0 +1,131 @@
+//! The errors of a comparison as a picture, with its scale.
+#![allow(clippy::float_arithmetic, reason = "a picture of errors")]
+
+use super::Comparison;
+
+/// A comparison that has no picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum HeatError {
+    /// Nothing differs.
+    #[error("there is nothing to show: no pixel of the frame differs from the ideal")]
+    NoDifference,
+    /// The mode has no errors of pixels.
+    #[error("errors of single rules belong to no pixel")]
+    NoPixels,
+}
+
+/// A picture: columns, rows, R, G, B, A.
+pub(super) type Picture = (u32, u32, Vec<[u8; 4]>);
+
+/// Steps of the scale: an error e counts in the first class whose number is at least |e|.
+const CLASSES: [(f64, [u8; 3], &str); 9] = [
+    (0.5, [8, 12, 40], "0.5"),
+    (1.0, [22, 50, 120], "1"),
+    (2.0, [20, 120, 160], "2"),
+    (3.0, [30, 160, 110], "3"),
+    (4.0, [130, 190, 60], "4"),
+    (6.0, [230, 200, 40], "6"),
+    (8.0, [240, 140, 30], "8"),
+    (16.0, [225, 60, 40], "16"),
+    (f64::INFINITY, [255, 220, 230], "16+"),
+];
+
+/// Not drawn, and left out because a decision differs.
+const EMPTY: [u8; 3] = [40, 40, 40];
+const DIVERGED: [u8; 3] = [200, 0, 200];
+
+/// Pixels of a font's dot.
+const DOT: u32 = 2;
+const LEGEND_ROWS: u32 = 36;
+const MARGIN: u32 = 8;
+const BOX: u32 = 16;
+
+/// The largest error of a pixel's channels by colour, and below the frame a legend: the upper end of each class in steps of 1/255,
+/// grey for pixels that nothing drew, magenta for those that are left out.
+///
+/// # Errors
+/// Nothing differs, or the mode has no pixels.
+pub fn heat_map(comparison: &Comparison) -> Result<Picture, HeatError> {
+    if comparison.errors.is_empty() {
+        return Err(HeatError::NoPixels);
+    }
+    if comparison.diverged == 0 && comparison.channels.iter().all(|c| c.errors.max() == 0.0) {
+        return Err(HeatError::NoDifference);
+    }
+    let mut entries: Vec<([u8; 3], &str)> = CLASSES.iter().map(|(_, color, label)| (*color, *label)).collect();
+    entries.push((EMPTY, "-"));
+    entries.push((DIVERGED, "x"));
+    let text_width = |label: &str| label.chars().count() as u32 * 4 * DOT;
+    let needed = MARGIN + entries.iter().map(|(_, label)| BOX + 4 + text_width(label) + MARGIN).sum::<u32>();
+    let (width, rows) = (comparison.width.max(needed), comparison.height);
+    let mut pixels = vec![[16, 16, 16, 255]; (width * (rows + LEGEND_ROWS)) as usize];
+    for (at, errors) in comparison.errors.iter().enumerate() {
+        let (x, y) = (at as u32 % comparison.width, at as u32 / comparison.width);
+        let [r, g, b] = color(errors, comparison.diverged_at(at));
+        pixels[(y * width + x) as usize] = [r, g, b, 255];
+    }
+    let mut left = MARGIN;
+    let top = rows + (LEGEND_ROWS - BOX) / 2;
+    for (color, label) in entries {
+        let [r, g, b] = color;
+        for y in top..top + BOX {
+            for x in left..left + BOX {
+                let border = y == top || y == top + BOX - 1 || x == left || x == left + BOX - 1;
+                pixels[(y * width + x) as usize] = if border { [160, 160, 160, 255] } else { [r, g, b, 255] };
+            }
+        }
+        left += BOX + 4;
+        write(&mut pixels, width, (left, top + (BOX - 5 * DOT) / 2), label);
+        left += text_width(label) + MARGIN;
+    }
+    Ok((width, rows + LEGEND_ROWS, pixels))
+}
+
+impl Comparison {
+    /// Whether the pixel was drawn and left out.
+    fn diverged_at(&self, at: usize) -> bool {
+        // Infinite marks it; NaN is a pixel that nothing drew.
+        self.errors[at][0].is_infinite()
+    }
+}
+
+fn color(errors: &[f32; 4], diverged: bool) -> [u8; 3] {
+    if diverged {
+        return DIVERGED;
+    }
+    let largest = errors.iter().filter(|e| !e.is_nan()).map(|e| f64::from(e.abs())).reduce(f64::max);
+    let Some(largest) = largest else { return EMPTY };
+    CLASSES.iter().find(|(most, ..)| largest <= *most).map_or(EMPTY, |(_, color, _)| *color)
+}
+
+/// Digits and the few signs of the legend, 3 x 5 dots, row by row.
+fn glyph(character: char) -> [u8; 5] {
+    match character {
+        '0' => [7, 5, 5, 5, 7],
+        '1' => [2, 6, 2, 2, 7],
+        '2' => [7, 1, 7, 4, 7],
+        '3' => [7, 1, 7, 1, 7],
+        '4' => [5, 5, 7, 1, 1],
+        '5' => [7, 4, 7, 1, 7],
+        '6' => [7, 4, 7, 5, 7],
+        '8' => [7, 5, 7, 5, 7],
+        '+' => [0, 2, 7, 2, 0],
+        '-' => [0, 0, 7, 0, 0],
+        'x' => [0, 5, 2, 5, 0],
+        '.' => [0, 0, 0, 0, 2],
+        _ => [0; 5],
+    }
+}
+
+fn write(pixels: &mut [[u8; 4]], width: u32, (left, top): (u32, u32), label: &str) {
+    for (n, character) in label.chars().enumerate() {
+        for (row, dots) in glyph(character).into_iter().enumerate() {
+            for column in (0..3).filter(|c| dots >> (2 - c) & 1 != 0) {
+                let (x, y) = (left + (n as u32 * 4 + column) * DOT, top + row as u32 * DOT);
+                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                    pixels[((y + dy) * width + x + dx) as usize] = [230, 230, 230, 255];
+                }
+            }
+        }
+    }
+}
