@@ -131,13 +131,12 @@ fn trace(plan: &Plan, target: usize, pixel: (u32, u32)) -> Value {
     serde_json::from_str(&trace_json(plan, &engine::trace(plan, target, pixel, None).unwrap())).unwrap()
 }
 
-/// Every scene file under a folder.
-fn scene_files(folder: &Path, files: &mut Vec<PathBuf>) {
+fn files_under(folder: &Path, files: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            scene_files(&path, files);
-        } else if path.to_str().is_some_and(|name| name.ends_with(".ron") && !name.ends_with(".expect.ron")) {
+            files_under(&path, files);
+        } else {
             files.push(path);
         }
     }
@@ -179,7 +178,9 @@ fn traces_and_the_page_agree() {
         }
     }
     let mut files = Vec::new();
-    scene_files(Path::new("vectors/scenes"), &mut files);
+    files_under(Path::new("vectors/scenes"), &mut files);
+    files.sort();
+    files.retain(|path| path.to_str().is_some_and(|name| name.ends_with(".ron") && !name.ends_with(".expect.ron")));
     assert!(!files.is_empty());
     for path in files {
         let plan = plan_of(&path);
@@ -215,19 +216,9 @@ fn the_example_is_a_step_of_its_trace() {
 #[test]
 fn the_page_lists_what_the_sources_have() {
     let page = Page::read();
-    let mut sources = String::new();
-    for file in [
-        "src/combiner/final_combiner.rs",
-        "src/combiner/mapping.rs",
-        "src/combiner/report.rs",
-        "src/engine/pixel.rs",
-        "src/engine/report.rs",
-        "src/rop/blend.rs",
-        "src/texture/unit.rs",
-        "src/trace/mod.rs",
-    ] {
-        sources += &std::fs::read_to_string(file).unwrap();
-    }
+    let mut files = Vec::new();
+    files_under(Path::new("src"), &mut files);
+    let sources: String = files.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
     for operation in &page.operations {
         assert!(sources.contains(&format!("\"{operation}\"")), "{operation} is not in the sources");
     }
