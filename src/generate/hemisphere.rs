@@ -42,8 +42,7 @@ impl Default for Options {
 /// `options.size` is brought into [`SIDES`], `options.noise` into 0..=[`MAXIMUM_NOISE`]; NaN is no noise.
 pub fn normals(options: &Options) -> Rgba {
     let size = options.size.clamp(*SIDES.start(), *SIDES.end());
-    // `max` makes 0 of NaN.
-    let noise = options.noise.max(0.0).min(MAXIMUM_NOISE);
+    let noise = if options.noise > 0.0 { options.noise.min(MAXIMUM_NOISE) } else { 0.0 };
     let mut pixels = Vec::with_capacity((size * size) as usize);
     for row in 0..size {
         for column in 0..size {
