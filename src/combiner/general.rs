@@ -207,7 +207,10 @@ fn evaluate<L: Lane, O: Observer, const N: usize>(
     let third = if planned.live[2] == 0 {
         [L::ZERO.widened(); N]
     } else {
-        std::array::from_fn(|n| third::<L, O>([ab[n], cd[n]], [rule_ab, rule_cd], takes_cd, policies, observer))
+        std::array::from_fn(|n| {
+            let live = planned.live[2] >> (first_channel::<N>() + n) & 1 != 0;
+            third::<L, O>([ab[n], cd[n]], live.then_some([rule_ab, rule_cd]), takes_cd, policies, observer)
+        })
     };
     let rule_third = match takes_cd {
         None => Rule::Cmb7,
@@ -238,23 +241,30 @@ fn product<L: Lane, O: Observer, const N: usize>(
         return (zero, zero, [L::ZERO.widened(); N]);
     }
     let portion = &planned.portion;
+    let dot_product = if which == 0 { portion.ab_dot_product } else { portion.cd_dot_product };
+    let needed = if dot_product { 7 } else { planned.product_channels(which) };
     let mut factor = |input: &CombinerInput| {
-        let factors = mapping::map(channels::<L, N>(input, registers), input.mapping, policies);
+        let mut factors = mapping::map(channels::<L, N>(input, registers), input.mapping, policies);
         if O::MEASURES {
-            factors.map(|factor| observer.settle_factor::<L>(mapping::rule(input.mapping), factor))
-        } else {
-            factors
+            for channel in (0..N).filter(|c| needed >> (first_channel::<N>() + c) & 1 != 0) {
+                factors[channel] = observer.settle_factor::<L>(mapping::rule(input.mapping), factors[channel]);
+            }
         }
+        factors
     };
     let (a, b) = (factor(&portion.inputs[2 * which]), factor(&portion.inputs[2 * which + 1]));
     observer.count(Work::Products, N as u64);
-    let dot_product = if which == 0 { portion.ab_dot_product } else { portion.cd_dot_product };
     let raw = if dot_product {
         [dot::<L, O>(&a, &b, policies, observer); N]
     } else {
         std::array::from_fn(|c| a[c].product(b[c]))
     };
     (a, b, raw)
+}
+
+/// The register channel of a portion's first one: R of an RGB portion, A of an alpha portion.
+const fn first_channel<const N: usize>() -> usize {
+    if N == 1 { 3 } else { 0 }
 }
 
 /// Output `n` of every channel; `same` says that the channels are equal, as a dot product's are.
@@ -268,12 +278,17 @@ fn finish_all<L: Lane, O: Observer, const N: usize>(
     policies: &Policies,
     observer: &mut O,
 ) -> [L; N] {
-    if planned.live[n] == 0 && !(n < 2 && planned.blue_to_alpha[n]) {
+    let live = planned.live[n] | if n < 2 && planned.blue_to_alpha[n] { BLUE } else { 0 };
+    if live == 0 {
         [L::ZERO; N]
     } else if same {
-        [finish::<L, O>(raw[0], &planned.portion, rule, policies, observer); N]
+        [finish::<L, O>(raw[0], &planned.portion, Some(rule), policies, observer); N]
     } else {
-        raw.map(|raw| finish::<L, O>(raw, &planned.portion, rule, policies, observer))
+        std::array::from_fn(|c| {
+            // What is computed along for nobody has no error.
+            let rule = (live >> (first_channel::<N>() + c) & 1 != 0).then_some(rule);
+            finish::<L, O>(raw[c], &planned.portion, rule, policies, observer)
+        })
     }
 }
 
@@ -307,7 +322,7 @@ fn dot<L: Lane, O: Observer>(a: &[L::Mapped], b: &[L::Mapped], policies: &Polici
 #[inline(always)]
 fn third<L: Lane, O: Observer>(
     [ab, cd]: [L::Full; 2],
-    rules: [Rule; 2],
+    rules: Option<[Rule; 2]>,
     takes_cd: Option<bool>,
     policies: &Policies,
     observer: &mut O,
@@ -318,8 +333,9 @@ fn third<L: Lane, O: Observer>(
         (None, SumRounding::Once) => ab + cd,
         (None, SumRounding::Each) => {
             observer.count(Work::Roundings, 2);
-            let [ab, cd] = [(ab, rules[0]), (cd, rules[1])].map(|(v, rule)| observer.settle(rule, v.rounded()));
-            (ab + cd).widened()
+            let (ab, cd) = (ab.rounded(), cd.rounded());
+            let Some(rules) = rules else { return (ab + cd).widened() };
+            (observer.settle(rules[0], ab) + observer.settle(rules[1], cd)).widened()
         }
     }
 }
@@ -329,22 +345,22 @@ fn third<L: Lane, O: Observer>(
 fn finish<L: Lane, O: Observer>(
     raw: L::Full,
     portion: &Portion,
-    rule: Rule,
+    rule: Option<Rule>,
     policies: &Policies,
     observer: &mut O,
 ) -> L {
     observer.count(Work::Roundings, 1);
+    let mut settle = |step, v| match (step, rule) {
+        (_, None) => v,
+        (OutputStep::Rounded, Some(rule)) => observer.settle(rule, v),
+        (OutputStep::Scaled, _) => observer.settle(Rule::Cmb9, v),
+        (OutputStep::Saturated, _) => observer.settle(Rule::Num3, v),
+    };
     match policies.output_rounding {
-        OutputRounding::BeforeScale => {
-            output(raw, portion.bias, portion.scale, policies.register_floor, |step, v| match step {
-                OutputStep::Rounded => observer.settle(rule, v),
-                OutputStep::Scaled => observer.settle(Rule::Cmb9, v),
-                OutputStep::Saturated => observer.settle(Rule::Num3, v),
-            })
-        }
+        OutputRounding::BeforeScale => output(raw, portion.bias, portion.scale, policies.register_floor, settle),
         OutputRounding::AfterScale => {
-            let v = observer.settle(Rule::Cmb9, rounded_after::<L>(raw, portion.bias, portion.scale));
-            observer.settle(Rule::Num3, v.saturated(policies.register_floor))
+            let v = settle(OutputStep::Scaled, rounded_after::<L>(raw, portion.bias, portion.scale));
+            settle(OutputStep::Saturated, v.saturated(policies.register_floor))
         }
     }
 }

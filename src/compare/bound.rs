@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "bounds of errors")]
 
 use crate::plan::{Plan, PlannedDraw};
-use crate::state::{ExpandCentre, HalfBiasConstant, OutputRounding, Profile, RegisterFloor};
+use crate::state::{ExpandCentre, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, Vertex};
 use crate::trace::Rule;
 
 /// Half a step, less what a quotient by 255 cannot reach.
@@ -16,8 +16,11 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     match rule {
         Rule::Num4 => symmetric(0.5 + 255.0 / 16384.0),
         // The floor to 4096ths comes first, then that of NUM-6.
-        Rule::Num6 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
-        Rule::Int2 => symmetric(2.5),
+        Rule::Num6 => {
+            let slack = 2.0 * 255.0 * weights(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
+        Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and what the weights are off.
         Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
         Rule::Tex15 => None,
@@ -55,34 +58,45 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     }
 }
 
-/// How far weights that are off move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle times the
-/// relative error of its weights (INT-1, INT-6), twice because the weights' sum is off as well.
+/// The largest relative error of a triangle's weights: the block-floating products of w (INT-1) and w itself (INT-6).
+fn weights(plan: &Plan) -> f64 {
+    triangles(plan).map(|(draw, vertices)| relative(plan, draw, &vertices)).fold(0.0, f64::max)
+}
+
+/// How far weights that are off move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle times their
+/// relative error, twice because their sum is off as well.
 fn coordinate_slack(plan: &Plan) -> f64 {
-    let draws = plan.draws.iter().filter(|draw| !draw.units.is_empty());
-    let slack = draws.flat_map(|draw| (0..draw.assembly.triangles.len()).map(|n| triangle_slack(plan, draw, n)));
+    let slack = triangles(plan).flat_map(|(draw, vertices)| {
+        let relative = relative(plan, draw, &vertices);
+        draw.units.iter().flat_map(move |unit| {
+            let sets = vertices.map(|v| v.texture_coordinates[unit.state.coordinate_set]);
+            // Planes are floored to 2^-27 of a step.
+            [(0, unit.width), (1, unit.height)].map(|(axis, side)| {
+                let (low, high) = range(sets.map(|set| f64::from(set[axis])));
+                2.0 * relative * (high - low) * 256.0 * f64::from(side) + 2.0_f64.powi(-26)
+            })
+        })
+    });
     // The last bits of the ideal's own float64.
     slack.fold(1e-6, f64::max)
 }
 
-fn triangle_slack(plan: &Plan, draw: &PlannedDraw, number: usize) -> f64 {
-    let vertices = draw.assembly.triangles[number].vertices.map(|v| &draw.assembly.vertices[v as usize]);
-    let range = |values: [f64; 3]| {
-        let (low, high) = values.into_iter().fold((f64::INFINITY, -f64::INFINITY), |(l, h), v| (l.min(v), h.max(v)));
-        (low, high)
-    };
+fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, [&Vertex; 3])> {
+    plan.draws.iter().flat_map(|draw| {
+        let vertices = &draw.assembly.vertices;
+        draw.assembly.triangles.iter().map(move |t| (draw, t.vertices.map(|v| &vertices[v as usize])))
+    })
+}
+
+fn relative(plan: &Plan, draw: &PlannedDraw, vertices: &[&Vertex; 3]) -> f64 {
     let (nearest, farthest) = range(vertices.map(|v| f64::from(v.position[3])));
-    let relative = if !draw.perspective || nearest == farthest {
-        0.0
-    } else {
-        let cut = if plan.profile == Profile::Nv10 { 2.0_f64.powi(-15) } else { 0.0 };
-        2.0_f64.powi(-27) * farthest / nearest + 2.0 * cut
-    };
-    let span = |unit: &crate::texture::unit::PlannedUnit, axis: usize, side: u32| {
-        let set = unit.state.coordinate_set;
-        let (low, high) = range(vertices.map(|v| f64::from(v.texture_coordinates[set][axis])));
-        (high - low) * 256.0 * f64::from(side)
-    };
-    let spans = draw.units.iter().flat_map(|unit| [span(unit, 0, unit.width), span(unit, 1, unit.height)]);
-    // G is a floor too: 2^-27 of a step at most.
-    spans.map(|span| 2.0 * relative * span + 2.0_f64.powi(-26)).fold(0.0, f64::max)
+    if !draw.perspective || nearest == farthest {
+        return 0.0;
+    }
+    let cut = if plan.profile == Profile::Nv10 { 2.0_f64.powi(-15) } else { 0.0 };
+    2.0_f64.powi(-27) * farthest / nearest + 2.0 * cut
+}
+
+fn range(values: [f64; 3]) -> (f64, f64) {
+    (values[0].min(values[1]).min(values[2]), values[0].max(values[1]).max(values[2]))
 }

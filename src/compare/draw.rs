@@ -248,7 +248,10 @@ fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
 fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
     let surface = |texture: &Texture| match &texture.image {
         TextureImage::Target { target, format } => {
-            surfaces.get(*target).map(|s| (s, plan.targets[*target].format.texture_format() == *format))
+            let surface = plan.targets[*target].format;
+            // Bits read as another format are not what the lane holds.
+            let channels = if surface.texture_format() == *format { surface::sampled_channels(surface) } else { 0 };
+            surfaces.get(*target).map(|s| (s, channels))
         }
         TextureImage::Texels { .. } => None,
     };
@@ -261,8 +264,7 @@ fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
             .textures
             .iter()
             .map(|texture| {
-                // Bits read as another format are not what the lane holds.
-                let memory = surface(texture).filter(|(_, same)| *same).map(|(s, _)| &s.held[..]);
+                let memory = surface(texture).map(|(s, channels)| (&s.held[..], channels));
                 Image { words: words(texture), memory }
             })
             .collect(),
@@ -282,7 +284,7 @@ fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M
         out.drawn += u64::from(state.drawn);
         out.diverged += u64::from(state.drawn && state.diverged);
         if state.drawn && !state.diverged {
-            let shown = surface::show(format, *word);
+            let shown = surface::kept(format, *word);
             let mut worst: Option<WorstPixel> = None;
             for channel in (0..4).filter(|n| kept >> n & 1 != 0) {
                 let (ideal, parts) = M::channel(shown[channel], surface.held[at][channel], &mut out.counts);

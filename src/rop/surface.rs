@@ -31,6 +31,22 @@ pub fn kept_channels(format: SurfaceFormat) -> u8 {
     (0..4).filter(|n| kept(*n)).map(|n| 1 << n).sum()
 }
 
+/// Channels that the texture format of the same bits reads as they are kept, bits R, G, B, A: not the seven bits of alpha beside an
+/// unused one, and not what it makes of missing channels.
+pub fn sampled_channels(format: SurfaceFormat) -> u8 {
+    kept_channels(format) & if dropped_alpha_bits(format) == 0 { 15 } else { 7 }
+}
+
+fn dropped_alpha_bits(format: SurfaceFormat) -> u32 {
+    u32::from(matches!(format, SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O))
+}
+
+/// A surface's channels at the end: what a picture shows, but all of alpha's bits where it shows the unused one in their place.
+pub fn kept(format: SurfaceFormat, word: u32) -> [u8; 4] {
+    let (shown, read) = (show(format, word), read(format, word));
+    std::array::from_fn(|n| if sampled_channels(format) >> n & 1 != 0 { shown[n] } else { read[n] })
+}
+
 /// Whether blending is allowed.
 pub fn blends(format: SurfaceFormat) -> bool {
     !matches!(format, SurfaceFormat::B8 | SurfaceFormat::G8B8)

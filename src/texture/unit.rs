@@ -66,8 +66,8 @@ type Texel = (Option<(u32, u32)>, u32);
 pub struct Image<'a, L> {
     /// Its words.
     pub words: &'a [u32],
-    /// What the lane holds of them, where the image is a surface read in its own format.
-    pub memory: Option<&'a [[L; 4]]>,
+    /// What the lane holds of them, where the image is a surface read in its own format, and of which channels (bits R, G, B, A).
+    pub memory: Option<(&'a [[L; 4]], u8)>,
 }
 
 /// Samples a unit. `ideal` gives u and v in 1/256 texel as real numbers; it is called only where somebody wants it.
@@ -202,9 +202,11 @@ fn lanes<L: Lane, O: Observer>(unit: &PlannedUnit, image: &Image<'_, L>, texel: 
     let mut rule = Rule::Tex1;
     if let Some((x, y)) = texel.0 {
         observer.fetched(unit.state.texture, (x, y));
-        if let Some(memory) = image.memory {
+        if let Some((memory, channels)) = image.memory {
             let held = &memory[y as usize * unit.width as usize + x as usize];
-            lanes = std::array::from_fn(|n| lanes[n].remember(held[n], unit.state.signed[n]));
+            for n in (0..4).filter(|n| channels >> n & 1 != 0) {
+                lanes[n] = lanes[n].remember(held[n], unit.state.signed[n]);
+            }
             rule = Rule::Rop5;
         }
     }
