@@ -2,6 +2,7 @@
 
 mod check;
 mod cost;
+mod diff;
 mod exit;
 mod generate;
 mod limits;
@@ -40,6 +41,13 @@ enum Command {
     Render(render::Arguments),
     /// Print how one pixel came to be, integer by integer
     Trace(trace::Arguments),
+    /// Compare two pictures: where they differ, by how much, and how those pixels came to be
+    ///
+    /// The comparison is exact. Differing pixels that touch, corners included, are one region. With a scene, it is also said which of
+    /// the pictures equals the scene's frame, and the first pixel of each listed region is traced.
+    ///
+    /// Exit status 0: the pictures are equal; 1: they differ.
+    Diff(diff::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -89,6 +97,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Check(arguments) => check::run(&arguments, context),
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
+        Command::Diff(arguments) => diff::run(&arguments, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Generate(command) => generate::run(&command),

@@ -11,9 +11,16 @@ const VERSION: u32 = 1;
 
 /// The trace of a pixel as one JSON document, ended by a newline.
 pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
+    let mut text = serde_json::to_string_pretty(&trace_value(plan, trace)).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// The same document as a value, to stand in another one.
+pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
     let policies: Map<String, Value> =
         POLICIES.iter().map(|p| (p.rule.to_string(), json!(p.values[plan.policies.chosen(p.rule)].0))).collect();
-    let document = json!({
+    json!({
         "format": "ninebit-trace",
         "version": VERSION,
         "profile": plan.profile.name(),
@@ -24,10 +31,7 @@ pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
         "shown": trace.shown,
         "word": trace.word,
         "draws": trace.draws.iter().map(draw).collect::<Vec<_>>(),
-    });
-    let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
-    text.push('\n');
-    text
+    })
 }
 
 fn draw(draw: &DrawTrace) -> Value {

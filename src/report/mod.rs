@@ -3,5 +3,5 @@
 mod json;
 mod text;
 
-pub use json::trace_json;
+pub use json::{trace_json, trace_value};
 pub use text::trace_text;
