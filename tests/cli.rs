@@ -21,6 +21,12 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
     assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
     assert_data_eq!(bench.run("diff --help").text(), file!["cli/help-diff.txt"]);
+    for operation in ["combiner", "final", "blend", "filter", "address"] {
+        let text = bench.run(&format!("op {operation} --help")).text();
+        assert!(text.contains("--inputs <FILE.tsv>"), "{text}");
+    }
+    assert_data_eq!(bench.run("op --help").text(), file!["cli/help-op.txt"]);
+    assert_data_eq!(bench.run("op combiner --help").text(), file!["cli/help-op-combiner.txt"]);
     assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);

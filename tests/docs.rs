@@ -45,3 +45,8 @@ fn copy(from: &Path, to: &Path) {
 fn diff() {
     commands_print_what_is_shown("docs/diff.md");
 }
+
+#[test]
+fn op() {
+    commands_print_what_is_shown("docs/op.md");
+}

@@ -6,6 +6,7 @@ mod diff;
 mod exit;
 mod generate;
 mod limits;
+mod op;
 mod policies;
 mod render;
 mod scene;
@@ -48,6 +49,9 @@ enum Command {
     ///
     /// Exit status 0: the pictures are equal; 1: they differ.
     Diff(diff::Arguments),
+    /// Run one operation of the chip on given integers, without a scene
+    #[command(subcommand)]
+    Op(op::Command),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -98,6 +102,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
         Command::Diff(arguments) => diff::run(&arguments, context),
+        Command::Op(command) => op::run(&command, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Generate(command) => generate::run(&command),
