@@ -146,6 +146,22 @@ fn equal_pictures_are_status_0() {
     assert_eq!((&json["equal"], &json["regions"]), (&true.into(), &Value::Array(vec![])));
 }
 
+/// A screenshot as a TGA of 24 bits: its missing alpha counts as 255.
+#[test]
+fn a_picture_without_alpha_is_opaque() {
+    let bench = bench();
+    let picture = load(&bench.path("a.png"), &ImageLimits::default()).unwrap();
+    let mut tga = vec![0; 18];
+    (tga[2], tga[12], tga[14], tga[16], tga[17]) = (2, 8, 4, 24, 0x20);
+    tga.extend(picture.pixels.iter().flat_map(|[r, g, b, _]| [*b, *g, *r]));
+    bench.write("a.tga", &tga);
+    assert!(bench.run("diff a.png a.tga").text().ends_with("\nequal\n"));
+    let glass = Rgba { pixels: picture.pixels.iter().map(|[r, g, b, _]| [*r, *g, *b, 9]).collect(), ..picture };
+    write(&bench, "glass.png", &glass);
+    assert!(different(bench.run("diff glass.png a.tga")).contains("32 of 32 pixels (100.00 %), by 246 at most"));
+    bench.run("diff glass.png a.tga --ignore-alpha").data();
+}
+
 #[test]
 fn the_scene_tells_who_is_right() {
     let bench = bench();
