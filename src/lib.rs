@@ -18,6 +18,7 @@
 //! * [`number`] holds the lanes: the integers of the definition, the real numbers of the ideal, and both side by side. Each rule is one
 //!   text, generic over the lane.
 //! * [`trace`] is how the blocks report what they do; [`report`] prints it.
+//! * [`diff`] holds two pictures against each other.
 //!
 //! Every rule has an id (`CMB-3`), a grade that says how well it is known, a source and a test: `docs/numerics.md`.
 //!
@@ -85,6 +86,7 @@
 
 pub mod combiner;
 pub mod compare;
+pub mod diff;
 pub mod engine;
 pub mod expectation;
 pub mod frame;

@@ -1,78 +1,16 @@
 //! The program as it is used: exit statuses, what goes to stdout and what to stderr.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+#[path = "common/bench.rs"]
+mod bench;
+
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output, Stdio};
+use std::path::Path;
+use std::process::Stdio;
 
 use snapbox::{assert_data_eq, file};
 
-/// A folder to work in.
-struct Bench(tempfile::TempDir);
-
-impl Bench {
-    fn new() -> Self {
-        Bench(tempfile::tempdir().unwrap())
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.0.path().join(name)
-    }
-
-    fn write(&self, name: &str, contents: impl AsRef<[u8]>) -> &Self {
-        fs::write(self.path(name), contents).unwrap();
-        self
-    }
-
-    fn command(&self, arguments: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
-        command.args(arguments.split_whitespace()).current_dir(self.0.path()).stdin(Stdio::null());
-        for name in ["NO_COLOR", "CLICOLOR", "CLICOLOR_FORCE", "COLUMNS"] {
-            command.env_remove(name);
-        }
-        command
-    }
-
-    fn run(&self, arguments: &str) -> Run {
-        Run::of(self.command(arguments).output().unwrap())
-    }
-}
-
-/// What a run left.
-#[derive(Debug)]
-struct Run {
-    status: i32,
-    stdout: Vec<u8>,
-    stderr: String,
-}
-
-impl Run {
-    fn of(output: Output) -> Self {
-        Run {
-            status: output.status.code().unwrap(),
-            stdout: output.stdout,
-            stderr: String::from_utf8(output.stderr).unwrap(),
-        }
-    }
-
-    /// The run succeeded, silently but for its data.
-    fn data(self) -> Vec<u8> {
-        assert_eq!((self.status, self.stderr.as_str()), (0, ""));
-        self.stdout
-    }
-
-    fn text(self) -> String {
-        String::from_utf8(self.data()).unwrap()
-    }
-
-    /// The run failed with this status, said this on stderr and nothing on stdout.
-    fn failed(self, status: i32, message: &str) {
-        assert_eq!(self.status, status, "{}", self.stderr);
-        assert!(self.stderr.contains(message), "`{message}` is not in: {}", self.stderr);
-        assert!(!self.stderr.contains('\x1b'), "colour without a terminal: {:?}", self.stderr);
-        assert_eq!(self.stdout, b"", "diagnostics belong to stderr");
-    }
-}
+use bench::{Bench, Run};
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
@@ -82,7 +20,15 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("--help").text(), file!["cli/help.txt"]);
     assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
     assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
+    assert_data_eq!(bench.run("diff --help").text(), file!["cli/help-diff.txt"]);
+    for operation in ["combiner", "final", "blend", "filter", "address"] {
+        let text = bench.run(&format!("op {operation} --help")).text();
+        assert!(text.contains("--inputs <FILE.tsv>"), "{text}");
+    }
+    assert_data_eq!(bench.run("op --help").text(), file!["cli/help-op.txt"]);
+    assert_data_eq!(bench.run("op combiner --help").text(), file!["cli/help-op-combiner.txt"]);
     assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
+    assert_data_eq!(bench.run("compare --help").text(), file!["cli/help-compare.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
     assert_data_eq!(

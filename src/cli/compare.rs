@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     /// Which render target to compare [default: the scene's first]
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
-    /// A picture of the errors with its scale, a PNG; `-` is stdout
+    /// A picture of the errors with its scale, a PNG
     #[arg(long, value_name = "DIFF.png")]
     heatmap: Option<OsString>,
     /// How to print the result

@@ -9,7 +9,7 @@ use ninebit::scene::image::ImageError;
 pub(crate) enum Exit {
     /// Everything is as expected.
     Success = 0,
-    /// A difference was found.
+    /// A comparison found a difference.
     Difference = 1,
     /// The command line is wrong.
     Usage = 2,
@@ -25,7 +25,7 @@ pub(crate) enum Exit {
     Output = 7,
 }
 
-/// The exit statuses as help tells them. Status 1 belongs to commands that compare.
+/// The exit statuses as help tells them.
 pub(crate) const HELP: &str = "Exit status:
   0  as expected
   1  a difference was found
@@ -64,6 +64,17 @@ pub(crate) enum Report {
 }
 
 impl Failure {
+    /// Two things that were compared differ; what there is to say about it is on stdout.
+    pub(crate) fn difference() -> Self {
+        Failure { exit: Exit::Difference, report: Report::Silent }
+    }
+
+    /// Something that was given is not valid.
+    pub(crate) fn invalid(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
+        let report = Report::Message { code: Some(code), message: message.into(), help: Some(help.into()) };
+        Failure { exit: Exit::Invalid, report }
+    }
+
     /// The command line is wrong.
     pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
         let report = Report::Message { code: None, message: message.into(), help: Some(help.into()) };
@@ -88,7 +99,13 @@ impl From<ImageError> for Failure {
             e if e.is_missing() => Exit::Missing,
             _ => Exit::Invalid,
         };
-        Failure { exit, report: message(error.code(), &error, error.help()) }
+        // The library speaks of images that scenes name; here the command line names them.
+        let help = if error.is_missing() {
+            "check the spelling and the folder; upper and lower case count"
+        } else {
+            error.help()
+        };
+        Failure { exit, report: message(error.code(), &error, help) }
     }
 }
 

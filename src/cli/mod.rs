@@ -3,9 +3,11 @@
 mod check;
 mod compare;
 mod cost;
+mod diff;
 mod exit;
 mod generate;
 mod limits;
+mod op;
 mod policies;
 mod render;
 mod scene;
@@ -43,6 +45,16 @@ enum Command {
     Trace(trace::Arguments),
     /// Compare a scene with float64 arithmetic of the vendor's real-number text
     Compare(compare::Arguments),
+    /// Compare two pictures: where they differ, by how much, and how those pixels came to be
+    ///
+    /// The comparison is exact. Differing pixels that touch, corners included, are one region. With a scene, it is also said which of
+    /// the pictures equals the scene's frame, and the first pixel of each listed region is traced.
+    ///
+    /// Exit status 0: the pictures are equal; 1: they differ.
+    Diff(diff::Arguments),
+    /// Run one operation of the chip on given integers, without a scene
+    #[command(subcommand)]
+    Op(op::Command),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -93,6 +105,8 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
+        Command::Diff(arguments) => diff::run(&arguments, context),
+        Command::Op(command) => op::run(&command, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Generate(command) => generate::run(&command),

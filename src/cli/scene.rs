@@ -18,6 +18,13 @@ use super::terminal::{self, Level};
 pub(crate) struct SceneArguments {
     /// The scene file
     pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    policies: PolicyArguments,
+}
+
+/// The answers to what no capture decides.
+#[derive(Debug, Args)]
+pub(crate) struct PolicyArguments {
     /// Choose an alternative of a rule; `ninebit policies` lists them
     #[arg(long = "policy", value_name = "RULE=VALUE")]
     policies: Vec<String>,
@@ -26,16 +33,28 @@ pub(crate) struct SceneArguments {
 impl SceneArguments {
     /// Reads, checks and plans the scene; warnings go to stderr.
     pub(crate) fn load(&self, context: Context) -> Result<(Scene, Plan), Failure> {
-        let policies = self.policies()?;
-        let loaded = scene::load(&self.scene, &Limits::default()).map_err(|error| refused(&error, context))?;
-        if !loaded.warnings.is_empty() {
-            terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
-        }
-        Ok((loaded.scene, Plan { policies, ..loaded.plan }))
+        load(&self.scene, &self.policies, context)
+    }
+}
+
+/// Reads, checks and plans the scene file at `path`; warnings go to stderr.
+pub(crate) fn load(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Scene, Plan), Failure> {
+    let policies = policies.policies()?;
+    let loaded = scene::load(path, &Limits::default()).map_err(|error| refused(&error, context))?;
+    if !loaded.warnings.is_empty() {
+        terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
+    }
+    Ok((loaded.scene, Plan { policies, ..loaded.plan }))
+}
+
+impl PolicyArguments {
+    /// Whether none is chosen.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.policies.is_empty()
     }
 
     /// The policies of the command line.
-    fn policies(&self) -> Result<Policies, Failure> {
+    pub(crate) fn policies(&self) -> Result<Policies, Failure> {
         let mut policies = Policies::DEFAULT;
         for assignment in &self.policies {
             policies.set(assignment).map_err(|error| {
@@ -47,7 +66,7 @@ impl SceneArguments {
 }
 
 /// A scene that was not accepted.
-fn refused(error: &SceneError, context: Context) -> Failure {
+pub(crate) fn refused(error: &SceneError, context: Context) -> Failure {
     let exit = match error.kind() {
         ErrorKind::Invalid => Exit::Invalid,
         ErrorKind::Missing => Exit::Missing,

@@ -7,7 +7,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::TextureImage;
 use crate::texture::unit::Image;
-use crate::trace::{Observer, Step};
+use crate::trace::{Recorder, Step};
 
 /// Everything that happened to one pixel of a render target.
 #[derive(Clone, Debug, PartialEq)]
@@ -70,19 +70,6 @@ pub enum TraceError {
         /// Draws of the scene.
         count: usize,
     },
-}
-
-/// Keeps the steps.
-#[derive(Default)]
-struct Recorder {
-    steps: Vec<Step>,
-}
-
-impl Observer for Recorder {
-    const ON: bool = true;
-    fn step(&mut self, step: Step) {
-        self.steps.push(step);
-    }
 }
 
 /// Traces pixel (x, y) of target number `target`; `only` keeps a single draw in the result.

@@ -2,32 +2,45 @@
 
 use crate::engine::{DrawTrace, PixelTrace};
 use crate::plan::Plan;
-use crate::state::{Named, POLICIES};
+use crate::state::{Named, POLICIES, Policies, Policy};
 use crate::trace::{Operand, Step};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// Version of the document.
 const VERSION: u32 = 1;
 
 /// The trace of a pixel as one JSON document, ended by a newline.
 pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
-    let policies: Map<String, Value> =
-        POLICIES.iter().map(|p| (p.rule.to_string(), json!(p.values[plan.policies.chosen(p.rule)].0))).collect();
-    let document = json!({
+    let mut text = serde_json::to_string_pretty(&trace_value(plan, trace)).unwrap_or_default();
+    text.push('\n');
+    text
+}
+
+/// The same document as a value, to stand in another one.
+pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
+    json!({
         "format": "ninebit-trace",
         "version": VERSION,
         "profile": plan.profile.name(),
-        "policies": policies,
+        "policies": policies_value(&plan.policies),
         "target": trace.target,
         "pixel": [trace.x, trace.y],
         "cleared": trace.cleared,
         "shown": trace.shown,
         "word": trace.word,
         "draws": trace.draws.iter().map(draw).collect::<Vec<_>>(),
-    });
-    let mut text = serde_json::to_string_pretty(&document).unwrap_or_default();
-    text.push('\n');
-    text
+    })
+}
+
+/// Every policy's value.
+pub fn policies_value(policies: &Policies) -> Value {
+    let value = |p: &Policy| (p.rule.to_string(), json!(p.values[policies.chosen(p.rule)].0));
+    Value::Object(POLICIES.iter().map(value).collect())
+}
+
+/// Steps as they stand in the document of a trace.
+pub fn steps_value(steps: &[Step]) -> Value {
+    Value::Array(steps.iter().map(step).collect())
 }
 
 fn draw(draw: &DrawTrace) -> Value {
@@ -37,7 +50,7 @@ fn draw(draw: &DrawTrace) -> Value {
         "triangle": draw.triangle,
         "stored": draw.stored,
         "shown": draw.shown,
-        "steps": draw.steps.iter().map(step).collect::<Vec<_>>(),
+        "steps": steps_value(&draw.steps),
     })
 }
 

@@ -3,5 +3,5 @@
 mod json;
 mod text;
 
-pub use json::trace_json;
-pub use text::trace_text;
+pub use json::{policies_value, steps_value, trace_json, trace_value};
+pub use text::{policies_text, steps_text, trace_text};

@@ -2,7 +2,7 @@
 
 use crate::engine::{DrawTrace, PixelTrace};
 use crate::plan::Plan;
-use crate::state::{Named, POLICIES};
+use crate::state::{Named, POLICIES, Policies};
 use crate::trace::{Operand, Step};
 use std::fmt::Write;
 
@@ -17,12 +17,7 @@ pub fn trace_text(plan: &Plan, trace: &PixelTrace) -> String {
 fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result {
     let [r, g, b, a] = trace.cleared;
     writeln!(out, "pixel {},{} of target `{}`, profile {}", trace.x, trace.y, trace.target, plan.profile.name())?;
-    for policy in POLICIES {
-        let chosen = plan.policies.chosen(policy.rule);
-        if chosen != 0 {
-            writeln!(out, "policy {}={}: {}", policy.rule, policy.values[chosen].0, policy.values[chosen].1)?;
-        }
-    }
+    write!(out, "{}", policies_text(&plan.policies))?;
     writeln!(out, "cleared to R {r} G {g} B {b} A {a}")?;
     if trace.draws.is_empty() {
         writeln!(out, "\nno triangle covers this pixel")?;
@@ -34,21 +29,48 @@ fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result 
     writeln!(out, "\nat the end the surface holds {:#010x}, shown as R {r} G {g} B {b} A {a}", trace.word)
 }
 
+/// The policies that are not the default, one a line.
+pub fn policies_text(policies: &Policies) -> String {
+    let mut out = String::new();
+    for policy in POLICIES {
+        let chosen = policies.chosen(policy.rule);
+        if chosen != 0 {
+            let (value, meaning) = policy.values[chosen];
+            let _ = writeln!(out, "policy {}={value}: {meaning}", policy.rule);
+        }
+    }
+    out
+}
+
+/// Steps as a table: one line each, under the name of their hardware block.
+pub fn steps_text(steps: &[Step]) -> String {
+    let mut out = String::new();
+    let _ = write_steps(&mut out, steps);
+    out
+}
+
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
     writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, draw.name, draw.triangle)?;
+    write_steps(out, &draw.steps)?;
+    let [r, g, b, a] = draw.shown;
+    let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
+    writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
+}
+
+fn write_steps(out: &mut String, steps: &[Step]) -> std::fmt::Result {
     let mut block = "";
-    let lines: Vec<(String, String)> = draw.steps.iter().map(|s| (s.name.clone(), expression(s))).collect();
+    let lines: Vec<(String, String)> = steps.iter().map(|s| (s.name.clone(), expression(s))).collect();
     // Long expressions do not push the columns of all others.
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
     let (names, expressions) = (width(|l| l.0.chars().count(), 24), width(|l| l.1.chars().count(), 58));
-    let integers = draw.steps.iter().map(|s| s.value.to_string().len()).max().unwrap_or(0).max(7);
+    let integers = steps.iter().map(|s| s.value.to_string().len()).max().unwrap_or(0).max(7);
     writeln!(
         out,
         "    {:names$}  {:expressions$}  {:>integers$} {:>10} {:>10}  rule",
         "what", "how", "integer", "real", "ideal"
     )?;
-    for (step, (name, expression)) in draw.steps.iter().zip(&lines) {
+    for (step, (name, expression)) in steps.iter().zip(&lines) {
         if step.block != block {
             block = &step.block;
             writeln!(out, "  {block}")?;
@@ -64,9 +86,7 @@ fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
             None => writeln!(out, "{}", line.trim_end())?,
         }
     }
-    let [r, g, b, a] = draw.shown;
-    let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
-    writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
+    Ok(())
 }
 
 /// How a value came about, with the operands' integers.

@@ -1,7 +1,7 @@
 //! The stable codes of findings.
 
-/// Every code that the scene front end uses, with its meaning. Codes of files that a scene names (05xx) come from
-/// [`path`](super::path) and [`image`](super::image) as well.
+/// Every code of what is given to the program and cannot be used, with its meaning. Codes of files that a scene names (05xx) come from
+/// [`path`](super::path) and [`image`](super::image) as well, and those from NB0521 to NB0539 from single commands.
 pub const CODES: &[(&str, &str)] = &[
     ("NB0101", "the notation is broken: a bracket, a comma, a quote"),
     ("NB0102", "the file is not UTF-8 text"),
@@ -66,6 +66,13 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0516", "an image with too many pixels"),
     ("NB0517", "a damaged image"),
     ("NB0518", "an image with sixteen bits a channel"),
+    ("NB0521", "pictures of different sizes where they are compared"),
+    ("NB0522", "a scene's frame of another size than the pictures it is compared with"),
+    ("NB0530", "a table that does not exist"),
+    ("NB0531", "a table that cannot be read"),
+    ("NB0532", "a table whose header does not name the inputs"),
+    ("NB0533", "a table with lines that cannot be used, or with none"),
+    ("NB0534", "a table with too many bytes"),
     ("NB0601", "a scene file with too many bytes"),
     ("NB0602", "brackets or names too deep inside each other"),
     ("NB0603", "too many vertices"),

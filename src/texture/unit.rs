@@ -109,18 +109,8 @@ pub fn sample<L: Lane, O: Observer>(
             channels
         }
         Filter::Linear => {
-            let ((x, wu), (y, wv)) = (linear(u), linear(v));
-            let fraction = |axis: usize, texel: i64| {
-                #[allow(clippy::float_arithmetic, reason = "the ideal's weight, never the definition's")]
-                let fraction = real[axis] - 128.0 - (texel * 256) as f64;
-                fraction
-            };
             let rule = if matches!(coordinates, Coordinates::Plane(_)) { Rule::Int4 } else { Rule::Tex15 };
-            let weights = [L::weight(wu, || fraction(0, x)), L::weight(wv, || fraction(1, y))]
-                .map(|weight| observer.settle_weight::<L>(rule, weight));
-            if O::ON {
-                report.linear::<L, O>([u, v], [x, y], weights, observer);
-            }
+            let ([x, y], weights) = footprint_weights::<L, O>(unit, [u, v], real, rule, observer);
             let texels = footprint(unit, image.words, x, y);
             let mut expand = |texel| lanes::<L, O>(unit, image, texel, observer);
             let [t0, t1, t2, t3] = &texels;
@@ -137,32 +127,73 @@ pub fn sample<L: Lane, O: Observer>(
                     );
                 }
             }
-            // All four channels: cheaper than asking which are read.
-            observer.count(Work::Lerps, 12);
-            let out: [L; 4] = std::array::from_fn(|channel| {
-                if O::MEASURES && unit.live >> channel & 1 == 0 {
-                    return L::ZERO;
-                }
-                bilinear(channels.map(|texel| texel[channel]), weights[0], weights[1], |v| {
-                    // A signed channel counts in another unit until it becomes a register (TEX-18).
-                    if O::MEASURES && !unit.state.signed[channel] { observer.settle(Rule::Tex6, v) } else { v }
-                })
-            });
-            if O::ON {
-                for channel in (0..4).filter(|c| unit.live >> c & 1 != 0) {
-                    report.filter(channel, channels.map(|t| t[channel]), weights, out[channel], observer);
-                }
-            }
-            out
+            mix(unit, channels, weights, observer)
         }
     };
+    load(unit, value, observer)
+}
+
+/// TEX-6: the footprint's upper left texel and the weights of its right and lower ones, from u and v in 1/256 texel, which `ideal` gives as real numbers; `rule`
+/// is the one that they come from.
+#[inline(always)]
+pub fn footprint_weights<L: Lane, O: Observer>(
+    unit: &PlannedUnit,
+    [u, v]: [i64; 2],
+    ideal: [f64; 2],
+    rule: Rule,
+    observer: &mut O,
+) -> ([i64; 2], [L::Weight; 2]) {
+    let ((x, wu), (y, wv)) = (linear(u), linear(v));
+    let fraction = |axis: usize, texel: i64| {
+        #[allow(clippy::float_arithmetic, reason = "the ideal's weight, never the definition's")]
+        let fraction = ideal[axis] - 128.0 - (texel * 256) as f64;
+        fraction
+    };
+    let weights = [L::weight(wu, || fraction(0, x)), L::weight(wv, || fraction(1, y))]
+        .map(|weight| observer.settle_weight::<L>(rule, weight));
+    if O::ON {
+        (Report { unit }).linear::<L, O>([u, v], [x, y], weights, observer);
+    }
+    ([x, y], weights)
+}
+
+/// TEX-6: the mix of the 2x2 footprint, row by row.
+#[inline(always)]
+pub fn mix<L: Lane, O: Observer>(
+    unit: &PlannedUnit,
+    texels: [[L; 4]; 4],
+    weights: [L::Weight; 2],
+    observer: &mut O,
+) -> [L; 4] {
+    // All four channels: cheaper than asking which are read.
+    observer.count(Work::Lerps, 12);
+    let out: [L; 4] = std::array::from_fn(|channel| {
+        if O::MEASURES && unit.live >> channel & 1 == 0 {
+            return L::ZERO;
+        }
+        bilinear(texels.map(|texel| texel[channel]), weights[0], weights[1], |v| {
+            // A signed channel counts in another unit until it becomes a register (TEX-18).
+            if O::MEASURES && !unit.state.signed[channel] { observer.settle(Rule::Tex6, v) } else { v }
+        })
+    });
+    if O::ON {
+        for channel in (0..4).filter(|c| unit.live >> c & 1 != 0) {
+            (Report { unit }).filter(channel, texels.map(|t| t[channel]), weights, out[channel], observer);
+        }
+    }
+    out
+}
+
+/// What was sampled as the unit's register: signed channels are doubled (TEX-18).
+#[inline(always)]
+pub fn load<L: Lane, O: Observer>(unit: &PlannedUnit, value: [L; 4], observer: &mut O) -> [L; 4] {
     let mut register = value;
     for channel in 0..4 {
         if unit.state.signed[channel] {
             register[channel] = observer.settle(Rule::Tex18, value[channel].signed_texel());
         }
         if O::ON && unit.live >> channel & 1 != 0 {
-            report.register(channel, value[channel], register[channel], observer);
+            (Report { unit }).register(channel, value[channel], register[channel], observer);
         }
     }
     register
@@ -341,12 +372,7 @@ impl Report<'_> {
                     plain(self.name(&format!("{axis}{}", index[n].0)), index[n].1),
                     plain("size", i64::from(sizes[n])),
                 ];
-                let moved = (value != index[n].1).then(|| format!("{} from outside", address_operation(modes[n])));
-                observer.step(
-                    Step::given(&block, "TEX-7", name.clone(), value)
-                        .by(address_operation(modes[n]), inputs)
-                        .note(moved),
-                );
+                observer.step(address_step(&block, name.clone(), modes[n], inputs, value));
                 address_inputs.push(plain(name, value));
             }
         }
@@ -409,6 +435,14 @@ impl Report<'_> {
                 .by(operation, vec![report::register(source, value)]),
         );
     }
+}
+
+/// TEX-7: the step from an index (the first of `inputs`; the second is the image's size) to a texel inside the image.
+pub fn address_step(block: &str, name: impl Into<String>, mode: AddressMode, inputs: Vec<Operand>, texel: i64) -> Step {
+    let operation = address_operation(mode);
+    let moved = inputs.first().is_some_and(|index| index.value != texel);
+    let note = moved.then(|| format!("{operation} from outside"));
+    Step::given(block, "TEX-7", name, texel).by(operation, inputs).note(note)
 }
 
 fn address_operation(mode: AddressMode) -> &'static str {

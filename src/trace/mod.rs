@@ -49,6 +49,20 @@ impl Observer for Silent {
     fn step(&mut self, _step: Step) {}
 }
 
+/// Keeps the steps.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Recorder {
+    /// In the order in which the rules were applied.
+    pub steps: Vec<Step>,
+}
+
+impl Observer for Recorder {
+    const ON: bool = true;
+    fn step(&mut self, step: Step) {
+        self.steps.push(step);
+    }
+}
+
 /// A named operand of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operand {

@@ -1,0 +1,92 @@
+//! `ninebit op address`.
+
+use clap::Args;
+use ninebit::state::{AddressMode, Named};
+use ninebit::texture::address::address;
+use ninebit::texture::unit::address_step;
+use ninebit::trace::{Observer, plain};
+use serde_json::json;
+
+use super::super::Context;
+use super::super::exit::Failure;
+use super::ProfileArgument;
+use super::inputs::set;
+use super::operation::{Column, Common, Operation, Results, drive};
+use super::template::Template;
+use super::words;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// What happens outside the image: wrap, mirror, clamp_to_edge, clamp_to_border, clamp
+    #[arg(long, value_name = "MODE", value_parser = words::address_mode)]
+    mode: AddressMode,
+    /// The texel's index, perhaps outside
+    #[arg(long, value_name = "I", allow_hyphen_values = true)]
+    index: Option<i64>,
+    /// Texels along the image's side, a power of two
+    #[arg(long, value_name = "N")]
+    size: u32,
+    #[command(flatten)]
+    profile: ProfileArgument,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// A mode and a side.
+struct Address {
+    mode: AddressMode,
+    size: u32,
+    columns: [Column; 1],
+}
+
+/// Brings an index inside.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let template = Template {
+        scene: format!(
+            "    textures: {{\"t\": (source: Solid(width: {}, height: 1, color: (0, 0, 0)))}},\n",
+            arguments.size
+        ),
+        draw: format!("        textures: [(texture: \"t\", address_s: {})],\n", arguments.mode.name()),
+        ..Template::default()
+    };
+    template.read(arguments.profile.profile, context)?;
+    let name = "index".to_owned();
+    let mut column = Column { name, range: -16_777_216..=16_777_215, per_one: 1, signed_texel: false, value: None };
+    if let Some(index) = arguments.index {
+        set(&mut column, index)?;
+    }
+    drive(&Address { mode: arguments.mode, size: arguments.size, columns: [column] }, &arguments.common)
+}
+
+impl Operation for Address {
+    const NAME: &'static str = "address";
+
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn find(&self, name: &str) -> Option<usize> {
+        (name == "index").then_some(0)
+    }
+
+    fn known(&self) -> String {
+        "index".to_owned()
+    }
+
+    fn how_to_give(&self, _: &Column) -> String {
+        "write `--index I`, or give a table with `--inputs`".to_owned()
+    }
+
+    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
+        let texel = address(self.mode, values[0], self.size).map(i64::from);
+        if O::ON {
+            let inputs = vec![plain("index", values[0]), plain("size", i64::from(self.size))];
+            let mut step = address_step("address", "texel", self.mode, inputs, texel.unwrap_or(values[0]));
+            if texel.is_none() {
+                step = step.note(Some("outside: the border colour".to_owned()));
+            }
+            observer.step(step);
+        }
+        vec![("texel".to_owned(), texel.map_or(json!("border"), |texel| json!(texel)))]
+    }
+}

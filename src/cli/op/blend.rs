@@ -1,0 +1,165 @@
+//! `ninebit op blend`.
+
+use clap::Args;
+use ninebit::combiner::registers::channel_name;
+use ninebit::engine;
+use ninebit::plan::Plan;
+use ninebit::rop::surface;
+use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, Profile, SurfaceFormat};
+use ninebit::trace::Observer;
+use serde_json::json;
+
+use super::super::Context;
+use super::super::exit::Failure;
+use super::ProfileArgument;
+use super::inputs::{self, Numbers};
+use super::operation::{Column, Common, Operation, Results, drive};
+use super::template::Template;
+use super::words;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The blend equation, for example add, subtract, min
+    #[arg(long, value_name = "EQUATION", default_value = "add", value_parser = words::equation)]
+    equation: BlendEquation,
+    /// Factor of the source, for example source_alpha (short: sa)
+    #[arg(long, value_name = "FACTOR", default_value = "one", value_parser = words::factor)]
+    source_factor: BlendFactor,
+    /// Factor of the destination, for example one_minus_source_alpha (short: 1-sa)
+    #[arg(long, value_name = "FACTOR", default_value = "zero", value_parser = words::factor)]
+    destination_factor: BlendFactor,
+    /// The fragment, 0 to 255: N, R,G,B or R,G,B,A
+    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
+    source: Option<Numbers>,
+    /// What the surface was given to hold, 0 to 255; it keeps what its format stores
+    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
+    destination: Option<Numbers>,
+    /// The word that the surface holds, instead of `--destination`: for example 0x6000
+    #[arg(long, value_name = "WORD", conflicts_with = "destination", value_parser = word)]
+    stored: Option<u32>,
+    /// The blend constant, 0 to 255
+    #[arg(long, value_name = "R,G,B,A", default_value = "0", value_parser = inputs::color)]
+    constant: Numbers,
+    /// The surface's format, for example r5g6b5
+    #[arg(long, value_name = "FORMAT", default_value = "a8r8g8b8", value_parser = words::surface)]
+    surface: SurfaceFormat,
+    #[command(flatten)]
+    profile: ProfileArgument,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// The pixel's draw, planned; its colours come with each case.
+struct Pixel {
+    plan: Plan,
+    profile: Profile,
+    surface: SurfaceFormat,
+    columns: Vec<Column>,
+}
+
+/// The inputs: their names in traces, and as they are given.
+const COLORS: [(&str, &str); 3] =
+    [("fragment", "source"), ("destination", "destination"), ("blend_constant", "constant")];
+
+/// Blends one pixel.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let template = Template {
+        target: format!(", format: {}", arguments.surface.name()),
+        draw: format!(
+            "        program: Combiners(stages: [()], final_combiner: (d: ConstantColor0, g: (ConstantColor0, Alpha))),\n        \
+             blend: (equation: {}, source: {}, destination: {}),\n",
+            arguments.equation.name(),
+            arguments.source_factor.name(),
+            arguments.destination_factor.name()
+        ),
+        ..Template::default()
+    };
+    let (_, plan) = template.read(arguments.profile.profile, context)?;
+    let mut columns: Vec<Column> = COLORS
+        .iter()
+        .flat_map(|(name, _)| (0..4).map(move |channel| format!("{name}.{}", channel_name(channel))))
+        .map(|name| Column { name, range: 0..=255, per_one: 255, signed_texel: false, value: None })
+        .collect();
+    let stored = arguments.stored.map(|word| surface::read(arguments.surface, word).map(i64::from));
+    let destination = stored.or(arguments.destination.as_ref().map(Numbers::rgba));
+    let colors = [arguments.source.as_ref().map(Numbers::rgba), destination, Some(arguments.constant.rgba())];
+    for (first, color) in colors.into_iter().enumerate() {
+        if let Some(color) = color {
+            inputs::color_columns(&mut columns, 4 * first, color)?;
+        }
+    }
+    let pixel = Pixel { plan, profile: arguments.profile.profile, surface: arguments.surface, columns };
+    drive(&pixel, &arguments.common)
+}
+
+impl Operation for Pixel {
+    const NAME: &'static str = "blend";
+
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn find(&self, name: &str) -> Option<usize> {
+        let (color, channel) = name.split_once('.')?;
+        let color = COLORS.iter().position(|(own, given)| *own == color || *given == color)?;
+        Some(4 * color + words::channel(channel)?)
+    }
+
+    fn known(&self) -> String {
+        "source.r, source.g, source.b, source.a and so on for destination, constant".to_owned()
+    }
+
+    fn how_to_give(&self, column: &Column) -> String {
+        let given = COLORS.iter().find(|(own, _)| column.name.starts_with(own)).map_or("source", |(_, given)| given);
+        format!("write `--{given} R,G,B,A`, or give a table with `--inputs`")
+    }
+
+    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
+        // Every value is within a byte: the columns' ranges say so.
+        let color =
+            |n: usize| -> [u8; 4] { std::array::from_fn(|channel| values[4 * n + channel].clamp(0, 255) as u8) };
+        let mut plan = self.plan.clone();
+        for target in &mut plan.targets {
+            target.clear_color = color(1);
+        }
+        for draw in &mut plan.draws {
+            draw.final_combiner.state.constants[0] = color(0);
+            draw.blend_constant = color(2);
+        }
+        // The pixel exists and the draw covers it.
+        let Ok(trace) = engine::trace(&plan, 0, (0, 0), None) else { return Results::new() };
+        let mut results = Results::new();
+        for step in trace.draws.into_iter().flat_map(|draw| draw.steps) {
+            if step.block != "blend" && step.block != "store" {
+                continue;
+            }
+            let blended = step.name.strip_prefix("blend.").filter(|rest| rest.len() == 1);
+            if blended.is_some() || step.name == "stored.word" {
+                results.push((step.name.clone(), json!(step.value)));
+            }
+            if O::ON {
+                observer.step(step);
+            }
+        }
+        let kept = surface::kept_channels(self.surface);
+        for (channel, bits) in surface::channel_bits(self.surface).into_iter().enumerate() {
+            if kept >> channel & 1 != 0 {
+                let field = (trace.word & bits) >> bits.trailing_zeros();
+                results.push((format!("field.{}", channel_name(channel)), json!(field)));
+            }
+        }
+        results
+    }
+
+    fn chip(&self) -> Option<(Profile, Policies)> {
+        Some((self.profile, Policies::DEFAULT))
+    }
+}
+
+fn word(text: &str) -> Result<u32, String> {
+    let parsed = match text.strip_prefix("0x") {
+        Some(digits) => u32::from_str_radix(digits, 16),
+        None => text.parse(),
+    };
+    parsed.map_err(|_| "not a word such as 0x6000".to_owned())
+}

@@ -1,0 +1,255 @@
+//! `ninebit op combiner`.
+
+use std::fmt::Write;
+
+use clap::{Args, ValueEnum};
+use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
+use ninebit::combiner::registers::{self, channel_name};
+use ninebit::state::{Bias, Component, GeneralStage, MuxSelect, Named, Policies, Portion, Profile, Register, Scale};
+use ninebit::trace::Observer;
+use serde_json::json;
+
+use super::super::Context;
+use super::super::exit::Failure;
+use super::super::scene::PolicyArguments;
+use super::ProfileArgument;
+use super::inputs::{self, Assignment, Numbers};
+use super::operation::{Column, Common, Operation, Results, drive};
+use super::template::Template;
+use super::words::{self, Input};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Input A [default: zero]
+    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
+    a: Option<Input<Register>>,
+    /// Input B
+    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
+    b: Option<Input<Register>>,
+    /// Input C
+    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
+    c: Option<Input<Register>>,
+    /// Input D
+    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
+    d: Option<Input<Register>>,
+    /// AB is a dot product
+    #[arg(long, visible_alias = "dot")]
+    ab_dot: bool,
+    /// CD is a dot product
+    #[arg(long)]
+    cd_dot: bool,
+    /// The third result is AB or CD, as the alpha of spare0 says, instead of AB + CD
+    #[arg(long)]
+    mux: bool,
+    /// Which bit of spare0's alpha steers the mux: msb or lsb
+    #[arg(long, value_name = "BIT", default_value = "msb", value_parser = words::mux_select)]
+    mux_select: MuxSelect,
+    /// Output scale: 1, 2, 4 or half
+    #[arg(long, value_name = "SCALE", default_value = "1", value_parser = words::scale)]
+    scale: Scale,
+    /// Output bias: one half is taken off before the scale
+    #[arg(long)]
+    bias: bool,
+    /// Which half of the stage
+    #[arg(long, value_enum, default_value_t = Half::Rgb)]
+    portion: Half,
+    /// Where AB goes; `discard` drops it
+    #[arg(long, value_name = "REGISTER", value_parser = words::destination)]
+    ab: Option<Register>,
+    /// Where CD goes
+    #[arg(long, value_name = "REGISTER", value_parser = words::destination)]
+    cd: Option<Register>,
+    /// Where AB + CD, or the mux, goes
+    #[arg(long, value_name = "REGISTER", value_parser = words::destination)]
+    sum: Option<Register>,
+    /// AB's blue also goes to the alpha of its destination (nv2a)
+    #[arg(long, visible_alias = "blue-to-alpha")]
+    ab_blue_to_alpha: bool,
+    /// CD's blue also goes to the alpha of its destination (nv2a)
+    #[arg(long)]
+    cd_blue_to_alpha: bool,
+    /// What a register holds, -256 to 255: REGISTER=N, =R,G,B or =R,G,B,A; REGISTER.CHANNEL=N. The rest holds 0
+    #[arg(long = "in", value_name = "REGISTER=VALUES", value_parser = inputs::assignment)]
+    registers: Vec<Assignment>,
+    /// Constant colour 0, 0 to 255
+    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
+    const0: Option<Numbers>,
+    /// Constant colour 1, 0 to 255
+    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
+    const1: Option<Numbers>,
+    #[command(flatten)]
+    profile: ProfileArgument,
+    #[command(flatten)]
+    policies: PolicyArguments,
+    #[command(flatten)]
+    common: Common,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Half {
+    /// Red, green and blue
+    Rgb,
+    /// Alpha
+    Alpha,
+}
+
+/// A stage with register contents.
+struct Stage {
+    stage: GeneralStage,
+    half: Half,
+    mux_select: MuxSelect,
+    columns: Vec<Column>,
+    profile: Profile,
+    policies: Policies,
+}
+
+/// Runs one general stage.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let policies = arguments.policies.policies()?;
+    let mut columns = inputs::register_columns();
+    inputs::assign(&mut columns, &arguments.registers)?;
+    constants(&mut columns, [&arguments.const0, &arguments.const1])?;
+    let template = Template { draw: program(arguments), ..Template::default() };
+    let combiners = template.combiners(arguments.profile.profile, context)?;
+    let stage = combiners.stages.first().copied();
+    let none = GeneralStage {
+        rgb: Portion::idle(Component::Rgb),
+        alpha: Portion::idle(Component::Alpha),
+        constants: [[0; 4]; 2],
+    };
+    let operation = Stage {
+        stage: stage.unwrap_or(none),
+        half: arguments.portion,
+        mux_select: combiners.mux_select,
+        columns,
+        profile: arguments.profile.profile,
+        policies,
+    };
+    drive(&operation, &arguments.common)
+}
+
+/// Puts `--const0` and `--const1` into the columns.
+pub(super) fn constants(columns: &mut [Column], constants: [&Option<Numbers>; 2]) -> Result<(), Failure> {
+    for (register, numbers) in [Register::ConstantColor0, Register::ConstantColor1].into_iter().zip(constants) {
+        if let Some(numbers) = numbers {
+            inputs::color_columns(columns, 4 * register as usize, numbers.rgba())?;
+        }
+    }
+    Ok(())
+}
+
+/// The stage as a scene writes it, one field a line.
+fn program(arguments: &Arguments) -> String {
+    let mut fields: Vec<(&str, String)> = Vec::new();
+    for (name, input) in [("a", &arguments.a), ("b", &arguments.b), ("c", &arguments.c), ("d", &arguments.d)] {
+        fields.extend(input.map(|input| (name, input.scene())));
+    }
+    for (name, output) in ["ab", "cd", "sum"].into_iter().zip(outputs(arguments)) {
+        let word = |register: Register| if register == Register::Zero { "Discard" } else { register.name() };
+        fields.extend(output.map(|output| (name, word(output).to_owned())));
+    }
+    for (name, flag) in [
+        ("ab_dot", arguments.ab_dot),
+        ("cd_dot", arguments.cd_dot),
+        ("ab_blue_to_alpha", arguments.ab_blue_to_alpha),
+        ("cd_blue_to_alpha", arguments.cd_blue_to_alpha),
+        ("mux", arguments.mux),
+    ] {
+        fields.extend(flag.then(|| (name, "true".to_owned())));
+    }
+    if arguments.scale != Scale::One {
+        fields.push(("scale", arguments.scale.name().to_owned()));
+    }
+    if arguments.bias {
+        fields.push(("bias", Bias::NegativeHalf.name().to_owned()));
+    }
+    let mut text = String::new();
+    for (name, value) in fields {
+        let _ = writeln!(text, "                {name}: {value},");
+    }
+    let portion = if arguments.portion == Half::Rgb { "rgb" } else { "alpha" };
+    format!(
+        "        program: Combiners(\n            mux_select: {},\n            stages: [({portion}: (\n{text}            ))],\n        ),\n",
+        arguments.mux_select.name()
+    )
+}
+
+/// Destinations of AB, CD and the sum: as given, or one that shows the result.
+fn outputs(arguments: &Arguments) -> [Option<Register>; 3] {
+    let given = [arguments.ab, arguments.cd, arguments.sum];
+    if given != [None; 3] {
+        return given;
+    }
+    let second = arguments.c.is_some() || arguments.d.is_some();
+    let dot = arguments.ab_dot || arguments.cd_dot;
+    match (second && !dot, second) {
+        (true, _) => [None, None, Some(Register::Spare0)],
+        (false, _) if arguments.mux => [None, None, Some(Register::Spare0)],
+        (false, true) => [Some(Register::Spare0), Some(Register::Spare1), None],
+        (false, false) => [Some(Register::Spare0), None, None],
+    }
+}
+
+/// A portion of which everything is needed.
+fn planned(portion: &Portion, channels: u8) -> PlannedPortion {
+    let live = |output: Register| if output == Register::Zero { 0 } else { channels };
+    PlannedPortion {
+        portion: *portion,
+        live: [portion.ab_output, portion.cd_output, portion.sum_output].map(live),
+        blue_to_alpha: [
+            portion.ab_blue_to_alpha && portion.ab_output != Register::Zero,
+            portion.cd_blue_to_alpha && portion.cd_output != Register::Zero,
+        ],
+    }
+}
+
+impl Operation for Stage {
+    const NAME: &'static str = "combiner";
+
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn find(&self, name: &str) -> Option<usize> {
+        inputs::register_column(name)
+    }
+
+    fn known(&self) -> String {
+        inputs::REGISTER_NAMES.to_owned()
+    }
+
+    fn how_to_give(&self, column: &Column) -> String {
+        format!("write `--in {}=N`", column.name)
+    }
+
+    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
+        let mut registers = inputs::load(values);
+        let stage = PlannedStage {
+            index: 0,
+            rgb: planned(&self.stage.rgb, 7),
+            alpha: planned(&self.stage.alpha, 8),
+            constants: self.stage.constants,
+            // The registers hold them already.
+            reads_constants: false,
+        };
+        general::run(&stage, self.mux_select, &self.policies, &mut registers, observer);
+        let (portion, channels) = match self.half {
+            Half::Rgb => (&stage.rgb, 0..3),
+            Half::Alpha => (&stage.alpha, 3..4),
+        };
+        let mut results = Results::new();
+        let outputs = [portion.portion.ab_output, portion.portion.cd_output, portion.portion.sum_output];
+        for (n, register) in outputs.into_iter().enumerate().filter(|(n, _)| portion.live[*n] != 0) {
+            let blue = portion.blue_to_alpha.get(n).is_some_and(|blue| *blue).then_some(3);
+            for channel in channels.clone().chain(blue) {
+                let name = format!("{}.{}", registers::name(register), channel_name(channel));
+                results.push((name, json!(registers.read(register, channel).fixed)));
+            }
+        }
+        results
+    }
+
+    fn chip(&self) -> Option<(Profile, Policies)> {
+        Some((self.profile, self.policies))
+    }
+}

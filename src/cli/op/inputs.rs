@@ -1,0 +1,133 @@
+//! Register contents on the command line and in tables.
+
+use std::ops::RangeInclusive;
+
+use ninebit::combiner::registers::{self, Registers, channel_name};
+use ninebit::number::Paired;
+use ninebit::state::{Named, Register};
+
+use super::super::exit::Failure;
+use super::operation::Column;
+use super::words;
+
+/// What the name of `--in` and the four numbers after it give.
+#[derive(Clone, Debug)]
+pub(super) struct Assignment {
+    name: String,
+    values: Vec<i64>,
+}
+
+/// Reads `NAME=N`, `NAME=R,G,B` or `NAME=R,G,B,A`.
+pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
+    let form = "write REGISTER=N, REGISTER=R,G,B or REGISTER=R,G,B,A, for example tex0=128,128,255";
+    let (name, values) = text.split_once('=').ok_or(form)?;
+    Ok(Assignment { name: name.trim().to_owned(), values: numbers(values)? })
+}
+
+/// Reads one, three or four whole numbers.
+pub(super) fn color(text: &str) -> Result<Numbers, String> {
+    numbers(text).map(Numbers)
+}
+
+/// One, three or four numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Numbers(Vec<i64>);
+
+impl Numbers {
+    /// R, G, B, A: one number is all four; three leave alpha at 255, as colours in scenes do.
+    pub(super) fn rgba(&self) -> [i64; 4] {
+        four(&self.0)
+    }
+}
+
+fn numbers(text: &str) -> Result<Vec<i64>, String> {
+    let parsed: Option<Vec<i64>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    parsed
+        .filter(|numbers| matches!(numbers.len(), 1 | 3 | 4))
+        .ok_or_else(|| "not one, three or four whole numbers with commas between".to_owned())
+}
+
+fn four(numbers: &[i64]) -> [i64; 4] {
+    match *numbers {
+        [r, g, b] => [r, g, b, 255],
+        [r, g, b, a] => [r, g, b, a],
+        _ => [numbers.first().copied().unwrap_or(0); 4],
+    }
+}
+
+/// What a general register holds.
+const SIGNED: RangeInclusive<i64> = -256..=255;
+/// What a constant holds.
+const BYTE: RangeInclusive<i64> = 0..=255;
+
+/// A column for each channel of each register, all 0.
+pub(super) fn register_columns() -> Vec<Column> {
+    let channels = Register::ALL.iter().flat_map(|register| (0..4).map(|channel| (*register, channel)));
+    channels
+        .map(|(register, channel)| {
+            let range = match register {
+                Register::Zero => 0..=0,
+                Register::ConstantColor0 | Register::ConstantColor1 => BYTE,
+                _ => SIGNED,
+            };
+            let name = format!("{}.{}", registers::name(register), channel_name(channel));
+            Column { name, range, per_one: 255, signed_texel: false, value: Some(0) }
+        })
+        .collect()
+}
+
+/// The column of `REGISTER.CHANNEL` among [`register_columns`].
+pub(super) fn register_column(name: &str) -> Option<usize> {
+    let (register, channel) = name.split_once('.')?;
+    let register = words::register(register).ok().filter(|register| *register != Register::Zero)?;
+    Some(4 * register as usize + words::channel(channel)?)
+}
+
+/// Names of the columns for messages.
+pub(super) const REGISTER_NAMES: &str = "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, spare0, spare1, const0, const1, fog";
+
+/// Puts what `--in` gives into the columns.
+pub(super) fn assign(columns: &mut [Column], assignments: &[Assignment]) -> Result<(), Failure> {
+    for Assignment { name, values } in assignments {
+        if name.contains('.') {
+            let column = register_column(name).and_then(|column| columns.get_mut(column));
+            let (Some(column), [value]) = (column, values.as_slice()) else {
+                let message = format!("`{name}` is not a channel of a register with one value");
+                return Err(Failure::usage(message, "write for example `--in tex0.a=128`"));
+            };
+            set(column, *value)?;
+            continue;
+        }
+        let register = words::register(name)
+            .map_err(|message| Failure::usage(message, "write for example `--in tex0=128,128,255`"))?;
+        color_columns(columns, 4 * register as usize, four(values))?;
+    }
+    Ok(())
+}
+
+/// Sets the four columns from `first`.
+pub(super) fn color_columns(columns: &mut [Column], first: usize, values: [i64; 4]) -> Result<(), Failure> {
+    columns.iter_mut().skip(first).zip(values).try_for_each(|(column, value)| set(column, value))
+}
+
+/// Sets a column, if the value is in its range.
+pub(super) fn set(column: &mut Column, value: i64) -> Result<(), Failure> {
+    if !column.range.contains(&value) {
+        let (from, to) = (column.range.start(), column.range.end());
+        let message = format!("{value} is out of range for `{}`", column.name);
+        return Err(Failure::usage(message, format!("write a whole number from {from} to {to}")));
+    }
+    column.value = Some(value);
+    Ok(())
+}
+
+/// Register contents, each integer as the ideal's real number, too.
+pub(super) fn load(values: &[i64]) -> Registers<Paired> {
+    let mut registers = Registers::new();
+    for (register, values) in Register::ALL.iter().zip(values.chunks(4)) {
+        for (channel, value) in values.iter().enumerate() {
+            registers.write(*register, channel, Paired { fixed: *value as i32, ideal: *value as f64 });
+        }
+    }
+    registers
+}

@@ -1,0 +1,245 @@
+//! Words of the command line: the names of the state's enumerations, those of the vendor's extensions, and short ones.
+
+use ninebit::state::{
+    AddressMode, BlendEquation, BlendFactor, Component, FinalRegister, InputMapping, MuxSelect, Named, Profile,
+    Register, Scale, SurfaceFormat,
+};
+
+/// A word without what only decorates it: `GL_SPARE0_NV`, `Spare0` and `spare0` are one.
+fn plain(word: &str) -> String {
+    let word = word.to_ascii_lowercase().replace('-', "_");
+    let word = word.strip_prefix("gl_").unwrap_or(&word);
+    let word = ["_nv", "_arb", "_ext"].iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word);
+    word.replace('_', "")
+}
+
+/// The variant that a word names, by its own name or one of `short` (plain word, own name).
+fn named<T: Named>(what: &str, word: &str, short: &[(&str, &str)]) -> Result<T, String> {
+    let wanted = plain(word);
+    let wanted = short.iter().find(|(short, _)| plain(short) == wanted).map_or(wanted.clone(), |(_, name)| plain(name));
+    let found = T::NAMES.iter().position(|name| plain(name) == wanted);
+    found.map(|index| T::ALL[index]).ok_or_else(|| {
+        // One name for each: the first short one, or its own.
+        let names: Vec<String> = T::NAMES
+            .iter()
+            .map(|name| short.iter().find(|(_, own)| own == name).map_or_else(|| snake(name), |(s, _)| (*s).to_owned()))
+            .collect();
+        format!("there is no {what} `{}`; known: {}", word.chars().take(40).collect::<String>(), names.join(", "))
+    })
+}
+
+/// "OneMinusSourceAlpha" as "one_minus_source_alpha"; names of formats as they are.
+fn snake(name: &str) -> String {
+    if name.chars().skip(1).any(|letter| letter.is_ascii_digit())
+        && name.chars().filter(char::is_ascii_uppercase).count() > 1
+    {
+        return name.to_ascii_lowercase();
+    }
+    let mut word = String::new();
+    for letter in name.chars() {
+        if letter.is_ascii_uppercase() && !word.is_empty() {
+            word.push('_');
+        }
+        word.push(letter.to_ascii_lowercase());
+    }
+    word
+}
+
+const REGISTERS: &[(&str, &str)] = &[
+    ("tex0", "Texture0"),
+    ("tex1", "Texture1"),
+    ("tex2", "Texture2"),
+    ("tex3", "Texture3"),
+    ("primary", "PrimaryColor"),
+    ("secondary", "SecondaryColor"),
+    ("const0", "ConstantColor0"),
+    ("const1", "ConstantColor1"),
+    ("constant0", "ConstantColor0"),
+    ("constant1", "ConstantColor1"),
+    ("sum", "Spare0PlusSecondary"),
+    ("spare0_plus_secondary_color", "Spare0PlusSecondary"),
+    ("ef", "ETimesF"),
+];
+
+const MAPPINGS: &[(&str, &str)] = &[
+    ("identity", "UnsignedIdentity"),
+    ("unsigned", "UnsignedIdentity"),
+    ("invert", "UnsignedInvert"),
+    ("expand", "ExpandNormal"),
+    ("half_bias", "HalfBiasNormal"),
+    ("signed", "SignedIdentity"),
+    ("negate", "SignedNegate"),
+];
+
+/// A register of the general stages.
+pub(super) fn register(word: &str) -> Result<Register, String> {
+    named("register", word, REGISTERS)
+}
+
+/// Where a result goes; ZERO discards.
+pub(super) fn destination(word: &str) -> Result<Register, String> {
+    match plain(word).as_str() {
+        "discard" => Ok(Register::Zero),
+        "zero" => Err("ZERO cannot be written; `discard` drops the result".to_owned()),
+        _ => register(word),
+    }
+}
+
+/// A channel: 0 to 3.
+pub(super) fn channel(word: &str) -> Option<usize> {
+    [["r", "red"], ["g", "green"], ["b", "blue"], ["a", "alpha"]].iter().position(|names| names.contains(&word))
+}
+
+/// An input as written: `REGISTER[.COMPONENT][:MAPPING]`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Input<R> {
+    pub(super) register: R,
+    pub(super) component: Option<Component>,
+    pub(super) mapping: Option<InputMapping>,
+}
+
+impl<R: Named> Input<R> {
+    /// The input as a scene writes it.
+    pub(super) fn scene(&self) -> String {
+        let register = self.register.name();
+        let pair = self.component.map(|component| format!("{register}, {}", component.name()));
+        match (self.mapping, pair) {
+            (None, None) => register.to_owned(),
+            (None, Some(pair)) => format!("({pair})"),
+            (Some(mapping), pair) => format!("{}({})", mapping.name(), pair.unwrap_or(register.to_owned())),
+        }
+    }
+}
+
+fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
+    let (place, mapping) = match text.split_once(':') {
+        Some((place, mapping)) => (place, Some(named("mapping", mapping, MAPPINGS)?)),
+        None => (text, None),
+    };
+    let (name, component) = match place.split_once('.') {
+        Some((name, component)) => {
+            let short = [("a", "Alpha"), ("b", "Blue")];
+            (name, Some(named("component", component, &short)?))
+        }
+        None => (place, None),
+    };
+    Ok(Input { register: named("register", name, REGISTERS)?, component, mapping })
+}
+
+/// An input of a general stage.
+pub(super) fn general_input(text: &str) -> Result<Input<Register>, String> {
+    input(text)
+}
+
+/// An input of the final combiner.
+pub(super) fn final_input(text: &str) -> Result<Input<FinalRegister>, String> {
+    input(text)
+}
+
+/// An output scale.
+pub(super) fn scale(word: &str) -> Result<Scale, String> {
+    let short = [("1", "One"), ("2", "Two"), ("4", "Four"), ("half", "Half"), ("0.5", "Half"), ("1/2", "Half")];
+    let word = plain(word);
+    named("scale", word.strip_prefix("scaleby").unwrap_or(&word), &short)
+}
+
+/// The bit that steers the mux.
+pub(super) fn mux_select(word: &str) -> Result<MuxSelect, String> {
+    named("mux selection", word, &[])
+}
+
+/// A chip.
+pub(super) fn profile(word: &str) -> Result<Profile, String> {
+    named("profile", word, &[])
+}
+
+/// A blend equation.
+pub(super) fn equation(word: &str) -> Result<BlendEquation, String> {
+    let word = plain(word);
+    named("blend equation", word.strip_prefix("func").unwrap_or(&word), &[])
+}
+
+/// A blend factor.
+pub(super) fn factor(word: &str) -> Result<BlendFactor, String> {
+    let short = [
+        ("0", "Zero"),
+        ("1", "One"),
+        ("sc", "SourceColor"),
+        ("1sc", "OneMinusSourceColor"),
+        ("sa", "SourceAlpha"),
+        ("1sa", "OneMinusSourceAlpha"),
+        ("dc", "DestinationColor"),
+        ("1dc", "OneMinusDestinationColor"),
+        ("da", "DestinationAlpha"),
+        ("1da", "OneMinusDestinationAlpha"),
+        ("cc", "ConstantColor"),
+        ("1cc", "OneMinusConstantColor"),
+        ("ca", "ConstantAlpha"),
+        ("1ca", "OneMinusConstantAlpha"),
+    ];
+    let long = plain(word).replace("src", "source").replace("dst", "destination");
+    let long = short.iter().find(|(short, _)| *short == long).map_or(long, |(_, name)| (*name).to_owned());
+    // In the message the factors have their own names.
+    named("blend factor", &long, &[]).map_err(|message: String| message.replacen(&long, word, 1))
+}
+
+/// A surface format.
+pub(super) fn surface(word: &str) -> Result<SurfaceFormat, String> {
+    named("surface format", word, &[])
+}
+
+/// An address mode.
+pub(super) fn address_mode(word: &str) -> Result<AddressMode, String> {
+    let short = [("wrap", "Wrap"), ("repeat", "Wrap"), ("mirror", "Mirror"), ("mirrored_repeat", "Mirror")];
+    named("address mode", word, &short)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_register_by_all_its_names() {
+        for word in ["tex0", "texture0", "Texture0", "TEXTURE0", "GL_TEXTURE0_ARB"] {
+            assert_eq!(register(word), Ok(Register::Texture0), "{word}");
+        }
+        assert_eq!(register("GL_CONSTANT_COLOR1_NV"), Ok(Register::ConstantColor1));
+        assert_eq!(
+            final_input("SPARE0_PLUS_SECONDARY_COLOR_NV").map(|i| i.register),
+            Ok(FinalRegister::Spare0PlusSecondary)
+        );
+        assert!(register("tex9").is_err_and(|e| e.contains("tex0, tex1") && e.contains("spare0")));
+        assert!(destination("zero").is_err());
+    }
+
+    #[test]
+    fn inputs_are_taken_apart_and_written_as_scenes_do() {
+        let scene = |text: &str| general_input(text).map(|input| input.scene());
+        assert_eq!(scene("tex0").as_deref(), Ok("Texture0"));
+        assert_eq!(scene("tex0.a").as_deref(), Ok("(Texture0, Alpha)"));
+        assert_eq!(scene("zero:invert").as_deref(), Ok("UnsignedInvert(Zero)"));
+        assert_eq!(scene("primary.b:half_bias_negate").as_deref(), Ok("HalfBiasNegate(PrimaryColor, Blue)"));
+        assert_eq!(scene("fog:SIGNED_NEGATE_NV").as_deref(), Ok("SignedNegate(Fog)"));
+        assert!(scene("tex0:sine").is_err_and(|e| e.contains("half_bias, half_bias_negate")));
+        assert!(scene("tex0.q").is_err() && scene("").is_err());
+    }
+
+    #[test]
+    fn every_name_is_known_as_itself() {
+        for name in BlendFactor::NAMES {
+            assert_eq!(factor(name).map(Named::name).as_ref(), Ok(name));
+        }
+        for name in SurfaceFormat::NAMES {
+            assert_eq!(surface(name).map(Named::name).as_ref(), Ok(name));
+        }
+        assert_eq!(factor("GL_ONE_MINUS_SRC_ALPHA"), Ok(BlendFactor::OneMinusSourceAlpha));
+        assert_eq!((factor("1-sa"), factor("0")), (Ok(BlendFactor::OneMinusSourceAlpha), Ok(BlendFactor::Zero)));
+        assert_eq!(
+            (scale("2"), scale("half"), scale("SCALE_BY_FOUR_NV")),
+            (Ok(Scale::Two), Ok(Scale::Half), Ok(Scale::Four))
+        );
+        assert_eq!(equation("FUNC_REVERSE_SUBTRACT"), Ok(BlendEquation::ReverseSubtract));
+        assert_eq!(snake("OneMinusSourceAlpha"), "one_minus_source_alpha");
+        assert_eq!(snake("A8R8G8B8"), "a8r8g8b8");
+    }
+}

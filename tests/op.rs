@@ -1,0 +1,271 @@
+//! `ninebit op`: worked examples, tables, and what is refused.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+#[path = "common/bench.rs"]
+mod bench;
+
+use bench::Bench;
+use serde_json::Value;
+
+/// What `ninebit op` with these arguments gives for a result.
+fn result(arguments: &str, name: &str) -> Value {
+    let text = Bench::new().run(&format!("op {arguments} --format json")).text();
+    let document: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(document["format"], "ninebit-op-1");
+    assert!(document["steps"].as_array().is_some_and(|steps| !steps.is_empty()), "{text}");
+    document["results"][name].clone()
+}
+
+const PRODUCT: &str = "combiner --a tex0 --b primary --in tex0=100 --in primary=200";
+const SUM: &str = "combiner --a tex0 --b primary --c tex0 --d primary --in tex0=100 --in primary=200";
+
+#[test]
+fn products_and_sums() {
+    assert_eq!(result(PRODUCT, "spare0.r"), 78);
+    assert_eq!(result(&format!("{PRODUCT} --scale 2"), "spare0.g"), 156);
+    assert_eq!(result(&format!("{PRODUCT} --scale 2 --policy CMB-9=after"), "spare0.g"), 157);
+    assert_eq!(result(SUM, "spare0.b"), 157);
+    assert_eq!(result(&format!("{SUM} --policy CMB-7=each"), "spare0.b"), 156);
+    // Both products apart, one of them halved: nothing but the destinations changes.
+    let apart = format!("{SUM} --ab spare1 --cd tex1 --sum discard");
+    assert_eq!((result(&apart, "spare1.r"), result(&apart, "texture1.r")), (78.into(), 78.into()));
+    assert_eq!(result(&format!("{PRODUCT} --portion alpha"), "spare0.a"), 78);
+    assert_eq!(result(&format!("{PRODUCT} --bias"), "spare0.r"), 78 - 128);
+    assert_eq!(result(&format!("{PRODUCT} --scale half"), "spare0.r"), 39);
+}
+
+#[test]
+fn dot_products() {
+    let dot = "combiner --a tex0 --b primary --dot --in tex0=100 --in primary=200";
+    assert_eq!(result(dot, "spare0.r"), 235);
+    assert_eq!(result(&format!("{dot} --policy CMB-8=each"), "spare0.r"), 234);
+    let blue = format!("{dot} --blue-to-alpha --profile nv2a");
+    assert_eq!((result(&blue, "spare0.b"), result(&blue, "spare0.a")), (235.into(), 235.into()));
+    let two = "combiner --a tex0 --b primary --c primary --d primary --ab-dot --cd-dot --in tex0=100 --in primary=10";
+    assert_eq!((result(two, "spare0.r"), result(two, "spare1.r")), (12.into(), 1.into()));
+}
+
+#[test]
+fn mappings_and_signed_contents() {
+    let expand = |value: i32| {
+        result(&format!("combiner --a tex0:expand --b zero:invert --in tex0={value}"), "spare0.r").as_i64()
+    };
+    assert_eq!([expand(0), expand(128), expand(255), expand(-256)], [Some(-256), Some(0), Some(254), Some(-256)]);
+    let literal = "combiner --a tex0:EXPAND_NORMAL_NV --b zero:invert --in tex0=128 --policy CMB-3=literal";
+    assert_eq!(result(literal, "spare0.r"), 1);
+    assert_eq!(result("combiner --a spare1:negate --b zero:invert --in spare1=-256", "spare0.r"), 255);
+    assert_eq!(result("combiner --a spare1.a:signed --b const0 --in spare1.a=-256 --const0 255,0,1", "spare0.b"), -1);
+}
+
+#[test]
+fn the_mux_takes_what_spare0_says() {
+    let mux = |alpha: i32, more: &str| {
+        let arguments = format!("combiner --a tex0 --b zero:invert --c tex1 --d zero:invert --mux {more}");
+        result(&format!("{arguments} --in tex0=1 --in tex1=2 --in spare0.a={alpha}"), "spare0.r").as_i64()
+    };
+    assert_eq!([mux(127, ""), mux(128, ""), mux(-1, "")], [Some(1), Some(2), Some(1)]);
+    assert_eq!([mux(-1, "--policy CMB-10=bit7"), mux(3, "--mux-select lsb")], [Some(2), Some(2)]);
+}
+
+#[test]
+fn final_combiner() {
+    let lerp = "final --a primary --b secondary --c tex0 --d tex1 \
+                --in primary=100 --in secondary=200 --in tex0=37 --in tex1=10";
+    assert_eq!(result(lerp, "fragment.r"), 111);
+    assert_eq!(result(&format!("{lerp} --policy FIN-2=twice"), "fragment.r"), 110);
+    assert_eq!(result(lerp, "fragment.a"), Value::Null);
+    let sum = "final --d sum --in spare0=200 --in secondary=100 --g spare0.b:invert";
+    assert_eq!((result(sum, "fragment.r"), result(sum, "fragment.a")), (255.into(), 55.into()));
+    let product = "final --a ef --b zero:invert --e tex0 --f tex1 --in tex0=100 --in tex1=200";
+    assert_eq!(result(product, "fragment.g"), 78);
+    // Of a negative register the final combiner sees 0.
+    assert_eq!(result("final --d tex0:invert --in tex0=-100", "fragment.b"), 255);
+    // 200 + 100 enters D whole: a quarter of it is left.
+    let open = "final --a const0 --b sum --in spare0=200 --in secondary=100 --const0 64 --no-color-sum-clamp";
+    assert_eq!(result(open, "fragment.r"), 75);
+}
+
+#[test]
+fn blend() {
+    let over = "blend --source-factor sa --destination-factor 1-sa";
+    assert_eq!(result(&format!("{over} --source 200,200,200,128 --destination 50"), "blend.r"), 125);
+    let cut = format!("{over} --source 203,0,0,128 --stored 0x6000 --surface r5g6b5");
+    assert_eq!((result(&cut, "blend.r"), result(&cut, "field.r")), (148.into(), 18.into()));
+    assert_eq!(result(&cut, "stored.word"), 18 << 11);
+    // Twelve in five bits is 96 in eight.
+    let bytes = format!("{over} --source 203,0,0,128 --destination 99,0,0 --surface r5g6b5");
+    assert_eq!(result(&bytes, "blend.r"), 148);
+    let signed = "blend --equation signed_add --source 200 --destination 127 --profile nv2a";
+    assert_eq!(result(signed, "blend.r"), 71);
+    let constant = "blend --source-factor GL_CONSTANT_COLOR --constant 128 --source 255 --destination 0";
+    assert_eq!(result(constant, "blend.g"), 128);
+}
+
+#[test]
+fn filter_and_address() {
+    assert_eq!(result("filter --texels 10,200 --weights 51", "mix"), 48);
+    assert_eq!(result("filter --texels 10,200,10,200 --at 179,128", "mix"), 48);
+    assert_eq!(result("filter --texels -3,-1 --weights 128 --signed", "mix"), -2);
+    assert_eq!(result("filter --texels -3,-1 --weights 128 --signed", "register"), -4);
+    let texel = |mode: &str, index: i32| {
+        result(&format!("address --mode {mode} --index {index} --size 8 --profile nv2a"), "texel")
+    };
+    assert_eq!(texel("wrap", -1), 7);
+    assert_eq!([texel("mirror", 8), texel("mirror", 9), texel("mirror", -1)], [7, 6, 0].map(Value::from));
+    assert_eq!([texel("clamp_to_edge", -5), texel("GL_REPEAT", 9)], [0, 1].map(Value::from));
+    assert_eq!([texel("clamp_to_border", 8), texel("clamp_to_border", 7)], [Value::from("border"), 7.into()]);
+}
+
+#[test]
+fn text_is_a_trace() {
+    let text = Bench::new().run(&format!("op {SUM} --policy CMB-7=each")).text();
+    let squeezed = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    for part in [
+        "combiner, profile Nv10 policy CMB-7=each:",
+        "given primary.r 200 0.784314",
+        "stage0.rgb.AB.r 100 * 200 20000 0.307574 0.307574 CMB-6",
+        "spare0.b write(stage0.rgb.sum.b.output 156) 156",
+        "result: spare0.r 156 spare0.g 156 spare0.b 156",
+    ] {
+        assert!(squeezed.contains(part), "`{part}` is not in {text}");
+    }
+    let idle = Bench::new().run("op combiner --a tex0 --ab discard").text();
+    assert!(idle.contains("nothing is written"), "{idle}");
+}
+
+/// Every register content through the signed expand mapping, by its formula.
+#[test]
+fn tables() {
+    let bench = Bench::new();
+    let lines: Vec<String> = (-256..=255).map(|x| format!("{x}\t{}\t7", x / 2)).collect();
+    bench
+        .write("in.tsv", format!("\u{feff}# a remark\r\ntex0.r\ttexture0.g\ttex1.a\r\n\r\n{}\r\n", lines.join("\r\n")));
+    let command = "op combiner --a tex0:expand_negate --b zero:invert --inputs in.tsv";
+    let table = bench.run(command).text();
+    let mut rows = table.lines();
+    assert_eq!(rows.next(), Some("tex0.r\ttexture0.g\ttex1.a\tresult.spare0.r\tresult.spare0.g\tresult.spare0.b"));
+    let expand = |x: i32| (-2 * (x.max(0) - 128)).min(255);
+    for (x, row) in (-256..=255).zip(&mut rows) {
+        assert_eq!(row, format!("{x}\t{}\t7\t{}\t{}\t255", x / 2, expand(x), expand(x / 2)));
+    }
+    assert_eq!(rows.next(), None);
+    bench.run(&format!("{command} -o out.tsv")).data();
+    assert_eq!(std::fs::read_to_string(bench.path("out.tsv")).unwrap(), table);
+
+    bench.write("blend.tsv", "source.r\tsource.g\tsource.b\tsource.a\n1\t2\t3\t4\n255\t254\t253\t0\n");
+    let table = bench.run("op blend --destination 9 --inputs blend.tsv").text();
+    assert!(table.ends_with("\n255\t254\t253\t0\t255\t254\t253\t0\t16776957\t255\t254\t253\t0\n"), "{table}");
+    bench.write("u.tsv", "u\n128\n384\n");
+    let table = bench.run("op filter --texels 7,9 --at 0,128 --inputs u.tsv").text();
+    assert_eq!(table, "u\tresult.mix\tresult.register\n128\t7\t7\n384\t7\t7\n");
+    bench.write("i.tsv", "index\n-1\n8\n");
+    let table = bench.run("op address --mode clamp_to_border --size 8 --profile nv2a --inputs i.tsv").text();
+    assert_eq!(table, "index\tresult.texel\n-1\tborder\n8\tborder\n");
+}
+
+#[test]
+fn broken_tables_say_where() {
+    let bench = Bench::new();
+    let run = |contents: &str| {
+        bench.write("in.tsv", contents);
+        bench.run("op combiner --a tex0 --inputs in.tsv -o out.tsv")
+    };
+    run("tex0.r\ttex0.g\n1\tx\n1\n1\t2\n1\t256\n").failed(
+        3,
+        "error[NB0533]: table `in.tsv`: 3 lines cannot be used\n  line 2: column 2 (`tex0.g`): `x` is not a whole number \
+         from -256 to 255\n  line 3: 1 value, the header has 2\n  line 5: column 2 (`tex0.g`): `256` is not",
+    );
+    run(&format!("tex0.r\n{}", "x\n".repeat(40)))
+        .failed(3, "line 17: column 1 (`tex0.r`): `x` is not a whole number from -256 to 255\n  ... and 24 more");
+    run("const0.r\n-1\n").failed(3, "from 0 to 255");
+    run("tex0.r\ttex9.g\n").failed(3, "error[NB0532]: table `in.tsv`, line 1, column 2: there is no input `tex9.g`");
+    run("tex0.r\ttexture0.r\n").failed(3, "is the same input as column 1");
+    run("zero.r\n0\n").failed(3, "there is no input `zero.r`");
+    run("").failed(3, "error[NB0532]: table `in.tsv` has no header");
+    run("tex0.r\n# nothing\n").failed(3, "has a header and no cases");
+    bench.write("bytes.tsv", b"tex0.r\n\xff\n");
+    bench.run("op combiner --inputs bytes.tsv").failed(3, "error[NB0531]");
+    bench.run("op combiner --inputs .").failed(3, "it is not a regular file");
+    bench.run("op combiner --inputs none.tsv").failed(4, "error[NB0530]");
+    bench.write("in.tsv", "tex0.r\n1\n");
+    bench.run("op combiner --inputs in.tsv -o in.tsv").failed(2, "is the input");
+    bench.run("op combiner --inputs in.tsv -o none/out.tsv").failed(7, "create its folder first");
+    bench.run("op filter --weights 1 --inputs in.tsv").failed(3, "there is no input `tex0.r`");
+    bench.write("wu.tsv", "wu\n1\n");
+    bench.run("op filter --weights 1 --inputs wu.tsv").failed(3, "has no column `unit0.texel00.r`");
+    assert!(!bench.path("out.tsv").exists());
+    let large = std::fs::File::create(bench.path("large.tsv")).unwrap();
+    large.set_len((64 << 20) + 1).unwrap();
+    bench.run("op combiner --inputs large.tsv").failed(5, "error[NB0534]");
+}
+
+#[test]
+fn what_a_scene_may_not_say_is_refused_in_its_words() {
+    let bench = Bench::new();
+    let refused = |arguments: &str, message: &str| bench.run(&format!("op {arguments}")).failed(3, message);
+    refused("combiner --a tex0 --scale 4 --bias", "error[NB0307]: bias NegativeHalf does not go with scale Four");
+    refused("combiner --a tex0 --portion alpha --dot", "error[NB0306]: the alpha portion has no dot products");
+    refused("combiner --a tex0 --ab spare0 --sum spare0", "error[NB0310]: two results go to Spare0");
+    refused("combiner --a tex2", "error[NB0302]: register Texture2 does not exist on Nv10");
+    refused("combiner --a tex0 --blue-to-alpha", "error[NB0304]");
+    refused("combiner --a fog.a", "error[NB0308]");
+    refused("combiner --a secondary.a", "error[NB0309]");
+    refused("combiner --a tex0.b", "error[NB0311]: an RGB portion cannot read just blue");
+    refused("combiner --a tex0.rgb --portion alpha", "error[NB0311]: an alpha portion has no RGB to read");
+    refused("combiner --a tex0 --ab fog", "error[NB0312]");
+}
+
+#[test]
+fn other_illegal_operations() {
+    let bench = Bench::new();
+    let refused = |arguments: &str, message: &str| bench.run(&format!("op {arguments}")).failed(3, message);
+    refused("final --a tex0:expand", "error[NB0311]: the final combiner has no mapping ExpandNormal");
+    refused("final --e sum", "error[NB0313]");
+    refused("final --g tex0.rgb", "error[NB0311]: this input cannot read Rgb");
+    refused("blend --equation signed_add --source 1 --destination 1", "error[NB0315]");
+    refused("blend --surface b8 --source 1 --destination 1", "error[NB0316]");
+    refused("blend --surface g8b8 --source 1 --destination 1", "error[NB0314]");
+    refused("address --mode wrap --size 6 --index 1", "error[NB0219]");
+    refused("address --mode clamp_to_border --size 8 --index 1", "error[NB0317]");
+    refused("cube --face 3 -x 1", "error[NB0401]: not built yet: cube maps");
+    refused("cube", "error[NB0401]");
+    let text = bench.run("op combiner --a tex2").stderr;
+    assert!(text.contains("`--profile nv2a` chooses the other chip"), "{text}");
+}
+
+#[test]
+fn a_wrong_command_line_is_status_2() {
+    let bench = Bench::new();
+    let wrong = |arguments: &str, message: &str| bench.run(&format!("op {arguments}")).failed(2, message);
+    wrong("", "Usage: ninebit op");
+    wrong("combiner --a tex9", "there is no register `tex9`; known: zero, const0");
+    wrong("combiner --a ef", "there is no register `ef`");
+    wrong("combiner --a tex0:sine", "there is no mapping `sine`");
+    wrong("combiner --a tex0.q", "there is no component `q`");
+    wrong("combiner --ab zero", "`discard` drops the result");
+    wrong("combiner --scale 3", "there is no scale `3`");
+    wrong("combiner --in tex0", "REGISTER=N");
+    wrong("combiner --in tex0=1,2", "one, three or four whole numbers");
+    wrong("combiner --in tex0=1.5", "one, three or four whole numbers");
+    wrong("combiner --in tex0=256", "write a whole number from -256 to 255");
+    wrong("combiner --in tex9=1", "there is no register `tex9`");
+    wrong("combiner --in tex0.q=1", "`tex0.q` is not a channel");
+    wrong("combiner --in tex0.r=1,2,3", "`tex0.r` is not a channel");
+    wrong("combiner --in zero=1", "write a whole number from 0 to 0");
+    wrong("combiner --const0 256", "write a whole number from 0 to 255");
+    wrong("combiner --policy CMB-3", "RULE=VALUE");
+    wrong("combiner -o out.tsv", "--inputs");
+    wrong("combiner --inputs in.tsv --format json", "cannot be used with");
+    wrong("blend --destination 1", "`fragment.r` is not given\n  help: write `--source R,G,B,A`");
+    wrong("blend --source 1", "`destination.r` is not given");
+    wrong("blend --source 1 --destination 300", "out of range");
+    wrong("blend --source 1 --destination 1 --stored 0x1", "cannot be used with");
+    wrong("blend --source 1 --stored 0xzz", "not a word such as 0x6000");
+    wrong("blend --source-factor src_beta --source 1 --destination 1", "there is no blend factor `src_beta`");
+    wrong("filter --texels 1,2,3 --weights 1", "not two or four whole numbers");
+    wrong("filter --texels 1,2 --weights 256", "write a whole number from 0 to 255");
+    wrong("filter --texels 1,2", "write `--weights U,V` or `--at U,V`");
+    wrong("filter --texels -1,2 --weights 1", "out of range");
+    wrong("address --mode wrap --size 8", "`index` is not given");
+    wrong("address --mode sideways --size 8 --index 1", "there is no address mode `sideways`");
+}
