@@ -47,7 +47,7 @@ fn heat_maps_are_written_or_refused() {
     assert!(picture.width() > 300 && picture.height() == 8 + 36);
     assert_eq!(picture.get_pixel(0, 0).0, [22, 50, 120, 255], "one step");
     assert_eq!(picture.get_pixel(7, 7).0, [40, 40, 40, 255], "not drawn");
-    bench.run("compare exact.ron --heatmap none.png").failed(3, "error[NB0502]");
+    bench.run("compare exact.ron --heatmap none.png").failed(3, "error[NB0523]");
     bench.run("compare off.ron --mode per-op --heatmap none.png").failed(2, "belong to no pixel");
     bench.run("compare off.ron --heatmap -").failed(2, "cannot both go to stdout");
     bench.run("compare off.ron --heatmap off.ron").failed(2, "is the input");

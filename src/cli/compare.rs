@@ -77,7 +77,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         return Err(Failure {
             exit: Exit::Difference,
             report: Report::Message {
-                code: Some("NB0501"),
+                code: None,
                 message: "a rule is further from the ideal than docs/numerics.md says".to_owned(),
                 help: Some("the table above names it: please report it with the scene".to_owned()),
             },
@@ -91,7 +91,7 @@ fn no_picture(error: &HeatError) -> Failure {
         HeatError::NoDifference => Failure {
             exit: Exit::Invalid,
             report: Report::Message {
-                code: Some("NB0502"),
+                code: Some("NB0523"),
                 message: error.to_string(),
                 help: Some("leave out `--heatmap`; `ninebit compare` reports the frame as exact".to_owned()),
             },

@@ -124,7 +124,7 @@ pub struct Comparison {
     pub diverged: u64,
     /// Errors of R, G, B and A; without those that the surface does not keep. Empty for [`Mode::PerOp`].
     pub channels: Vec<ChannelError>,
-    /// What each part adds to those errors, in the order of [`Part::ALL`]: the sum over parts is the error. [`Mode::Follow`] only.
+    /// What each part adds to those errors, in the order of `Part::ALL`: the sum over parts is the error. [`Mode::Follow`] only.
     pub parts: Vec<(Part, Statistics)>,
     /// The largest amount by which the parts of a pixel miss its error: float64 rounding. [`Mode::Follow`] only.
     pub unexplained: f64,

@@ -33,7 +33,7 @@ impl<const N: usize> Strands<N> {
 }
 
 impl Strands<STRANDS> {
-    /// What each part adds to the error of a value, in the order of [`Part::ALL`].
+    /// What each part adds to the error of a value, in the order of `Part::ALL`.
     pub fn parts(self) -> [f64; Part::ALL.len()] {
         std::array::from_fn(|n| self.0[n + 1] - self.0[n])
     }

@@ -68,6 +68,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0518", "an image with sixteen bits a channel"),
     ("NB0521", "pictures of different sizes where they are compared"),
     ("NB0522", "a scene's frame of another size than the pictures it is compared with"),
+    ("NB0523", "a heat map of a frame without differences"),
     ("NB0530", "a table that does not exist"),
     ("NB0531", "a table that cannot be read"),
     ("NB0532", "a table whose header does not name the inputs"),
