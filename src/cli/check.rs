@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use ninebit::output::write_stdout;
 use ninebit::state::{Named, Scene};
 use serde_json::json;
 
-use super::Context;
 use super::cost::Cost;
 use super::exit::Failure;
 use super::scene::SceneArguments;
+use super::{Context, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -19,14 +19,6 @@ pub(crate) struct Arguments {
     /// How to print the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// For people
-    Text,
-    /// For programs
-    Json,
 }
 
 /// Checks and plans a scene and prints its cost.

@@ -49,6 +49,15 @@ enum Command {
     Generate(generate::Command),
 }
 
+/// How a command prints its data.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// For people
+    Text,
+    /// For programs: one JSON document
+    Json,
+}
+
 /// What every command may use.
 #[derive(Clone, Copy, Debug)]
 struct Context {

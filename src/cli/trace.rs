@@ -1,14 +1,14 @@
 //! `ninebit trace`.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use ninebit::engine::{self, TraceError};
 use ninebit::output::write_stdout;
 use ninebit::report::{trace_json, trace_text};
 use ninebit::state::Scene;
 
-use super::Context;
 use super::exit::Failure;
 use super::scene::SceneArguments;
+use super::{Context, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -26,14 +26,6 @@ pub(crate) struct Arguments {
     /// How to print it
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
     format: Format,
-}
-
-#[derive(Clone, Copy, Debug, ValueEnum)]
-enum Format {
-    /// One line a step: integer, real value, ideal, rule
-    Text,
-    /// One JSON document
-    Json,
 }
 
 /// Prints how one pixel came to be.

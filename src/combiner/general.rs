@@ -171,48 +171,60 @@ fn evaluate<L: Lane, const N: usize>(
     registers: &Registers<L>,
 ) -> Values<L, N> {
     let portion = &planned.portion;
-    let zero = L::ZERO.factor();
-    let nothing = [zero.product(zero); N];
-    let mut values =
-        Values { factors: [[zero; N]; 4], products: [nothing; 2], third: nothing, outputs: [[L::ZERO; N]; 3] };
-    let dots = [portion.ab_dot_product, portion.cd_dot_product];
-    for product in 0..2 {
-        if planned.product_channels(product) == 0 {
-            continue;
-        }
-        let [a, b] = [2 * product, 2 * product + 1].map(|n| {
-            let input = &portion.inputs[n];
-            mapping::map(channels::<L, N>(input, registers), input.mapping, policies)
-        });
-        (values.factors[2 * product], values.factors[2 * product + 1]) = (a, b);
-        values.products[product] = if dots[product] {
-            [dot::<L>(a.as_slice(), b.as_slice(), policies); N]
-        } else {
-            std::array::from_fn(|c| a[c].product(b[c]))
-        };
+    let (a, b, ab) = product::<L, N>(planned, 0, policies, registers);
+    let (c, d, cd) = product::<L, N>(planned, 1, policies, registers);
+    let takes_cd = portion.mux.then_some(takes_cd);
+    let third = if planned.live[2] == 0 {
+        [L::ZERO.widened(); N]
+    } else {
+        std::array::from_fn(|n| third::<L>(ab[n], cd[n], takes_cd, policies))
+    };
+    let [same_ab, same_cd] = [portion.ab_dot_product, portion.cd_dot_product];
+    let outputs = [
+        finish_all::<L, N>(planned, 0, ab, same_ab, policies),
+        finish_all::<L, N>(planned, 1, cd, same_cd, policies),
+        finish_all::<L, N>(planned, 2, third, same_ab && same_cd, policies),
+    ];
+    Values { factors: [a, b, c, d], products: [ab, cd], third, outputs }
+}
+
+/// The factors of AB (0) or CD (1), and their product or dot product at full width; zeros where nobody asks.
+#[inline(always)]
+#[allow(clippy::type_complexity, reason = "two factors and their product, unpacked at once")]
+fn product<L: Lane, const N: usize>(
+    planned: &PlannedPortion,
+    which: usize,
+    policies: &Policies,
+    registers: &Registers<L>,
+) -> ([L::Mapped; N], [L::Mapped; N], [L::Full; N]) {
+    if planned.product_channels(which) == 0 {
+        let zero = [L::ZERO.factor(); N];
+        return (zero, zero, [L::ZERO.widened(); N]);
     }
-    let [ab, cd] = values.products;
-    if planned.live[2] != 0 {
-        values.third = std::array::from_fn(|c| third::<L>(ab[c], cd[c], portion.mux.then_some(takes_cd), policies));
+    let portion = &planned.portion;
+    let factor = |input: &CombinerInput| mapping::map(channels::<L, N>(input, registers), input.mapping, policies);
+    let (a, b) = (factor(&portion.inputs[2 * which]), factor(&portion.inputs[2 * which + 1]));
+    let dot_product = if which == 0 { portion.ab_dot_product } else { portion.cd_dot_product };
+    let raw = if dot_product { [dot::<L>(&a, &b, policies); N] } else { std::array::from_fn(|c| a[c].product(b[c])) };
+    (a, b, raw)
+}
+
+/// Output `n` of every channel; `same` says that the channels are equal, as a dot product's are.
+#[inline(always)]
+fn finish_all<L: Lane, const N: usize>(
+    planned: &PlannedPortion,
+    n: usize,
+    raw: [L::Full; N],
+    same: bool,
+    policies: &Policies,
+) -> [L; N] {
+    if planned.live[n] == 0 && !(n < 2 && planned.blue_to_alpha[n]) {
+        [L::ZERO; N]
+    } else if same {
+        [finish::<L>(raw[0], &planned.portion, policies); N]
+    } else {
+        raw.map(|raw| finish::<L>(raw, &planned.portion, policies))
     }
-    for n in 0..3 {
-        let blue = n < 2 && planned.blue_to_alpha[n];
-        if planned.live[n] == 0 && !blue {
-            continue;
-        }
-        // A dot product is the same in every channel.
-        let (raw, same) = match n {
-            0 => (ab, dots[0]),
-            1 => (cd, dots[1]),
-            _ => (values.third, dots[0] && dots[1]),
-        };
-        values.outputs[n] = if same {
-            [finish::<L>(raw[0], portion, policies); N]
-        } else {
-            raw.map(|raw| finish::<L>(raw, portion, policies))
-        };
-    }
-    values
 }
 
 /// The channels of its register that an input brings to a portion.
@@ -272,26 +284,29 @@ fn write<L: Lane, O: Observer, const N: usize>(
     registers: &mut Registers<L>,
     observer: &mut O,
 ) {
-    let destinations = [planned.portion.ab_output, planned.portion.cd_output, planned.portion.sum_output];
-    for (n, destination) in destinations.into_iter().enumerate() {
-        for c in 0..N {
-            let channel = first + c;
-            if planned.live[n] >> channel & 1 != 0 {
-                registers.write(destination, channel, values.outputs[n][c]);
-                if O::ON {
-                    let report = StageReport::new(stage, first == 3);
-                    report.write(destination, channel, values.outputs[n][c], n, "CMB-1", observer);
+    let portion = &planned.portion;
+    let report = || StageReport::new(stage, first == 3);
+    let mut output = |n: usize, destination: Register| {
+        let value = &values.outputs[n];
+        if planned.live[n] != 0 {
+            // Dead channels are written along; nobody reads them.
+            for c in 0..N {
+                registers.write(destination, first + c, value[c]);
+                if O::ON && planned.live[n] >> (first + c) & 1 != 0 {
+                    report().write(destination, first + c, value[c], n, "CMB-1", observer);
                 }
             }
         }
         if n < 2 && planned.blue_to_alpha[n] {
-            let blue = values.outputs[n][N - 1];
-            registers.write(destination, 3, blue);
+            registers.write(destination, 3, value[N - 1]);
             if O::ON {
-                StageReport::new(stage, first == 3).write(destination, 3, blue, n, "CMB-11", observer);
+                report().write(destination, 3, value[N - 1], n, "CMB-11", observer);
             }
         }
-    }
+    };
+    output(0, portion.ab_output);
+    output(1, portion.cd_output);
+    output(2, portion.sum_output);
 }
 
 /// The channel of its register that an input reads.

@@ -3,17 +3,6 @@
 use crate::number::Lane;
 use crate::state::TextureFormat;
 
-/// An expanded channel: the chip's byte, and the real number it stands for as a fraction of one.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Channel {
-    /// 0..=255.
-    pub byte: u8,
-    /// The field's own value.
-    pub numerator: u8,
-    /// The field's largest value.
-    pub denominator: u8,
-}
-
 /// 5 bits to 8 by replication.
 #[inline]
 pub fn replicate5(v: u32) -> u8 {
@@ -47,14 +36,14 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
     }
 }
 
-/// [`expand`] with the field values that the ideal takes: 5-bit channels as v/31.
+/// [`expand`] in a lane, whose ideal takes 5-bit channels as v/31. Signed channels (TEX-18) come as their two's complement value,
+/// s/128 in the ideal.
 #[inline(always)]
-pub fn channels(format: TextureFormat, word: u32) -> [Channel; 4] {
-    let [r, g, b, a] = expand(format, word);
-    let whole = |byte: u8| Channel { byte, numerator: byte, denominator: 255 };
-    let field =
-        |byte: u8, shift: u32, most: u8| Channel { byte, numerator: (word >> shift) as u8 & most, denominator: most };
-    match format {
+pub fn lanes<L: Lane>(format: TextureFormat, word: u32, signed: &[bool; 4]) -> [L; 4] {
+    let [r, g, b, a] = expand(format, word).map(i32::from);
+    let whole = |byte: i32| L::texel(byte, byte, 255);
+    let field = |byte: i32, shift: u32, most: u32| L::texel(byte, (word >> shift & most) as i32, most as i32);
+    let plain = match format {
         TextureFormat::R5G6B5 => [field(r, 11, 31), field(g, 5, 63), field(b, 0, 31), whole(a)],
         TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5 => {
             [field(r, 10, 31), field(g, 5, 31), field(b, 0, 31), whole(a)]
@@ -64,18 +53,12 @@ pub fn channels(format: TextureFormat, word: u32) -> [Channel; 4] {
         | TextureFormat::L8
         | TextureFormat::A8
         | TextureFormat::G8B8 => [whole(r), whole(g), whole(b), whole(a)],
+    };
+    if *signed == [false; 4] {
+        return plain;
     }
-}
-
-/// A channel in a lane; a signed one (TEX-18) as its two's complement value, s/128 in the ideal.
-#[inline(always)]
-pub fn lane<L: Lane>(channel: Channel, signed: bool) -> L {
-    if signed {
-        let s = i32::from(channel.byte as i8);
-        L::texel(s, s, 128)
-    } else {
-        L::texel(i32::from(channel.byte), i32::from(channel.numerator), i32::from(channel.denominator))
-    }
+    let s = [r, g, b, a].map(|byte| i32::from(byte as u8 as i8));
+    std::array::from_fn(|n| if signed[n] { L::texel(s[n], s[n], 128) } else { plain[n] })
 }
 
 #[cfg(test)]
@@ -105,7 +88,7 @@ mod tests {
             assert_eq!(expand(TextureFormat::A1R5G5B5, word), [r, g, b, a]);
             for format in [TextureFormat::R5G6B5, TextureFormat::X1R5G5B5, TextureFormat::A1R5G5B5, TextureFormat::G8B8]
             {
-                assert_eq!(channels(format, word).map(|c| c.byte), expand(format, word));
+                assert_eq!(lanes::<i32>(format, word, &[false; 4]), expand(format, word).map(i32::from));
             }
         }
     }

@@ -168,14 +168,7 @@ fn texel(unit: &PlannedUnit, words: &[u32], x: Option<u32>, y: Option<u32>) -> T
 #[inline(always)]
 fn lanes<L: Lane>(unit: &PlannedUnit, texel: &Texel) -> [L; 4] {
     let format = if texel.0.is_some() { unit.format } else { TextureFormat::A8R8G8B8 };
-    let [r, g, b, a] = format::channels(format, texel.1);
-    let signed = &unit.state.signed;
-    [
-        format::lane::<L>(r, signed[0]),
-        format::lane::<L>(g, signed[1]),
-        format::lane::<L>(b, signed[2]),
-        format::lane::<L>(a, signed[3]),
-    ]
+    format::lanes(format, texel.1, &unit.state.signed)
 }
 
 /// What a unit tells an observer.

@@ -1,0 +1,26 @@
+//! Any text is a scene or a list of errors, never a panic; a small scene also renders, the same with and without pruning.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use std::path::Path;
+
+fuzz_target!(|text: &str| {
+    let origin = Path::new("scenes/fuzzed.ron");
+    match ninebit::scene::parse(text, origin, &Limits::default()) {
+        Err(error) => assert!(!error.render(false).is_empty()),
+        Ok(loaded) => {
+            let pixels: u64 = loaded.scene.targets.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum();
+            if pixels > 4096 || loaded.scene.draws.len() > 8 {
+                return;
+            }
+            let [pruned, whole] = [true, false].map(|prune| {
+                let plan = Plan::compile(&loaded.scene, &PlanOptions { prune, ..PlanOptions::default() });
+                render(&plan.expect("a loaded scene can be planned"), &RenderOptions::default())
+            });
+            assert!(pruned == whole, "pruning changed a byte");
+        }
+    }
+});

@@ -1,0 +1,603 @@
+//! Random valid scenes over all of the state.
+//!
+//! A scene is built from a tape of choices; 0 is always the plain choice. Shrinking blanks stretches of the tape, so a failing scene
+//! loses whatever its failure does not need.
+
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::*;
+use proptest::prelude::*;
+use proptest::strategy::{NewTree, ValueTree};
+use proptest::test_runner::TestRunner;
+
+/// Words of tape for what draws share, for each draw, for each vertex and for each stage.
+const SHARED: usize = 1024;
+const DRAW: usize = 1024;
+const VERTICES: usize = 768;
+const VERTEX: usize = 48;
+const STAGE: usize = 64;
+
+/// Valid scenes within the limits of RAS-0.
+pub fn scene() -> impl Strategy<Value = Scene> {
+    Tape.prop_map(|tape| build(&tape)).prop_filter("RAS-0", |s| Plan::compile(s, &PlanOptions::default()).is_ok())
+}
+
+/// Any value of every policy.
+pub fn policies() -> impl Strategy<Value = Policies> {
+    proptest::collection::vec(0..3_usize, POLICIES.len()).prop_map(|values| {
+        let mut policies = Policies::DEFAULT;
+        for (policy, value) in POLICIES.iter().zip(values) {
+            policies.choose(policy.rule, value % policy.values.len());
+        }
+        policies
+    })
+}
+
+#[derive(Debug)]
+struct Tape;
+
+#[derive(Debug)]
+struct TapeTree {
+    tape: Vec<u32>,
+    stretch: usize,
+    at: usize,
+    blanked: Option<(usize, Vec<u32>)>,
+}
+
+impl Strategy for Tape {
+    type Tree = TapeTree;
+    type Value = Vec<u32>;
+
+    fn new_tree(&self, runner: &mut TestRunner) -> NewTree<Self> {
+        let tape: Vec<u32> = (0..SHARED + 4 * DRAW).map(|_| runner.rng().next_u32()).collect();
+        Ok(TapeTree { stretch: DRAW, tape, at: 0, blanked: None })
+    }
+}
+
+impl ValueTree for TapeTree {
+    type Value = Vec<u32>;
+
+    fn current(&self) -> Vec<u32> {
+        self.tape.clone()
+    }
+
+    fn simplify(&mut self) -> bool {
+        while self.stretch > 0 {
+            while self.at < self.tape.len() {
+                let (from, to) = (self.at, self.tape.len().min(self.at + self.stretch));
+                self.at = to;
+                if self.tape[from..to].iter().any(|w| *w != 0) {
+                    self.blanked = Some((from, self.tape[from..to].to_vec()));
+                    self.tape[from..to].fill(0);
+                    return true;
+                }
+            }
+            (self.at, self.stretch) = (0, self.stretch / 2);
+        }
+        false
+    }
+
+    fn complicate(&mut self) -> bool {
+        if let Some((from, words)) = self.blanked.take() {
+            self.tape[from..from + words.len()].copy_from_slice(&words);
+        }
+        self.simplify()
+    }
+}
+
+/// Reads a stretch of tape; past its end everything is 0.
+struct Choices<'a> {
+    tape: &'a [u32],
+}
+
+impl<'a> Choices<'a> {
+    fn word(&mut self) -> u32 {
+        let Some((first, rest)) = self.tape.split_first() else { return 0 };
+        self.tape = rest;
+        *first
+    }
+
+    /// The next `n` words for themselves, so that what follows does not depend on how many of them are used.
+    fn part(&mut self, n: usize) -> Choices<'a> {
+        let (part, rest) = self.tape.split_at(n.min(self.tape.len()));
+        self.tape = rest;
+        Choices { tape: part }
+    }
+
+    fn below(&mut self, n: u32) -> u32 {
+        self.word() % n
+    }
+
+    fn size(&mut self, from: u32, to: u32) -> u32 {
+        from + self.below(to - from + 1)
+    }
+
+    /// True once in `n` times.
+    fn once_in(&mut self, n: u32) -> bool {
+        self.below(n) == n - 1
+    }
+
+    fn pick<T: Copy>(&mut self, of: &[T]) -> T {
+        of[self.below(of.len() as u32) as usize]
+    }
+
+    fn any<T: Named>(&mut self) -> T {
+        self.pick(T::ALL)
+    }
+
+    fn byte(&mut self) -> u8 {
+        let word = self.word();
+        match word & 3 {
+            0 => [0, 255, 128, 64, 127, 1, 32, 192][(word >> 8 & 7) as usize],
+            _ => (word >> 8) as u8,
+        }
+    }
+
+    fn bytes(&mut self) -> [u8; 4] {
+        std::array::from_fn(|_| self.byte())
+    }
+
+    /// Multiples of 2^-20 in [0, 1).
+    fn unit(&mut self) -> f32 {
+        (self.word() >> 12) as f32 / 1_048_576.0
+    }
+
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * self.unit()
+    }
+}
+
+/// The scene of a tape.
+pub fn build(tape: &[u32]) -> Scene {
+    let mut tape = Choices { tape };
+    let mut c = tape.part(SHARED);
+    let profile = if c.once_in(3) { Profile::Nv10 } else { Profile::Nv2a };
+    let large = c.once_in(100);
+    let targets: Vec<Target> = (0..c.size(1, 3)).map(|n| target(&mut c, profile, n, large && n == 0)).collect();
+    let mut textures: Vec<Texture> = (0..c.size(1, 3)).map(|n| texels(&mut c, profile, n)).collect();
+    for (n, t) in targets.iter().enumerate() {
+        if t.width.is_power_of_two() && t.height.is_power_of_two() && t.width.max(t.height) <= 16 {
+            let fitting: Vec<TextureFormat> =
+                texture_formats(profile).into_iter().filter(|f| f.bytes() == t.format.bytes()).collect();
+            let image = TextureImage::Target { target: n, format: c.pick(&fitting) };
+            textures.push(Texture { name: format!("view{n}"), image });
+        }
+    }
+    let count = [2, 3, 4, 1][c.below(4) as usize];
+    let draws = (0..count).map(|n| draw(&mut tape.part(DRAW), profile, &targets, &textures, n)).collect();
+    Scene { profile, targets, textures, draws }
+}
+
+fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target {
+    let (width, height) = match c.below(4) {
+        _ if large => (c.size(120, 150), c.size(140, 160)),
+        0 => (16, 16),
+        1 => (1 << c.below(5), 1 << c.below(5)),
+        2 => (c.size(1, 48), c.size(1, 48)),
+        _ => (c.size(13, 48), c.size(11, 48)),
+    };
+    let formats: &[SurfaceFormat] = match profile {
+        Profile::Nv2a => SurfaceFormat::ALL,
+        Profile::Nv10 => &[
+            SurfaceFormat::A8R8G8B8,
+            SurfaceFormat::X8R8G8B8Z,
+            SurfaceFormat::X8R8G8B8O,
+            SurfaceFormat::R5G6B5,
+            SurfaceFormat::B8,
+        ],
+    };
+    let format = if c.once_in(2) { c.pick(formats) } else { SurfaceFormat::A8R8G8B8 };
+    let depth = c.once_in(2).then(|| {
+        let format: DepthFormat = c.any();
+        let full = (1_u32 << format.bits()) - 1;
+        let clear = if c.once_in(3) { c.word() & full } else { full };
+        DepthBuffer { format, clear }
+    });
+    Target { name: format!("target{n}"), width, height, format, clear_color: c.bytes(), depth }
+}
+
+fn texture_formats(profile: Profile) -> Vec<TextureFormat> {
+    let legal = |f: &TextureFormat| profile == Profile::Nv2a || *f != TextureFormat::G8B8;
+    TextureFormat::ALL.iter().copied().filter(legal).collect()
+}
+
+fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
+    let format: TextureFormat = c.pick(&texture_formats(profile));
+    let (width, height) = (16 >> c.below(5), 16 >> c.below(5));
+    let mask = u32::MAX >> (32 - 8 * format.bytes());
+    // Few words of tape a texture: the rest follows from them.
+    let (seed, step) = (c.word(), c.word());
+    let words = (0..width * height).map(|k| seed.wrapping_add(step.wrapping_mul(k)) & mask).collect();
+    Texture { name: format!("texture{n}"), image: TextureImage::Texels { width, height, format, words } }
+}
+
+fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[Texture], n: u32) -> Draw {
+    let mut vertex_tape = c.part(VERTICES);
+    let target = c.below(targets.len() as u32) as usize;
+    let surface = &targets[target];
+    let usable: Vec<usize> = (0..textures.len())
+        .filter(|t| !matches!(textures[*t].image, TextureImage::Target { target: other, .. } if other == target))
+        .collect();
+    let units = profile.texture_units();
+    let bound = std::array::from_fn(|k| (k < units && c.below(3) != 0).then(|| unit(c, profile, &usable)));
+    let topology: Topology = c.any();
+    let (vertices, positions) = vertices(&mut vertex_tape, topology, surface);
+    let mut indices: Vec<u32> = (0..vertices.len() as u32).collect();
+    if c.once_in(8) {
+        for index in &mut indices {
+            *index = c.below(vertices.len() as u32);
+        }
+    }
+    let blend_allowed = !matches!(surface.format, SurfaceFormat::B8 | SurfaceFormat::G8B8);
+    let equations = &BlendEquation::ALL[..if profile == Profile::Nv2a { 7 } else { 5 }];
+    Draw {
+        name: format!("draw{n}"),
+        target,
+        positions,
+        vertices,
+        indices,
+        topology,
+        shade_model: if c.once_in(5) { ShadeModel::Flat } else { ShadeModel::Smooth },
+        provoking_vertex: c.any(),
+        perspective: c.below(3) != 0,
+        cull: if c.once_in(6) { c.any() } else { Cull::None },
+        front_face: c.any(),
+        scissor: c.once_in(5).then(|| Rectangle {
+            x: c.below(surface.width),
+            y: c.below(surface.height),
+            width: c.size(1, 40),
+            height: c.size(1, 40),
+        }),
+        fog: Fog { enabled: c.once_in(2), color: [c.byte(), c.byte(), c.byte()] },
+        textures: bound,
+        alpha_test: c.once_in(5).then(|| AlphaTest { function: c.any(), reference: c.byte() }),
+        depth_test: (surface.depth.is_some() && c.below(3) != 0)
+            .then(|| DepthTest { function: c.any(), write: c.below(4) != 0 }),
+        blend: (blend_allowed && c.once_in(2)).then(|| Blend {
+            equation: c.pick(equations),
+            source: c.any(),
+            destination: c.any(),
+        }),
+        blend_constant: c.bytes(),
+        color_mask: if c.once_in(5) { std::array::from_fn(|_| c.below(3) != 0) } else { [true; 4] },
+        combiners: combiners(c, profile),
+    }
+}
+
+fn unit(c: &mut Choices<'_>, profile: Profile, usable: &[usize]) -> TextureUnit {
+    let nv2a = profile == Profile::Nv2a;
+    let modes: &[AddressMode] = match profile {
+        Profile::Nv2a => AddressMode::ALL,
+        Profile::Nv10 => &[AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge, AddressMode::Clamp],
+    };
+    TextureUnit {
+        texture: c.pick(usable),
+        coordinate_set: c.below(profile.texture_units() as u32) as usize,
+        address_s: c.pick(modes),
+        address_t: c.pick(modes),
+        filter: c.any(),
+        border_color: c.bytes(),
+        signed: std::array::from_fn(|_| nv2a && c.once_in(5)),
+    }
+}
+
+// ---- geometry ----
+
+fn vertices(c: &mut Choices<'_>, topology: Topology, surface: &Target) -> (Vec<Vertex>, Positions) {
+    let (width, height) = (surface.width as f32, surface.height as f32);
+    let count = match topology {
+        Topology::Triangles => 3 * c.size(1, 4),
+        Topology::TriangleStrip | Topology::TriangleFan | Topology::Polygon => c.size(3, 8),
+        Topology::Quads => 4 * c.size(1, 3),
+        Topology::QuadStrip => 2 * c.size(2, 5),
+    } as usize;
+    let (style, w_style, z_style, colors, clip) = (c.below(8), c.below(6), c.below(4), c.below(4), c.once_in(4));
+    let coordinate_styles: [u32; 4] = std::array::from_fn(|_| c.below(8));
+    let places = places(c, topology, style, count, [width, height]);
+    let same_w = w(c, w_style);
+    let near = c.once_in(2);
+    let port = port(c, [width, height]);
+    let vertices = (0..count)
+        .map(|k| {
+            let mut c = c.part(VERTEX);
+            let [x, y] = places[k];
+            let w = if w_style < 3 { same_w } else { w(&mut c, w_style) };
+            let z = match z_style {
+                0 => 0.5,
+                1 => c.below(9) as f32 / 8.0,
+                2 => c.unit(),
+                _ => c.between(-0.25, 1.25),
+            };
+            let mut position = [x, y, z, w];
+            if clip {
+                position = to_clip(&mut c, [x / width, y / height, z], w_style, near);
+            }
+            Vertex {
+                position,
+                diffuse: color(&mut c, colors),
+                specular: color(&mut c, colors),
+                fog: if c.once_in(2) { c.between(-0.2, 1.2) } else { c.below(17) as f32 / 16.0 },
+                texture_coordinates: std::array::from_fn(|set| coordinates(&mut c, coordinate_styles[set], [x, y])),
+            }
+        })
+        .collect();
+    (vertices, if clip { Positions::Clip(port) } else { Positions::Window })
+}
+
+/// Where the vertices lie on the target.
+fn places(
+    c: &mut Choices<'_>,
+    topology: Topology,
+    style: u32,
+    count: usize,
+    [width, height]: [f32; 2],
+) -> Vec<[f32; 2]> {
+    let mut out = Vec::with_capacity(count);
+    let mut shape = [0.0; 4];
+    let turn = c.below(4) as usize;
+    let mirrored = c.once_in(2);
+    for k in 0..count {
+        let mut c = c.part(4);
+        // Two styles in eight leave the shape altogether.
+        match style {
+            6 => {
+                out.push([c.between(-0.5, 1.5) * width, c.between(-0.5, 1.5) * height]);
+                continue;
+            }
+            7 => {
+                let far = if c.once_in(2) { 4095.0 } else { 100.0 };
+                out.push([c.between(-far, far), c.between(-far, far)]);
+                continue;
+            }
+            _ => {}
+        }
+        let corners = match topology {
+            Topology::Triangles => 3,
+            Topology::Quads => 4,
+            _ => count,
+        };
+        if k % corners == 0 {
+            // Origin and sides: the target, powers of two, or round and uneven numbers.
+            shape = match style {
+                0 => [0.0, 0.0, width, height],
+                1 => [0.0, 0.0, 2.0 * width, 2.0 * height],
+                _ => {
+                    let sides = [16.0, 32.0, 8.0, 20.0, 64.0, 4.0, 40.0, 10.0];
+                    [c.below(8) as f32 - 4.0, c.below(8) as f32 - 4.0, c.pick(&sides), c.pick(&sides)]
+                }
+            };
+        }
+        let k = k % corners;
+        let (u, v) = match topology {
+            Topology::Triangles => [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0)][(k + turn) % 3],
+            Topology::Quads => [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)][(k + turn) % 4],
+            Topology::TriangleStrip | Topology::QuadStrip => {
+                let columns = (count / 2).max(1).next_power_of_two() as f32;
+                ((k / 2) as f32 / columns * 1.25, (k % 2) as f32)
+            }
+            Topology::TriangleFan | Topology::Polygon => {
+                let ring =
+                    [(0.5, 0.5), (0.0, 0.0), (0.5, 0.0), (1.0, 0.0), (1.0, 0.5), (1.0, 1.0), (0.5, 1.0), (0.0, 1.0)];
+                ring[k % 8]
+            }
+        };
+        let (u, v) = if mirrored { (v, u) } else { (u, v) };
+        let mut place = [shape[0] + u * shape[2], shape[1] + v * shape[3]];
+        for axis in &mut place {
+            *axis += match style {
+                3 => c.below(33) as f32 / 16.0 - 1.0,
+                4 => c.between(-2.0, 2.0),
+                _ => 0.0,
+            };
+        }
+        if style == 5 {
+            // Slivers.
+            place[1] = shape[1] + u * shape[3] + c.between(-0.6, 0.6);
+        }
+        out.push(place);
+    }
+    out
+}
+
+fn w(c: &mut Choices<'_>, style: u32) -> f32 {
+    match style {
+        0 => 1.0,
+        1 => c.pick(&[2.0, 0.25, 4.0, 1024.0]),
+        2 => c.pick(&[3.0, 1.7, 0.3, 5.000_001]),
+        3 => c.pick(&[1.0, 2.0, 4.0]),
+        4 => c.between(0.25, 8.0),
+        _ => c.pick(&[1.0, 1.0, 3.0, 1.0 / 1_048_576.0, 1_048_576.0, 100.0]),
+    }
+}
+
+fn port(c: &mut Choices<'_>, [width, height]: [f32; 2]) -> Viewport {
+    let (near, far) = c.pick(&[(0.0, 1.0), (1.0, 0.0), (0.25, 0.75)]);
+    match c.below(3) {
+        0 => Viewport { x: 0.0, y: 0.0, width, height, near, far },
+        1 => Viewport { x: 0.531_25, y: 0.531_25, width, height, near, far },
+        _ => Viewport { x: -2.0, y: 3.0, width: 32.0, height: 16.0, near, far },
+    }
+}
+
+/// A clip position for a place in units of the target; `near` brings it to the plane where w is clipped.
+fn to_clip(c: &mut Choices<'_>, [u, v, z]: [f32; 3], w_style: u32, near: bool) -> [f32; 4] {
+    let (x, y, z) = (2.0 * u - 1.0, 1.0 - 2.0 * v, 2.0 * z - 1.0);
+    if near {
+        let unit = 1.0 / 1_048_576.0;
+        let w = c.pick(&[2.0, 4.0, 1.0, 3.3, 0.5, -1.0, 0.0, -2.5]);
+        let reach = f32::max(w, 1.0) * unit;
+        return [x.clamp(-8.0, 8.0) * reach, y.clamp(-8.0, 8.0) * reach, z * reach, w * unit];
+    }
+    let w = if w_style >= 5 { 1.5 } else { w(c, w_style) };
+    [x * w, y * w, z * w, w]
+}
+
+fn color(c: &mut Choices<'_>, style: u32) -> VertexColor {
+    let mut c = c.part(4);
+    match style {
+        0 => VertexColor::Bytes(std::array::from_fn(|_| c.pick(&[255, 0, 128, 64, 32, 192]))),
+        3 => VertexColor::Floats(std::array::from_fn(|_| {
+            if c.once_in(2) {
+                c.between(-0.1, 1.1)
+            } else {
+                c.pick(&[1.0, 0.0, 0.5, 0.1, 0.3, 0.700_000_05, 2.0, -3.0])
+            }
+        })),
+        _ => VertexColor::Bytes(std::array::from_fn(|_| c.word() as u8)),
+    }
+}
+
+/// s, t, r, q.
+fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
+    let mut c = c.part(4);
+    let (x, y) = (x.clamp(-256.0, 256.0), y.clamp(-256.0, 256.0));
+    let one_to_one = [x / 16.0, y / 16.0, 0.0, 1.0];
+    match style {
+        0 => one_to_one,
+        1 => [c.below(17) as f32 / 8.0, c.below(17) as f32 / 8.0, 0.0, 1.0],
+        2 | 3 => [c.between(-3.0, 3.0), c.between(-3.0, 3.0), 0.5, 1.0],
+        4 => [c.between(-4095.0, 4095.0), c.pick(&[0.0, 4096.0, -4096.0, 1.0 / 512.0]), 0.0, 1.0],
+        5 => {
+            // Projected, and the same place for every q: ties survive.
+            let q = c.pick(&[1.0, 2.0, 4.0, 0.5]);
+            [one_to_one[0] * q, one_to_one[1] * q, 0.0, q]
+        }
+        6 => [c.between(-2.0, 2.0), c.below(9) as f32 / 4.0, 0.0, c.pick(&[1.0, -1.0, 2.0, 0.0, 3.0, 0.5, -2.0])],
+        _ => [c.between(-2.0, 2.0), c.between(-2.0, 2.0), 0.0, c.between(-0.5, 3.0)],
+    }
+}
+
+// ---- combiners ----
+
+fn combiners(c: &mut Choices<'_>, profile: Profile) -> Combiners {
+    let count = match profile {
+        Profile::Nv10 => c.size(1, 2),
+        Profile::Nv2a if c.once_in(3) => c.size(1, 8),
+        Profile::Nv2a => c.size(1, 3),
+    };
+    let mux_select = c.any();
+    let mut constants = [c.bytes(), c.bytes()];
+    let final_combiner = FinalCombiner { constants, ..final_combiner(c, profile) };
+    let stages = (0..count)
+        .map(|_| {
+            let mut c = c.part(STAGE);
+            if profile == Profile::Nv2a {
+                constants = [c.bytes(), c.bytes()];
+            }
+            stage(&mut c, profile, constants)
+        })
+        .collect();
+    Combiners { stages, mux_select, final_combiner }
+}
+
+fn stage(c: &mut Choices<'_>, profile: Profile, constants: [[u8; 4]; 2]) -> GeneralStage {
+    let mut rgb = portion(c, profile, true);
+    let alpha = portion(c, profile, false);
+    if profile == Profile::Nv2a {
+        let free =
+            |d: Register| d != Register::Zero && ![alpha.ab_output, alpha.cd_output, alpha.sum_output].contains(&d);
+        rgb.ab_blue_to_alpha = c.once_in(4) && free(rgb.ab_output);
+        rgb.cd_blue_to_alpha = c.once_in(4) && free(rgb.cd_output);
+    }
+    GeneralStage { rgb, alpha, constants }
+}
+
+fn portion(c: &mut Choices<'_>, profile: Profile, rgb: bool) -> Portion {
+    let inputs = std::array::from_fn(|_| input(c, profile, rgb));
+    let mut free: Vec<Register> = Register::ALL
+        .iter()
+        .copied()
+        .filter(|r| !matches!(r, Register::Zero | Register::ConstantColor0 | Register::ConstantColor1 | Register::Fog))
+        .filter(|r| profile == Profile::Nv2a || !matches!(r, Register::Texture2 | Register::Texture3))
+        .collect();
+    // SPARE0 and SPARE1 first: what is written is then likely to be read.
+    free.reverse();
+    let mut output = |written: bool| {
+        let place = if c.once_in(3) { c.below(free.len() as u32) } else { c.below(2) };
+        if written { free.remove(place as usize) } else { Register::Zero }
+    };
+    let sum_output = output(true);
+    let ab_output = output(true);
+    let cd_output = output(true);
+    let keep = c.below(8);
+    let scale = if c.once_in(2) { c.any() } else { Scale::One };
+    let bias = matches!(scale, Scale::One | Scale::Two) && c.once_in(3);
+    Portion {
+        inputs,
+        sum_output: if keep == 7 { Register::Zero } else { sum_output },
+        ab_output: if keep & 1 == 1 { ab_output } else { Register::Zero },
+        cd_output: if keep & 2 == 2 { cd_output } else { Register::Zero },
+        ab_dot_product: rgb && c.once_in(5),
+        cd_dot_product: rgb && c.once_in(5),
+        mux: c.once_in(4),
+        scale,
+        bias: if bias { Bias::NegativeHalf } else { Bias::None },
+        ab_blue_to_alpha: false,
+        cd_blue_to_alpha: false,
+    }
+}
+
+fn input(c: &mut Choices<'_>, profile: Profile, rgb: bool) -> CombinerInput {
+    let mut c = c.part(4);
+    let mut readable = vec![
+        Register::PrimaryColor,
+        Register::Texture0,
+        Register::Texture1,
+        Register::SecondaryColor,
+        Register::Spare0,
+        Register::Spare1,
+        Register::ConstantColor0,
+        Register::ConstantColor1,
+        Register::Fog,
+        Register::Zero,
+    ];
+    if profile == Profile::Nv2a {
+        readable.extend([Register::Texture2, Register::Texture3]);
+    }
+    let register = c.pick(&readable);
+    let plain = if rgb { Component::Rgb } else { Component::Blue };
+    let alpha = register != Register::Fog && (register != Register::SecondaryColor || profile == Profile::Nv2a);
+    let wanted = if rgb { c.once_in(3) } else { c.below(3) != 2 };
+    CombinerInput {
+        register,
+        component: if alpha && wanted { Component::Alpha } else { plain },
+        mapping: if c.once_in(2) { c.any() } else { InputMapping::UnsignedIdentity },
+    }
+}
+
+fn final_combiner(c: &mut Choices<'_>, profile: Profile) -> FinalCombiner {
+    let mut input = |sums: bool, plain: Component, favourite: FinalRegister| {
+        let mut c = c.part(4);
+        let readable: Vec<FinalRegister> = FinalRegister::ALL
+            .iter()
+            .copied()
+            .filter(|r| sums || !matches!(r, FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF))
+            .filter(|r| profile == Profile::Nv2a || !matches!(r, FinalRegister::Texture2 | FinalRegister::Texture3))
+            .collect();
+        let register = if c.once_in(2) { c.pick(&readable) } else { favourite };
+        let alpha = match register {
+            FinalRegister::SecondaryColor => profile == Profile::Nv2a,
+            FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => false,
+            _ => true,
+        };
+        let wanted = c.below(3) == if plain == Component::Blue { 1 } else { 2 };
+        let component = if alpha && wanted { Component::Alpha } else { plain };
+        FinalInput { register, component, invert: c.once_in(4) }
+    };
+    let inputs = [
+        input(true, Component::Rgb, FinalRegister::PrimaryColor),
+        input(true, Component::Rgb, FinalRegister::Spare0),
+        input(true, Component::Rgb, FinalRegister::Spare0PlusSecondary),
+        input(true, Component::Rgb, FinalRegister::Zero),
+        input(false, Component::Rgb, FinalRegister::PrimaryColor),
+        input(false, Component::Rgb, FinalRegister::Texture0),
+    ];
+    let g = input(false, Component::Blue, FinalRegister::Spare0);
+    FinalCombiner {
+        inputs,
+        g,
+        color_sum_clamp: c.once_in(2),
+        invert_spare0: c.once_in(4),
+        invert_secondary: c.once_in(4),
+        constants: [[0; 4]; 2],
+    }
+}

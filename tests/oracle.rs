@@ -1,0 +1,100 @@
+//! The crate against a second model written from the rules: the same words and depths, pixel by pixel.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
+
+#[path = "oracle/mod.rs"]
+mod model;
+#[path = "common/random_scene.rs"]
+mod random_scene;
+
+use ninebit::engine::{RenderOptions, render, trace};
+use ninebit::frame::Surface;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::report::trace_text;
+use ninebit::state::{Policies, Scene};
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
+
+/// A runner whose scenes are the same on every machine.
+fn runner(cases: u32) -> TestRunner {
+    let config = Config {
+        cases,
+        max_shrink_iters: 20_000,
+        max_global_rejects: cases,
+        failure_persistence: None,
+        ..Config::default()
+    };
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[9; 32]))
+}
+
+/// The first pixel where two renders differ: target, x, y and what stands there.
+fn difference(got: &[Surface], expected: &[Surface]) -> Option<(usize, u32, u32, String)> {
+    for (target, (g, e)) in got.iter().zip(expected).enumerate() {
+        for (name, g, e, width) in [("word", &g.words, &e.words, g.width), ("depth", &g.depth, &e.depth, g.width)] {
+            assert_eq!(g.len(), e.len(), "{name}s of target {target}");
+            if let Some(at) = (0..g.len()).find(|at| g[*at] != e[*at]) {
+                let (x, y) = (at as u32 % width, at as u32 / width);
+                return Some((target, x, y, format!("{name} {:#010x}, oracle {:#010x}", g[at], e[at])));
+            }
+        }
+    }
+    None
+}
+
+/// Every way to render a scene, against the oracle.
+fn compare(scene: &Scene, policies: &Policies) -> Result<(), String> {
+    let expected = model::render(scene, policies);
+    for (prune, threads) in [(true, 1), (false, 1), (true, 3)] {
+        let plan = Plan::compile(scene, &PlanOptions { policies: *policies, prune }).map_err(|e| format!("{e:?}"))?;
+        let frames = render(&plan, &RenderOptions { threads });
+        if let Some((target, x, y, what)) = difference(&frames.surfaces, &expected) {
+            let text = trace(&plan, target, (x, y), None).map_or_else(|e| format!("{e:?}"), |t| trace_text(&plan, &t));
+            return Err(format!("target {target} ({x}, {y}), prune {prune}, threads {threads}: {what}\n{text}"));
+        }
+    }
+    Ok(())
+}
+
+fn run(cases: u32, strategy: &BoxedStrategy<(Scene, Policies)>) {
+    let result =
+        runner(cases).run(strategy, |(scene, policies)| compare(&scene, &policies).map_err(TestCaseError::fail));
+    match result {
+        Err(TestError::Fail(reason, (scene, policies))) => panic!("{reason}\n{policies:?}\n{scene:?}"),
+        other => other.unwrap(),
+    }
+}
+
+fn scenes() -> u32 {
+    std::env::var("NINEBIT_ORACLE_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(2000)
+}
+
+#[test]
+fn random_scenes_agree() {
+    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => random_scene::policies()];
+    run(scenes(), &(random_scene::scene(), policies).boxed());
+}
+
+#[test]
+fn random_scenes_draw_something() {
+    let strategy = random_scene::scene();
+    let mut runner = runner(400);
+    let rich = (0..400)
+        .filter(|_| {
+            let scene = strategy.new_tree(&mut runner).unwrap().current();
+            let plain = Scene { draws: Vec::new(), ..scene.clone() };
+            let (before, after) =
+                (model::render(&plain, &Policies::DEFAULT), model::render(&scene, &Policies::DEFAULT));
+            let mut words: Vec<u32> = Vec::new();
+            let mut changed = 0;
+            for (b, a) in before.iter().zip(&after) {
+                changed += b.words.iter().zip(&a.words).filter(|(b, a)| b != a).count();
+                words.extend(&a.words);
+            }
+            words.sort_unstable();
+            words.dedup();
+            changed > 10 && words.len() > 3
+        })
+        .count();
+    println!("{rich} of 400 scenes are rich");
+    assert!(rich >= 200, "{rich} of 400");
+}

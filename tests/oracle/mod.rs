@@ -1,0 +1,99 @@
+//! A second model of the chip, written from the rules alone: slow, in straight lines, on i128.
+//!
+//! It shares no code with the crate but the scene it reads (`ninebit::state`) and the surfaces it returns, so that an error in one of
+//! the two shows as a difference.
+
+pub mod combiner;
+pub mod raster;
+pub mod real;
+pub mod rop;
+pub mod texture;
+
+use combiner::Registers;
+use ninebit::frame::Surface;
+use ninebit::state::{Draw, Policies, Scene};
+use raster::{Sample, Setup};
+use texture::Image;
+
+/// Every surface of the scene after its draws.
+pub fn render(scene: &Scene, policies: &Policies) -> Vec<Surface> {
+    let mut surfaces: Vec<Surface> = scene
+        .targets
+        .iter()
+        .map(|t| {
+            let pixels = (t.width * t.height) as usize;
+            Surface {
+                width: t.width,
+                height: t.height,
+                format: t.format,
+                words: vec![rop::store(t.format, t.clear_color.map(i128::from)); pixels],
+                depth: t.depth.map_or(Vec::new(), |d| vec![d.clear; pixels]),
+            }
+        })
+        .collect();
+    for draw in &scene.draws {
+        render_draw(scene, draw, policies, &mut surfaces);
+    }
+    surfaces
+}
+
+fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [Surface]) {
+    let images: Vec<Option<Image>> =
+        draw.textures.iter().map(|unit| unit.map(|unit| Image::new(&scene.textures[unit.texture], surfaces))).collect();
+    let target = &scene.targets[draw.target];
+    let surface = &mut surfaces[draw.target];
+    let (mut left, mut top, mut right, mut bottom) = (0, 0, u64::from(target.width), u64::from(target.height));
+    if let Some(s) = draw.scissor {
+        (left, top) = (u64::from(s.x), u64::from(s.y));
+        right = right.min(left + u64::from(s.width));
+        bottom = bottom.min(top + u64::from(s.height));
+    }
+    for vertices in raster::triangles(draw) {
+        let Some(setup) = Setup::new(draw, scene.profile, vertices) else { continue };
+        for j in top..bottom {
+            for i in left..right {
+                let Some(sample) = setup.sample(i.into(), j.into()) else { continue };
+                let color = shade(draw, &images, &setup, &sample, policies);
+                let at = (j * u64::from(target.width) + i) as usize;
+                // ROP-1, then DEP-2.
+                if let Some(test) = draw.alpha_test
+                    && !test.function.passes(color[3] as u32, test.reference.into())
+                {
+                    continue;
+                }
+                if let (Some(test), Some(buffer)) = (draw.depth_test, target.depth) {
+                    let depth = setup.depth(&sample, (1 << buffer.format.bits()) - 1) as u32;
+                    if !test.function.passes(depth, surface.depth[at]) {
+                        continue;
+                    }
+                    if test.write {
+                        surface.depth[at] = depth;
+                    }
+                }
+                surface.words[at] = rop::write(draw, target.format, surface.words[at], color);
+            }
+        }
+    }
+}
+
+/// One fragment's colour, R, G, B, A bytes.
+fn shade(draw: &Draw, images: &[Option<Image>], setup: &Setup, sample: &Sample, policies: &Policies) -> [i128; 4] {
+    // TEX-16: an unbound unit.
+    let mut textures = [[0, 0, 0, 255]; 4];
+    for (k, unit) in draw.textures.iter().enumerate() {
+        if let (Some(unit), Some(image)) = (unit, &images[k]) {
+            textures[k] = texture::sample(unit, image, setup.coordinates(sample, unit.coordinate_set, image.size));
+        }
+    }
+    let [r, g, b] = draw.fog.color.map(i128::from);
+    let registers = Registers {
+        fog: [r, g, b, if draw.fog.enabled { setup.fog(sample) } else { 255 }],
+        primary: setup.color(sample, |v| v.diffuse),
+        secondary: setup.color(sample, |v| v.specular),
+        textures,
+        // CMB-13
+        spare0: [0, 0, 0, textures[0][3]],
+        spare1: [0; 4],
+    };
+    combiner::run(registers, &draw.combiners, policies)
+}

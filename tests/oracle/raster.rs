@@ -1,0 +1,366 @@
+//! Vertices to covered pixels, and everything that is interpolated.
+
+use super::real::{align, color_byte, factor_byte, floor_div, shift, split};
+use ninebit::state::{
+    Cull, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel, Topology, Vertex, VertexColor, Viewport,
+};
+
+/// RAS-0: vertices nearer than this are clipped away.
+const NEAREST_W: f32 = 1.0 / 1_048_576.0;
+
+/// RAS-4 and RAS-5: triples of positions in the index list, and the position of the provoking vertex.
+pub fn split_topology(draw: &Draw) -> Vec<([usize; 3], usize)> {
+    let n = draw.indices.len();
+    let last = draw.provoking_vertex == ProvokingVertex::Last;
+    let pick = |first: usize, second: usize| if last { second } else { first };
+    let mut out = Vec::new();
+    match draw.topology {
+        Topology::Triangles => {
+            for k in 0..n / 3 {
+                out.push(([3 * k, 3 * k + 1, 3 * k + 2], pick(3 * k, 3 * k + 2)));
+            }
+        }
+        Topology::TriangleStrip => {
+            for i in 0..n.saturating_sub(2) {
+                let order = if i % 2 == 0 { [i, i + 1, i + 2] } else { [i + 1, i, i + 2] };
+                out.push((order, pick(i, i + 2)));
+            }
+        }
+        Topology::TriangleFan => {
+            for i in 1..n.saturating_sub(1) {
+                out.push(([0, i, i + 1], pick(i, i + 1)));
+            }
+        }
+        Topology::Quads => {
+            for q in (0..n / 4).map(|q| 4 * q) {
+                out.push(([q, q + 1, q + 2], q + 3));
+                out.push(([q, q + 2, q + 3], q + 3));
+            }
+        }
+        Topology::QuadStrip => {
+            for q in (0..(n / 2).saturating_sub(1)).map(|q| 2 * q) {
+                out.push(([q, q + 1, q + 2], q + 3));
+                out.push(([q + 2, q + 1, q + 3], q + 3));
+            }
+        }
+        Topology::Polygon => {
+            for i in 1..n.saturating_sub(1) {
+                out.push(([0, i, i + 1], 0));
+            }
+        }
+    }
+    out
+}
+
+fn mix(a: f32, b: f32, t: f32) -> f32 {
+    a + (b - a) * t
+}
+
+fn mix_color(a: VertexColor, b: VertexColor, t: f32) -> VertexColor {
+    if let (VertexColor::Bytes(p), VertexColor::Bytes(q)) = (a, b)
+        && p == q
+    {
+        return a;
+    }
+    let floats = |c: VertexColor| match c {
+        VertexColor::Bytes(b) => b.map(|b| f32::from(b) / 255.0),
+        VertexColor::Floats(f) => f,
+    };
+    let (p, q) = (floats(a), floats(b));
+    VertexColor::Floats(std::array::from_fn(|k| mix(p[k], q[k], t)))
+}
+
+/// RAS-0: the point where the edge from the inside vertex `a` to the outside vertex `b` meets the nearest w.
+fn crossing(a: &Vertex, b: &Vertex) -> Vertex {
+    let t = (a.position[3] - NEAREST_W) / (a.position[3] - b.position[3]);
+    let mut position: [f32; 4] = std::array::from_fn(|k| mix(a.position[k], b.position[k], t));
+    position[3] = NEAREST_W;
+    Vertex {
+        position,
+        diffuse: mix_color(a.diffuse, b.diffuse, t),
+        specular: mix_color(a.specular, b.specular, t),
+        fog: mix(a.fog, b.fog, t),
+        texture_coordinates: std::array::from_fn(|set| {
+            std::array::from_fn(|k| mix(a.texture_coordinates[set][k], b.texture_coordinates[set][k], t))
+        }),
+    }
+}
+
+/// RAS-0: the polygon that remains in front of the nearest w.
+fn clip_near(triangle: [Vertex; 3]) -> Vec<Vertex> {
+    let inside = triangle.map(|v| v.position[3] >= NEAREST_W);
+    let mut polygon = Vec::new();
+    for k in 0..3 {
+        let next = (k + 1) % 3;
+        let (from, to) = (&triangle[k], &triangle[next]);
+        match (inside[k], inside[next]) {
+            (true, true) => polygon.push(*from),
+            (true, false) => {
+                polygon.push(*from);
+                polygon.push(crossing(from, to));
+            }
+            (false, true) => polygon.push(crossing(to, from)),
+            (false, false) => {}
+        }
+    }
+    polygon
+}
+
+fn to_window(mut v: Vertex, port: &Viewport) -> Vertex {
+    let [x, y, z, w] = v.position;
+    v.position = [
+        port.x + (x / w + 1.0) * (port.width / 2.0),
+        port.y + (1.0 - y / w) * (port.height / 2.0),
+        port.near + (z / w + 1.0) * ((port.far - port.near) / 2.0),
+        w,
+    ];
+    v
+}
+
+/// Every triangle of a draw in window space, in order, with flat colours spread over its vertices.
+pub fn triangles(draw: &Draw) -> Vec<[Vertex; 3]> {
+    let vertex = |position: usize| draw.vertices[draw.indices[position] as usize];
+    let mut out = Vec::new();
+    for (corners, provoking) in split_topology(draw) {
+        let mut triangle = corners.map(vertex);
+        if draw.shade_model == ShadeModel::Flat {
+            let source = vertex(provoking);
+            for v in &mut triangle {
+                (v.diffuse, v.specular) = (source.diffuse, source.specular);
+            }
+        }
+        match &draw.positions {
+            Positions::Window => out.push(triangle),
+            Positions::Clip(port) => {
+                let polygon: Vec<Vertex> = clip_near(triangle).into_iter().map(|v| to_window(v, port)).collect();
+                for i in 1..polygon.len().saturating_sub(1) {
+                    out.push([polygon[0], polygon[i], polygon[i + 1]]);
+                }
+            }
+        }
+    }
+    out
+}
+
+/// RAS-1.
+fn snap(x: f32) -> i128 {
+    let (m, e) = split(x);
+    m.signum() * shift(m.abs(), e + 4)
+}
+
+/// A triangle after set-up.
+pub struct Setup {
+    vertices: [Vertex; 3],
+    snapped: [[i128; 2]; 3],
+    /// Doubled area, positive.
+    area: i128,
+    /// 1 when the vertices run clockwise on screen (y down), else -1.
+    turn: i128,
+    /// Perspective weights.
+    p: [i128; 3],
+    /// INT-3's exception.
+    exact: bool,
+}
+
+/// One covered pixel.
+pub struct Sample {
+    /// Edge functions, none negative.
+    e: [i128; 3],
+    /// sum P E.
+    d: i128,
+    /// INT-3 on the interpolation weights.
+    dominant: usize,
+    /// Weights of the three colours in 256ths.
+    weights: [i128; 3],
+}
+
+impl Setup {
+    /// RAS-1, zero areas, culling, INT-6, P.
+    pub fn new(draw: &Draw, profile: Profile, vertices: [Vertex; 3]) -> Option<Setup> {
+        let snapped = vertices.map(|v| [snap(v.position[0]), snap(v.position[1])]);
+        let [a, b, c] = snapped;
+        let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
+        if cross == 0 {
+            return None;
+        }
+        let clockwise = cross > 0;
+        let front = clockwise == (draw.front_face == FrontFace::Clockwise);
+        match draw.cull {
+            Cull::Front if front => return None,
+            Cull::Back if !front => return None,
+            _ => {}
+        }
+        // INT-6: sixteen significant bits of the 24.
+        let w = vertices.map(|v| match profile {
+            Profile::Nv10 => {
+                let (m, e) = split(v.position[3]);
+                (m >> 8 << 8, e)
+            }
+            Profile::Nv2a => split(v.position[3]),
+        });
+        let other = |i: usize, j: usize| (w[i].0 * w[j].0, w[i].1 + w[j].1);
+        let p = if draw.perspective {
+            align([other(1, 2), other(2, 0), other(0, 1)], 28).map(|p| p.max(1))
+        } else {
+            [1 << 27; 3]
+        };
+        let same_power = w[0] == w[1] && w[1] == w[2] && w[0].0.count_ones() == 1;
+        let exact = cross.abs().count_ones() == 1 && (!draw.perspective || same_power);
+        Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact })
+    }
+
+    /// RAS-2, RAS-3, INT-1 to INT-3.
+    pub fn sample(&self, i: i128, j: i128) -> Option<Sample> {
+        let (x, y) = (16 * i + 8, 16 * j + 8);
+        let mut e = [0; 3];
+        for k in 0..3 {
+            // Brought to the clockwise order (y down), in which the inside lies to the right of s -> t.
+            let (mut s, mut t) = (self.snapped[(k + 1) % 3], self.snapped[(k + 2) % 3]);
+            if self.turn < 0 {
+                (s, t) = (t, s);
+            }
+            e[k] = (t[0] - s[0]) * (y - s[1]) - (t[1] - s[1]) * (x - s[0]);
+            // Going up, the inside is to the right of it: a left edge. Going right, it is below: a top edge.
+            let left = t[1] < s[1];
+            let top = t[1] == s[1] && t[0] > s[0];
+            if e[k] < 0 || (e[k] == 0 && !left && !top) {
+                return None;
+            }
+        }
+        let n: [i128; 3] = std::array::from_fn(|k| self.p[k] * e[k]);
+        let d = n[0] + n[1] + n[2];
+        let dominant = dominant(n, d);
+        let weight = |k: usize| {
+            let (q, tie) = floor_div(256 * n[k], d);
+            if tie && q > 0 && k != dominant && !self.exact { q - 1 } else { q }
+        };
+        let (w0, w2) = (weight(0), weight(2));
+        Some(Sample { e, d, dominant, weights: [w0, 256 - w0 - w2, w2] })
+    }
+
+    /// INT-2 of one set of colours.
+    pub fn color(&self, sample: &Sample, which: impl Fn(&Vertex) -> VertexColor) -> [i128; 4] {
+        let colors = [0, 1, 2].map(|k| match which(&self.vertices[k]) {
+            VertexColor::Bytes(b) => b.map(i128::from),
+            VertexColor::Floats(f) => f.map(color_byte),
+        });
+        std::array::from_fn(|c| {
+            let sum: i128 = (0..3).map(|k| colors[k][c] * sample.weights[k]).sum();
+            (sum + 128) >> 8
+        })
+    }
+
+    /// Fog factor as a byte (NUM-6).
+    pub fn fog(&self, sample: &Sample) -> i128 {
+        let sum: i128 = (0..3)
+            .map(|k| {
+                let (m, e) = split(self.vertices[k].fog.clamp(0.0, 1.0));
+                shift(self.p[k] * 4096 * m, e) * sample.e[k]
+            })
+            .sum();
+        factor_byte(floor_div(sum, sample.d).0.clamp(0, 4096))
+    }
+
+    /// INT-4t: how a number lies beside its tie, in the direction of the weights that fall short.
+    fn lean(&self, sample: &Sample, x: [i128; 3]) -> i128 {
+        [0, 2]
+            .into_iter()
+            .filter(|i| *i != sample.dominant)
+            .map(|i| sample.e[i] * (x[i] * self.p[1] - self.p[i] * x[1]))
+            .sum()
+    }
+
+    /// INT-4, INT-4t, TEX-15: both coordinates in 1/256 texel.
+    pub fn coordinates(&self, sample: &Sample, set: usize, size: [u32; 2]) -> [i128; 2] {
+        let c = self.vertices.map(|v| v.texture_coordinates[set]);
+        let e = sample.e;
+        let total = |x: [i128; 3]| x[0] * e[0] + x[1] * e[1] + x[2] * e[2];
+        if c.iter().all(|c| c[3] == 1.0) {
+            return [0, 1].map(|axis| {
+                let g: [i128; 3] = std::array::from_fn(|k| {
+                    let (m, e) = split(c[k][axis]);
+                    shift(self.p[k] * 256 * i128::from(size[axis]) * m, e)
+                });
+                let (u, tie) = floor_div(total(g), sample.d);
+                if tie && !self.exact && self.lean(sample, g) > 0 { u - 1 } else { u }
+            });
+        }
+        let nine: [i128; 9] = align(
+            std::array::from_fn(|n| {
+                let (m, e) = split(c[n % 3][[0, 1, 3][n / 3]]);
+                (self.p[n % 3] * m, e)
+            }),
+            28,
+        );
+        let axis = |a: usize| [nine[3 * a], nine[3 * a + 1], nine[3 * a + 2]];
+        let limit = 1 << 24;
+        let nq = total(axis(2));
+        [0, 1].map(|a| {
+            let ns = total(axis(a));
+            if nq == 0 {
+                return ns.signum() * limit;
+            }
+            let scale = 256 * i128::from(size[a]);
+            let (value, tie) = floor_div(scale * ns, nq);
+            if tie && !self.exact && value > -limit && value <= limit {
+                let lean = self.lean(sample, axis(a)) * scale - value * self.lean(sample, axis(2));
+                if nq.signum() * lean > 0 {
+                    return value - 1;
+                }
+            }
+            value.clamp(-limit, limit)
+        })
+    }
+
+    /// DEP-1: depth in units of a buffer whose largest value is `full`.
+    pub fn depth(&self, sample: &Sample, full: i128) -> i128 {
+        let z = self.vertices.map(|v| {
+            // A scene's depth lies in 0..1.
+            let (m, e) = split(v.position[2].clamp(0.0, 1.0));
+            shift(m * full, e)
+        });
+        let dom = dominant(sample.e, self.area);
+        // Sixty-four fraction bits hold every trunc24 weight exactly: E / 2A is at least 2^-35.
+        let mut sum = z[dom] << 64;
+        for k in (0..3).filter(|k| *k != dom) {
+            sum += trunc24(sample.e[k], self.area) * (z[k] - z[dom]);
+        }
+        (sum >> 64).clamp(0, full)
+    }
+}
+
+/// n / d in [0, 1] cut to 24 significant bits, in units of 2^-64.
+fn trunc24(n: i128, d: i128) -> i128 {
+    if n == 0 {
+        return 0;
+    }
+    let mut e = 0;
+    while (n << e) / d < 1 << 23 {
+        e += 1;
+    }
+    ((n << e) / d) << (64 - e)
+}
+
+/// INT-3: the weight with the largest binary exponent, an exact power of two counting as just below itself.
+fn dominant(n: [i128; 3], d: i128) -> usize {
+    let class = n.map(|n| {
+        if n == 0 {
+            return u32::MAX;
+        }
+        let mut c = 0;
+        while n << (c + 1) <= d {
+            c += 1;
+        }
+        c
+    });
+    let beats = |a: usize, b: usize| class[a] <= class[b];
+    if class[0] == class[1] && class[1] == class[2] {
+        2
+    } else if beats(0, 1) && class[0] < class[2] {
+        0
+    } else if beats(1, 2) && class[1] < class[0] {
+        1
+    } else {
+        2
+    }
+}

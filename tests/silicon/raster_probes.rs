@@ -1,0 +1,52 @@
+//! Probes of interpolated colours (INT-1 to INT-3).
+
+use crate::build::{draw, target, vertex};
+use crate::cases;
+use crate::sheet::OVER;
+use crate::table::Row;
+use crate::{Answers, single};
+use ninebit::engine::{RenderOptions, render};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::*;
+
+/// The pixels of a whole frame that the rows name.
+fn pixels(scene: &Scene, rows: &[Row]) -> Answers {
+    let plan = Plan::compile(scene, &PlanOptions::default()).unwrap();
+    let frame = &render(&plan, &RenderOptions::default()).surfaces[0];
+    let shown = frame.rgba8();
+    let index = |row: &Row| row.number::<usize>("y") * frame.width as usize + row.number::<usize>("x");
+    single(rows.iter().map(|row| shown[index(row)]).collect())
+}
+
+/// alpha-ramp: quads of 512 x 64 pixels. Their area is a power of two: INT-3's exception.
+pub fn alpha_ramp(rows: &[Row]) -> Answers {
+    let frame = target(640, 480, SurfaceFormat::A8R8G8B8, rows[0].bytes("destination"));
+    let mut scene = Scene { profile: Profile::Nv2a, targets: vec![frame], textures: vec![], draws: vec![] };
+    for top in [149, 213, 277] {
+        let Some(row) = rows.iter().find(|row| (top..top + 64).contains(&row.number::<u32>("y"))) else { continue };
+        let [r, g, b] = row.bytes("source");
+        let (left, right) = (row.number("left"), row.number("right"));
+        let (y0, y1) = (top as f32, (top + 64) as f32);
+        let corners = [(64.0, y0, left), (576.0, y0, right), (576.0, y1, right), (64.0, y1, left)];
+        let vertices = corners.map(|(x, y, a)| vertex(x, y, [r, g, b, a]));
+        scene.draws.push(Draw { blend: Some(OVER), ..draw(Topology::Quads, vertices.to_vec()) });
+    }
+    for row in rows {
+        assert_eq!(row.number::<u32>("column") + 64, row.number::<u32>("x"));
+    }
+    pixels(&scene, rows)
+}
+
+/// triangle-weights: the first triangle of R4, whose corners are pure blue, green and red.
+pub fn triangle_weights(rows: &[Row]) -> Answers {
+    let mut scene = cases::r4().scene;
+    let draw = &mut scene.draws[0];
+    draw.indices.truncate(3);
+    for row in rows {
+        for (vertex, column) in draw.vertices.iter().zip(["color0", "color1", "color2"]) {
+            let [r, g, b] = row.bytes(column);
+            assert_eq!(vertex.diffuse, VertexColor::Bytes([r, g, b, 255]), "another triangle");
+        }
+    }
+    pixels(&scene, rows)
+}

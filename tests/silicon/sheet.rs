@@ -1,0 +1,112 @@
+//! Many probes in one scene: probe i is pixel i of every target, one row of pixels each.
+
+use crate::build::{draw, shows, target, vertex};
+use ninebit::engine::{RenderOptions, render};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::*;
+
+/// Probes of a sheet at most.
+pub const WIDTH: usize = 512;
+
+/// Source over destination by source alpha.
+pub const OVER: Blend = Blend {
+    equation: BlendEquation::Add,
+    source: BlendFactor::SourceAlpha,
+    destination: BlendFactor::OneMinusSourceAlpha,
+};
+
+/// Only R, G, B are written.
+pub const RGB_ONLY: [bool; 4] = [true, true, true, false];
+/// Only A is written.
+pub const ALPHA_ONLY: [bool; 4] = [false, false, false, true];
+
+/// A scene under construction.
+pub struct Sheet {
+    scene: Scene,
+}
+
+impl Sheet {
+    /// No targets yet.
+    pub fn new() -> Sheet {
+        Sheet { scene: Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], draws: vec![] } }
+    }
+
+    /// Another target.
+    pub fn target(&mut self, format: SurfaceFormat, clear_color: [u8; 4]) -> usize {
+        self.scene.targets.push(target(WIDTH as u32, 1, format, clear_color));
+        self.scene.targets.len() - 1
+    }
+
+    /// A texture that reads a target.
+    pub fn reads(&mut self, target: usize, format: TextureFormat) -> usize {
+        self.texture(TextureImage::Target { target, format })
+    }
+
+    /// A texture of one texel a probe.
+    pub fn texels(&mut self, texels: impl Iterator<Item = [u8; 4]>) -> usize {
+        let mut words: Vec<u32> = texels.map(|[r, g, b, a]| u32::from_be_bytes([a, r, g, b])).collect();
+        words.resize(WIDTH, 0);
+        self.texture(TextureImage::Texels { width: WIDTH as u32, height: 1, format: TextureFormat::A8R8G8B8, words })
+    }
+
+    fn texture(&mut self, image: TextureImage) -> usize {
+        self.scene.textures.push(Texture { name: "texture".to_string(), image });
+        self.scene.textures.len() - 1
+    }
+
+    /// Adds a draw.
+    pub fn draw(&mut self, draw: Draw) {
+        self.scene.draws.push(draw);
+    }
+
+    /// Renders; the first `count` pixels of a target.
+    pub fn show(&self, target: usize, count: usize) -> Vec<[u8; 4]> {
+        let plan = Plan::compile(&self.scene, &PlanOptions::default()).unwrap();
+        let mut pixels = render(&plan, &RenderOptions::default()).surfaces[target].rgba8();
+        pixels.truncate(count);
+        pixels
+    }
+}
+
+/// A quad over pixels `from` to `to`, each reading its own texel.
+fn span(target: usize, from: usize, to: usize, color: [u8; 4]) -> Draw {
+    let corners = [(from, 0.0), (to, 0.0), (to, 1.0), (from, 1.0)];
+    let vertices = corners.map(|(x, y)| {
+        let mut corner = vertex(x as f32, y, color);
+        corner.texture_coordinates = [[x as f32 / WIDTH as f32, y, 0.0, 1.0]; 4];
+        corner
+    });
+    Draw { target, ..draw(Topology::Quads, vertices.to_vec()) }
+}
+
+/// Stores a colour in pixel `probe`.
+pub fn cell(target: usize, probe: usize, color: [u8; 4]) -> Draw {
+    span(target, probe, probe + 1, color)
+}
+
+/// Copies a texture to every pixel.
+pub fn copy(target: usize, texture: usize) -> Draw {
+    let mut draw = span(target, 0, WIDTH, [255; 4]);
+    bind(&mut draw, 0, texture);
+    draw.combiners = shows(FinalRegister::Texture0);
+    draw
+}
+
+/// Binds a texture to a unit.
+pub fn bind(draw: &mut Draw, unit: usize, texture: usize) {
+    draw.textures[unit] = Some(TextureUnit {
+        texture,
+        coordinate_set: unit,
+        address_s: AddressMode::ClampToEdge,
+        address_t: AddressMode::ClampToEdge,
+        filter: Filter::Nearest,
+        border_color: [0; 4],
+        signed: [false; 4],
+    });
+}
+
+/// The alpha of a fragment is 255.
+pub fn opaque(draw: &mut Draw) {
+    draw.combiners.final_combiner.g =
+        FinalInput { register: FinalRegister::Zero, component: Component::Alpha, invert: true };
+}

@@ -1,0 +1,96 @@
+//! `vectors/silicon/*.tsv`: rows of what a real chip showed.
+
+use ninebit::state::{Blend, BlendEquation, BlendFactor, Named};
+use std::sync::Arc;
+
+/// One probe.
+pub struct Row {
+    columns: Arc<Vec<String>>,
+    /// Line of the file, from 1.
+    pub line: usize,
+    fields: Vec<String>,
+}
+
+/// Reads a file: `#` lines with the version, the count and the names of the columns, then rows.
+pub fn read(file: &str) -> Vec<Row> {
+    let path = format!("{}/vectors/silicon/{file}.tsv", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    assert!(text.starts_with("# ninebit silicon probes, format 1\n"), "{path}: not a file of probes");
+    let header = |key: &str| {
+        let line = text.lines().find_map(|line| line.strip_prefix("# ")?.strip_prefix(key)?.strip_prefix(": "));
+        line.unwrap_or_else(|| panic!("{path}: no `# {key}:`"))
+    };
+    let columns: Arc<Vec<String>> = Arc::new(header("columns").split(' ').map(str::to_string).collect());
+    let rows: Vec<Row> = text
+        .lines()
+        .enumerate()
+        .filter(|(_, line)| !line.starts_with('#'))
+        .map(|(n, line)| {
+            let fields: Vec<String> = line.split('\t').map(str::to_string).collect();
+            assert_eq!(fields.len(), columns.len(), "{path}:{}", n + 1);
+            Row { columns: columns.clone(), line: n + 1, fields }
+        })
+        .collect();
+    assert_eq!(header("rows"), rows.len().to_string(), "{path}: rows");
+    rows
+}
+
+impl Row {
+    /// A field.
+    pub fn text(&self, column: &str) -> &str {
+        let at = self.columns.iter().position(|c| c == column).unwrap_or_else(|| panic!("no column {column}"));
+        &self.fields[at]
+    }
+
+    /// A number.
+    pub fn number<T: std::str::FromStr>(&self, column: &str) -> T {
+        let text = self.text(column);
+        text.parse().unwrap_or_else(|_| panic!("line {}: {column}: `{text}`", self.line))
+    }
+
+    /// 0 or 1.
+    pub fn flag(&self, column: &str) -> bool {
+        self.number::<u8>(column) == 1
+    }
+
+    /// Bytes written `1.2.3`.
+    pub fn bytes<const N: usize>(&self, column: &str) -> [u8; N] {
+        bytes(self.text(column))
+    }
+
+    /// Alternatives or steps, written `51|68`.
+    pub fn list(&self, column: &str) -> Vec<&str> {
+        self.text(column).split('|').collect()
+    }
+
+    /// A state enumeration by name.
+    pub fn named<T: Named>(&self, column: &str) -> T {
+        let text = self.text(column);
+        T::from_name(text).unwrap_or_else(|| panic!("line {}: {} `{text}`", self.line, T::TYPE))
+    }
+
+    /// The columns `equation`, `source`, `destination`.
+    pub fn blend(&self) -> Blend {
+        Blend {
+            equation: self.named::<BlendEquation>("equation"),
+            source: self.named::<BlendFactor>("source"),
+            destination: self.named::<BlendFactor>("destination"),
+        }
+    }
+
+    /// R, G, B, A as captured.
+    pub fn captured(&self) -> [u8; 4] {
+        ["r", "g", "b", "a"].map(|channel| self.number(channel))
+    }
+
+    /// The row for a message.
+    pub fn describe(&self) -> String {
+        self.columns.iter().zip(&self.fields).map(|(c, f)| format!("{c}={f}")).collect::<Vec<_>>().join(" ")
+    }
+}
+
+/// Bytes written `1.2.3`.
+pub fn bytes<const N: usize>(text: &str) -> [u8; N] {
+    let list: Vec<u8> = text.split('.').map(|b| b.parse().unwrap()).collect();
+    list.try_into().unwrap_or_else(|_| panic!("`{text}` has not {N} bytes"))
+}

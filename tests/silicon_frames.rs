@@ -1,0 +1,202 @@
+//! Captured frames of a real NV2A, reproduced pixel by pixel.
+//!
+//! The captures are not part of the repository; `vectors/silicon/frames` says what they show. With `NINEBIT_CAPTURES` set to a
+//! folder that holds them (`frames/SUITE/NAME.png`) they are compared directly, and `BLESS=1` writes the expectations anew.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test that gives floats to the model")]
+
+#[path = "silicon/build.rs"]
+mod build;
+#[path = "silicon/cases.rs"]
+mod cases;
+#[path = "silicon/picture.rs"]
+mod picture;
+
+use cases::Case;
+use ninebit::engine::{RenderOptions, render, trace};
+use ninebit::frame::Surface;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::report::trace_text;
+use picture::{Expectation, Values, digest};
+use std::path::{Path, PathBuf};
+
+/// A case, rendered.
+struct Rendered {
+    case: Case,
+    plan: Plan,
+    surface: Surface,
+}
+
+impl Rendered {
+    fn new(case: Case) -> Rendered {
+        let plan = Plan::compile(&case.scene, &PlanOptions::default()).unwrap();
+        let surface = render(&plan, &RenderOptions::default()).surfaces.remove(0);
+        Rendered { case, plan, surface }
+    }
+
+    fn index(&self, (x, y): (u32, u32)) -> usize {
+        (y * self.surface.width + x) as usize
+    }
+
+    fn color(&self, at: (u32, u32)) -> u32 {
+        self.surface.words[self.index(at)] & 0xff_ffff
+    }
+
+    fn depth(&self, at: (u32, u32)) -> u32 {
+        self.surface.depth[self.index(at)]
+    }
+
+    fn covered(&self, at: (u32, u32)) -> bool {
+        self.surface.words[self.index(at)] >> 24 == 255
+    }
+
+    /// Fails with everything known about a pixel.
+    fn fail(&self, at: (u32, u32), message: &str) -> ! {
+        let trace = trace(&self.plan, 0, at, None).unwrap();
+        panic!("{}: pixel {},{}: {message}\n{}", self.case.name, at.0, at.1, trace_text(&self.plan, &trace));
+    }
+
+    /// What the model holds now against the committed expectation `name`. `ours` reads a value.
+    fn check(&self, name: &str, differing: usize, ours: impl Fn((u32, u32)) -> u32) {
+        let path = Expectation::path(name);
+        let expected = Expectation::parse(&std::fs::read_to_string(&path).unwrap());
+        assert_eq!(expected.case, name);
+        assert_eq!(expected.positions().count(), expected.pixels, "{name}: the mask");
+        assert_eq!(expected.differing.len(), differing, "{name}: pixels known to differ");
+        for (x, y, captured, value) in &expected.differing {
+            let now = ours((*x, *y));
+            if now != *value {
+                self.fail((*x, *y), &format!("captured {captured:06x}, was {value:06x}, is {now:06x}"));
+            }
+        }
+        let known = |at: (u32, u32)| expected.differing.iter().any(|(x, y, ..)| (*x, *y) == at);
+        let values: Values = expected.positions().filter(|at| !known(*at)).map(|at| (at, ours(at))).collect();
+        // A digest does not say where: the trace is that of the first pixel compared.
+        if digest(&values) != expected.sha256 {
+            let count = values.len();
+            self.fail(
+                values[0].0,
+                &format!("some of {count} pixels differ from {}; set NINEBIT_CAPTURES to see which", path.display()),
+            );
+        }
+    }
+
+    /// Compares with a capture, and the committed expectation with both.
+    fn compare(&self, name: &str, capture: &str, captured: &Values, ours: &Values, differing: usize) {
+        let different: Vec<usize> = (0..captured.len()).filter(|n| captured[*n].1 != ours[*n].1).collect();
+        println!("{name}: {} of {} pixels differ", different.len(), captured.len());
+        if different.len() != differing {
+            let n = *different.first().unwrap_or(&0);
+            let (at, value, now) = (captured[n].0, captured[n].1, ours[n].1);
+            let (count, of) = (different.len(), captured.len());
+            self.fail(at, &format!("captured {value:06x}, ours {now:06x}; {count} of {of} differ, not {differing}"));
+        }
+        let text = Expectation::text(name, capture, captured, ours);
+        let path = Expectation::path(name);
+        if std::env::var_os("BLESS").is_some() {
+            std::fs::write(&path, &text).unwrap();
+        }
+        assert!(std::fs::read_to_string(&path).unwrap() == text, "{} is not what the capture gives", path.display());
+    }
+}
+
+/// The folder of captures, if there is one.
+fn captures() -> Option<PathBuf> {
+    std::env::var_os("NINEBIT_CAPTURES").map(|folder| Path::new(&folder).join("frames"))
+}
+
+fn load(path: &Path) -> image::RgbaImage {
+    image::open(path).unwrap_or_else(|error| panic!("{}: {error}", path.display())).to_rgba8()
+}
+
+/// Overlaid text is white with alpha 0.
+const TEXT: [u8; 4] = [255, 255, 255, 0];
+
+fn color([r, g, b, _]: [u8; 4]) -> u32 {
+    u32::from(r) << 16 | u32::from(g) << 8 | u32::from(b)
+}
+
+/// Colours of a case: no pixel covered that is not in the capture, none missing, and no more than the known ones off.
+fn colors(rendered: &Rendered, keep: impl Fn((u32, u32)) -> bool) {
+    let case = &rendered.case;
+    if let Some(folder) = captures() {
+        let capture = load(&folder.join(case.capture));
+        let (mut captured, mut ours, mut covered) = (Values::new(), Values::new(), 0);
+        for (x, y, pixel) in capture.enumerate_pixels() {
+            if !(case.region)(x, y) || pixel.0 == TEXT || !keep((x, y)) {
+                continue;
+            }
+            let inside = rendered.covered((x, y));
+            if inside == (pixel.0[..3] == case.background) {
+                rendered.fail((x, y), &format!("captured {:06x}, covered by us: {inside}", color(pixel.0)));
+            }
+            covered += usize::from(inside);
+            captured.push(((x, y), color(pixel.0)));
+            ours.push(((x, y), rendered.color((x, y))));
+        }
+        assert_eq!(covered, case.covered, "{}: covered pixels", case.name);
+        rendered.compare(case.name, case.capture, &captured, &ours, case.differing);
+    }
+    rendered.check(case.name, case.differing, |at| rendered.color(at));
+}
+
+fn whole(case: Case) {
+    colors(&Rendered::new(case), |_| true);
+}
+
+#[test]
+fn r1_coverage_of_slivers() {
+    whole(cases::r1());
+}
+
+#[test]
+fn r2_ties_of_ramps() {
+    whole(cases::r2());
+}
+
+#[test]
+fn r4_smooth_triangles() {
+    whole(cases::r4());
+}
+
+#[test]
+fn r5_smooth_quads() {
+    whole(cases::r5());
+}
+
+#[test]
+fn r6_vertices_off_screen() {
+    whole(cases::r6());
+}
+
+#[test]
+fn r7_float_colors() {
+    whole(cases::r7());
+}
+
+/// Depths that are not exact are one off.
+#[test]
+fn r3_three_colors_and_depth() {
+    const DIFFERING: usize = 4_144;
+    const ZB: &str = "Depth_buffer/DepthFmt_z24_Cn_FZn_Mffffff_ZB.png";
+    let rendered = Rendered::new(cases::r3());
+    let buffer = captures().map(|folder| load(&folder.join(ZB)));
+    let stored = |(x, y): (u32, u32)| {
+        let [r, g, _, a] = buffer.as_ref().unwrap().get_pixel(x, y).0;
+        u32::from(a) << 16 | u32::from(r) << 8 | u32::from(g)
+    };
+    // Small quads lie on top of the large one: what belongs to it has about its depth.
+    let ours = |(x, y): (u32, u32)| {
+        let plane = 11_184_809.0 + (f64::from(y) - 39.5) * 13_981.0125;
+        (f64::from(stored((x, y))) - plane).abs() <= 50.0
+    };
+    colors(&rendered, ours);
+    if buffer.is_some() {
+        let expectation = Expectation::parse(&std::fs::read_to_string(Expectation::path("R3")).unwrap());
+        let captured: Values = expectation.positions().map(|at| (at, stored(at))).collect();
+        let depths: Values = expectation.positions().map(|at| (at, rendered.depth(at))).collect();
+        rendered.compare("R3-depth", ZB, &captured, &depths, DIFFERING);
+    }
+    rendered.check("R3-depth", DIFFERING, |at| rendered.depth(at));
+    let depth = Expectation::parse(&std::fs::read_to_string(Expectation::path("R3-depth")).unwrap());
+    assert!(depth.differing.iter().all(|(.., captured, ours)| captured.abs_diff(*ours) == 1));
+}

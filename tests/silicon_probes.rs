@@ -1,0 +1,123 @@
+//! What a real NV2A showed, row by row: every probe of `vectors/silicon` goes through the model.
+#![allow(
+    clippy::float_arithmetic,
+    clippy::unwrap_used,
+    missing_docs,
+    unreachable_pub,
+    reason = "a test that gives floats to the model"
+)]
+
+#[path = "silicon/blend_probes.rs"]
+mod blend_probes;
+#[path = "silicon/build.rs"]
+mod build;
+#[path = "silicon/cases.rs"]
+mod cases;
+#[path = "silicon/combiner_probes.rs"]
+mod combiner_probes;
+#[path = "silicon/raster_probes.rs"]
+mod raster_probes;
+#[path = "silicon/sheet.rs"]
+mod sheet;
+#[path = "silicon/table.rs"]
+mod table;
+
+use rayon::prelude::*;
+use table::Row;
+
+/// For each row the pixels that the model allows: one, or one for each value of an input that the capture leaves open.
+type Answers = Vec<Vec<[u8; 4]>>;
+
+/// One answer a row.
+fn single(pixels: Vec<[u8; 4]>) -> Answers {
+    pixels.into_iter().map(|pixel| vec![pixel]).collect()
+}
+
+/// A file of probes and how the model answers them, at most [`sheet::WIDTH`] rows at a time.
+type Kind = (&'static str, fn(&[Row]) -> Answers);
+
+const KINDS: [Kind; 22] = [
+    ("blend-stack-a", blend_probes::stack_a),
+    ("blend-stack-b", blend_probes::stack_b),
+    ("blend-stack-c", blend_probes::stack_c),
+    ("blend-spot", blend_probes::spot),
+    ("surface-blend", blend_probes::surface),
+    ("destination-alpha", blend_probes::destination_alpha),
+    ("signed-texel", blend_probes::signed_texel),
+    ("alpha-test", blend_probes::alpha_test),
+    ("color-mask", blend_probes::color_mask),
+    ("alpha-chain", blend_probes::alpha_chain),
+    ("alpha-ramp", raster_probes::alpha_ramp),
+    ("triangle-weights", raster_probes::triangle_weights),
+    ("combiner-output", combiner_probes::outputs),
+    ("combiner-output-alpha", combiner_probes::outputs_alpha),
+    ("final-product-sum", combiner_probes::product_sum),
+    ("final-sum", combiner_probes::final_sum),
+    ("final-ef", combiner_probes::final_ef),
+    ("fog-factor", combiner_probes::fog_factor),
+    ("fog-lerp", combiner_probes::fog_lerp),
+    ("vertex-color", combiner_probes::vertex_color),
+    ("texel-times-diffuse", combiner_probes::texel_times_diffuse),
+    ("unbound-texture", combiner_probes::unbound),
+];
+
+/// How a row came out.
+enum Outcome {
+    /// The only answer is what was captured.
+    Exact,
+    /// One of several answers is.
+    Explained,
+    /// None is.
+    Wrong(String),
+}
+
+fn judge(file: &str, row: &Row, answers: &[[u8; 4]]) -> Outcome {
+    let captured = row.captured();
+    // The colours of these depend on a picture; alpha is what is pinned.
+    let first = if file == "color-mask" { 3 } else { 0 };
+    let found = answers.iter().any(|answer| answer[first..] == captured[first..]);
+    match (found, answers) {
+        (true, [_]) => Outcome::Exact,
+        (true, _) => Outcome::Explained,
+        (false, _) => {
+            let shown = &answers[..answers.len().min(4)];
+            let rgba = &captured[first..];
+            let line = row.line;
+            Outcome::Wrong(format!("{file}.tsv:{line}: {}: expected {rgba:?}, got {shown:?}", row.describe()))
+        }
+    }
+}
+
+#[test]
+fn every_probe() {
+    let mut wrong = Vec::new();
+    let mut totals = [0; 3];
+    println!("{:<24}{:>8}{:>8}{:>11}", "file", "rows", "exact", "explained");
+    for (file, answer) in KINDS {
+        let rows = table::read(file);
+        let outcomes: Vec<Outcome> = rows
+            .par_chunks(sheet::WIDTH)
+            .flat_map_iter(|chunk| {
+                let answers = answer(chunk);
+                assert_eq!(answers.len(), chunk.len(), "{file}");
+                chunk.iter().zip(answers).map(|(row, answers)| judge(file, row, &answers)).collect::<Vec<_>>()
+            })
+            .collect();
+        let (mut exact, mut explained) = (0, 0);
+        for outcome in outcomes {
+            match outcome {
+                Outcome::Exact => exact += 1,
+                Outcome::Explained => explained += 1,
+                Outcome::Wrong(message) => wrong.push(message),
+            }
+        }
+        println!("{file:<24}{:>8}{exact:>8}{explained:>11}", rows.len());
+        totals = [totals[0] + rows.len(), totals[1] + exact, totals[2] + explained];
+    }
+    println!("{:<24}{:>8}{:>8}{:>11}", "all", totals[0], totals[1], totals[2]);
+    for message in wrong.iter().take(20) {
+        println!("{message}");
+    }
+    assert!(wrong.is_empty(), "{} of {} probes differ, the first ones above", wrong.len(), totals[0]);
+    assert_eq!(totals[0], 26_425);
+}
