@@ -10,7 +10,7 @@ use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::report::trace_text;
-use ninebit::state::{Policies, Scene};
+use ninebit::state::{POLICIES, Policies, Scene};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -64,13 +64,24 @@ fn run(cases: u32, strategy: &BoxedStrategy<(Scene, Policies)>) {
     }
 }
 
+/// Any value of every policy.
+fn policies() -> impl Strategy<Value = Policies> {
+    proptest::collection::vec(0..3_usize, POLICIES.len()).prop_map(|values| {
+        let mut policies = Policies::DEFAULT;
+        for (policy, value) in POLICIES.iter().zip(values) {
+            policies.choose(policy.rule, value % policy.values.len());
+        }
+        policies
+    })
+}
+
 fn scenes() -> u32 {
     std::env::var("NINEBIT_ORACLE_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(2000)
 }
 
 #[test]
 fn random_scenes_agree() {
-    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => random_scene::policies()];
+    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
     run(scenes(), &(random_scene::scene(), policies).boxed());
 }
 

@@ -21,17 +21,6 @@ pub fn scene() -> impl Strategy<Value = Scene> {
     Tape.prop_map(|tape| build(&tape)).prop_filter("RAS-0", |s| Plan::compile(s, &PlanOptions::default()).is_ok())
 }
 
-/// Any value of every policy.
-pub fn policies() -> impl Strategy<Value = Policies> {
-    proptest::collection::vec(0..3_usize, POLICIES.len()).prop_map(|values| {
-        let mut policies = Policies::DEFAULT;
-        for (policy, value) in POLICIES.iter().zip(values) {
-            policies.choose(policy.rule, value % policy.values.len());
-        }
-        policies
-    })
-}
-
 #[derive(Debug)]
 struct Tape;
 

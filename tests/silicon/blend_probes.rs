@@ -1,9 +1,9 @@
 //! Probes of the raster operations (ROP-1 to ROP-6) and of what is read back from surfaces.
 
 use crate::build::shows;
+use crate::probes::{Answers, single};
 use crate::sheet::{ALPHA_ONLY, OVER, RGB_ONLY, Sheet, bind, cell, copy, opaque};
 use crate::table::{Row, bytes};
-use crate::{Answers, single};
 use ninebit::state::*;
 
 /// A drawing sequence of the blend tests, on a texel.

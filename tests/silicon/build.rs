@@ -12,11 +12,6 @@ pub fn vertex(x: f32, y: f32, diffuse: [u8; 4]) -> Vertex {
     Vertex { position: [x, y, 0.0, 1.0], diffuse: VertexColor::Bytes(diffuse), ..Vertex::default() }
 }
 
-/// Input A to F of the final combiner.
-pub fn input(register: FinalRegister) -> FinalInput {
-    FinalInput { register, component: Component::Rgb, invert: false }
-}
-
 /// rgb = D = `register`, alpha = G = its alpha; one general stage that writes nothing.
 pub fn shows(register: FinalRegister) -> Combiners {
     let mut inputs = [FinalInput::zero(Component::Rgb); 6];

@@ -1,9 +1,9 @@
 //! Probes of the combiners and of what enters them.
 
-use crate::build::{input, shows};
-use crate::sheet::{OVER, Sheet, bind, cell, opaque};
+use crate::build::shows;
+use crate::probes::{Answers, single};
+use crate::sheet::{OVER, Sheet, bind, cell, input, opaque};
 use crate::table::Row;
-use crate::{Answers, single};
 use ninebit::state::*;
 
 fn frame(sheet: &mut Sheet) -> usize {

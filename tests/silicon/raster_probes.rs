@@ -2,9 +2,9 @@
 
 use crate::build::{draw, target, vertex};
 use crate::cases;
+use crate::probes::{Answers, single};
 use crate::sheet::OVER;
 use crate::table::Row;
-use crate::{Answers, single};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;

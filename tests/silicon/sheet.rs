@@ -110,3 +110,8 @@ pub fn opaque(draw: &mut Draw) {
     draw.combiners.final_combiner.g =
         FinalInput { register: FinalRegister::Zero, component: Component::Alpha, invert: true };
 }
+
+/// Input A to F of the final combiner.
+pub fn input(register: FinalRegister) -> FinalInput {
+    FinalInput { register, component: Component::Rgb, invert: false }
+}

@@ -1,35 +1,14 @@
 //! What a real NV2A showed, row by row: every probe of `vectors/silicon` goes through the model.
-#![allow(
-    clippy::float_arithmetic,
-    clippy::unwrap_used,
-    missing_docs,
-    unreachable_pub,
-    reason = "a test that gives floats to the model"
-)]
 
-#[path = "silicon/blend_probes.rs"]
-mod blend_probes;
-#[path = "silicon/build.rs"]
-mod build;
-#[path = "silicon/cases.rs"]
-mod cases;
-#[path = "silicon/combiner_probes.rs"]
-mod combiner_probes;
-#[path = "silicon/raster_probes.rs"]
-mod raster_probes;
-#[path = "silicon/sheet.rs"]
-mod sheet;
-#[path = "silicon/table.rs"]
-mod table;
-
+use crate::table::{self, Row};
+use crate::{blend_probes, combiner_probes, raster_probes, sheet};
 use rayon::prelude::*;
-use table::Row;
 
 /// For each row the pixels that the model allows: one, or one for each value of an input that the capture leaves open.
-type Answers = Vec<Vec<[u8; 4]>>;
+pub type Answers = Vec<Vec<[u8; 4]>>;
 
 /// One answer a row.
-fn single(pixels: Vec<[u8; 4]>) -> Answers {
+pub fn single(pixels: Vec<[u8; 4]>) -> Answers {
     pixels.into_iter().map(|pixel| vec![pixel]).collect()
 }
 

@@ -2,21 +2,13 @@
 //!
 //! The captures are not part of the repository; `vectors/silicon/frames` says what they show. With `NINEBIT_CAPTURES` set to a
 //! folder that holds them (`frames/SUITE/NAME.png`) they are compared directly, and `BLESS=1` writes the expectations anew.
-#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test that gives floats to the model")]
 
-#[path = "silicon/build.rs"]
-mod build;
-#[path = "silicon/cases.rs"]
-mod cases;
-#[path = "silicon/picture.rs"]
-mod picture;
-
-use cases::Case;
+use crate::cases::{self, Case};
+use crate::picture::{Expectation, Values, digest};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::report::trace_text;
-use picture::{Expectation, Values, digest};
 use std::path::{Path, PathBuf};
 
 /// A case, rendered.
@@ -56,10 +48,10 @@ impl Rendered {
     }
 
     /// What the model holds now against the committed expectation `name`. `ours` reads a value.
-    fn check(&self, name: &str, differing: usize, ours: impl Fn((u32, u32)) -> u32) {
+    fn check(&self, name: &str, capture: &str, differing: usize, ours: impl Fn((u32, u32)) -> u32) {
         let path = Expectation::path(name);
         let expected = Expectation::parse(&std::fs::read_to_string(&path).unwrap());
-        assert_eq!(expected.case, name);
+        assert_eq!((expected.case.as_str(), expected.capture.as_str()), (name, capture));
         assert_eq!(expected.positions().count(), expected.pixels, "{name}: the mask");
         assert_eq!(expected.differing.len(), differing, "{name}: pixels known to differ");
         for (x, y, captured, value) in &expected.differing {
@@ -136,7 +128,7 @@ fn colors(rendered: &Rendered, keep: impl Fn((u32, u32)) -> bool) {
         assert_eq!(covered, case.covered, "{}: covered pixels", case.name);
         rendered.compare(case.name, case.capture, &captured, &ours, case.differing);
     }
-    rendered.check(case.name, case.differing, |at| rendered.color(at));
+    rendered.check(case.name, case.capture, case.differing, |at| rendered.color(at));
 }
 
 fn whole(case: Case) {
@@ -186,7 +178,7 @@ fn r3_three_colors_and_depth() {
     };
     // Small quads lie on top of the large one: what belongs to it has about its depth.
     let ours = |(x, y): (u32, u32)| {
-        let plane = 11_184_809.0 + (f64::from(y) - 39.5) * 13_981.0125;
+        let plane = 11_184_809.0 + (f64::from(y) - 39.5) * 13_981.012_5;
         (f64::from(stored((x, y))) - plane).abs() <= 50.0
     };
     colors(&rendered, ours);
@@ -196,7 +188,7 @@ fn r3_three_colors_and_depth() {
         let depths: Values = expectation.positions().map(|at| (at, rendered.depth(at))).collect();
         rendered.compare("R3-depth", ZB, &captured, &depths, DIFFERING);
     }
-    rendered.check("R3-depth", DIFFERING, |at| rendered.depth(at));
+    rendered.check("R3-depth", ZB, DIFFERING, |at| rendered.depth(at));
     let depth = Expectation::parse(&std::fs::read_to_string(Expectation::path("R3-depth")).unwrap());
     assert!(depth.differing.iter().all(|(.., captured, ours)| captured.abs_diff(*ours) == 1));
 }

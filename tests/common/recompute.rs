@@ -1,0 +1,312 @@
+//! Recomputes a trace from its own numbers: every step from its inputs, every input from the step that made it.
+//!
+//! Written from `docs/trace-format.md`, against the JSON document alone; nothing of the model is used.
+
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// An exact number: value / per_one.
+#[derive(Clone, Copy, Debug)]
+pub struct Number {
+    pub value: i128,
+    pub per_one: i128,
+}
+
+impl PartialEq for Number {
+    fn eq(&self, other: &Self) -> bool {
+        self.value * other.per_one == other.value * self.per_one
+    }
+}
+
+fn number(v: &Value) -> Number {
+    Number { value: v["value"].as_i64().unwrap().into(), per_one: v["per_one"].as_i64().unwrap().into() }
+}
+
+/// Operands that are given with the step itself.
+fn is_parameter(name: &str) -> bool {
+    let parameters = ["x", "y", "size", "lowered", "write_mask", "z_max", "alpha_test.reference", "r", "g", "b", "a"];
+    let formats = [
+        "A8R8G8B8",
+        "X8R8G8B8",
+        "R5G6B5",
+        "X1R5G5B5",
+        "A1R5G5B5",
+        "L8",
+        "A8",
+        "G8B8",
+        "X8R8G8B8Z",
+        "X8R8G8B8O",
+        "X1R5G5B5Z",
+        "X1R5G5B5O",
+        "X1A7R8G8B8Z",
+        "X1A7R8G8B8O",
+        "B8",
+    ];
+    let coefficient = name.len() == 2 && "abc".contains(&name[..1]) && "012".contains(&name[1..]);
+    parameters.contains(&name) || formats.contains(&name) || coefficient
+}
+
+/// Recomputes one fragment; the values of all names at its end.
+pub fn fragment(draw: &Value) -> Result<BTreeMap<String, Number>, String> {
+    let mut known: BTreeMap<String, Number> = BTreeMap::new();
+    for step in draw["steps"].as_array().unwrap() {
+        let name = step["name"].as_str().unwrap();
+        let operation = step["operation"].as_str().unwrap();
+        let mut inputs = Vec::new();
+        for input in step["inputs"].as_array().unwrap() {
+            let label = input["name"].as_str().unwrap();
+            let given = number(input);
+            if let Some(made) = known.get(label) {
+                if *made != given {
+                    return Err(format!("{name}: input {label} is {given:?}, but was computed as {made:?}"));
+                }
+            } else if label.starts_with("zero.") {
+                if given.value != 0 {
+                    return Err(format!("{name}: {label} is {given:?}"));
+                }
+            } else if !is_parameter(label) {
+                return Err(format!("{name}: input {label} was never computed"));
+            }
+            inputs.push((label.to_string(), given));
+        }
+        let shown = number(step);
+        let computed = if ["given", "fetch", "border_color"].contains(&operation) {
+            shown
+        } else {
+            apply(operation, &inputs).ok_or_else(|| format!("{name}: unknown operation {operation}"))?
+        };
+        if computed != shown {
+            return Err(format!("{name} = {operation}({inputs:?}): recomputed {computed:?}, shown {shown:?}"));
+        }
+        known.insert(name.to_string(), computed);
+    }
+    Ok(known)
+}
+
+fn plain(value: i128) -> Number {
+    Number { value, per_one: 1 }
+}
+
+fn byte(value: i128) -> Number {
+    Number { value, per_one: 255 }
+}
+
+/// Nearest 255th of an exact number, halves up: floor(255 n + 1/2).
+fn nearest_255(n: Number) -> Number {
+    byte((2 * 255 * n.value + n.per_one).div_euclid(2 * n.per_one))
+}
+
+fn times(a: Number, b: Number) -> Number {
+    Number { value: a.value * b.value, per_one: a.per_one * b.per_one }
+}
+
+fn add(a: Number, b: Number) -> Number {
+    Number { value: a.value * b.per_one + b.value * a.per_one, per_one: a.per_one * b.per_one }
+}
+
+fn negate(a: Number) -> Number {
+    Number { value: -a.value, per_one: a.per_one }
+}
+
+fn apply(operation: &str, inputs: &[(String, Number)]) -> Option<Number> {
+    let n = |k: usize| inputs[k].1;
+    let v = |k: usize| inputs[k].1.value;
+    let max0 = |k: usize| v(k).max(0);
+    let one = byte(255);
+    Some(match operation {
+        // Rasteriser and interpolation.
+        "edge_function" => plain(v(0) * v(3) + v(1) * v(4) + v(2)),
+        "sum_of_products" => plain((0..inputs.len() / 2).map(|k| v(2 * k) * v(2 * k + 1)).sum()),
+        "floor_weight" => {
+            let (numerator, d) = (256 * v(0) * v(1), v(2));
+            let q = numerator.div_euclid(d);
+            if v(3) != 0 && (numerator.rem_euclid(d) != 0 || q == 0) {
+                return None;
+            }
+            Number { value: q - v(3), per_one: 256 }
+        }
+        "remainder_weight" => Number { value: 256 - v(0) - v(1), per_one: 256 },
+        "interpolate" => byte((v(0) * v(3) + v(1) * v(4) + v(2) * v(5) + 128) >> 8),
+        "floor_plane" => {
+            let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
+            if v(7) != 0 && sum.rem_euclid(v(6)) != 0 {
+                return None;
+            }
+            Number { value: sum.div_euclid(v(6)) - v(7), per_one: 256 }
+        }
+        "floor_ratio" => {
+            let s: i128 = (0..3).map(|k| v(k) * v(6 + k)).sum();
+            let q: i128 = (0..3).map(|k| v(3 + k) * v(6 + k)).sum();
+            let limit = 1 << 24;
+            let value = if q == 0 {
+                limit * s.signum()
+            } else {
+                (256 * v(9) * s * q.signum()).div_euclid(q.abs()).clamp(-limit, limit) - v(10)
+            };
+            Number { value, per_one: 256 }
+        }
+        "floor_factor" => {
+            let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
+            Number { value: sum.div_euclid(v(6)).clamp(0, 4096), per_one: 4096 }
+        }
+        "factor_byte" => byte((v(0) - (v(0) >> 8)) >> 4),
+        // Texture units.
+        "nearest_texel" => plain(v(0) >> 8),
+        "linear_texel" => plain((v(0) - 128) >> 8),
+        "linear_texel_next" => plain(((v(0) - 128) >> 8) + 1),
+        "linear_weight" => Number { value: (v(0) - 128) & 255, per_one: 256 },
+        "wrap" => plain(v(0).rem_euclid(v(1))),
+        "mirror" => {
+            let period = v(0).rem_euclid(2 * v(1));
+            plain(period.min(2 * v(1) - 1 - period))
+        }
+        "clamp" | "clamp_to_edge" => plain(v(0).clamp(0, v(1) - 1)),
+        "clamp_to_border" => plain(v(0)),
+        "expand_texel" => byte(texel(&inputs[1].0, v(0), &inputs[2].0)?),
+        "expand_texel_signed" => byte(i128::from(texel(&inputs[1].0, v(0), &inputs[2].0)? as u8 as i8)),
+        "mix" => byte((v(0) * (256 - v(2)) + v(1) * v(2) + 128) >> 8),
+        "double" => byte(2 * v(0)),
+        "write" | "copy" => n(0),
+        // Combiners.
+        "unsigned_identity" => byte(max0(0)),
+        "unsigned_invert" => byte(255 - max0(0)),
+        "final_invert" => byte((255 - max0(0)).max(0)),
+        "expand_normal" => byte(2 * (max0(0) - 128)),
+        "expand_negate" => byte((-2 * (max0(0) - 128)).min(255)),
+        "half_bias_normal" => byte(max0(0) - 128),
+        "half_bias_negate" => byte(128 - max0(0)),
+        "signed_identity" => n(0),
+        "signed_negate" => byte((-v(0)).min(255)),
+        "product" | "dot_product" => inputs.chunks(2).map(|p| times(p[0].1, p[1].1)).fold(plain(0), add),
+        "add" => add(n(0), n(1)),
+        "select" => n(usize::from(v(2) != 0)),
+        "mux_msb" => plain(i128::from(v(0) >= 128)),
+        "mux_lsb" => plain(v(0) & 1),
+        "round_255" => nearest_255(n(0)),
+        "bias" => byte(v(0) - 128),
+        "scale_2" => byte(2 * v(0)),
+        "scale_4" => byte(4 * v(0)),
+        "scale_half" => byte((v(0) + 1) >> 1),
+        "saturate_256" => byte(v(0).clamp(-256, 255)),
+        "add_limit_255" => byte((v(0) + v(1)).min(255)),
+        "product_round_255" => nearest_255(times(n(0), n(1))),
+        "lerp_add" => {
+            let a = byte(v(0).min(255));
+            let lerp = add(times(a, n(1)), times(add(one, negate(a)), n(2)));
+            add(nearest_255(lerp), n(3))
+        }
+        "clamp_0_255" => byte(v(0).clamp(0, 255)),
+        // Raster operations.
+        "never" => plain(0),
+        "less" => plain(i128::from(v(0) < v(1))),
+        "equal" => plain(i128::from(v(0) == v(1))),
+        "less_or_equal" => plain(i128::from(v(0) <= v(1))),
+        "greater" => plain(i128::from(v(0) > v(1))),
+        "not_equal" => plain(i128::from(v(0) != v(1))),
+        "greater_or_equal" => plain(i128::from(v(0) >= v(1))),
+        "always" => plain(1),
+        "depth" => Number { value: depth([v(0), v(1), v(2)], [v(3), v(4), v(5)], v(6)), per_one: v(6) },
+        "drop_2_bits" => byte(v(0) >> 2 << 2),
+        "drop_3_bits" => byte(v(0) >> 3 << 3),
+        "read_surface" => byte(surface(&inputs[1].0, v(0), &inputs[2].0)?),
+        "constant_0" => byte(0),
+        "constant_255" => one,
+        "invert_255" => byte(255 - v(0)),
+        "saturate_factor" => byte(v(0).min(255 - v(1))),
+        "blend_add" => nearest_255(add(times(n(0), n(2)), times(n(1), n(3)))),
+        "blend_subtract" => nearest_255(add(times(n(0), n(2)), negate(times(n(1), n(3))))),
+        "blend_reverse_subtract" => nearest_255(add(times(n(1), n(3)), negate(times(n(0), n(2))))),
+        "minimum" => byte(v(0).min(v(1))),
+        "maximum" => byte(v(0).max(v(1))),
+        "signed_add" => byte(v(1) + i128::from(v(0) as u8 as i8)),
+        "signed_reverse_subtract" => byte(v(1) - i128::from(v(0) as u8 as i8)),
+        "store" => plain(store(inputs)?),
+        _ => return None,
+    })
+}
+
+fn channel(letter: &str) -> Option<usize> {
+    ["r", "g", "b", "a"].iter().position(|l| *l == letter)
+}
+
+fn texel(format: &str, word: i128, letter: &str) -> Option<i128> {
+    let five = |v: i128| v << 3 | v >> 2;
+    let six = |v: i128| v << 2 | v >> 4;
+    let c = channel(letter)?;
+    let argb = [word >> 16 & 255, word >> 8 & 255, word & 255, word >> 24 & 255];
+    Some(match format {
+        "A8R8G8B8" => argb[c],
+        "X8R8G8B8" => [argb[0], argb[1], argb[2], 255][c],
+        "R5G6B5" => [five(word >> 11), six(word >> 5 & 63), five(word & 31), 255][c],
+        "A1R5G5B5" => [five(word >> 10 & 31), five(word >> 5 & 31), five(word & 31), 255 * (word >> 15)][c],
+        "X1R5G5B5" => [five(word >> 10 & 31), five(word >> 5 & 31), five(word & 31), 255][c],
+        "L8" => [word, word, word, 255][c],
+        "A8" => [255, 255, 255, word][c],
+        "G8B8" => [word & 255, word >> 8, word & 255, word >> 8][c],
+        _ => return None,
+    })
+}
+
+fn surface(format: &str, word: i128, letter: &str) -> Option<i128> {
+    let c = channel(letter)?;
+    let argb = [word >> 16 & 255, word >> 8 & 255, word & 255, word >> 24 & 255];
+    let seven = argb[3] & 127;
+    Some(match format {
+        "A8R8G8B8" => argb[c],
+        "X8R8G8B8Z" | "X8R8G8B8O" => [argb[0], argb[1], argb[2], 255][c],
+        "X1A7R8G8B8Z" | "X1A7R8G8B8O" => [argb[0], argb[1], argb[2], seven << 1 | seven >> 6][c],
+        "R5G6B5" => [word >> 11 << 3, (word >> 5 & 63) << 2, (word & 31) << 3, 255][c],
+        "X1R5G5B5Z" | "X1R5G5B5O" => [(word >> 10 & 31) << 3, (word >> 5 & 31) << 3, (word & 31) << 3, 255][c],
+        _ => return None,
+    })
+}
+
+/// Inputs: the format, the old word, the mask of written bits, then the channels that are written.
+fn store(inputs: &[(String, Number)]) -> Option<i128> {
+    let mut rgba = [0; 4];
+    for (name, value) in &inputs[3..] {
+        rgba[channel(name.rsplit('.').next()?)?] = value.value;
+    }
+    let [r, g, b, a] = rgba;
+    let rgb = r << 16 | g << 8 | b;
+    let word = match inputs[0].0.as_str() {
+        "A8R8G8B8" => a << 24 | rgb,
+        "X8R8G8B8Z" => rgb,
+        "X8R8G8B8O" => 255 << 24 | rgb,
+        "X1A7R8G8B8Z" => (a >> 1) << 24 | rgb,
+        "X1A7R8G8B8O" => (128 | a >> 1) << 24 | rgb,
+        "R5G6B5" => r >> 3 << 11 | g >> 2 << 5 | b >> 3,
+        "X1R5G5B5Z" => r >> 3 << 10 | g >> 3 << 5 | b >> 3,
+        "X1R5G5B5O" => 1 << 15 | r >> 3 << 10 | g >> 3 << 5 | b >> 3,
+        "B8" => b,
+        "G8B8" => g << 8 | b,
+        _ => return None,
+    };
+    let (old, mask) = (inputs[1].1.value, inputs[2].1.value);
+    Some(old & !mask | word & mask)
+}
+
+/// z_dom + sum of trunc24(b_i) (z_i - z_dom), floored.
+fn depth(z: [i128; 3], e: [i128; 3], full: i128) -> i128 {
+    let whole: i128 = e.iter().sum();
+    let class = |k: usize| if e[k] == 0 { 999 } else { (0..).find(|c| e[k] << (c + 1) > whole).unwrap() };
+    let best = (0..3).map(class).min().unwrap();
+    let tied: Vec<usize> = (0..3).filter(|k| class(*k) == best).collect();
+    let dominant = match tied.as_slice() {
+        [0, 1, 2] | [0, 2] => 2,
+        [0, 1] => 0,
+        [1, 2] => 1,
+        one => one[0],
+    };
+    let (mut numerator, mut denominator) = (0_i128, 1_i128);
+    for k in (0..3).filter(|k| *k != dominant && e[*k] != 0) {
+        let mut scale = 1_i128;
+        while e[k] * scale / whole < 1 << 23 {
+            scale *= 2;
+        }
+        let common = scale.max(denominator);
+        numerator = numerator * (common / denominator) + e[k] * scale / whole * (z[k] - z[dominant]) * (common / scale);
+        denominator = common;
+    }
+    (z[dominant] + numerator.div_euclid(denominator)).clamp(0, full)
+}

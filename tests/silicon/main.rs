@@ -1,0 +1,19 @@
+//! The model against a real NV2A: measured pixels (`probes`) and whole captured frames (`frames`).
+#![allow(
+    clippy::float_arithmetic,
+    clippy::unwrap_used,
+    missing_docs,
+    unreachable_pub,
+    reason = "a test that gives floats to the model"
+)]
+
+mod blend_probes;
+mod build;
+mod cases;
+mod combiner_probes;
+mod frames;
+mod picture;
+mod probes;
+mod raster_probes;
+mod sheet;
+mod table;
