@@ -12,10 +12,10 @@ pub struct PlannedFinal {
     pub state: FinalCombiner,
     /// Channels R, G, B (bits 1, 2, 4) and alpha (8) that the raster operations need.
     pub live: u8,
-    /// E times F is read by a live input.
-    pub uses_product: bool,
-    /// SPARE0 + SECONDARY is read by a live input.
-    pub uses_sum: bool,
+    /// Channels of E times F that live inputs read.
+    pub product: u8,
+    /// Channels of SPARE0 + SECONDARY that live inputs read.
+    pub sum: u8,
     /// A live input reads a constant.
     pub reads_constants: bool,
     /// A or C is not always 0, so that the lerp contributes.
@@ -72,32 +72,26 @@ pub fn run<L: Lane, O: Observer>(
         registers.load(Register::ConstantColor1, state.constants[1].map(L::byte));
     }
     let mut specials = Specials { sum: [L::ZERO; 4], product: [L::ZERO; 4] };
-    if planned.uses_sum {
-        for channel in 0..3 {
-            let operands =
-                [registers.read(Register::Spare0, channel), registers.read(Register::SecondaryColor, channel)];
-            specials.sum[channel] = color_sum(operands[0], operands[1], state);
-            if O::ON {
-                report_sum(state, channel, operands, specials.sum[channel], observer);
-            }
+    for channel in (0..3).filter(|c| planned.sum >> c & 1 != 0) {
+        let operands = [registers.read(Register::Spare0, channel), registers.read(Register::SecondaryColor, channel)];
+        specials.sum[channel] = color_sum(operands[0], operands[1], state);
+        if O::ON {
+            report_sum(state, channel, operands, specials.sum[channel], observer);
         }
     }
-    if planned.uses_product {
-        for channel in 0..3 {
-            let [e, f] = [4, 5].map(|n| read(&state.inputs[n], n, channel, registers, &specials, observer));
-            specials.product[channel] = product(e, f);
-            if O::ON {
-                let suffix = channel_name(channel);
-                let inputs = vec![
-                    report::register(format!("final.E.{suffix}"), e),
-                    report::register(format!("final.F.{suffix}"), f),
-                ];
-                let name = format!("final.EF.{suffix}");
-                observer.step(
-                    report::register_step(BLOCK, "FIN-4", name, specials.product[channel])
-                        .by("product_round_255", inputs),
-                );
-            }
+    for channel in (0..3).filter(|c| planned.product >> c & 1 != 0) {
+        let [e, f] = [4, 5].map(|n| read(&state.inputs[n], n, channel, registers, &specials, observer));
+        specials.product[channel] = product(e, f);
+        if O::ON {
+            let suffix = channel_name(channel);
+            let inputs = vec![
+                report::register(format!("final.E.{suffix}"), e),
+                report::register(format!("final.F.{suffix}"), f),
+            ];
+            let name = format!("final.EF.{suffix}");
+            observer.step(
+                report::register_step(BLOCK, "FIN-4", name, specials.product[channel]).by("product_round_255", inputs),
+            );
         }
     }
     let mut out = [L::ZERO; 4];
@@ -152,21 +146,16 @@ fn read<L: Lane, O: Observer>(
     };
     let value = input(x, from.invert);
     if O::ON {
-        let (operand, undefined) = match from.register {
-            FinalRegister::Spare0PlusSecondary => (format!("final.sum.{}", channel_name(source)), false),
-            FinalRegister::ETimesF => (format!("final.EF.{}", channel_name(source)), false),
-            _ => (
-                format!("{}.{}", registers::name(register), channel_name(source)),
-                registers.undefined & registers::bit(register, source) != 0,
-            ),
+        let operand = match from.register {
+            FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF if source == 3 => "zero.a".to_string(),
+            FinalRegister::Spare0PlusSecondary => format!("final.sum.{}", channel_name(source)),
+            FinalRegister::ETimesF => format!("final.EF.{}", channel_name(source)),
+            _ => format!("{}.{}", registers::name(register), channel_name(source)),
         };
         let name = format!("final.{}.{}", ["A", "B", "C", "D", "E", "F", "G"][n], channel_name(channel));
         let operation = if from.invert { "final_invert" } else { "unsigned_identity" };
-        observer.step(
-            report::register_step(BLOCK, "FIN-1", name, value)
-                .by(operation, vec![report::register(operand, x)])
-                .note(undefined.then(|| "no document defines this register here; taken as 0 (CMB-13)".to_string())),
-        );
+        let inputs = vec![report::register(operand, x)];
+        observer.step(report::register_step(BLOCK, "FIN-1", name, value).by(operation, inputs));
     }
     value
 }

@@ -11,8 +11,6 @@ pub const REGISTERS: usize = 12;
 pub struct Registers<L> {
     /// Values.
     pub values: [[L; 4]; REGISTERS],
-    /// Bit `4 register + channel` is set while no document defines what the register holds (CMB-13).
-    pub undefined: u64,
 }
 
 /// The bit of a channel in a set of channels of registers.
@@ -29,7 +27,7 @@ impl<L: Lane> Registers<L> {
     /// CMB-13: zeros; the caller loads what the pixel brings, SPARE0's alpha included.
     #[inline]
     pub fn new() -> Self {
-        Registers { values: [[L::ZERO; 4]; REGISTERS], undefined: initially_undefined() }
+        Registers { values: [[L::ZERO; 4]; REGISTERS] }
     }
 
     /// Loads a register before the first stage.
@@ -42,7 +40,6 @@ impl<L: Lane> Registers<L> {
     #[inline(always)]
     pub fn write(&mut self, register: Register, channel: usize, value: L) {
         self.values[register as usize][channel] = value;
-        self.undefined &= !bit(register, channel);
     }
 
     /// Reads one channel.
@@ -58,7 +55,7 @@ impl<L: Lane> Default for Registers<L> {
     }
 }
 
-/// SPARE0's colour and SPARE1 (CMB-13).
+/// What no document defines before a stage writes it: SPARE0's colour and SPARE1 (CMB-13), taken as 0.
 pub fn initially_undefined() -> u64 {
     (bits(Register::Spare0) & !bit(Register::Spare0, 3)) | bits(Register::Spare1)
 }

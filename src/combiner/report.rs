@@ -10,9 +10,6 @@ use crate::state::{
 };
 use crate::trace::{Observer, Step, plain, report};
 
-/// What CMB-13 says of a value that a stage reads.
-const UNDEFINED: &str = "no document defines this register here; taken as 0 (CMB-13)";
-
 const PRODUCT_NAMES: [&str; 3] = ["AB", "CD", "sum"];
 const INPUT_NAMES: [&str; 4] = ["A", "B", "C", "D"];
 
@@ -71,12 +68,10 @@ impl StageReport {
                 let x = registers.read(input.register, source);
                 let [factor] = mapping::map([x], input.mapping, policies);
                 let name = format!("{}.{}.{}", self.prefix, INPUT_NAMES[n], channel_name(channel));
-                let undefined = registers.undefined & registers::bit(input.register, source) != 0;
                 let operand = format!("{}.{}", registers::name(input.register), channel_name(source));
                 observer.step(
                     report::factor_step::<L>(&self.block, mapping::rule(input.mapping), name, factor)
-                        .by(mapping::operation(input.mapping), vec![report::register(operand, x)])
-                        .note(undefined.then(|| UNDEFINED.to_string())),
+                        .by(mapping::operation(input.mapping), vec![report::register(operand, x)]),
                 );
             }
         }

@@ -194,7 +194,10 @@ impl<'a> TriangleContext<'a> {
             let ideal = || ideal::factor(self.barycentrics(sample), self.vertices.map(|v| v.fog));
             let factor = L::value(i32::from(convert::factor_byte(v)), ideal);
             if O::ON {
-                let planes = (0..3).map(|k| plain(format!("G_fog{k}"), self.fog[k]));
+                for (k, g) in self.fog.iter().enumerate() {
+                    observer.step(Step::given("fog", "INT-5", format!("fog.G{k}"), *g));
+                }
+                let planes = (0..3).map(|k| plain(format!("fog.G{k}"), self.fog[k]));
                 let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
                 let inputs = planes.chain(edges).chain([plain("D", sample.d)]).collect();
                 let mut step = Step::given("fog", "INT-5", "fog.4096", v).by("floor_factor", inputs);
@@ -253,6 +256,9 @@ impl<'a> TriangleContext<'a> {
             let words = textures[planned.state.texture];
             let value = unit::sample::<L, O>(planned, words, coordinates, sample, ideal, observer);
             registers.load(UNITS[planned.index], value);
+        }
+        if O::ON {
+            reports::undefined(self.draw.undefined, observer);
         }
         if !self.draw.spare0_alpha {
             return;

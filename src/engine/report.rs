@@ -1,13 +1,13 @@
 //! What a pixel tells an observer outside the blocks that report for themselves. Nothing here computes a value that is used.
 
 use super::pixel::TriangleContext;
-use crate::combiner::registers::channel_name;
+use crate::combiner::registers::{self, channel_name};
 use crate::number::Lane;
 use crate::plan::PlannedDraw;
 use crate::raster::interpolate::{Sample, Settled};
 use crate::raster::{ideal, setup};
 use crate::rop::{blend, surface};
-use crate::state::{Named, VertexColor};
+use crate::state::{Named, Register, VertexColor};
 use crate::trace::{Observer, Operand, Step, byte, part, plain, report};
 
 const RASTER: &str = "rasteriser";
@@ -38,6 +38,17 @@ pub(super) fn setup<O: Observer>(
     let inputs =
         (0..3).flat_map(|k| [plain(format!("P{k}"), triangle.p[k]), plain(format!("E{k}"), sample.e[k])]).collect();
     observer.step(Step::given(RASTER, "INT-1", "D", sample.d).by("sum_of_products", inputs));
+}
+
+/// CMB-13: what is read before anything wrote it.
+pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
+    for register in [Register::Spare0, Register::Spare1] {
+        for channel in (0..4).filter(|c| read & registers::bit(register, *c) != 0) {
+            let name = format!("{}.{}", registers::name(register), channel_name(channel));
+            let note = "no document defines this register here; taken as 0".to_string();
+            observer.step(Step::given("registers", "CMB-13", name, 0).per(255).ideal(Some(0.0)).note(Some(note)));
+        }
+    }
 }
 
 /// The 8-bit weights of the colours.

@@ -2,7 +2,7 @@
 
 use crate::combiner::final_combiner::{self, PlannedFinal};
 use crate::combiner::general::{PlannedPortion, PlannedStage, source_channel};
-use crate::combiner::registers::{bit, bits};
+use crate::combiner::registers::{bit, initially_undefined};
 use crate::rop::blend;
 use crate::state::{
     Blend, BlendFactor, Combiners, Component, Draw, FinalInput, FinalRegister, Portion, Register, TEXTURE_UNITS,
@@ -23,6 +23,7 @@ pub(super) struct Liveness {
     pub(super) fog: u8,
     pub(super) units: [u8; TEXTURE_UNITS],
     pub(super) spare0_alpha: bool,
+    pub(super) undefined: u64,
 }
 
 impl Liveness {
@@ -65,6 +66,7 @@ impl Liveness {
             fog: channels(Register::Fog),
             units,
             spare0_alpha,
+            undefined: live & initially_undefined(),
         }
     }
 }
@@ -82,14 +84,7 @@ fn fragment_channels(alpha_test: bool, blend: Option<Blend>, written: u8) -> u8 
 
 fn final_liveness(combiners: &Combiners, fragment: u8) -> (PlannedFinal, u64) {
     let state = combiners.final_combiner;
-    let mut planned = PlannedFinal {
-        state,
-        live: fragment,
-        uses_product: false,
-        uses_sum: false,
-        reads_constants: false,
-        lerps: true,
-    };
+    let mut planned = PlannedFinal { state, live: fragment, product: 0, sum: 0, reads_constants: false, lerps: true };
     planned.lerps = ![state.inputs[0], state.inputs[2]].iter().all(FinalInput::is_zero);
     let mut live = 0;
     let mut read = |input: &FinalInput, channels: u8| {
@@ -101,8 +96,8 @@ fn final_liveness(combiners: &Combiners, fragment: u8) -> (PlannedFinal, u64) {
             };
             match input.register {
                 // Their alpha is 0 and reads nothing.
-                FinalRegister::Spare0PlusSecondary if source < 3 => planned.uses_sum = true,
-                FinalRegister::ETimesF if source < 3 => planned.uses_product = true,
+                FinalRegister::Spare0PlusSecondary if source < 3 => planned.sum |= 1 << source,
+                FinalRegister::ETimesF if source < 3 => planned.product |= 1 << source,
                 FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => {}
                 register => live |= bit(final_combiner::general(register), source),
             }
@@ -114,19 +109,14 @@ fn final_liveness(combiners: &Combiners, fragment: u8) -> (PlannedFinal, u64) {
     if fragment & ALPHA != 0 {
         read(&state.g, ALPHA);
     }
-    if planned.uses_product {
-        let mut product_live = 0;
+    for channel in (0..3).filter(|c| planned.product >> c & 1 != 0) {
         for input in &state.inputs[4..] {
-            for channel in 0..3 {
-                let source = if input.component == Component::Rgb { channel } else { 3 };
-                product_live |= bit(final_combiner::general(input.register), source);
-            }
+            let source = if input.component == Component::Rgb { channel } else { 3 };
+            live |= bit(final_combiner::general(input.register), source);
         }
-        live |= product_live;
     }
-    if planned.uses_sum {
-        let rgb = |register| bits(register) & !bit(register, 3);
-        live |= rgb(Register::Spare0) | rgb(Register::SecondaryColor);
+    for channel in (0..3).filter(|c| planned.sum >> c & 1 != 0) {
+        live |= bit(Register::Spare0, channel) | bit(Register::SecondaryColor, channel);
     }
     planned.reads_constants = live & CONSTANTS != 0;
     (planned, live)

@@ -98,6 +98,8 @@ pub struct PlannedDraw {
     pub unbound: [u8; TEXTURE_UNITS],
     /// SPARE0's initial alpha is read (CMB-13).
     pub spare0_alpha: bool,
+    /// Registers that are read before anything wrote them (CMB-13): bits as [`registers::bit`](crate::combiner::registers::bit).
+    pub undefined: u64,
     /// General stages that are needed.
     pub stages: Vec<PlannedStage>,
     /// Mux bit.
@@ -242,6 +244,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         units,
         unbound: std::array::from_fn(|n| if draw.textures[n].is_none() { liveness.units[n] } else { 0 }),
         spare0_alpha: liveness.spare0_alpha,
+        undefined: liveness.undefined,
         stages: liveness.stages,
         mux_select: draw.combiners.mux_select,
         final_combiner: liveness.final_combiner,
