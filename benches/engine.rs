@@ -12,14 +12,14 @@ const HEIGHT: u32 = 480;
 
 /// A bumpy normal map: any bytes do, as long as they vary from texel to texel.
 fn normal_map() -> Texture {
-    let words = (0..256 * 256_u32)
+    let words: Vec<u32> = (0..256 * 256_u32)
         .map(|n| {
             let (x, y) = (n & 255, n >> 8);
             let wave = |a: u32, b: u32| 96 + ((a * 7 + b * 3) & 63);
             0xff00_0000 | wave(x, y) << 16 | wave(y, x) << 8 | (230 + (x ^ y) % 20)
         })
         .collect();
-    let image = TextureImage::Texels { width: 256, height: 256, format: TextureFormat::A8R8G8B8, words };
+    let image = TextureImage::Texels { width: 256, height: 256, format: TextureFormat::A8R8G8B8, words: words.into() };
     Texture { name: "normals".to_string(), image }
 }
 

@@ -114,7 +114,7 @@ impl Destination {
 /// # Errors
 /// The place is a folder, a read-only file, its folder is missing or not writable, the disk is full.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    let refused = |source: io::Error| OutputError::Write { path: path.to_path_buf(), source };
+    let refused = |error: io::Error| OutputError::Write { path: path.to_path_buf(), source: error };
     let existing = path.metadata().ok();
     if existing.as_ref().is_some_and(std::fs::Metadata::is_dir) {
         return Err(OutputError::Folder { path: path.to_path_buf() });
@@ -135,6 +135,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
+    let temporary_refused = |error: io::Error| refused(without_path(error));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".ninebit-").suffix(".part");
     let permissions = match &existing {
@@ -145,11 +146,16 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
         // On systems where the mode of a new file is subject to the user's mask, so is this one.
         builder.permissions(permissions);
     }
-    let mut temporary = builder.tempfile_in(folder).map_err(refused)?;
-    temporary.write_all(bytes).map_err(refused)?;
+    let mut temporary = builder.tempfile_in(folder).map_err(temporary_refused)?;
+    temporary.write_all(bytes).map_err(temporary_refused)?;
     temporary.as_file().sync_all().map_err(refused)?;
     temporary.persist(&place).map_err(|error| refused(error.error))?;
     Ok(())
+}
+
+/// The temporary file's errors name a file that the user has never heard of: what is said is their kind.
+fn without_path(error: io::Error) -> io::Error {
+    if error.get_ref().is_some() { error.kind().into() } else { error }
 }
 
 /// What a file made in the ordinary way may be used for: temporary files are closed to others, outputs are not.

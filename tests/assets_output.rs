@@ -33,6 +33,7 @@ fn folders_and_missing_folders_are_refused() {
     assert_eq!(error.code(), "NB0701");
     let error = write_file(&folder.path().join("none/frame.png"), b"x").expect_err("no such folder");
     assert_eq!((error.code(), error.help()), ("NB0702", "create its folder first"));
+    assert!(!error.to_string().contains(".ninebit-"), "{error}");
     let file = folder.path().join("file");
     write_file(&file, b"x").unwrap();
     assert_eq!(write_file(&file.join("frame.png"), b"x").expect_err("a file").code(), "NB0702");

@@ -177,7 +177,7 @@ fn texels_are_packed_by_cutting_off() {
         let top = format!("textures: {{ \"t\": (format: {format}, source: {source}) }},");
         let loaded = draw("Nv2a", &top, "textures: [\"t\"]");
         match &loaded.scene.textures[0].image {
-            TextureImage::Texels { words, .. } => words.clone(),
+            TextureImage::Texels { words, .. } => words.to_vec(),
             TextureImage::Target { .. } => panic!("texels expected"),
         }
     };

@@ -23,8 +23,7 @@ pub(crate) struct Arguments {
 
 /// Checks and plans a scene and prints its cost.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let scene = arguments.scene.load(context)?;
-    arguments.scene.plan(&scene)?;
+    let (scene, _) = arguments.scene.load(context)?;
     let cost = Cost::of(&scene);
     let text = match arguments.format {
         Format::Text => text(&scene, &cost),

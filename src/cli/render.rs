@@ -54,11 +54,9 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     refuse_overwriting(&arguments.scene.scene, &destination)?;
 
     let mut clock = Clock::start();
-    let scene = arguments.scene.load(context)?;
+    let (scene, plan) = arguments.scene.load(context)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     clock.lap("load");
-    let plan = arguments.scene.plan(&scene)?;
-    clock.lap("plan");
     let (frames, statistics) = {
         let progress = Progress::new("rendering", context.color);
         let options = RenderOptions { threads: arguments.threads };

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use ninebit::limits::Limits;
 use ninebit::output::Destination;
-use ninebit::plan::{Plan, PlanError, PlanOptions};
+use ninebit::plan::Plan;
 use ninebit::scene::{self, ErrorKind, SceneError};
 use ninebit::state::{Policies, Scene};
 
@@ -24,17 +24,18 @@ pub(crate) struct SceneArguments {
 }
 
 impl SceneArguments {
-    /// Reads and checks the scene; warnings go to stderr.
-    pub(crate) fn load(&self, context: Context) -> Result<Scene, Failure> {
+    /// Reads, checks and plans the scene; warnings go to stderr.
+    pub(crate) fn load(&self, context: Context) -> Result<(Scene, Plan), Failure> {
+        let policies = self.policies()?;
         let loaded = scene::load(&self.scene, &Limits::default()).map_err(|error| refused(&error, context))?;
         if !loaded.warnings.is_empty() {
             terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
         }
-        Ok(loaded.scene)
+        Ok((loaded.scene, Plan { policies, ..loaded.plan }))
     }
 
     /// The policies of the command line.
-    pub(crate) fn policies(&self) -> Result<Policies, Failure> {
+    fn policies(&self) -> Result<Policies, Failure> {
         let mut policies = Policies::DEFAULT;
         for assignment in &self.policies {
             policies.set(assignment).map_err(|error| {
@@ -42,26 +43,6 @@ impl SceneArguments {
             })?;
         }
         Ok(policies)
-    }
-
-    /// Plans the scene.
-    pub(crate) fn plan(&self, scene: &Scene) -> Result<Plan, Failure> {
-        let options = PlanOptions { policies: self.policies()?, ..PlanOptions::default() };
-        Plan::compile(scene, &options).map_err(|errors| self.not_planned(scene, &errors))
-    }
-
-    /// Tells every reason at once.
-    fn not_planned(&self, scene: &Scene, errors: &[PlanError]) -> Failure {
-        let file = self.scene.display();
-        let lines = errors.iter().map(|error| {
-            let draw = scene.draws.get(error.draw).map_or("", |draw| draw.name.as_str());
-            let vertex = error.vertex.map_or(String::new(), |vertex| format!(", vertex {vertex}"));
-            format!(
-                "error[{}]: {file}: draw {} `{draw}`{vertex}: {}\n  help: {}\n",
-                error.rule, error.draw, error.message, error.help
-            )
-        });
-        Failure { exit: Exit::Invalid, report: Report::Text(lines.collect()) }
     }
 }
 

@@ -30,9 +30,8 @@ pub(crate) struct Arguments {
 
 /// Prints how one pixel came to be.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let scene = arguments.scene.load(context)?;
+    let (scene, plan) = arguments.scene.load(context)?;
     let target = super::scene::chosen_target(&scene, arguments.target.as_deref())?;
-    let plan = arguments.scene.plan(&scene)?;
     let trace =
         engine::trace(&plan, target, arguments.pixel, arguments.draw).map_err(|error| outside(&scene, &error))?;
     let text = match arguments.format {

@@ -90,7 +90,7 @@ pub(crate) fn texture_words<'a>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<
     plan.textures
         .iter()
         .map(|t| match &t.image {
-            TextureImage::Texels { words, .. } => words.as_slice(),
+            TextureImage::Texels { words, .. } => words,
             TextureImage::Target { target, .. } => surfaces[*target].words.as_slice(),
         })
         .collect()

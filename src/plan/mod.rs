@@ -53,7 +53,7 @@ pub struct PlanError {
 pub struct Plan {
     /// The chip.
     pub profile: Profile,
-    /// The policies in force.
+    /// The policies in force. They do not change what is planned, so they may be set afterwards.
     pub policies: Policies,
     /// Render targets.
     pub targets: Vec<Target>,

@@ -21,6 +21,7 @@ use std::io::Read;
 use std::path::Path;
 
 use crate::limits::Limits;
+use crate::plan::Plan;
 use crate::state::Scene;
 pub use diagnostic::{Diagnostic, ErrorKind, SceneError, Severity, Source};
 pub use lower::{DrawSpans, VertexSpans};
@@ -31,6 +32,8 @@ pub use render::render;
 pub struct Loaded {
     /// What to draw.
     pub scene: Scene,
+    /// How it is drawn: planned with [`PlanOptions::default`](crate::plan::PlanOptions).
+    pub plan: Plan,
     /// What is probably not meant.
     pub warnings: Vec<Diagnostic>,
     /// The text that the warnings and the places point into.
@@ -120,7 +123,7 @@ pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, Scene
     let mut diagnostics = reader.diagnostics;
     diagnostics.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
     match found {
-        Some((scene, draw_spans)) => Ok(Loaded { scene, warnings: diagnostics, source, draw_spans }),
+        Some((scene, plan, draw_spans)) => Ok(Loaded { scene, plan, warnings: diagnostics, source, draw_spans }),
         None => Err(SceneError { diagnostics, suppressed: reader.suppressed, source }),
     }
 }

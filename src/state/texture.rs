@@ -1,6 +1,7 @@
 //! Texture images and the units that sample them.
 
 use super::named;
+use std::sync::Arc;
 
 /// Number of texture units in the state. NV10 has the first two.
 pub const TEXTURE_UNITS: usize = 4;
@@ -83,8 +84,8 @@ pub enum TextureImage {
         height: u32,
         /// Meaning of the words.
         format: TextureFormat,
-        /// `width * height` raw texels.
-        words: Vec<u32>,
+        /// `width * height` raw texels; shared, because plans hold them too.
+        words: Arc<[u32]>,
     },
     /// The words of a render target, read as `format` (of the same number of bytes).
     Target {

@@ -195,7 +195,7 @@ fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     let mask = u32::MAX >> (32 - 8 * format.bytes());
     // Few words of tape a texture: the rest follows from them.
     let (seed, step) = (c.word(), c.word());
-    let words = (0..width * height).map(|k| seed.wrapping_add(step.wrapping_mul(k)) & mask).collect();
+    let words = (0..width * height).map(|k| seed.wrapping_add(step.wrapping_mul(k)) & mask).collect::<Vec<_>>().into();
     Texture { name: format!("texture{n}"), image: TextureImage::Texels { width, height, format, words } }
 }
 

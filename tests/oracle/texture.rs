@@ -14,7 +14,7 @@ impl Image {
     pub fn new(texture: &Texture, surfaces: &[Surface]) -> Image {
         match &texture.image {
             TextureImage::Texels { width, height, format, words } => {
-                Image { size: [*width, *height], format: *format, words: words.clone() }
+                Image { size: [*width, *height], format: *format, words: words.to_vec() }
             }
             TextureImage::Target { target, format } => {
                 let s = &surfaces[*target];

@@ -46,7 +46,8 @@ impl Sheet {
     pub fn texels(&mut self, texels: impl Iterator<Item = [u8; 4]>) -> usize {
         let mut words: Vec<u32> = texels.map(|[r, g, b, a]| u32::from_be_bytes([a, r, g, b])).collect();
         words.resize(WIDTH, 0);
-        self.texture(TextureImage::Texels { width: WIDTH as u32, height: 1, format: TextureFormat::A8R8G8B8, words })
+        let (width, words) = (WIDTH as u32, words.into());
+        self.texture(TextureImage::Texels { width, height: 1, format: TextureFormat::A8R8G8B8, words })
     }
 
     fn texture(&mut self, image: TextureImage) -> usize {

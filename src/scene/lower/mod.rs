@@ -60,7 +60,11 @@ impl DrawSpans {
 }
 
 /// Reads and checks a whole scene. Findings are in the reader; `None` if there are errors.
-pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path) -> Option<(Scene, Vec<DrawSpans>)> {
+pub(super) fn scene<'a>(
+    reader: &mut Reader<'a>,
+    text: &'a str,
+    folder: &Path,
+) -> Option<(Scene, Plan, Vec<DrawSpans>)> {
     let raw = Raw::<source::Scene<'a>>::new(text);
     if raw.text.is_empty() {
         reader.push(
@@ -90,7 +94,7 @@ pub(super) fn scene<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path) -
     }
     let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().unzip();
     let scene = Scene { profile: reader.profile, targets: targets.list, textures: textures.list, draws };
-    plan(reader, &scene, &spans).then_some((scene, spans))
+    plan(reader, &scene, &spans).map(|plan| (scene, plan, spans))
 }
 
 /// The parenthesis that opens the scene: before it may stand attributes and the scene's type.
@@ -127,9 +131,12 @@ fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Range
     version == Some(1)
 }
 
-/// What only the plan sees: positions and coordinates outside the rasteriser's domain.
-fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> bool {
-    let Err(errors) = Plan::compile(scene, &PlanOptions::default()) else { return true };
+/// Plans the scene: only the plan sees positions and coordinates outside the rasteriser's domain.
+fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> Option<Plan> {
+    let errors = match Plan::compile(scene, &PlanOptions::default()) {
+        Ok(plan) => return Some(plan),
+        Err(errors) => errors,
+    };
     for error in errors {
         let span = spans.get(error.draw).map(|draw| match error.vertex {
             Some(vertex) => draw.vertex(vertex),
@@ -141,7 +148,7 @@ fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> bool {
         };
         reader.push(Diagnostic::error("NB0322", span, error.message).label(label).rule(error.rule).help(error.help));
     }
-    false
+    None
 }
 
 /// The finding that a name is not defined.

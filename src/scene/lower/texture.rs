@@ -137,7 +137,7 @@ fn texture<'a>(
             (width, height, pack(&pixels, words_as))
         }
     };
-    Some(TextureImage::Texels { width, height, format: words_as, words })
+    Some(TextureImage::Texels { width, height, format: words_as, words: words.into() })
 }
 
 /// The only value in the parentheses of `Variant(value)`.
