@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::expectation::Expectation;
-use ninebit::generate::{height_field, normal_map};
+use ninebit::generate::{height_field, hemisphere, normal_map};
 use ninebit::limits::Limits;
 use ninebit::output::write_file;
 use ninebit::plan::{Plan, PlanOptions};
@@ -78,4 +78,8 @@ fn stored_textures_are_what_the_generators_make() {
     let options = normal_map::Options { scale: 16.0, ..normal_map::Options::default() };
     let normal = normal_map::from_height(&height, &options);
     assert!(stored("rocks-normal.png") == normal, "ninebit generate normal-map rocks-height.png --scale 16");
+    let clean = hemisphere::normals(&hemisphere::Options::default());
+    assert!(stored("hemisphere-normal.png") == clean, "ninebit generate hemisphere-normals");
+    let noisy = hemisphere::normals(&hemisphere::Options { noise: 0.02, ..hemisphere::Options::default() });
+    assert!(stored("hemisphere-noisy-normal.png") == noisy, "ninebit generate hemisphere-normals --noise 0.02");
 }

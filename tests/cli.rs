@@ -85,6 +85,10 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
+    assert_data_eq!(
+        bench.run("generate hemisphere-normals --help").text(),
+        file!["cli/help-generate-hemisphere-normals.txt"]
+    );
     assert_eq!(bench.run("--version").text(), concat!("ninebit ", env!("CARGO_PKG_VERSION"), "\n"));
 }
 
@@ -101,6 +105,20 @@ fn a_wrong_command_line_is_status_2() {
     bench.run("render scene.ron -o - --stats json").failed(2, "cannot both go to stdout");
     bench.run("generate normal-map height.png -o n.png --scale NaN").failed(2, "not a finite number");
     bench.run("generate height-rocks -o h.png --size 8").failed(2, "16..=2048");
+    bench.run("generate hemisphere-normals").failed(2, "--output");
+    for size in ["15", "2049", "64.0"] {
+        bench.run(&format!("generate hemisphere-normals -o h.png --size {size}")).failed(2, "--size");
+    }
+    for noise in ["-0.1", "0.51", "1e300"] {
+        let command = format!("generate hemisphere-normals -o h.png --noise {noise}");
+        bench.run(&command).failed(2, "not a number from 0 to 0.5");
+    }
+    for noise in ["NaN", "inf", "much"] {
+        let command = format!("generate hemisphere-normals -o h.png --noise {noise}");
+        bench.run(&command).failed(2, "not a finite number");
+    }
+    bench.run("generate hemisphere-normals -o h.png --seed 1.5").failed(2, "--seed");
+    assert!(!bench.path("h.png").exists());
     bench.run("generate normal-map height.png -o ./height.png").failed(2, "is the input");
     assert_eq!(fs::read(bench.path("height.png")).unwrap(), PNG);
 }
@@ -136,6 +154,21 @@ fn rocks_become_a_normal_map() {
 }
 
 #[test]
+fn hemispheres_are_made_clean_and_noisy() {
+    let bench = Bench::new();
+    let made = |options: &str| bench.run(&format!("generate hemisphere-normals -o - --size 32 {options}")).data();
+    bench.run("generate hemisphere-normals -o normal.png --size 32").data();
+    let clean = fs::read(bench.path("normal.png")).unwrap();
+    assert!(clean.starts_with(PNG));
+    assert_eq!(made(""), clean, "the same bytes, wherever they go");
+    assert_eq!(made("--noise 0 --seed 9"), clean, "no noise is the default, and takes no seed");
+    assert_ne!(made("--noise 0.1"), clean);
+    assert_eq!(made("--noise 0.1 --seed 1"), made("--noise 0.1"));
+    assert_ne!(made("--noise 0.1 --seed 2"), made("--noise 0.1"));
+    assert_ne!(made("--noise 0.5"), made("--noise 0.1"));
+}
+
+#[test]
 fn a_bad_asset_is_status_3_a_missing_one_4_and_a_large_one_5() {
     let bench = Bench::new();
     bench.write("cut.png", PNG).write("not.png", "GIF89a");
@@ -155,6 +188,7 @@ fn an_output_that_cannot_be_written_is_status_7() {
     let bench = Bench::new();
     bench.run("generate height-rocks --size 16 -o none/h.png").failed(7, "create its folder first");
     bench.run("generate height-rocks --size 16 -o .").failed(7, "is a folder");
+    bench.run("generate hemisphere-normals --size 16 -o none/h.png").failed(7, "create its folder first");
     if Path::new("/dev/full").exists() {
         bench.run("generate height-rocks --size 16 -o /dev/full").failed(7, "error[NB0702]");
         let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();

@@ -127,6 +127,17 @@ fn what_is_left_out_has_its_default() {
     assert!(loaded.warnings.is_empty());
 }
 
+/// A texture register is a register: what a stage has written needs no texture.
+#[test]
+fn written_texture_registers_are_not_unbound() {
+    let program = |first: &str| {
+        let stages = format!("[(rgb: (a: (PrimaryColor), ab: {first})), (rgb: (a: (Texture1), ab: Spare0))]");
+        draw("Nv2a", "", &format!("program: Combiners(stages: {stages}, final_combiner: (d: (Spare0)))"))
+    };
+    assert_eq!(program("Texture1").render_warnings(false), "");
+    assert!(program("Spare1").render_warnings(false).contains("NB0902"));
+}
+
 #[test]
 fn constants_become_bytes_and_vertex_colours_stay() {
     let loaded = draw("Nv2a", "", "blend_constant: Float(0.5, 2.0, -1.0)");

@@ -35,8 +35,8 @@ fn stored_words_follow_from_the_trace_alone() {
                 let document: Value = serde_json::from_str(&trace_json(&plan, &trace)).unwrap();
                 let mut word = None;
                 for draw in document["draws"].as_array().unwrap() {
-                    let known =
-                        recompute::fragment(draw).unwrap_or_else(|e| panic!("{e}\n{}", trace_text(&plan, &trace)));
+                    let known = recompute::fragment(draw, &document["policies"])
+                        .unwrap_or_else(|e| panic!("{e}\n{}", trace_text(&plan, &trace)));
                     if draw["stored"].as_bool().unwrap() {
                         word = Some(known["stored.word"].value);
                     }

@@ -3,9 +3,10 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 
+use clap::builder::RangedI64ValueParser;
 use clap::{Args, Subcommand, ValueEnum};
-use ninebit::generate::height_field::{self, SIDES};
 use ninebit::generate::normal_map::{self, HeightChannel};
+use ninebit::generate::{SIDES, height_field, hemisphere};
 use ninebit::output::{Compression, Destination, encode_png};
 use ninebit::scene::image::{self, ImageLimits, Rgba};
 
@@ -24,6 +25,14 @@ pub(crate) enum Command {
     ///
     /// The same size and seed give the same bytes on every machine.
     HeightRocks(HeightRocks),
+    /// Make the normal map of a hemisphere in a flat surface
+    ///
+    /// Inside the circle that touches the image's edges the normal is (x, y, sqrt(1 - x^2 - y^2)), outside it (0, 0, 1), taken at the
+    /// centres of the texels. Orientation and storage are those of `normal-map`: x (red) to the right, y (green) upward on the image, z
+    /// (blue) out of it; a component n is stored as 128 + round(127 n). Alpha is 255.
+    ///
+    /// The same size, noise and seed give the same bytes on every machine.
+    HemisphereNormals(HemisphereNormals),
 }
 
 #[derive(Debug, Args)]
@@ -61,9 +70,26 @@ pub(crate) struct HeightRocks {
     #[arg(short, long, value_name = "HEIGHT.png")]
     output: OsString,
     /// Columns and rows
-    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(i64::from(*SIDES.start())..=i64::from(*SIDES.end())))]
+    #[arg(long, default_value_t = 256, value_parser = side())]
     size: u32,
     /// Which rock
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HemisphereNormals {
+    /// The normal map, a PNG; `-` is stdout
+    #[arg(short, long, value_name = "NORMAL.png")]
+    output: OsString,
+    /// Columns and rows
+    #[arg(long, default_value_t = 256, value_parser = side())]
+    size: u32,
+    /// The most that is added to each component of the hemisphere's normals, up or down, before they are brought back to unit length: 0 to
+    /// 0.5. One step of the stored bytes is 1/127, about 0.008
+    #[arg(long, value_name = "AMOUNT", default_value = "0", value_parser = noise, allow_negative_numbers = true)]
+    noise: f64,
+    /// Which noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }
@@ -86,6 +112,11 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
             let destination = Destination::from(arguments.output.as_os_str());
             write(&height_field::rocks(arguments.size, arguments.seed), &destination)
         }
+        Command::HemisphereNormals(arguments) => {
+            let destination = Destination::from(arguments.output.as_os_str());
+            let options = hemisphere::Options { size: arguments.size, noise: arguments.noise, seed: arguments.seed };
+            write(&hemisphere::normals(&options), &destination)
+        }
     }
 }
 
@@ -96,4 +127,16 @@ fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {
 /// Reads a finite number.
 fn finite(text: &str) -> Result<f64, String> {
     text.parse().ok().filter(|number: &f64| number.is_finite()).ok_or_else(|| "not a finite number".to_owned())
+}
+
+/// Reads the strength of the noise.
+fn noise(text: &str) -> Result<f64, String> {
+    let most = hemisphere::MAXIMUM_NOISE;
+    let amount = finite(text)?;
+    if (0.0..=most).contains(&amount) { Ok(amount) } else { Err(format!("not a number from 0 to {most}")) }
+}
+
+/// Reads the side of an image.
+fn side() -> RangedI64ValueParser<u32> {
+    clap::value_parser!(u32).range(i64::from(*SIDES.start())..=i64::from(*SIDES.end()))
 }

@@ -209,7 +209,7 @@ impl<'a> TriangleContext<'a> {
             factor
         } else {
             if O::ON {
-                observer.step(Step::given("fog", "CMB-13", "fog.a", 255).per(255));
+                observer.step(Step::given("fog", "CMB-13", "fog.a", 255).per(255).ideal(Some(255.0)));
             }
             L::ONE
         };

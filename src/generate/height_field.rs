@@ -4,10 +4,9 @@
 //! rounding of their edges, and weathering (fractal value noise, which also bends the edges of the cells). All of it is
 //! periodic, so the image tiles without a seam.
 
+use super::SIDES;
+use super::hash::hash;
 use crate::scene::image::Rgba;
-
-/// Sides that [`rocks`] accepts.
-pub const SIDES: std::ops::RangeInclusive<u32> = 16..=2048;
 
 /// One in the 16.16 fixed-point numbers used here.
 const ONE: i64 = 1 << 16;
@@ -141,17 +140,6 @@ fn smooth(t: i64) -> i64 {
 /// The integer square root of a non-negative number.
 fn root(value: i64) -> i64 {
     value.isqrt()
-}
-
-/// 64 well mixed bits of two coordinates and a seed (the finaliser of SplitMix64, twice).
-fn hash(x: i64, y: i64, seed: u64) -> u64 {
-    fn mix(mut z: u64) -> u64 {
-        z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-    mix(mix(seed ^ (x as u64)) ^ ((y as u64) << 32))
 }
 
 #[cfg(test)]

@@ -119,7 +119,9 @@ fn expression(step: &Step) -> String {
         "scale_4" => format!("{} * 4", value(0)),
         "scale_half" => format!("({} + 1) >> 1", value(0)),
         "lerp_add" => {
-            format!("({} * {} + (255 - {}) * {}) / 255 + {}", value(0), value(1), value(0), value(2), value(3))
+            // FIN-1: A counts as 255 at most.
+            let a = step.inputs.first().map_or(0, |a| a.value.min(255));
+            format!("({a} * {} + (255 - {a}) * {}) / 255 + {}", value(1), value(2), value(3))
         }
         "blend_add" => format!("({} * {} + {} * {}) / 255", value(0), value(2), value(1), value(3)),
         "blend_subtract" => format!("({} * {} - {} * {}) / 255", value(0), value(2), value(1), value(3)),

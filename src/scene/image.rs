@@ -140,7 +140,7 @@ impl ImageError {
     pub fn help(&self) -> &'static str {
         match self {
             ImageError::Missing { .. } => {
-                "names are relative to the folder of the scene file; upper and lower case count"
+                "check the spelling: upper and lower case count, and names in a scene are relative to its folder"
             }
             ImageError::NotAFile { .. } => "name a PNG or TGA file, not a folder or a device",
             ImageError::Unreadable { .. } => "check the file's permissions",

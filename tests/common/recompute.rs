@@ -46,8 +46,8 @@ fn is_parameter(name: &str) -> bool {
     parameters.contains(&name) || formats.contains(&name) || coefficient
 }
 
-/// Recomputes one fragment; the values of all names at its end.
-pub fn fragment(draw: &Value) -> Result<BTreeMap<String, Number>, String> {
+/// Recomputes one fragment under the document's `policies`; the values of all names at its end.
+pub fn fragment(draw: &Value, policies: &Value) -> Result<BTreeMap<String, Number>, String> {
     let mut known: BTreeMap<String, Number> = BTreeMap::new();
     for step in draw["steps"].as_array().unwrap() {
         let name = step["name"].as_str().unwrap();
@@ -73,7 +73,7 @@ pub fn fragment(draw: &Value) -> Result<BTreeMap<String, Number>, String> {
         let computed = if ["given", "fetch", "border_color"].contains(&operation) {
             shown
         } else {
-            apply(operation, &inputs).ok_or_else(|| format!("{name}: unknown operation {operation}"))?
+            apply(operation, &inputs, policies).ok_or_else(|| format!("{name}: unknown operation {operation}"))?
         };
         if computed != shown {
             return Err(format!("{name} = {operation}({inputs:?}): recomputed {computed:?}, shown {shown:?}"));
@@ -108,11 +108,35 @@ fn negate(a: Number) -> Number {
     Number { value: -a.value, per_one: a.per_one }
 }
 
-fn apply(operation: &str, inputs: &[(String, Number)]) -> Option<Number> {
+/// Twice the centre of the expand mappings, in steps.
+fn centre(policies: &Value) -> i128 {
+    if policies["CMB-3"] == "literal" { 255 } else { 256 }
+}
+
+/// Twice the half of the half-bias mappings, in steps.
+fn half(policies: &Value) -> i128 {
+    match policies["CMB-4"].as_str() {
+        Some("127") => 254,
+        Some("127.5") => 255,
+        _ => 256,
+    }
+}
+
+/// The smaller of a number and 1.
+fn at_most_one(n: Number) -> Number {
+    Number { value: n.value.min(n.per_one), per_one: n.per_one }
+}
+
+/// A B and (1 - A) C of the final combiner.
+fn lerp(a: Number, b: Number, c: Number) -> [Number; 2] {
+    let a = at_most_one(a);
+    [times(a, b), times(add(byte(255), negate(a)), c)]
+}
+
+fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Option<Number> {
     let n = |k: usize| inputs[k].1;
     let v = |k: usize| inputs[k].1.value;
     let max0 = |k: usize| v(k).max(0);
-    let one = byte(255);
     Some(match operation {
         // Rasteriser and interpolation.
         "edge_function" => plain(v(0) * v(3) + v(1) * v(4) + v(2)),
@@ -171,29 +195,42 @@ fn apply(operation: &str, inputs: &[(String, Number)]) -> Option<Number> {
         "unsigned_identity" => byte(max0(0)),
         "unsigned_invert" => byte(255 - max0(0)),
         "final_invert" => byte((255 - max0(0)).max(0)),
-        "expand_normal" => byte(2 * (max0(0) - 128)),
-        "expand_negate" => byte((-2 * (max0(0) - 128)).min(255)),
-        "half_bias_normal" => byte(max0(0) - 128),
-        "half_bias_negate" => byte(128 - max0(0)),
+        "expand_normal" => byte(2 * max0(0) - centre(policies)),
+        "expand_negate" => byte((centre(policies) - 2 * max0(0)).min(255)),
+        "half_bias_normal" => Number { value: 2 * max0(0) - half(policies), per_one: 510 },
+        "half_bias_negate" => Number { value: half(policies) - 2 * max0(0), per_one: 510 },
         "signed_identity" => n(0),
         "signed_negate" => byte((-v(0)).min(255)),
         "product" | "dot_product" => inputs.chunks(2).map(|p| times(p[0].1, p[1].1)).fold(plain(0), add),
+        "dot_product_rounded" => inputs.chunks(2).map(|p| nearest_255(times(p[0].1, p[1].1))).fold(plain(0), add),
         "add" => add(n(0), n(1)),
+        "add_rounded" => add(nearest_255(n(0)), nearest_255(n(1))),
         "select" => n(usize::from(v(2) != 0)),
         "mux_msb" => plain(i128::from(v(0) >= 128)),
+        "mux_bit7" => plain(v(0) >> 7 & 1),
         "mux_lsb" => plain(v(0) & 1),
         "round_255" => nearest_255(n(0)),
         "bias" => byte(v(0) - 128),
         "scale_2" => byte(2 * v(0)),
         "scale_4" => byte(4 * v(0)),
         "scale_half" => byte((v(0) + 1) >> 1),
+        "scale_1_round_255" => nearest_255(n(0)),
+        "scale_2_round_255" => nearest_255(times(n(0), plain(2))),
+        "scale_4_round_255" => nearest_255(times(n(0), plain(4))),
+        "scale_half_round_255" => nearest_255(times(n(0), Number { value: 1, per_one: 2 })),
+        "bias_scale_1_round_255" => nearest_255(add(n(0), byte(-128))),
+        "bias_scale_2_round_255" => nearest_255(times(add(n(0), byte(-128)), plain(2))),
         "saturate_256" => byte(v(0).clamp(-256, 255)),
+        "saturate_255" => byte(v(0).clamp(-255, 255)),
         "add_limit_255" => byte((v(0) + v(1)).min(255)),
         "product_round_255" => nearest_255(times(n(0), n(1))),
         "lerp_add" => {
-            let a = byte(v(0).min(255));
-            let lerp = add(times(a, n(1)), times(add(one, negate(a)), n(2)));
-            add(nearest_255(lerp), n(3))
+            let [ab, ac] = lerp(n(0), n(1), n(2));
+            add(nearest_255(add(ab, ac)), n(3))
+        }
+        "lerp_add_rounded_twice" => {
+            let [ab, ac] = lerp(n(0), n(1), n(2));
+            add(add(nearest_255(ab), nearest_255(ac)), n(3))
         }
         "clamp_0_255" => byte(v(0).clamp(0, 255)),
         // Raster operations.
@@ -210,7 +247,7 @@ fn apply(operation: &str, inputs: &[(String, Number)]) -> Option<Number> {
         "drop_3_bits" => byte(v(0) >> 3 << 3),
         "read_surface" => byte(surface(&inputs[1].0, v(0), &inputs[2].0)?),
         "constant_0" => byte(0),
-        "constant_255" => one,
+        "constant_255" => byte(255),
         "invert_255" => byte(255 - v(0)),
         "saturate_factor" => byte(v(0).min(255 - v(1))),
         "blend_add" => nearest_255(add(times(n(0), n(2)), times(n(1), n(3)))),

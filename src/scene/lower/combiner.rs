@@ -80,7 +80,7 @@ pub(super) fn program<'a>(
     }
     let raw = Raw::<source::Combiners<'a>>::new(rest);
     let fields = reader.read(&raw)?;
-    let mut walk = Walk { reads: [None, None, None, None], written: [false; 4] };
+    let mut walk = Walk { reads: [None, None, None, None], written: [false; 4], textures_written: [[false; 2]; 4] };
     // SPARE0.a starts as texture 0's alpha.
     walk.written[SPARE0_ALPHA] = true;
     let shared = fields.constants.as_ref().map(|raw| color::constants(reader, names, raw)).unwrap_or_default();
@@ -106,6 +106,8 @@ pub(super) struct Walk {
     reads: [Option<Range<usize>>; 4],
     /// SPARE0.rgb, SPARE0.a, SPARE1.rgb, SPARE1.a hold something defined.
     written: [bool; 4],
+    /// A stage has written TEXTURE0 to TEXTURE3: RGB, alpha.
+    textures_written: [[bool; 2]; 4],
 }
 
 impl Walk {
@@ -113,6 +115,10 @@ impl Walk {
         match register {
             Register::Spare0 => self.written[SPARE0_RGB + usize::from(alpha)] = true,
             Register::Spare1 => self.written[SPARE1_RGB + usize::from(alpha)] = true,
+            Register::Texture0 => self.textures_written[0][usize::from(alpha)] = true,
+            Register::Texture1 => self.textures_written[1][usize::from(alpha)] = true,
+            Register::Texture2 => self.textures_written[2][usize::from(alpha)] = true,
+            Register::Texture3 => self.textures_written[3][usize::from(alpha)] = true,
             _ => {}
         }
     }
@@ -130,7 +136,9 @@ impl Walk {
             FinalRegister::Spare1 => return self.spare(reader, SPARE1_RGB + usize::from(alpha), place),
             _ => return,
         };
-        self.reads[unit].get_or_insert(place);
+        if !self.textures_written[unit][usize::from(alpha)] {
+            self.reads[unit].get_or_insert(place);
+        }
     }
 
     fn spare(&mut self, reader: &mut Reader<'_>, index: usize, place: Range<usize>) {

@@ -298,12 +298,12 @@ fn matrix_geometry<'a>(
             (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()))
         }
         (both, _) => {
-            let message = match both {
-                Some(_) => "either `vertices` or `mesh`, not both",
-                None => "this vertex source has neither `vertices` nor `mesh`",
+            let (code, message) = match both {
+                Some(_) => ("NB0222", "either `vertices` or `mesh`, not both"),
+                None => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
             };
             reader.push(
-                Diagnostic::error("NB0202", opening, message)
+                Diagnostic::error(code, opening, message)
                     .label("in here")
                     .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`"),
             );

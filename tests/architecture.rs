@@ -1,0 +1,83 @@
+//! What `docs/architecture.md` says of the modules' dependencies holds in the sources.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+
+/// Modules that use one another and the standard library, nothing else.
+const CORE: [&str; 7] = ["state", "number", "trace", "raster", "texture", "combiner", "rop"];
+
+fn files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files(&path, found);
+        } else {
+            found.push(path);
+        }
+    }
+}
+
+/// The sources of a folder without comments and tests: file and text.
+fn sources(folder: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    files(Path::new(folder), &mut found);
+    found
+        .into_iter()
+        .map(|path| {
+            let text = std::fs::read_to_string(&path).unwrap();
+            let code = text.split("#[cfg(test)]").next().unwrap().lines();
+            let code: Vec<&str> = code.filter(|line| !line.trim_start().starts_with("//")).collect();
+            (path.display().to_string(), code.join("\n"))
+        })
+        .collect()
+}
+
+/// The names that follow `prefix` in a text.
+fn names_after<'a>(text: &'a str, prefix: &str) -> Vec<&'a str> {
+    text.split(prefix)
+        .skip(1)
+        .map(|rest| rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap())
+        .collect()
+}
+
+/// The crates that `Cargo.toml` names.
+fn crates() -> Vec<String> {
+    let manifest = std::fs::read_to_string("Cargo.toml").unwrap();
+    let dependencies = manifest.split("[dependencies]").nth(1).unwrap().split("\n[").next().unwrap();
+    dependencies.lines().filter_map(|line| line.split_once(" = ")).map(|(name, _)| name.replace('-', "_")).collect()
+}
+
+#[test]
+fn the_core_uses_itself_and_the_standard_library() {
+    let crates = crates();
+    assert!(crates.iter().any(|name| name == "rayon"));
+    for module in CORE {
+        for (file, text) in sources(&format!("src/{module}")) {
+            for name in names_after(&text, "crate::") {
+                // `$crate::state` in a macro counts as well.
+                assert!(CORE.contains(&name), "{file} uses {name}");
+            }
+            for name in &crates {
+                assert!(!text.contains(&format!("{name}::")), "{file} uses the crate {name}");
+            }
+        }
+    }
+}
+
+#[test]
+fn only_the_combiners_read_policies() {
+    for module in CORE.into_iter().filter(|module| !["state", "combiner"].contains(module)) {
+        for (file, text) in sources(&format!("src/{module}")) {
+            assert!(!text.contains("Policies"), "{file}");
+        }
+    }
+}
+
+#[test]
+fn the_oracle_is_independent() {
+    for (file, text) in sources("tests/oracle") {
+        for name in names_after(&text, "ninebit::") {
+            assert!(name == "state" || name == "frame", "{file} uses ninebit::{name}");
+        }
+    }
+}

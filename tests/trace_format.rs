@@ -1,0 +1,236 @@
+//! `docs/trace-format.md` and the traces say the same: fields, names and operations, in both directions; and what the page says
+//! of the operations is enough to recompute a trace under any policy.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
+
+#[path = "common/random_scene.rs"]
+mod random_scene;
+#[path = "common/recompute.rs"]
+mod recompute;
+
+use ninebit::engine;
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::report::trace_json;
+use ninebit::scene;
+use ninebit::state::{POLICIES, Policies};
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// Random scenes whose traces are looked at.
+const SCENES: usize = 400;
+
+type Words = BTreeSet<String>;
+
+/// What the page says.
+struct Page {
+    text: String,
+    document: Words,
+    fragment: Words,
+    step: Words,
+    input: Words,
+    operations: Words,
+    /// Block and name of steps, with placeholders.
+    names: Vec<[String; 2]>,
+    placeholders: BTreeMap<String, Vec<String>>,
+}
+
+/// The words in backticks.
+fn quoted(cell: &str) -> Vec<String> {
+    cell.split('`').skip(1).step_by(2).map(str::to_string).collect()
+}
+
+impl Page {
+    fn read() -> Page {
+        let text = std::fs::read_to_string("docs/trace-format.md").unwrap();
+        // Rows of the tables by the heading above them: the words in backticks of their first two cells.
+        let mut rows: BTreeMap<&str, Vec<[Vec<String>; 2]>> = BTreeMap::new();
+        let (mut heading, mut chapter) = ("", "");
+        for line in text.lines() {
+            if let Some(title) = line.strip_prefix("## ") {
+                (heading, chapter) = (title, title);
+            } else if let Some(title) = line.strip_prefix("### ") {
+                heading = if chapter == "Operations" { chapter } else { title };
+            } else if line.starts_with("| `") {
+                let cells: Vec<&str> = line.split('|').collect();
+                rows.entry(heading).or_default().push([quoted(cells[1]), quoted(cells[2])]);
+            }
+        }
+        let first = |heading: &str| -> Words { rows[heading].iter().flat_map(|row| row[0].clone()).collect() };
+        let (parts, names): (Vec<_>, Vec<_>) =
+            rows["Names"].iter().cloned().partition(|[first, _]| first[0].starts_with('{'));
+        Page {
+            document: first("The document"),
+            fragment: first("A fragment"),
+            step: first("A step"),
+            input: first("An input"),
+            operations: first("Operations"),
+            names: names
+                .into_iter()
+                .flat_map(|[block, names]| names.into_iter().map(move |name| [block[0].clone(), name]))
+                .collect(),
+            placeholders: parts.into_iter().map(|[part, values]| (part[0].clone(), values)).collect(),
+            text,
+        }
+    }
+
+    /// Whether `text` is of the form `pattern`.
+    fn fits(&self, pattern: &str, text: &str) -> bool {
+        match pattern.find('{') {
+            None => pattern == text,
+            Some(at) => {
+                let Some(rest) = text.strip_prefix(&pattern[..at]) else { return false };
+                let (part, after) = pattern[at..].split_at(pattern[at..].find('}').unwrap() + 1);
+                self.placeholders[part]
+                    .iter()
+                    .any(|value| rest.strip_prefix(value.as_str()).is_some_and(|rest| self.fits(after, rest)))
+            }
+        }
+    }
+}
+
+/// What traces have shown.
+#[derive(Default)]
+struct Seen {
+    operations: Words,
+    /// Block and name.
+    names: BTreeSet<[String; 2]>,
+    fragments: usize,
+}
+
+fn keys(value: &Value) -> Words {
+    value.as_object().unwrap().keys().cloned().collect()
+}
+
+impl Seen {
+    /// A document: its fields against the page, its operations and names for later.
+    fn document(&mut self, page: &Page, document: &Value) {
+        assert_eq!(keys(document), page.document);
+        assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &1.into()));
+        for draw in document["draws"].as_array().unwrap() {
+            self.fragments += 1;
+            assert_eq!(keys(draw), page.fragment);
+            for step in draw["steps"].as_array().unwrap() {
+                assert_eq!(keys(step), page.step);
+                for input in step["inputs"].as_array().unwrap() {
+                    assert_eq!(keys(input), page.input);
+                }
+                let word = |field: &str| step[field].as_str().unwrap().to_string();
+                assert!(page.operations.contains(&word("operation")), "not on the page: {step:#}");
+                self.operations.insert(word("operation"));
+                self.names.insert([word("block"), word("name")]);
+            }
+        }
+    }
+}
+
+/// The document of a pixel.
+fn trace(plan: &Plan, target: usize, pixel: (u32, u32)) -> Value {
+    serde_json::from_str(&trace_json(plan, &engine::trace(plan, target, pixel, None).unwrap())).unwrap()
+}
+
+fn files_under(folder: &Path, files: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            files_under(&path, files);
+        } else {
+            files.push(path);
+        }
+    }
+}
+
+fn plan_of(path: &Path) -> Plan {
+    scene::load(path, &Limits::default()).unwrap_or_else(|error| panic!("{}", error.render(false))).plan
+}
+
+#[test]
+fn traces_and_the_page_agree() {
+    let page = Page::read();
+    let mut seen = Seen::default();
+    let mut runner = TestRunner::deterministic();
+    let mut state = 1_u32;
+    let mut random = move |below: u32| {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) % below
+    };
+    for number in 0..SCENES {
+        let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
+        let mut policies = Policies::DEFAULT;
+        if number % 2 == 1 {
+            for policy in POLICIES {
+                policies.choose(policy.rule, random(policy.values.len() as u32) as usize);
+            }
+        }
+        let plan = Plan::compile(&scene, &PlanOptions { policies, prune: true }).unwrap();
+        for (target, size) in plan.targets.iter().map(|t| (t.width, t.height)).enumerate() {
+            for _ in 0..3 {
+                let document = trace(&plan, target, (random(size.0), random(size.1)));
+                for draw in document["draws"].as_array().unwrap() {
+                    let known = recompute::fragment(draw, &document["policies"])
+                        .unwrap_or_else(|error| panic!("{error}\n{draw:#}"));
+                    assert_eq!(draw["stored"].as_bool(), Some(known.contains_key("stored.word")));
+                }
+                seen.document(&page, &document);
+            }
+        }
+    }
+    let mut files = Vec::new();
+    files_under(Path::new("vectors/scenes"), &mut files);
+    files.sort();
+    files.retain(|path| path.to_str().is_some_and(|name| name.ends_with(".ron") && !name.ends_with(".expect.ron")));
+    assert!(!files.is_empty());
+    for path in files {
+        let plan = plan_of(&path);
+        for (target, size) in plan.targets.iter().map(|t| (t.width, t.height)).enumerate() {
+            seen.document(&page, &trace(&plan, target, (size.0 / 2, size.1 / 2)));
+            seen.document(&page, &trace(&plan, target, (size.0 / 3, size.1 * 2 / 3)));
+        }
+    }
+    println!("{} fragments", seen.fragments);
+    let unseen: Vec<_> = page.operations.difference(&seen.operations).collect();
+    assert!(unseen.is_empty(), "operations of the page that no trace has: {unseen:?}");
+    let fits = |[block, name]: &[String; 2], [of_block, of_name]: &[String; 2]| {
+        page.fits(block, of_block) && page.fits(name, of_name)
+    };
+    for step in &seen.names {
+        assert!(page.names.iter().any(|row| fits(row, step)), "not on the page: {step:?}");
+    }
+    for row in &page.names {
+        assert!(seen.names.iter().any(|step| fits(row, step)), "no trace has {row:?}");
+    }
+}
+
+#[test]
+fn the_example_is_a_step_of_its_trace() {
+    let page = Page::read();
+    let example: Value =
+        serde_json::from_str(page.text.split("```json\n").nth(1).unwrap().split("```").next().unwrap()).unwrap();
+    let document = trace(&plan_of(Path::new("vectors/scenes/dot3/constant-light.ron")), 0, (200, 300));
+    assert!(document["draws"][0]["steps"].as_array().unwrap().contains(&example), "{example:#}");
+}
+
+/// Operations that stand in the page stand in the sources, and the recomputation of the tests knows the same ones.
+#[test]
+fn the_page_lists_what_the_sources_have() {
+    let page = Page::read();
+    let mut files = Vec::new();
+    files_under(Path::new("src"), &mut files);
+    let sources: String = files.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect();
+    for operation in &page.operations {
+        assert!(sources.contains(&format!("\"{operation}\"")), "{operation} is not in the sources");
+    }
+    let recompute = std::fs::read_to_string("tests/common/recompute.rs").unwrap();
+    let arms = recompute.split("Some(match operation {").nth(1).unwrap().split("_ => return None,").next().unwrap();
+    // The arms of the outermost match: eight spaces, then the names before the arrow.
+    let mut known: Words = arms
+        .lines()
+        .filter_map(|line| line.strip_prefix("        \"")?.split_once("=>").map(|(names, _)| names))
+        .flat_map(|names| names.split('"').step_by(2).map(str::to_string).collect::<Vec<_>>())
+        .filter(|name| !name.is_empty())
+        .collect();
+    known.extend(["given", "fetch", "border_color"].map(str::to_string));
+    assert_eq!(page.operations, known);
+}
