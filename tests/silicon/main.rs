@@ -8,6 +8,7 @@
 )]
 
 mod blend_probes;
+#[path = "../common/build.rs"]
 mod build;
 mod cases;
 mod combiner_probes;

@@ -1,0 +1,211 @@
+//! `docs/numerics.md`, read: its entries, its examples, and whatever else is found in files by its shape.
+//!
+//! A rule's entry is a heading `### ID title` followed by a list of fields, one a line: `- Grade: ...`.
+
+use ninebit::state::Policies;
+use std::collections::BTreeSet;
+use std::fmt::Debug;
+use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
+
+const PREFIXES: [&str; 9] = ["NUM", "RAS", "INT", "DEP", "TEX", "TSH", "CMB", "FIN", "ROP"];
+
+/// Every entry of the handbook, in its order.
+pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(entries);
+
+/// The entry of one rule.
+pub struct Entry {
+    pub id: String,
+    /// Not in the section of what is known but not built.
+    pub built: bool,
+    /// Label and text of each field, in order.
+    pub fields: Vec<(String, String)>,
+}
+
+impl Entry {
+    /// A field's text; empty if there is none.
+    pub fn field(&self, label: &str) -> &str {
+        self.fields.iter().find(|f| f.0 == label).map_or("", |f| f.1.as_str())
+    }
+
+    /// The grades: each is a word that may be followed by a part in brackets.
+    pub fn grades(&self) -> Vec<String> {
+        let mut depth = 0;
+        let mut plain = String::new();
+        for c in self.field("Grade").chars() {
+            match c {
+                '(' => depth += 1,
+                ')' => depth -= 1,
+                c if depth == 0 => plain.push(c),
+                _ => {}
+            }
+        }
+        plain.split(',').map(|g| g.trim().to_string()).collect()
+    }
+
+    /// The files of a field, each with the name that follows it.
+    pub fn references(&self, label: &str) -> Vec<(String, Option<String>)> {
+        let mut out: Vec<(String, Option<String>)> = Vec::new();
+        for part in self.field(label).split(", ").filter(|part| !part.is_empty()) {
+            let mut quoted = part.split('`').skip(1).step_by(2);
+            let file = quoted.next().unwrap_or_else(|| panic!("{}: {label}: no file in `{part}`", self.id));
+            out.push((file.to_string(), quoted.next().map(str::to_string)));
+        }
+        out
+    }
+}
+
+fn entries() -> Vec<Entry> {
+    let mut entries: Vec<Entry> = Vec::new();
+    let (mut built, mut open) = (true, false);
+    for line in read("docs/numerics.md").lines() {
+        if let Some(title) = line.strip_prefix("## ") {
+            built &= title != "Known, not built yet";
+            open = false;
+        } else if let Some(title) = line.strip_prefix("### ") {
+            let id = title.split(' ').next().unwrap().to_string();
+            entries.push(Entry { id, built, fields: Vec::new() });
+            open = true;
+        } else if let (true, Some((label, text))) = (open, line.strip_prefix("- ").and_then(|l| l.split_once(": "))) {
+            entries.last_mut().unwrap().fields.push((label.to_string(), text.to_string()));
+        }
+    }
+    entries
+}
+
+/// The rules that are built.
+pub fn built() -> impl Iterator<Item = &'static Entry> {
+    ENTRIES.iter().filter(|e| e.built)
+}
+
+/// The example of a rule, while it is being computed.
+pub struct Example {
+    rule: &'static str,
+}
+
+/// Opens the example of `rule`. `text` is the handbook's line, so that whoever changes one of the two sees the other.
+#[track_caller]
+pub fn example(rule: &'static str, text: &str) -> Example {
+    let entry = ENTRIES.iter().find(|e| e.id == rule).unwrap_or_else(|| panic!("the handbook has no rule {rule}"));
+    let line = entry.field("Example");
+    assert!(line == text, "{rule}: the example of docs/numerics.md is\n{line}\nand the test computes\n{text}");
+    Example { rule }
+}
+
+impl Example {
+    /// Compares one number of the line with what the model computes.
+    #[track_caller]
+    pub fn gives<T: PartialEq + Debug>(&self, what: &str, got: T, expected: T) -> &Example {
+        assert!(got == expected, "{}: {what}: expected {expected:?}, the model gives {got:?}", self.rule);
+        self
+    }
+
+    /// Compares a real number, which the line gives with `digits` decimals.
+    #[track_caller]
+    pub fn shows(&self, what: &str, got: f64, digits: usize, expected: &str) -> &Example {
+        self.gives(what, format!("{got:.digits$}"), expected.to_string())
+    }
+}
+
+/// Policies as `--policy` takes them; everything else is at its default.
+#[track_caller]
+pub fn policy(assignment: &str) -> Policies {
+    let mut policies = Policies::DEFAULT;
+    policies.set(assignment).unwrap_or_else(|e| panic!("{e}"));
+    policies
+}
+
+pub fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A text file of the repository.
+pub fn read(path: impl AsRef<Path>) -> String {
+    let path = root().join(path);
+    std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
+}
+
+/// Files below a folder whose names end in `.EXTENSION`, sorted.
+pub fn files(folder: impl AsRef<Path>, extension: &str) -> Vec<PathBuf> {
+    let folder = root().join(folder);
+    let found = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
+    let mut paths: Vec<PathBuf> = found.map(|e| e.unwrap().path()).collect();
+    paths.sort();
+    let inside = |p: PathBuf| if p.is_dir() { files(&p, extension) } else { vec![p] };
+    paths.into_iter().flat_map(inside).filter(|p| p.extension().is_some_and(|e| e == extension)).collect()
+}
+
+/// Every rule id in a text: a prefix, a dash, a number, at most one letter.
+pub fn ids(text: &str) -> BTreeSet<String> {
+    let bytes = text.as_bytes();
+    let mut found = BTreeSet::new();
+    for (dash, _) in text.match_indices('-') {
+        let Some(prefix) = dash.checked_sub(3).and_then(|start| text.get(start..dash)) else { continue };
+        let joined = dash > 3 && bytes[dash - 4].is_ascii_alphanumeric();
+        let digits = bytes[dash + 1..].iter().take_while(|b| b.is_ascii_digit()).count();
+        if !PREFIXES.contains(&prefix) || joined || digits == 0 {
+            continue;
+        }
+        let mut end = dash + 1 + digits;
+        let letters = bytes[end..].iter().take_while(|b| b.is_ascii_alphanumeric()).count();
+        if letters > 1 {
+            continue;
+        }
+        end += letters;
+        found.insert(text[dash - 3..end].to_string());
+    }
+    found
+}
+
+/// String literals that are shaped like an id, whatever their prefix, each with the code before it.
+pub fn id_literals(source: &str) -> Vec<(&str, &str)> {
+    let shaped = |text: &str| {
+        let Some((prefix, number)) = text.split_once('-') else { return false };
+        let digits = number.trim_end_matches(|c: char| c.is_ascii_lowercase());
+        prefix.len() == 3
+            && prefix.bytes().all(|b| b.is_ascii_uppercase())
+            && !digits.is_empty()
+            && digits.bytes().all(|b| b.is_ascii_digit())
+    };
+    let literal = |quote: usize| source[quote + 1..].split('"').next().filter(|text| shaped(text));
+    source.match_indices('"').filter_map(|(at, _)| Some((&source[..at], literal(at)?))).collect()
+}
+
+/// Whether a source declares a function, type, trait or constant of that name. A mention is no declaration.
+pub fn declares(source: &str, name: &str) -> bool {
+    let named = |line: &str, keyword: &str| {
+        line.match_indices(keyword).any(|(at, _)| {
+            let rest = &line[at + keyword.len()..];
+            let word = |c: char| c.is_alphanumeric() || c == '_';
+            !line[..at].ends_with(word) && rest.strip_prefix(name).is_some_and(|rest| !rest.starts_with(word))
+        })
+    };
+    let code = source.lines().map(str::trim_start).filter(|line| !line.starts_with("//"));
+    code.into_iter().any(|line| ["fn ", "struct ", "enum ", "trait ", "const "].iter().any(|k| named(line, k)))
+}
+
+#[test]
+fn ids_are_found_in_text() {
+    let text = "CMB-3, INT-4t and (TEX-18); CMB-9=after, INT-5n. Not XCMB-3, CMB-x, CMB-, INT-4tt, UTF-8.";
+    let want: BTreeSet<String> =
+        ["CMB-3", "CMB-9", "INT-4t", "INT-5n", "TEX-18"].into_iter().map(str::to_string).collect();
+    assert_eq!(ids(text), want);
+}
+
+#[test]
+fn literals_are_found_whatever_their_prefix() {
+    let source = r#"given("a", "RSA-3", '"', "RAS-3 is not one").rule("ROP-7"), "CMB-13", "INT-4t", "B8-1""#;
+    let found: Vec<&str> = id_literals(source).into_iter().map(|found| found.1).collect();
+    assert_eq!(found, ["RSA-3", "ROP-7", "CMB-13", "INT-4t"]);
+}
+
+#[test]
+fn declarations_are_told_from_mentions() {
+    let source = "// fn gone\n/// struct Gone\npub struct Registers<L> {\n    pub(super) fn run_all() {}\nconst TWO: i32 = 2; // see gone";
+    for name in ["Registers", "run_all", "TWO"] {
+        assert!(declares(source, name), "{name}");
+    }
+    for name in ["gone", "Gone", "Register", "run", "i32"] {
+        assert!(!declares(source, name), "{name}");
+    }
+}

@@ -1,0 +1,140 @@
+//! Examples of the sections "Interpolation" and "Depth".
+
+use crate::handbook::{example, read};
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::number::convert::factor_byte;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::raster::interpolate::{Sample, Settled, color};
+use ninebit::raster::setup::Triangle;
+use ninebit::scene;
+use ninebit::state::Profile;
+use ninebit::texture::filter;
+use std::path::Path;
+
+/// (0, 0), (side, 0), (0, side) in pixels.
+fn right_triangle(side: f32, w: [f32; 3], profile: Profile) -> Triangle {
+    let corners = [[0.0, 0.0, 0.0, w[0]], [side, 0.0, 0.0, w[1]], [0.0, side, 0.0, w[2]]];
+    Triangle::new(corners, true, profile).unwrap()
+}
+
+/// The triangle that the section uses.
+fn of_the_section() -> Triangle {
+    right_triangle(96.0, [1.0; 3], Profile::Nv2a)
+}
+
+fn at(triangle: &Triangle, i: i64, j: i64) -> Sample<'_> {
+    Sample::new(triangle, triangle.edges(i, j))
+}
+
+fn settled(value: i64, lowered: bool) -> Settled {
+    Settled { value, lowered }
+}
+
+#[test]
+fn examples_of_interpolation() {
+    let text = "The examples of this section use one triangle: (0, 0), (96, 0), (0, 96) in pixels, w = 1.";
+    assert!(read("docs/numerics.md").contains(text), "the handbook uses another triangle");
+    let triangle = of_the_section();
+    assert_eq!(triangle.doubled_area, 1536 * 1536);
+
+    let int1 = example(
+        "INT-1",
+        "w = 1, 1, 2: the products are 2, 2, 1, so P = 2^27, 2^27, 2^26. Where E_0 = E_1 = E_2 the weights are 2/5, 2/5, \
+         1/5.",
+    );
+    let deep = right_triangle(96.0, [1.0, 1.0, 2.0], Profile::Nv2a);
+    int1.gives("P", deep.p, [1 << 27, 1 << 27, 1 << 26]);
+    let sample = Sample::new(&deep, [1; 3]);
+    int1.gives("fifths of D", sample.n.map(|n| 5 * n), [2 * sample.d, 2 * sample.d, sample.d]);
+
+    let int2 = example(
+        "INT-2",
+        "b = 0.3, 0.5, 0.2: W = 76, 129, 51; colours 255, 0, 128 give (19380 + 0 + 6528 + 128) >> 8 = 101, where the real \
+         number is 102.1.",
+    );
+    // The section's triangle has no sample with these weights; the area of a smaller one can be divided by ten.
+    let tenths = right_triangle(10.0, [1.0; 3], Profile::Nv2a);
+    let tenth = tenths.doubled_area / 10;
+    let sample = Sample::new(&tenths, [3 * tenth, 5 * tenth, 2 * tenth]);
+    let [w0, w2] = sample.weights().map(|w| w.value);
+    int2.gives("W", [w0, 256 - w0 - w2, w2], [76, 129, 51]);
+    int2.gives("the products", [255 * w0, 128 * w2], [19_380, 6528]);
+    int2.gives("the colour", color([255, 0, 128], w0 as i32, w2 as i32), 101);
+    int2.shows("the real number", 0.3 * 255.0 + 0.2 * 128.0, 1, "102.1");
+
+    let int3 = example(
+        "INT-3",
+        "pixel (10, 1): 256 b0 = 224 exactly and b0 dominates, W0 = 224; 256 b2 = 4 exactly, W2 = 3; W1 = 29.",
+    );
+    let sample = at(&triangle, 10, 1);
+    int3.gives("256 E / D", sample.n.map(|n| 256 * i128::from(n)), [224, 28, 4].map(|k| k * i128::from(sample.d)));
+    int3.gives("the dominant weight", sample.dominant(), 0);
+    let [w0, w2] = sample.weights();
+    int3.gives("W0", w0, settled(224, false)).gives("W2", w2, settled(3, true));
+    int3.gives("W1", 256 - w0.value - w2.value, 29);
+
+    let int4 = example(
+        "INT-4",
+        "s = (0, 0, 1), n = 64, pixel (10, 2): 16384 * 2.5 / 96 = 426.67, u = 426, that is texel 1 and 170/256.",
+    );
+    let u = at(&triangle, 10, 2).coordinate(&triangle.coordinate([0.0, 0.0, 1.0], 64));
+    int4.shows("the real number", 16_384.0 * 2.5 / 96.0, 2, "426.67").gives("u", u, settled(426, false));
+    int4.gives("texel and part", (u.value >> 8, u.value & 255), (1, 170));
+
+    let int4t = example(
+        "INT-4t",
+        "pixel (10, 1), n = 64. s = (0, 0, 1): u would be 256 exactly, S = (1/64) 16384 > 0, so u = 255 and the nearest \
+         texel is 0. s = (0, 1, 0): u is 1792 exactly, S < 0, so u stays 1792.",
+    );
+    let sample = at(&triangle, 10, 1);
+    let plane = |s| triangle.coordinate(s, 64);
+    let [third, second] = [plane([0.0, 0.0, 1.0]), plane([0.0, 1.0, 0.0])];
+    int4t.gives("256 D", sample.sum(&third), 256 * i128::from(sample.d));
+    int4t.gives("64 b2", 64 * sample.n[2], sample.d).gives("S > 0", sample.truncation(&third) > 0, true);
+    let u = sample.coordinate(&third);
+    int4t.gives("u of (0, 0, 1)", u, settled(255, true)).gives("its texel", filter::nearest(u.value), 0);
+    int4t.gives("1792 D", sample.sum(&second), 1792 * i128::from(sample.d));
+    int4t.gives("S < 0", sample.truncation(&second) < 0, true);
+    int4t.gives("u of (0, 1, 0)", sample.coordinate(&second), settled(1792, false));
+
+    let int5 = example(
+        "INT-5",
+        "factors (0, 1, 0.5), pixel (10, 2): 4096 (10.5 + 1.25)/96 = 501.33, v = 501, the byte is (501 - 1) >> 4 = 31 \
+         (real: 31.21).",
+    );
+    let v = at(&triangle, 10, 2).factor(&triangle.factor([0.0, 1.0, 0.5]));
+    int5.shows("4096 f", 4096.0 * 11.75 / 96.0, 2, "501.33").gives("v", v, 501);
+    int5.gives("the byte", factor_byte(v), 31).shows("the real number", 255.0 * 11.75 / 96.0, 2, "31.21");
+
+    let int6 = example("INT-6", "on `Nv10` w = 1 + 2^-20 counts as 1, w = 1 + 2^-15 as itself.");
+    let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p;
+    let (small, large) = (1.0 + 2_f32.powi(-20), 1.0 + 2_f32.powi(-15));
+    int6.gives("1 + 2^-20 counts as 1 on Nv10", p(small, Profile::Nv10), p(1.0, Profile::Nv10));
+    int6.gives("1 + 2^-20 differs from 1 on Nv2a", p(small, Profile::Nv2a) != p(1.0, Profile::Nv2a), true);
+    int6.gives("1 + 2^-15 as itself on Nv10", p(large, Profile::Nv10), p(large, Profile::Nv2a));
+    int6.gives("1 + 2^-15 differs from 1", p(large, Profile::Nv10) != p(1.0, Profile::Nv10), true);
+}
+
+#[test]
+fn examples_of_depth() {
+    let triangle = of_the_section();
+    let dep1 = example(
+        "DEP-1",
+        "the triangle above with z = (0, 0, 960): pixel (10, 1) has b2 = 1/64 and z = 15; pixel (10, 2) has b2 = 5/192, \
+         which 24 bits cut, so z = 24 where the real number is 25.",
+    );
+    let depth = |sample: &Sample<'_>| sample.depth([0, 0, 960], (1 << 24) - 1);
+    let (row1, row2) = (at(&triangle, 10, 1), at(&triangle, 10, 2));
+    let whole = triangle.doubled_area;
+    dep1.gives("64 b2 of (10, 1)", 64 * row1.e[2], whole).gives("z of (10, 1)", depth(&row1), 15);
+    dep1.gives("192 b2 of (10, 2)", 192 * row2.e[2], 5 * whole).gives("z of (10, 2)", depth(&row2), 24);
+    dep1.gives("the real number of (10, 2)", 960 * row2.e[2], 25 * whole);
+
+    let dep2 = example("DEP-2", "a clear to 0.5 stores floor(0.5 * 65535) = 32767 in Z16.");
+    let text =
+        "(version: 1, profile: Nv10, targets: [(width: 1, height: 1, depth: Z16, clear: (depth: 0.5))], draws: [])";
+    let cleared = scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+    let plan = Plan::compile(&cleared.scene, &PlanOptions::default()).unwrap();
+    dep2.gives("the stored depth", render(&plan, &RenderOptions::default()).surfaces[0].depth.clone(), vec![32_767]);
+}

@@ -1,0 +1,16 @@
+//! `docs/numerics.md`, the handbook of rules, and the sources: they agree, and every example of the handbook is computed.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
+
+mod agreement;
+#[path = "../common/build.rs"]
+mod build;
+mod handbook;
+mod pixel;
+
+mod final_combiner;
+mod general_stage;
+mod interpolation;
+mod numbers;
+mod raster_operations;
+mod rasteriser;
+mod texture_units;

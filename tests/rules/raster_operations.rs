@@ -1,0 +1,61 @@
+//! Examples of the section "Raster operations".
+
+use crate::handbook::example;
+use crate::pixel::{Pixel, covering, scene};
+use ninebit::rop::{blend, surface};
+use ninebit::state::*;
+use ninebit::trace::Silent;
+
+const OVER: Blend = Blend {
+    equation: BlendEquation::Add,
+    source: BlendFactor::SourceAlpha,
+    destination: BlendFactor::OneMinusSourceAlpha,
+};
+
+/// R, G, B, A of a blend of all channels.
+fn blended(blend: Blend, source: [i32; 4], destination: [i32; 4]) -> [i32; 4] {
+    blend::run(&blend, 15, [0; 4], &source, &destination, &mut Silent)
+}
+
+#[test]
+fn examples_of_raster_operations() {
+    let rop1 = example("ROP-1", "alpha 127 against reference 127: Greater fails, GreaterOrEqual passes.");
+    let passes = |function| blend::alpha_test(&AlphaTest { function, reference: 127 }, 127, &mut Silent);
+    rop1.gives("Greater", passes(CompareFunction::Greater), false);
+    rop1.gives("GreaterOrEqual", passes(CompareFunction::GreaterOrEqual), true);
+
+    let rop2 = example("ROP-2", "S 200 with alpha 128 over D 50: rnd255(200 * 128 + 50 * 127) = rnd255(31950) = 125.");
+    rop2.gives("the sum", 200 * 128 + 50 * 127, 31_950);
+    rop2.gives("the blend", blended(OVER, [200, 200, 200, 128], [50; 4])[0], 125);
+
+    let rop3 = example("ROP-3", "S = 200 is -56: D = 127 becomes 71, reverse 183.");
+    let signed = |equation| blended(Blend { equation, ..OVER }, [200; 4], [127; 4])[0];
+    rop3.gives("s8(200)", 200_u8 as i8, -56).gives("SignedAdd", signed(BlendEquation::SignedAdd), 71);
+    rop3.gives("SignedReverseSubtract", signed(BlendEquation::SignedReverseSubtract), 183);
+
+    let rop4 = example("ROP-4", "sa 100, da 200: saturate is 55 for colour, 255 for alpha.");
+    // Times a source of 255 a factor is itself; alpha is the source's 100.
+    let source = BlendFactor::SourceAlphaSaturate;
+    let saturated = blended(
+        Blend { equation: BlendEquation::Add, source, destination: BlendFactor::Zero },
+        [255, 255, 255, 100],
+        [0, 0, 0, 200],
+    );
+    rop4.gives("colour times 255, alpha times 100", saturated, [55, 55, 55, 100]);
+    let factor = |channel| blend::factor(source, channel, &[255, 255, 255, 100], &[0, 0, 0, 200], &[0; 4]);
+    rop4.gives("the factors", [0, 1, 2, 3].map(factor), [55, 55, 55, 255]);
+
+    let rop5 =
+        example("ROP-5", "R5G6B5, red S = 203, sa = 128, stored 12: rnd255(200 * 128 + 96 * 127) = 148, stored 18.");
+    let diffuse = VertexColor::Bytes([203, 0, 0, 128]);
+    let draw = Draw { blend: Some(OVER), ..covering(Vertex { diffuse, ..Vertex::default() }) };
+    let pixel =
+        Pixel::of(&scene(Profile::Nv10, SurfaceFormat::R5G6B5, [12 << 3, 0, 0, 0], vec![draw]), Policies::DEFAULT);
+    rop5.gives("stored before", pixel.value("destination.word") >> 11, 12);
+    rop5.gives("S and D", ["source.r", "destination.r"].map(|name| pixel.value(name)), [200, 96]);
+    rop5.gives("the blend", pixel.value("blend.r"), 148).gives("stored", pixel.word >> 11, 18);
+
+    let rop6 = example("ROP-6", "A8R8G8B8 with R and A let through has the mask 0xffff0000.");
+    let mask = surface::write_mask(SurfaceFormat::A8R8G8B8, [true, false, false, true]);
+    rop6.gives("the mask", mask, 0xffff_0000);
+}
