@@ -2,7 +2,7 @@
 
 use crate::build::shows;
 use crate::handbook::{example, policy};
-use crate::pixel::{Pixel, covering, scene};
+use crate::pixel::{Pixel, covering, load_spare0, scene};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::mapping;
 use ninebit::combiner::registers::Registers;
@@ -28,15 +28,20 @@ fn products() -> Portion {
 
 /// Runs one stage whose alpha portion is idle.
 fn run(rgb: Portion, select: MuxSelect, policies: &Policies, registers: &mut Registers<i32>) {
-    let live = |register: Register| if register == Register::Zero { 0 } else { 7 };
+    run_both(rgb, Portion::idle(Component::Alpha), select, policies, registers);
+}
+
+fn run_both(rgb: Portion, alpha: Portion, select: MuxSelect, policies: &Policies, registers: &mut Registers<i32>) {
+    let planned = |portion: Portion, channels: u8| PlannedPortion {
+        portion,
+        live: [portion.ab_output, portion.cd_output, portion.sum_output]
+            .map(|register| if register == Register::Zero { 0 } else { channels }),
+        blue_to_alpha: [portion.ab_blue_to_alpha, portion.cd_blue_to_alpha],
+    };
     let stage = PlannedStage {
         index: 0,
-        rgb: PlannedPortion {
-            portion: rgb,
-            live: [rgb.ab_output, rgb.cd_output, rgb.sum_output].map(live),
-            blue_to_alpha: [rgb.ab_blue_to_alpha, rgb.cd_blue_to_alpha],
-        },
-        alpha: PlannedPortion { portion: Portion::idle(Component::Alpha), live: [0; 3], blue_to_alpha: [false; 2] },
+        rgb: planned(rgb, 7),
+        alpha: planned(alpha, 8),
         constants: [[0; 4]; 2],
         reads_constants: false,
     };
@@ -72,18 +77,24 @@ fn mux(spare0_alpha: i32, select: MuxSelect, policies: Policies) -> &'static str
 
 #[test]
 fn examples_of_the_general_stage() {
-    let cmb1 = example("CMB-1", "AB = SPARE0 to SPARE1 and CD = SPARE1 to SPARE0 in one stage exchanges them.");
+    let cmb1 = example(
+        "CMB-1",
+        "AB = SPARE0 to SPARE1 and CD = SPARE1 to SPARE0 in one stage exchanges them; its alpha portion reads the blue of \
+         SPARE0 as it was.",
+    );
     let mut exchange = products();
     exchange.inputs[0].register = Register::Spare0;
     exchange.inputs[2].register = Register::Spare1;
     (exchange.ab_output, exchange.cd_output) = (Register::Spare1, Register::Spare0);
+    let mut alpha = load_spare0(Component::Alpha, Register::Spare0);
+    alpha.inputs[0].component = Component::Blue;
     let mut registers = Registers::new();
     registers.load(Register::Spare0, [10, 20, 30, 0]);
     registers.load(Register::Spare1, [-40, -50, -60, 0]);
     registers.load(Register::Texture1, [255; 4]);
     registers.load(Register::Texture3, [255; 4]);
-    run(exchange, MuxSelect::Msb, &DEFAULT, &mut registers);
-    cmb1.gives("SPARE0", registers.values[Register::Spare0 as usize], [-40, -50, -60, 0]);
+    run_both(exchange, alpha, MuxSelect::Msb, &DEFAULT, &mut registers);
+    cmb1.gives("SPARE0", registers.values[Register::Spare0 as usize], [-40, -50, -60, 30]);
     cmb1.gives("SPARE1", registers.values[Register::Spare1 as usize], [10, 20, 30, 0]);
 
     mappings();

@@ -24,9 +24,15 @@ fn examples_of_raster_operations() {
     rop1.gives("Greater", passes(CompareFunction::Greater), false);
     rop1.gives("GreaterOrEqual", passes(CompareFunction::GreaterOrEqual), true);
 
-    let rop2 = example("ROP-2", "S 200 with alpha 128 over D 50: rnd255(200 * 128 + 50 * 127) = rnd255(31950) = 125.");
-    rop2.gives("the sum", 200 * 128 + 50 * 127, 31_950);
-    rop2.gives("the blend", blended(OVER, [200, 200, 200, 128], [50; 4])[0], 125);
+    let rop2 = example(
+        "ROP-2",
+        "S 200 with alpha 128 over D 51: rnd255(200 * 128 + 51 * 127) = rnd255(32077) = 126; two roundings would give 100 + 25.",
+    );
+    rop2.gives("the sum", 200 * 128 + 51 * 127, 32_077);
+    rop2.gives("the blend", blended(OVER, [200, 200, 200, 128], [51; 4])[0], 126);
+    // One of the two terms at a time.
+    let alone = |source, destination| blended(OVER, [source, source, source, 128], [destination; 4])[0];
+    rop2.gives("the terms alone", [alone(200, 0), alone(0, 51)], [100, 25]);
 
     let rop3 = example("ROP-3", "S = 200 is -56: D = 127 becomes 71, reverse 183.");
     let signed = |equation| blended(Blend { equation, ..OVER }, [200; 4], [127; 4])[0];

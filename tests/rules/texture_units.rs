@@ -30,10 +30,15 @@ fn sampled(format: TextureFormat, words: &[u32], s: f32, q: f32, change: impl Fn
 
 #[test]
 fn examples_of_texture_units() {
-    let tex1 = example("TEX-1", "red 3 of 31 becomes 3 << 3 | 3 >> 2 = 24 (real: 24.68).");
-    let texel = sampled(TextureFormat::R5G6B5, &[3 << 11], 0.0, 1.0, |_| {});
-    tex1.gives("red of the texel", texel.value("texture0.r"), 24);
-    tex1.shows("the real number", 255.0 * texel.step("texture0.r").ideal.unwrap(), 2, "24.68");
+    let tex1 = example(
+        "TEX-1",
+        "red 20 of 31 becomes 20 << 3 | 20 >> 2 = 165 (real: 164.52), red 3 becomes 24 (real: 24.68).",
+    );
+    for (red, byte, real) in [(20, 165, "164.52"), (3, 24, "24.68")] {
+        let texel = sampled(TextureFormat::R5G6B5, &[red << 11], 0.0, 1.0, |_| {});
+        tex1.gives("red of the texel", texel.value("texture0.r"), byte);
+        tex1.shows("the real number", 255.0 * texel.step("texture0.r").ideal.unwrap(), 2, real);
+    }
 
     let tex5 = example("TEX-5", "u = 255, 256, -1 are texels 0, 1, -1.");
     tex5.gives("u = 255, 256, -1", [255, 256, -1].map(filter::nearest), [0, 1, -1]);
