@@ -1,7 +1,9 @@
-//! The scalar engine on whole frames: DOT3 of one bilinear normal map and the interpolated light vector, 640x480.
+//! The scalar engine on whole frames: DOT3 of one bilinear normal map and the interpolated light vector, 640x480; the comparison with
+//! its ideal; planning.
 #![allow(missing_docs, clippy::float_arithmetic, clippy::unwrap_used, reason = "a benchmark")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use ninebit::compare::{CompareOptions, Mode, compare};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
@@ -121,5 +123,23 @@ fn engine(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, engine);
+/// The same frame compared with its ideal; the ratio to `dot3_frame/perspective/1_thread` is what counts.
+fn comparison(c: &mut Criterion) {
+    let mut group = c.benchmark_group("compare");
+    group.throughput(Throughput::Elements(u64::from(WIDTH * HEIGHT))).sample_size(10);
+    let plan = Plan::compile(&scene(true), &PlanOptions::default()).unwrap();
+    for mode in Mode::ALL {
+        let options = CompareOptions { mode: *mode, target: 0, threads: 1 };
+        group.bench_function(mode.name(), |b| b.iter(|| compare(black_box(&plan), &options)));
+    }
+    group.finish();
+}
+
+fn planning(c: &mut Criterion) {
+    let mut scene = scene(true);
+    scene.draws = vec![scene.draws[0].clone(); 16];
+    c.bench_function("plan/16_draws", |b| b.iter(|| Plan::compile(black_box(&scene), &PlanOptions::default())));
+}
+
+criterion_group!(benches, engine, comparison, planning);
 criterion_main!(benches);
