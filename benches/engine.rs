@@ -135,11 +135,56 @@ fn comparison(c: &mut Criterion) {
     group.finish();
 }
 
+/// The primary colour, shown as it is.
+fn shown(register: FinalRegister) -> Combiners {
+    let mut combiners = dot3();
+    combiners.stages[0].rgb = Portion::idle(Component::Rgb);
+    combiners.final_combiner.inputs[3].register = register;
+    combiners
+}
+
+/// What each piece of state costs: the same frame with more and more of it.
+fn state(c: &mut Criterion) {
+    let mut group = c.benchmark_group("state");
+    group.throughput(Throughput::Elements(u64::from(WIDTH * HEIGHT))).sample_size(10);
+    let mut bench = |name: &str, change: &dyn Fn(&mut Scene)| {
+        let mut scene = scene(true);
+        change(&mut scene);
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        group.bench_function(name, |b| b.iter(|| render(black_box(&plan), &RenderOptions { threads: 1 })));
+    };
+    bench("one_color", &|s| {
+        s.draws[0].combiners = shown(FinalRegister::PrimaryColor);
+        s.draws[0].vertices.iter_mut().for_each(|v| v.diffuse = VertexColor::Bytes([1, 2, 3, 4]));
+    });
+    bench("smooth", &|s| s.draws[0].combiners = shown(FinalRegister::PrimaryColor));
+    bench("nearest", &|s| {
+        s.draws[0].combiners = shown(FinalRegister::Texture0);
+        s.draws[0].textures[0].as_mut().unwrap().filter = Filter::Nearest;
+    });
+    bench("bilinear", &|s| s.draws[0].combiners = shown(FinalRegister::Texture0));
+    bench("bilinear_dot3", &|_| {});
+    bench("bilinear_dot3_blend_add", &|s| {
+        let (source, destination) = (BlendFactor::One, BlendFactor::One);
+        s.draws[0].blend = Some(Blend { equation: BlendEquation::Add, source, destination });
+    });
+    bench("bilinear_dot3_blend_replaced", &|s| {
+        let (source, destination) = (BlendFactor::One, BlendFactor::Zero);
+        s.draws[0].blend = Some(Blend { equation: BlendEquation::Add, source, destination });
+    });
+    bench("bilinear_dot3_depth", &|s| {
+        s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff });
+        s.draws[0].depth_test = Some(DepthTest { function: CompareFunction::LessOrEqual, write: true });
+    });
+    bench("nothing_written", &|s| s.draws[0].color_mask = [false; 4]);
+    group.finish();
+}
+
 fn planning(c: &mut Criterion) {
     let mut scene = scene(true);
     scene.draws = vec![scene.draws[0].clone(); 16];
     c.bench_function("plan/16_draws", |b| b.iter(|| Plan::compile(black_box(&scene), &PlanOptions::default())));
 }
 
-criterion_group!(benches, engine, comparison, planning);
+criterion_group!(benches, engine, state, comparison, planning);
 criterion_main!(benches);

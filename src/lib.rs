@@ -89,6 +89,7 @@ pub mod compare;
 pub mod diff;
 pub mod engine;
 pub mod expectation;
+pub mod explain;
 pub mod frame;
 pub mod generate;
 mod guard;

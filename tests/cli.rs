@@ -28,6 +28,7 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("op --help").text(), file!["cli/help-op.txt"]);
     assert_data_eq!(bench.run("op combiner --help").text(), file!["cli/help-op-combiner.txt"]);
     assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
+    assert_data_eq!(bench.run("explain --help").text(), file!["cli/help-explain.txt"]);
     assert_data_eq!(bench.run("compare --help").text(), file!["cli/help-compare.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
@@ -67,6 +68,23 @@ fn a_wrong_command_line_is_status_2() {
     assert!(!bench.path("h.png").exists());
     bench.run("generate normal-map height.png -o ./height.png").failed(2, "is the input");
     assert_eq!(fs::read(bench.path("height.png")).unwrap(), PNG);
+}
+
+#[test]
+fn plans_are_explained() {
+    let bench = Bench::new();
+    bench.write(
+        "scene.ron",
+        "(version: 1, profile: Nv10, draws: [(vertices: Window([(position: (0, 0)), (position: (9, 0)), (position: (0, 9))]))])",
+    );
+    let text = bench.run("explain scene.ron --count").text();
+    assert!(text.contains("fragment.rgb = ") && text.contains("cost: 36 fragments"), "{text}");
+    assert!(text.contains("bytes written        4 each           144   counted 144"), "{text}");
+    let json = bench.run("explain scene.ron --format json --count").text();
+    let value: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(value["draws"][0]["cost"]["total"], value["draws"][0]["counted"]["work"]);
+    assert_eq!(value["draws"][0]["counted"]["fragments"], 36);
+    bench.run("explain missing.ron").failed(4, "NB0111");
 }
 
 #[test]

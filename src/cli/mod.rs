@@ -5,6 +5,7 @@ mod compare;
 mod cost;
 mod diff;
 mod exit;
+mod explain;
 mod generate;
 mod limits;
 mod op;
@@ -45,6 +46,8 @@ enum Command {
     Trace(trace::Arguments),
     /// Compare a scene with float64 arithmetic of the vendor's real-number text
     Compare(compare::Arguments),
+    /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
+    Explain(explain::Arguments),
     /// Compare two pictures: where they differ, by how much, and how those pixels came to be
     ///
     /// The comparison is exact. Differing pixels that touch, corners included, are one region. With a scene, it is also said which of
@@ -105,6 +108,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
+        Command::Explain(arguments) => explain::run(&arguments, context),
         Command::Diff(arguments) => diff::run(&arguments, context),
         Command::Op(command) => op::run(&command, context),
         Command::Policies => policies::run(),

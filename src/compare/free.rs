@@ -24,7 +24,7 @@ impl Method for Free {
         counts: &mut Counts,
     ) {
         let (rows, columns) = walk::window(planned, band.rows());
-        if rows.0 >= rows.1 || columns.0 >= columns.1 {
+        if planned.folded.invisible.is_some() || rows.0 >= rows.1 || columns.0 >= columns.1 {
             return;
         }
         for number in 0..planned.assembly.triangles.len() {

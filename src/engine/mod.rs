@@ -3,11 +3,13 @@
 //! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; this module walks
 //! draws, bands of rows, triangles and quads. A pixel's result is a pure function of the plan, whatever the bands and threads.
 
+mod counting;
 pub(crate) mod pixel;
 mod report;
 mod tracing;
 pub(crate) mod walk;
 
+pub use counting::{DrawCounts, count, fragments};
 pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
 
 use crate::frame::{Frames, Surface};

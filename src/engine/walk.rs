@@ -49,6 +49,9 @@ pub(crate) fn covered(
     rows: (i64, i64),
     mut visit: impl FnMut(&TriangleContext<'_>, i64, i64),
 ) {
+    if planned.folded.invisible.is_some() {
+        return;
+    }
     let (rows, columns) = window(planned, rows);
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
         return;

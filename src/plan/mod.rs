@@ -4,6 +4,7 @@
 //! [`PlanOptions::prune`] (the default) outputs, channels, units and reads that nothing can see are left out; the bytes are the same
 //! without.
 
+mod fold;
 mod liveness;
 
 use crate::combiner::final_combiner::PlannedFinal;
@@ -11,6 +12,7 @@ use crate::combiner::general::PlannedStage;
 use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::surface;
+use crate::state::named;
 use crate::state::{
     AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, MuxSelect, Policies, Profile, Rectangle,
     Scene, ShadeModel, SurfaceFormat, TEXTURE_UNITS, Target, Texture, TextureImage,
@@ -124,6 +126,37 @@ pub struct PlannedDraw {
     pub write_mask: u32,
     /// Channels that those bits keep, bits R, G, B, A.
     pub written: u8,
+    /// What was folded away before the rest was planned.
+    pub folded: Folded,
+}
+
+/// Constants of a draw's state that settle something for every pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Folded {
+    /// The blend stores the source as it is: no destination is read.
+    pub replaces: bool,
+    /// Blending leaves every colour as it is: none is written.
+    pub keeps: bool,
+    /// Channels of the fragment that are 0 whatever the pixel, bits R, G, B, A.
+    pub zero: u8,
+    /// Nothing of the draw can be seen, and why.
+    pub invisible: Option<Invisible>,
+}
+
+named! {
+    /// Why nothing of a draw can be seen.
+    pub enum Invisible {
+        /// It has no triangles.
+        NoTriangles = "it has no triangles",
+        /// Its window is empty.
+        NoPixels = "its scissor leaves no pixel",
+        /// Neither colour nor depth is written.
+        NothingWritten = "it writes neither colour nor depth",
+        /// Its fragments are 0 and are added.
+        AddsZero = "its source is 0 in every channel and blending keeps what is there",
+        /// Its blend keeps the destination.
+        KeepsDestination = "its blend keeps what is there, whatever the source",
+    }
 }
 
 impl Plan {
@@ -210,8 +243,35 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         let y = s.y.min(target.height);
         Rectangle { x, y, width: s.width.min(target.width - x), height: s.height.min(target.height - y) }
     });
-    let write_mask = surface::write_mask(target.format, draw.color_mask);
-    let blend = draw.blend.filter(|_| surface::blends(target.format));
+    let state_mask = surface::write_mask(target.format, draw.color_mask);
+    let state_blend = draw.blend.filter(|_| surface::blends(target.format));
+    let depth_test = draw.depth_test.filter(|_| target.depth.is_some());
+    let mut folded = Folded::default();
+    if options.prune {
+        let written = written_channels(target.format, state_mask);
+        folded.zero = fold::zero_fragment(draw);
+        if let Some(blend) = &state_blend {
+            let zero = written & !folded.zero == 0;
+            folded.replaces = fold::replaces(blend, draw.blend_constant, written);
+            folded.keeps = fold::keeps(blend, draw.blend_constant, written, zero);
+        }
+        let keeps_always = state_blend.is_some_and(|b| fold::keeps(&b, draw.blend_constant, written, false));
+        folded.invisible = if assembly.triangles.is_empty() {
+            Some(Invisible::NoTriangles)
+        } else if window.width == 0 || window.height == 0 {
+            Some(Invisible::NoPixels)
+        } else if depth_test.is_some_and(|test| test.write) {
+            None
+        } else if written == 0 {
+            Some(Invisible::NothingWritten)
+        } else if keeps_always {
+            Some(Invisible::KeepsDestination)
+        } else {
+            folded.keeps.then_some(Invisible::AddsZero)
+        };
+    }
+    let write_mask = if folded.keeps { 0 } else { state_mask };
+    let blend = state_blend.filter(|_| !folded.replaces && !folded.keeps);
     let alpha_test = draw.alpha_test.filter(|t| !(options.prune && t.function == CompareFunction::Always));
     let written = written_channels(target.format, write_mask);
     let blended = if options.prune { written } else { 15 };
@@ -251,7 +311,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         mux_select: draw.combiners.mux_select,
         final_combiner: liveness.final_combiner,
         alpha_test,
-        depth_test: draw.depth_test.filter(|_| target.depth.is_some()),
+        depth_test,
         depth_full: target.depth.map_or(0, |d| (1 << d.format.bits()) - 1),
         depth_bits: target.depth.map_or(0, |d| d.format.bits()),
         blend,
@@ -259,6 +319,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         blend_constant: draw.blend_constant,
         write_mask,
         written,
+        folded,
     }
 }
 

@@ -3,7 +3,7 @@
 use clap::Args;
 use ninebit::combiner::registers::channel_name;
 use ninebit::engine;
-use ninebit::plan::Plan;
+use ninebit::plan::{Plan, PlanOptions};
 use ninebit::rop::surface;
 use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, Profile, SurfaceFormat};
 use ninebit::trace::Observer;
@@ -74,7 +74,12 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         ),
         ..Template::default()
     };
-    let (_, plan) = template.read(arguments.profile.profile, context)?;
+    let (scene, planned) = template.read(arguments.profile.profile, context)?;
+    // Colours come with each case: nothing that those of the template settle may be left out.
+    let mut plan = Plan::compile(&scene, &PlanOptions { prune: false, ..PlanOptions::default() }).unwrap_or(planned);
+    for draw in &mut plan.draws {
+        draw.blended = draw.written;
+    }
     let mut columns: Vec<Column> = COLORS
         .iter()
         .flat_map(|(name, _)| (0..4).map(move |channel| format!("{name}.{}", channel_name(channel))))

@@ -1,0 +1,67 @@
+//! How much work a render does: counted while it is done, and the fragments of a draw without shading them.
+
+use super::pixel::Fragment;
+use super::{cleared, images, walk};
+use crate::plan::{Plan, PlannedDraw};
+use crate::state::Named;
+use crate::trace::{Observer, Step, Work};
+
+/// The work of one draw.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct DrawCounts {
+    /// Covered pixels, once for each triangle that covers them.
+    pub fragments: u64,
+    /// Those that passed the tests.
+    pub stored: u64,
+    /// By kind, in the order of `Work::ALL`.
+    pub work: [u64; Work::ALL.len()],
+}
+
+impl Observer for DrawCounts {
+    const ON: bool = false;
+    fn step(&mut self, _step: Step) {}
+    fn count(&mut self, work: Work, amount: u64) {
+        self.work[work as usize] += amount;
+    }
+}
+
+/// Renders a plan on one thread and counts; one entry a draw.
+pub fn count(plan: &Plan) -> Vec<DrawCounts> {
+    let mut frames = cleared(plan);
+    let mut all = Vec::with_capacity(plan.draws.len());
+    for planned in &plan.draws {
+        let mut counts = DrawCounts::default();
+        let target = &mut frames.surfaces[planned.target];
+        let width = target.width as usize;
+        let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
+        let textures = images::<i32>(plan, &frames.surfaces);
+        walk::covered(plan, planned, (0, (words.len() / width) as i64), |context, i, j| {
+            let at = j as usize * width + i as usize;
+            let fragment = Fragment {
+                pixel: (i, j),
+                e: context.triangle.edges(i, j),
+                stored: words[at],
+                stored_depth: i64::from(depth.get(at).copied().unwrap_or(0)),
+                weights: None,
+            };
+            counts.fragments += 1;
+            let Some(stored) = context.shade(&fragment, None, &textures, &mut counts) else { return };
+            counts.stored += 1;
+            words[at] = stored.word;
+            if let (Some(z), Some(slot)) = (stored.depth, depth.get_mut(at)) {
+                *slot = z as u32;
+            }
+        });
+        let target = &mut frames.surfaces[planned.target];
+        (target.words, target.depth) = (words, depth);
+        all.push(counts);
+    }
+    all
+}
+
+/// Covered pixels of a draw, without shading them.
+pub fn fragments(plan: &Plan, planned: &PlannedDraw) -> u64 {
+    let mut count = 0;
+    walk::covered(plan, planned, (0, i64::from(plan.targets[planned.target].height)), |_, _, _| count += 1);
+    count
+}

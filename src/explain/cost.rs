@@ -1,0 +1,116 @@
+//! What a draw costs, from its plan alone.
+
+use crate::combiner::general::PlannedPortion;
+use crate::plan::PlannedDraw;
+use crate::state::{DotRounding, Filter, LerpRounding, Named, Policies, SumRounding};
+use crate::trace::Work;
+
+/// Work by kind, in the order of `Work::ALL`.
+pub(super) type Amounts = [u64; Work::ALL.len()];
+
+/// What one fragment costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FragmentCost {
+    /// Every fragment.
+    pub shaded: Amounts,
+    /// On top of that, one that passes the tests.
+    pub stored: Amounts,
+}
+
+/// What a draw costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Covered pixels, once for each triangle that covers them.
+    pub fragments: u64,
+    /// A test decides which of them are stored: [`total`](Self::total) is then the most that it can be.
+    pub tested: bool,
+    /// Of one fragment.
+    pub fragment: FragmentCost,
+}
+
+impl Cost {
+    pub(super) fn of(planned: &PlannedDraw, policies: &Policies, fragments: u64) -> Cost {
+        let fragment = FragmentCost { shaded: shaded(planned, policies), stored: stored(planned) };
+        Cost { fragments, tested: planned.alpha_test.is_some() || planned.depth_test.is_some(), fragment }
+    }
+
+    /// The work if `stored` fragments pass the tests.
+    pub fn with(&self, stored: u64) -> Amounts {
+        std::array::from_fn(|n| self.fragments * self.fragment.shaded[n] + stored * self.fragment.stored[n])
+    }
+
+    /// The work if all fragments pass.
+    pub fn total(&self) -> Amounts {
+        self.with(self.fragments)
+    }
+}
+
+fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
+    let mut amounts = Amounts::default();
+    let mut add = |work: Work, amount: u64| amounts[work as usize] += amount;
+    for unit in &planned.units {
+        match unit.state.filter {
+            Filter::Nearest => add(Work::Texels, 1),
+            Filter::Linear => {
+                add(Work::Texels, 4);
+                // Two rows and their mix, in four channels.
+                add(Work::Lerps, 12);
+            }
+        }
+    }
+    for stage in &planned.stages {
+        for (portion, channels) in [(&stage.rgb, 3), (&stage.alpha, 1)] {
+            let (products, roundings) = portion_cost(portion, channels, policies);
+            add(Work::Products, products);
+            add(Work::Roundings, roundings);
+        }
+    }
+    let last = &planned.final_combiner;
+    let product = u64::from(last.product.count_ones());
+    add(Work::Products, product);
+    add(Work::Roundings, product);
+    if last.lerps {
+        let channels = u64::from((last.live & 7).count_ones());
+        add(Work::Products, 2 * channels);
+        add(Work::Roundings, channels * if policies.lerp_rounding == LerpRounding::Once { 1 } else { 2 });
+    }
+    amounts
+}
+
+/// Products and roundings of a portion of three channels or one.
+fn portion_cost(planned: &PlannedPortion, channels: u64, policies: &Policies) -> (u64, u64) {
+    let portion = &planned.portion;
+    let dots = [portion.ab_dot_product, portion.cd_dot_product];
+    let (mut products, mut roundings) = (0, 0);
+    for n in 0..2 {
+        if planned.product_channels(n) != 0 {
+            products += channels;
+            if dots[n] && policies.dot_rounding == DotRounding::Each {
+                roundings += 3;
+            }
+        }
+    }
+    if planned.live[2] != 0 && !portion.mux && policies.sum_rounding == SumRounding::Each {
+        roundings += 2 * channels;
+    }
+    // A dot product is the same in all channels.
+    for (n, same) in [dots[0], dots[1], dots[0] && dots[1]].into_iter().enumerate() {
+        if planned.live[n] != 0 || (n < 2 && planned.blue_to_alpha[n]) {
+            roundings += if same { 1 } else { channels };
+        }
+    }
+    (products, roundings)
+}
+
+fn stored(planned: &PlannedDraw) -> Amounts {
+    let mut amounts = Amounts::default();
+    let bytes = u64::from(planned.surface.bytes());
+    if planned.blend.is_some() {
+        amounts[Work::Blends as usize] = u64::from(planned.blended.count_ones());
+        amounts[Work::BytesRead as usize] = bytes;
+    }
+    if planned.write_mask != 0 {
+        amounts[Work::BytesWritten as usize] = bytes;
+    }
+    amounts
+}

@@ -1,0 +1,180 @@
+//! A plan in words: what each draw computes, what was left out and why, and what it will cost.
+//!
+//! Equations are in the vendor extension's terms: `spare0.rgb = expand(tex0) . expand(primary)`. Costs are predicted from the plan; a
+//! run counts the same ([`engine::count`]).
+
+mod cost;
+mod equation;
+mod report;
+
+pub use cost::{Cost, FragmentCost};
+pub use report::{explanation_json, explanation_text};
+
+use crate::engine;
+use crate::plan::{Plan, PlannedDraw};
+use crate::rop::surface;
+use crate::state::{AddressMode, Blend, CompareFunction, Draw, Named, Register, Scene};
+
+/// A draw in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DrawExplanation {
+    /// Name of the draw.
+    pub name: String,
+    /// Name of its target.
+    pub target: String,
+    /// What it computes, in order.
+    pub equations: Vec<String>,
+    /// What nothing can see, and why.
+    pub dropped: Vec<String>,
+    /// What it will cost.
+    pub cost: Cost,
+}
+
+/// Explains a plan of a scene, draw by draw.
+pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
+    let draws = scene.draws.iter().zip(&plan.draws);
+    draws
+        .map(|(draw, planned)| DrawExplanation {
+            name: planned.name.clone(),
+            target: plan.targets[planned.target].name.clone(),
+            equations: equations(scene, plan, planned),
+            dropped: dropped(scene, draw, planned),
+            cost: Cost::of(planned, &plan.policies, engine::fragments(plan, planned)),
+        })
+        .collect()
+}
+
+fn channels(mask: u8) -> String {
+    (0..4).filter(|n| mask >> n & 1 != 0).map(|n| ["r", "g", "b", "a"][n]).collect()
+}
+
+fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
+    let mut lines = Vec::new();
+    if planned.folded.invisible.is_some() {
+        return lines;
+    }
+    for unit in &planned.units {
+        let texture = &scene.textures[unit.state.texture].name;
+        let filter = unit.state.filter.name().to_lowercase();
+        let address = |mode: AddressMode| mode.name();
+        lines.push(format!(
+            "tex{}.{} = {filter}(`{texture}`, {} x {} {}, {}/{})",
+            unit.index,
+            channels(unit.live),
+            unit.width,
+            unit.height,
+            unit.format.name(),
+            address(unit.state.address_s),
+            address(unit.state.address_t)
+        ));
+    }
+    for (register, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
+        if live != 0 {
+            let how = planned.shade_model.name().to_lowercase();
+            lines.push(format!("{}.{} = {how}(vertices)", equation::register(register), channels(live)));
+        }
+    }
+    for stage in &planned.stages {
+        lines.extend(equation::stage(stage, planned.mux_select));
+    }
+    lines.extend(equation::final_combiner(&planned.final_combiner));
+    if let Some(test) = &planned.alpha_test {
+        lines.push(format!("pass if fragment.a {} {}", comparison(test.function), test.reference));
+    }
+    if let Some(test) = &planned.depth_test {
+        let write = if test.write { ", then store z" } else { "" };
+        lines.push(format!("pass if z {} stored z{write}", comparison(test.function)));
+    }
+    lines.extend(equation::blend(planned));
+    if planned.write_mask != 0 {
+        let target = &plan.targets[planned.target];
+        lines.push(format!("store {} to `{}`, {}", channels(planned.written), target.name, target.format.name()));
+    }
+    lines
+}
+
+fn comparison(function: CompareFunction) -> &'static str {
+    match function {
+        CompareFunction::Never => "never",
+        CompareFunction::Less => "<",
+        CompareFunction::Equal => "=",
+        CompareFunction::LessOrEqual => "<=",
+        CompareFunction::Greater => ">",
+        CompareFunction::NotEqual => "!=",
+        CompareFunction::GreaterOrEqual => ">=",
+        CompareFunction::Always => "always, whatever",
+    }
+}
+
+/// What of the state is not in the plan, and why.
+fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw) -> Vec<String> {
+    if let Some(why) = planned.folded.invisible {
+        return vec![format!("the whole draw: {}", why.name())];
+    }
+    let mut lines = Vec::new();
+    for (index, unit) in draw.textures.iter().enumerate() {
+        let Some(unit) = unit else { continue };
+        let name = &scene.textures[unit.texture].name;
+        match planned.units.iter().find(|planned| planned.index == index) {
+            None => lines.push(format!("texture unit {index}, `{name}`: nothing that is needed reads tex{index}")),
+            Some(planned) if planned.live != 15 => {
+                lines.push(format!("tex{index}.{}: nothing that is needed reads it", channels(15 & !planned.live)));
+            }
+            Some(_) => {}
+        }
+    }
+    for (register, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
+        if live != 15 {
+            let name = equation::register(register);
+            lines.push(format!("{name}.{}: nothing that is needed reads it", channels(15 & !live)));
+        }
+    }
+    for (index, stage) in draw.combiners.stages.iter().enumerate() {
+        let kept = planned.stages.iter().find(|planned| planned.index == index);
+        for (state, all, what) in [(&stage.rgb, 7, "rgb"), (&stage.alpha, 8, "alpha")] {
+            let kept = kept.map(|stage| if what == "rgb" { &stage.rgb } else { &stage.alpha });
+            let outputs = [("AB", state.ab_output), ("CD", state.cd_output), ("sum", state.sum_output)];
+            for (n, (output, destination)) in outputs.into_iter().enumerate() {
+                if destination == Register::Zero {
+                    continue;
+                }
+                let live = kept.map_or(0, |portion| portion.live[n]);
+                if live != all {
+                    let (name, dead) = (equation::register(destination), channels(all & !live));
+                    lines.push(format!("stage {index} {what} {output}: {name}.{dead} is not read afterwards"));
+                }
+            }
+        }
+    }
+    let fragment = planned.final_combiner.live;
+    if fragment & 8 == 0 {
+        lines.push("fragment.a: it is not tested, blended or stored".to_string());
+    }
+    if fragment & 7 != 7 {
+        lines.push(format!("fragment.{}: it is neither blended nor stored", channels(7 & !fragment)));
+    }
+    if fragment & 7 != 0 && !planned.final_combiner.lerps {
+        lines.push("final combiner A, B, C: A and C are 0, so D alone counts".to_string());
+    }
+    if let Some(test) = &draw.alpha_test
+        && planned.alpha_test.is_none()
+    {
+        lines.push(format!("alpha test: {} passes every fragment", test.function.name()));
+    }
+    lines.extend(draw.blend.as_ref().and_then(|blend| dropped_blend(blend, planned)));
+    lines
+}
+
+fn dropped_blend(blend: &Blend, planned: &PlannedDraw) -> Option<String> {
+    let Blend { equation, source, destination } = blend;
+    let state = format!("blend {}, {}, {}", equation.name(), source.name(), destination.name());
+    if !surface::blends(planned.surface) {
+        Some(format!("{state}: {} surfaces do not blend", planned.surface.name()))
+    } else if planned.folded.replaces {
+        Some(format!("{state}: it stores the source as it is, the destination is not read"))
+    } else if planned.folded.keeps {
+        Some(format!("{state}: it keeps what is there, no colour is written"))
+    } else {
+        None
+    }
+}

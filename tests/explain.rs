@@ -1,0 +1,159 @@
+//! The plan in words: what it predicts is what a run counts, and what it leaves out cannot be seen.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
+
+#[path = "common/random_scene.rs"]
+mod random_scene;
+
+use ninebit::engine::{RenderOptions, count, render};
+use ninebit::explain::explain;
+use ninebit::limits::Limits;
+use ninebit::plan::{Invisible, Plan, PlanOptions};
+use ninebit::scene;
+use ninebit::state::*;
+use ninebit::trace::Work;
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+use std::path::Path;
+
+/// Prediction and run agree; the number of fragments predicted, and of draws in which tests decided.
+fn check(what: &str, scene: &Scene, plan: &Plan) -> (u64, u64) {
+    let counted = count(plan);
+    let (mut fragments, mut tested) = (0, 0);
+    for (draw, counts) in explain(scene, plan).iter().zip(&counted) {
+        let cost = &draw.cost;
+        assert_eq!(cost.fragments, counts.fragments, "{what}: fragments of {}", draw.name);
+        assert_eq!(cost.with(counts.stored), counts.work, "{what}: {} {:?}", draw.name, cost);
+        if cost.tested {
+            assert!(counts.stored <= cost.fragments);
+            tested += 1;
+        } else {
+            assert_eq!(counts.stored, cost.fragments);
+            assert_eq!(cost.total(), counts.work);
+        }
+        fragments += cost.fragments;
+    }
+    (fragments, tested)
+}
+
+#[test]
+fn predictions_are_counted_on_every_scene_of_the_repository() {
+    let mut scenes = 0;
+    for entry in std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/dot3")).unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.to_string_lossy().into_owned();
+        if name.ends_with(".ron") && !name.ends_with(".expect.ron") {
+            let loaded = scene::load(&path, &Limits::default()).unwrap();
+            let (fragments, _) = check(&name, &loaded.scene, &loaded.plan);
+            assert!(fragments > 10_000, "{name}");
+            scenes += 1;
+        }
+    }
+    assert!(scenes >= 6);
+}
+
+#[test]
+fn predictions_are_counted_on_random_scenes() {
+    let mut runner = TestRunner::deterministic();
+    let (mut fragments, mut tested) = (0, 0);
+    for n in 0..400 {
+        let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
+        for prune in [true, false] {
+            let mut plan = Plan::compile(&scene, &PlanOptions { prune, ..PlanOptions::default() }).unwrap();
+            for (k, policy) in POLICIES.iter().enumerate() {
+                plan.policies.choose(policy.rule, (n / (k + 1)) % policy.values.len());
+            }
+            let (f, t) = check(&format!("{scene:?}"), &scene, &plan);
+            (fragments, tested) = (fragments + f, tested + t);
+        }
+    }
+    assert!(fragments > 100_000 && tested > 50, "{fragments} {tested}");
+}
+
+/// A quad over 4 x 4 pixels; `fields` are those of the draw.
+fn quad(fields: &str) -> Scene {
+    let text = format!(
+        "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 4, height: 4, clear: (color: (9, 8, 7, 6)))], draws: [\
+         (vertices: Window([(position: (0, 0)), (position: (4, 0)), (position: (4, 4)), (position: (0, 4))]), \
+         topology: Quads, {fields})])"
+    );
+    scene::parse(&text, Path::new("quad.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}")).scene
+}
+
+const BLACK: &str = "program: Combiners(stages: [()], final_combiner: (d: (Zero), g: (Zero, Blue))),";
+
+#[test]
+fn draws_that_nothing_can_see_are_left_out() {
+    let blend = |equation: &str, source: &str, destination: &str| {
+        format!("blend: (equation: {equation}, source: {source}, destination: {destination}),")
+    };
+    for (fields, expected) in [
+        (format!("{BLACK} {}", blend("Add", "One", "One")), Some(Invisible::AddsZero)),
+        (format!("{BLACK} {}", blend("ReverseSubtract", "SourceAlpha", "One")), Some(Invisible::AddsZero)),
+        (format!("{BLACK} {}", blend("Max", "One", "One")), Some(Invisible::AddsZero)),
+        (format!("{BLACK} {}", blend("Add", "One", "SourceAlpha")), None),
+        (blend("Add", "Zero", "One"), Some(Invisible::KeepsDestination)),
+        (blend("Add", "One", "One"), None),
+        ("color_mask: (false, false, false, false),".to_string(), Some(Invisible::NothingWritten)),
+        (String::new(), None),
+    ] {
+        let scene = quad(&fields);
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        assert_eq!(plan.draws[0].folded.invisible, expected, "{fields}");
+        let whole = Plan::compile(&scene, &PlanOptions { prune: false, ..PlanOptions::default() }).unwrap();
+        let [one, other] = [&plan, &whole].map(|plan| render(plan, &RenderOptions::default()));
+        assert_eq!(one, other, "{fields}");
+        let explanation = &explain(&scene, &plan)[0];
+        if expected.is_some() {
+            assert_eq!((explanation.cost.fragments, explanation.equations.len()), (0, 0));
+            assert!(explanation.dropped[0].starts_with("the whole draw: "));
+        } else {
+            assert!(explanation.cost.fragments == 16 && !explanation.equations.is_empty());
+        }
+    }
+}
+
+/// The scene reader refuses an empty scissor and a draw without triangles; the state may have them.
+#[test]
+fn empty_draws_are_left_out() {
+    let invisible = |scene: &Scene| Plan::compile(scene, &PlanOptions::default()).unwrap().draws[0].folded.invisible;
+    let mut scene = quad("");
+    scene.draws[0].scissor = Some(Rectangle { x: 4, y: 0, width: 4, height: 4 });
+    assert_eq!(invisible(&scene), Some(Invisible::NoPixels));
+    scene.draws[0].indices.clear();
+    assert_eq!(invisible(&scene), Some(Invisible::NoTriangles));
+}
+
+#[test]
+fn a_blend_that_replaces_reads_nothing() {
+    let scene = quad("blend: (equation: Add, source: One, destination: Zero),");
+    let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+    assert!(plan.draws[0].blend.is_none());
+    let counted = &count(&plan)[0];
+    assert_eq!((counted.work[Work::BytesRead as usize], counted.work[Work::BytesWritten as usize]), (0, 64));
+    assert!(explain(&scene, &plan)[0].dropped.iter().any(|line| line.contains("destination is not read")));
+}
+
+#[test]
+fn equations_are_in_the_extensions_terms() {
+    let scene = quad(
+        "program: Combiners(stages: [\
+         (rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true, scale: Four), \
+          alpha: (a: (Texture0, Alpha), b: (PrimaryColor, Alpha), ab: Spare0)), \
+         (rgb: (a: (Spare0), b: (ConstantColor0), c: UnsignedInvert(SecondaryColor), d: (Spare0, Alpha), sum: Spare1, \
+         bias: NegativeHalf))], \
+         final_combiner: (a: (PrimaryColor, Alpha), b: (Spare1), c: (Zero), d: (SecondaryColor), g: (Spare1, Blue)))",
+    );
+    let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+    let explanation = &explain(&scene, &plan)[0];
+    let text = explanation.equations.join("\n");
+    for line in [
+        "stage 0: spare0.rgb = 4 * (expand(tex0) . expand(primary))",
+        "stage 0: spare0.a = tex0.a * primary.a",
+        "stage 1: spare1.rgb = spare0 * const0 + (1 - secondary) * spare0.a - 1/2",
+        "fragment.rgb = primary.a * spare1 + secondary",
+        "fragment.a = spare1.b",
+        "store rgba to `frame`, A8R8G8B8",
+    ] {
+        assert!(text.contains(line), "`{line}` is not in\n{text}");
+    }
+}
