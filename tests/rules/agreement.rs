@@ -1,7 +1,10 @@
 //! The handbook against the sources: ids, grades, counts, policies, files, tests and vectors.
 
 use crate::handbook::{ENTRIES, Entry, built, declares, files, id_literals, ids, read, root};
-use ninebit::state::POLICIES;
+use ninebit::compare::bound;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::{Named, POLICIES, Profile, Scene};
+use ninebit::trace::Rule;
 use std::collections::{BTreeMap, BTreeSet};
 
 const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];
@@ -239,4 +242,23 @@ fn the_table_of_vectors_is_right() {
     }
     let all: BTreeSet<String> = vectors.values().flatten().cloned().collect();
     assert_eq!(listed, all, "vectors/silicon/README.md lists the left, the right exist");
+}
+
+/// The table of bounds is what comparisons are held to.
+#[test]
+fn bounds_are_those_of_the_comparison() {
+    let scene = Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], draws: vec![] };
+    let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+    let text = read("docs/numerics.md");
+    for rule in Rule::ALL {
+        let line = bound::of(*rule, &plan).map(|(low, high)| {
+            // INT-4 allows for the last bits of float64.
+            let number = |n: f64| format!("{n:.3}").replace("-0.000", "0.000");
+            format!("| {} | {} | {} |", rule.name(), number(low), number(high))
+        });
+        match line {
+            Some(line) => assert!(text.contains(&line), "the table of bounds should have the line\n{line}"),
+            None => assert!(!text.contains(&format!("\n| {} |", rule.name())), "{} has no bound", rule.name()),
+        }
+    }
 }
