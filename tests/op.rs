@@ -269,3 +269,86 @@ fn a_wrong_command_line_is_status_2() {
     wrong("address --mode wrap --size 8", "`index` is not given");
     wrong("address --mode sideways --size 8 --index 1", "there is no address mode `sideways`");
 }
+
+/// The worked examples of `docs/numerics.md`, as far as they are one operation.
+#[test]
+fn examples_of_the_handbook() {
+    let number = |command: &str, name: &str| result(command, name).as_i64().unwrap_or_else(|| panic!("{command}"));
+    let map = |mapping: &str, value: i32, more: &str| {
+        number(&format!("combiner --a tex0:{mapping} --b zero:invert --in tex0={value} {more}"), "spare0.r")
+    };
+    // NUM-2, CMB-6.
+    let product = |value: i32| {
+        number(&format!("combiner --a tex0:signed --b primary --in tex0={value} --in primary=200"), "spare0.r")
+    };
+    assert_eq!((product(100), product(-100)), (78, -78));
+    // NUM-3.
+    let sum = |value: i32, more: &str| {
+        let command = "combiner --a tex0:signed --b zero:invert --c tex0:signed --d zero:invert";
+        number(&format!("{command} --in tex0={value} {more}"), "spare0.r")
+    };
+    assert_eq!((sum(150, ""), sum(-150, ""), sum(-150, "--policy NUM-3=255")), (255, -256, -255));
+    // TEX-6, TEX-18.
+    assert_eq!(number("filter --texels 10,200 --weights 51", "mix"), 48);
+    let signed = |byte: i32| number(&format!("filter --texels {byte},{byte} --weights 0 --signed"), "register");
+    assert_eq!((signed(127), signed(-128)), (254, -256));
+    // CMB-1.
+    let exchange = "combiner --a spare0 --b zero:invert --c spare1 --d zero:invert --ab spare1 --cd spare0 --sum discard \
+                    --in spare0=10 --in spare1=20";
+    assert_eq!((number(exchange, "spare0.r"), number(exchange, "spare1.r")), (20, 10));
+    // CMB-2 to CMB-5.
+    assert_eq!(
+        [map("identity", 37, ""), map("invert", 37, ""), map("identity", -5, ""), map("invert", -5, "")],
+        [37, 218, 0, 255]
+    );
+    assert_eq!([0, 128, 255].map(|v| map("expand", v, "")), [-256, 0, 254]);
+    assert_eq!([0, 128, 255].map(|v| map("expand_negate", v, "")), [255, 0, -254]);
+    assert_eq!([0, 128, 200].map(|v| map("half_bias", v, "")), [-128, 0, 72]);
+    let half = "combiner --a tex0:half_bias --b primary --in tex0=200 --in primary=100 --policy CMB-4=127.5";
+    assert_eq!(number(half, "spare0.r"), 28);
+    assert_eq!([-256, 255].map(|v| map("negate", v, "")), [255, -255]);
+    // CMB-7 to CMB-11.
+    assert_eq!((number(SUM, "spare0.r"), number(&format!("{SUM} --policy CMB-7=each"), "spare0.r")), (157, 156));
+    let dot = "combiner --a tex0 --b primary --dot --in tex0=100 --in primary=200";
+    assert_eq!((number(dot, "spare0.r"), number(&format!("{dot} --policy CMB-8=each"), "spare0.r")), (235, 234));
+    let twice = format!("{PRODUCT} --scale 2");
+    assert_eq!((number(&twice, "spare0.r"), number(&format!("{twice} --policy CMB-9=after"), "spare0.r")), (156, 157));
+    assert_eq!(map("signed", -1, "--scale half"), 0);
+    let mux = |alpha: i32, more: &str| {
+        let command = "combiner --a tex0 --b zero:invert --c tex1 --d zero:invert --mux --in tex0=1 --in tex1=2";
+        number(&format!("{command} --in spare0.a={alpha} {more}"), "spare0.r")
+    };
+    assert_eq!((mux(0x82, ""), mux(0x82, "--mux-select lsb")), (2, 1));
+    assert_eq!((mux(-1, ""), mux(-1, "--policy CMB-10=bit7"), mux(-1, "--mux-select lsb")), (1, 2, 2));
+    let blue = "combiner --a tex0 --b zero:invert --blue-to-alpha --profile nv2a --in tex0=10,20,50";
+    assert_eq!(["r", "g", "b", "a"].map(|c| number(blue, &format!("spare0.{c}"))), [10, 20, 50, 50]);
+    // FIN-1 to FIN-5.
+    let special = |more: &str| number(&format!("final --no-color-sum-clamp {more}"), "fragment.r");
+    assert_eq!(special("--d sum:invert --in spare0=200 --in secondary=100"), 0);
+    assert_eq!(special("--a sum --b zero:invert --in spare0=200 --in secondary=100"), 255);
+    let lerp = "--a primary --b const0 --c tex0 --d tex1 --in primary=100 --const0 200 --in tex0=37 --in tex1=10";
+    assert_eq!((special(lerp), special(&format!("{lerp} --policy FIN-2=twice"))), (111, 110));
+    // A quarter of 455, of 310 and of the clamped 255.
+    let quarter = "--a const0 --b sum --const0 64 --in spare0=200 --in secondary=255";
+    assert_eq!((special(quarter), special(&format!("{quarter} --invert-spare0"))), (114, 78));
+    assert_eq!(number(&format!("final {quarter}"), "fragment.r"), 64);
+    assert_eq!(special("--d ef --e tex0 --f tex1 --in tex0=127 --in tex1=127"), 63);
+    let above = "final --no-color-sum-clamp --a zero:invert --b sum --d sum --in spare0=200 --in secondary=100";
+    assert_eq!(number(above, "fragment.r"), 255);
+    assert!(Bench::new().run(&format!("op {above}")).text().contains("FIN-5"));
+    // ROP-2 to ROP-5.
+    let over = "blend --source-factor sa --destination-factor 1-sa";
+    assert_eq!(number(&format!("{over} --source 200,200,200,128 --destination 51"), "blend.r"), 126);
+    let byte = |equation: &str| {
+        number(&format!("blend --equation {equation} --source 200 --destination 127 --profile nv2a"), "blend.r")
+    };
+    assert_eq!((byte("signed_add"), byte("signed_reverse_subtract")), (71, 183));
+    let saturate = "blend --source-factor source_alpha_saturate --destination-factor zero --source 255,255,255,100 --destination 0,0,0,200";
+    assert_eq!((number(saturate, "blend.r"), number(saturate, "blend.a")), (55, 100));
+    let cut = format!("{over} --source 203,0,0,128 --stored 0x6000 --surface r5g6b5");
+    assert_eq!((number(&cut, "blend.r"), number(&cut, "field.r")), (148, 18));
+    // TEX-7.
+    let texel = |mode: &str, index: i32| number(&format!("address --mode {mode} --index {index} --size 8"), "texel");
+    assert_eq!((texel("wrap", -1), texel("clamp_to_edge", 9)), (7, 7));
+    assert_eq!([8, 9, -1].map(|index| texel("mirror", index)), [7, 6, 0]);
+}
