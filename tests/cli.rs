@@ -127,6 +127,7 @@ fn hemispheres_are_made_clean_and_noisy() {
     assert_eq!(made(""), clean, "the same bytes, wherever they go");
     assert_eq!(made("--noise 0 --seed 9"), clean, "no noise is the default, and takes no seed");
     assert_ne!(made("--noise 0.1"), clean);
+    assert_ne!(made("--zero-outside"), clean);
     assert_eq!(made("--noise 0.1 --seed 1"), made("--noise 0.1"));
     assert_ne!(made("--noise 0.1 --seed 2"), made("--noise 0.1"));
     assert_ne!(made("--noise 0.5"), made("--noise 0.1"));

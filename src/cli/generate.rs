@@ -92,6 +92,9 @@ pub(crate) struct HemisphereNormals {
     /// Which noise
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Outside the circle write the zero vector, 128, 128, 128, in place of a flat surface
+    #[arg(long)]
+    zero_outside: bool,
 }
 
 /// Runs one of the generators.
@@ -114,7 +117,12 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         }
         Command::HemisphereNormals(arguments) => {
             let destination = Destination::from(arguments.output.as_os_str());
-            let options = hemisphere::Options { size: arguments.size, noise: arguments.noise, seed: arguments.seed };
+            let options = hemisphere::Options {
+                size: arguments.size,
+                noise: arguments.noise,
+                seed: arguments.seed,
+                zero_outside: arguments.zero_outside,
+            };
             write(&hemisphere::normals(&options), &destination)
         }
     }

@@ -1,7 +1,7 @@
 //! The normal map of a hemisphere that lies in a flat surface.
 //!
 //! The image is the square from -1 to 1 along x and y, and a texel's normal is taken at the texel's centre: (x, y,
-//! sqrt(1 - x^2 - y^2)) inside the unit circle, (0, 0, 1) outside. Orientation and bytes are those of
+//! sqrt(1 - x^2 - y^2)) inside the unit circle, outside (0, 0, 1), or the zero vector if asked for. Orientation and bytes are those of
 //! [`normal_map`](super::normal_map), with 255 in alpha.
 //!
 //! A hemisphere holds every direction that a surface can face, so it shows what a light does to all of them; and its normals turn
@@ -29,11 +29,13 @@ pub struct Options {
     pub noise: f64,
     /// Which noise.
     pub seed: u64,
+    /// Outside the circle is the zero vector, bytes of 128, in place of a flat surface: no light shows there.
+    pub zero_outside: bool,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { size: 256, noise: 0.0, seed: 1 }
+        Options { size: 256, noise: 0.0, seed: 1, zero_outside: false }
     }
 }
 
@@ -52,6 +54,7 @@ pub fn normals(options: &Options) -> Rgba {
                     let amount = |n: usize| noise * signed_unit((random >> (16 * n)) as u16);
                     unit(std::array::from_fn(|n| exact[n] + amount(n)))
                 }
+                None if options.zero_outside => [0.0; 3],
                 None => [0.0, 0.0, 1.0],
             });
             pixels.push([r, g, b, 255]);
@@ -121,11 +124,21 @@ mod tests {
     #[test]
     fn every_vector_is_of_unit_length_and_points_out() {
         for noise in [0.0, 0.004, 0.1, MAXIMUM_NOISE] {
-            let map = normals(&Options { size: 128, noise, seed: 3 });
+            let map = normals(&Options { size: 128, noise, seed: 3, ..Options::default() });
             for vector in vectors(&map) {
                 assert!((length(vector) - 1.0).abs() <= rounding(), "{vector:?}");
                 assert!(vector[2] >= 0.0, "{vector:?}");
             }
+        }
+    }
+
+    #[test]
+    fn the_outside_may_be_the_zero_vector() {
+        let flat = normals(&Options { size: 64, ..Options::default() });
+        let zero = normals(&Options { size: 64, zero_outside: true, ..Options::default() });
+        for (index, (flat, zero)) in flat.pixels.iter().zip(&zero.pixels).enumerate() {
+            let inside = on_sphere(index as u32 % 64, index as u32 / 64, 64).is_some();
+            assert_eq!(*zero, if inside { *flat } else { [128, 128, 128, 255] });
         }
     }
 
@@ -173,7 +186,7 @@ mod tests {
 
     #[test]
     fn the_same_options_give_the_same_bytes() {
-        let noisy = Options { size: 32, noise: 0.1, seed: 1 };
+        let noisy = Options { size: 32, noise: 0.1, ..Options::default() };
         assert_eq!(normals(&noisy), normals(&noisy));
         assert_ne!(normals(&noisy), normals(&Options { seed: 2, ..noisy }));
         assert_ne!(normals(&noisy), normals(&Options { noise: 0.0, ..noisy }));
