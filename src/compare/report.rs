@@ -5,7 +5,8 @@ use super::statistics::BINS;
 use super::{ChannelError, Comparison, Mode, Statistics};
 use crate::combiner::registers::channel_name;
 use crate::plan::Plan;
-use crate::state::{Named, POLICIES, Policies};
+use crate::report::{policies_text, policies_value};
+use crate::state::Named;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
 
@@ -17,20 +18,10 @@ pub fn comparison_text(plan: &Plan, comparison: &Comparison) -> String {
     out
 }
 
-/// Policies that are not at their default, as RULE=VALUE.
-fn chosen(policies: &Policies) -> impl Iterator<Item = String> + '_ {
-    POLICIES.iter().filter_map(|policy| {
-        let chosen = policies.chosen(policy.rule);
-        (chosen != 0).then(|| format!("{}={}", policy.rule, policy.values[chosen].0))
-    })
-}
-
 fn write(out: &mut String, plan: &Plan, c: &Comparison) -> std::fmt::Result {
     let Comparison { target, width, height, drawn, .. } = c;
     writeln!(out, "target `{target}`, {width} x {height}, profile {}, mode {}", plan.profile.name(), c.mode.name())?;
-    for policy in chosen(&plan.policies) {
-        writeln!(out, "policy {policy}")?;
-    }
+    write!(out, "{}", policies_text(&plan.policies))?;
     writeln!(out, "errors are the model minus the ideal, in steps of 1/255; drawn: {drawn} pixels")?;
     if c.mode == Mode::Free {
         writeln!(out, "left out, because a decision differs: {} pixels", c.diverged)?;
@@ -153,7 +144,7 @@ pub fn comparison_json(plan: &Plan, c: &Comparison) -> String {
         "format": "ninebit-comparison-1",
         "version": env!("CARGO_PKG_VERSION"),
         "profile": plan.profile.name(),
-        "policies": chosen(&plan.policies).collect::<Vec<_>>(),
+        "policies": policies_value(&plan.policies),
         "mode": c.mode.name(),
         "target": c.target,
         "width": c.width,

@@ -1,6 +1,5 @@
 //! How much work a render does: counted while it is done, and the fragments of a draw without shading them.
 
-use super::pixel::Fragment;
 use super::{cleared, images, walk};
 use crate::plan::{Plan, PlannedDraw};
 use crate::state::Named;
@@ -35,23 +34,8 @@ pub fn count(plan: &Plan) -> Vec<DrawCounts> {
         let width = target.width as usize;
         let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
         let textures = images::<i32>(plan, &frames.surfaces);
-        walk::covered(plan, planned, (0, (words.len() / width) as i64), |context, i, j| {
-            let at = j as usize * width + i as usize;
-            let fragment = Fragment {
-                pixel: (i, j),
-                e: context.triangle.edges(i, j),
-                stored: words[at],
-                stored_depth: i64::from(depth.get(at).copied().unwrap_or(0)),
-                weights: None,
-            };
-            counts.fragments += 1;
-            let Some(stored) = context.shade(&fragment, None, &textures, &mut counts) else { return };
-            counts.stored += 1;
-            words[at] = stored.word;
-            if let (Some(z), Some(slot)) = (stored.depth, depth.get_mut(at)) {
-                *slot = z as u32;
-            }
-        });
+        let mut band = walk::Band { first_row: 0, width, words: &mut words, depth: &mut depth };
+        (counts.fragments, counts.stored) = walk::draw(plan, planned, &textures, &mut band, &mut counts);
         let target = &mut frames.surfaces[planned.target];
         (target.words, target.depth) = (words, depth);
         all.push(counts);

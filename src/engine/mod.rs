@@ -17,6 +17,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::{Target, Texture, TextureImage};
 use crate::texture::unit::Image;
+use crate::trace::Silent;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -129,7 +130,7 @@ pub(crate) fn draw(
         };
         let pixels = planned.window.width as usize * planned.window.height as usize;
         let run = |mut band: walk::Band<'_>| {
-            let shaded = walk::draw(plan, planned, &textures, &mut band);
+            let (shaded, _) = walk::draw(plan, planned, &textures, &mut band, &mut Silent);
             band_done();
             shaded
         };

@@ -3,7 +3,7 @@
 use super::pixel::{Fragment, TriangleContext};
 use crate::plan::{Plan, PlannedDraw};
 use crate::texture::unit::Image;
-use crate::trace::Silent;
+use crate::trace::Observer;
 
 /// Some rows of a surface.
 pub(super) struct Band<'a> {
@@ -24,14 +24,20 @@ impl Band<'_> {
     }
 }
 
-/// Draws what of a draw falls into a band; covered pixels.
-pub(super) fn draw(plan: &Plan, planned: &PlannedDraw, textures: &[Image<'_, i32>], band: &mut Band<'_>) -> u64 {
-    let mut shaded = 0;
+/// Draws what of a draw falls into a band; covered pixels, and those that were stored.
+pub(super) fn draw<O: Observer>(
+    plan: &Plan,
+    planned: &PlannedDraw,
+    textures: &[Image<'_, i32>],
+    band: &mut Band<'_>,
+    observer: &mut O,
+) -> (u64, u64) {
+    let (mut shaded, mut stored) = (0, 0);
     covered(plan, planned, band.rows(), |context, i, j| {
-        pixel(context, textures, band, i, j);
         shaded += 1;
+        stored += u64::from(pixel(context, textures, band, i, j, observer));
     });
-    shaded
+    (shaded, stored)
 }
 
 /// The part of some rows, as a half-open range, that lies in a draw's window, and its columns.
@@ -83,8 +89,16 @@ pub(crate) fn covered(
     }
 }
 
+/// Shades a pixel; whether it was stored.
 #[inline]
-fn pixel(context: &TriangleContext<'_>, textures: &[Image<'_, i32>], band: &mut Band<'_>, i: i64, j: i64) {
+fn pixel<O: Observer>(
+    context: &TriangleContext<'_>,
+    textures: &[Image<'_, i32>],
+    band: &mut Band<'_>,
+    i: i64,
+    j: i64,
+    observer: &mut O,
+) -> bool {
     let at = (j as usize - band.first_row) * band.width + i as usize;
     let depth = band.depth.get(at).copied();
     let fragment = Fragment {
@@ -94,9 +108,10 @@ fn pixel(context: &TriangleContext<'_>, textures: &[Image<'_, i32>], band: &mut 
         stored_depth: i64::from(depth.unwrap_or(0)),
         weights: None,
     };
-    let Some(result) = context.shade::<i32, Silent>(&fragment, None, textures, &mut Silent) else { return };
+    let Some(result) = context.shade::<i32, O>(&fragment, None, textures, observer) else { return false };
     band.words[at] = result.word;
     if let (Some(depth), Some(slot)) = (result.depth, band.depth.get_mut(at)) {
         *slot = depth as u32;
     }
+    true
 }
