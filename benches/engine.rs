@@ -21,8 +21,9 @@ fn normal_map() -> Texture {
             0xff00_0000 | wave(x, y) << 16 | wave(y, x) << 8 | (230 + (x ^ y) % 20)
         })
         .collect();
-    let image = TextureImage::Texels { width: 256, height: 256, format: TextureFormat::A8R8G8B8, words: words.into() };
-    Texture { name: "normals".to_string(), image }
+    let texels = Texels { width: 256, height: 256, levels: 1, border: false, words: words.into() };
+    let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
+    Texture { name: "normals".to_string(), kind, format: TextureFormat::A8R8G8B8, image }
 }
 
 fn input(register: Register, mapping: InputMapping) -> CombinerInput {
@@ -67,15 +68,7 @@ fn scene(perspective: bool) -> Scene {
         corner(1.0, 0.0, [60, 90, 220, 255]),
         corner(0.0, 0.0, [210, 70, 190, 255]),
     ];
-    let unit = TextureUnit {
-        texture: 0,
-        coordinate_set: 0,
-        address_s: AddressMode::Wrap,
-        address_t: AddressMode::Wrap,
-        filter: Filter::Linear,
-        border_color: [0; 4],
-        signed: [false; 4],
-    };
+    let unit = TextureUnit::new(0);
     let draw = Draw {
         name: "surface".to_string(),
         target: 0,
@@ -89,8 +82,9 @@ fn scene(perspective: bool) -> Scene {
         cull: Cull::None,
         front_face: FrontFace::CounterClockwise,
         scissor: None,
-        fog: Fog { enabled: false, color: [0; 3] },
+        fog: Fog { enabled: false, color: [0; 3], function: None },
         textures: [Some(unit), None, None, None],
+        texture_shader: [0, 1, 2, 3].map(|n| ShaderStage::conventional(n, n == 0)),
         combiners: dot3(),
         alpha_test: None,
         depth_test: None,
@@ -106,7 +100,13 @@ fn scene(perspective: bool) -> Scene {
         clear_color: [0, 0, 0, 255],
         depth: None,
     };
-    Scene { profile: Profile::Nv10, targets: vec![target], textures: vec![normal_map()], draws: vec![draw] }
+    Scene {
+        profile: Profile::Nv10,
+        targets: vec![target],
+        textures: vec![normal_map()],
+        palettes: vec![],
+        draws: vec![draw],
+    }
 }
 
 fn engine(c: &mut Criterion) {
@@ -160,7 +160,7 @@ fn state(c: &mut Criterion) {
     bench("smooth", &|s| s.draws[0].combiners = shown(FinalRegister::PrimaryColor));
     bench("nearest", &|s| {
         s.draws[0].combiners = shown(FinalRegister::Texture0);
-        s.draws[0].textures[0].as_mut().unwrap().filter = Filter::Nearest;
+        s.draws[0].textures[0].as_mut().unwrap().mag_filter = Filter::Nearest;
     });
     bench("bilinear", &|s| s.draws[0].combiners = shown(FinalRegister::Texture0));
     bench("bilinear_dot3", &|_| {});

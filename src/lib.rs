@@ -61,8 +61,9 @@
 //!     cull: Cull::None,
 //!     front_face: FrontFace::CounterClockwise,
 //!     scissor: None,
-//!     fog: Fog { enabled: false, color: [0; 3] },
+//!     fog: Fog { enabled: false, color: [0; 3], function: None },
 //!     textures: [None; TEXTURE_UNITS],
+//!     texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, false)),
 //!     combiners: Combiners { stages: vec![idle], mux_select: MuxSelect::Msb, final_combiner },
 //!     alpha_test: None,
 //!     depth_test: None,
@@ -78,7 +79,8 @@
 //!     clear_color: [0; 4],
 //!     depth: None,
 //! };
-//! let scene = Scene { profile: Profile::Nv10, targets: vec![target], textures: vec![], draws: vec![draw] };
+//! let scene =
+//!     Scene { profile: Profile::Nv10, targets: vec![target], textures: vec![], palettes: vec![], draws: vec![draw] };
 //! let plan = Plan::compile(&scene, &PlanOptions::default()).expect("within the limits");
 //! let frames = render(&plan, &RenderOptions::default());
 //! assert_eq!(frames.surfaces[0].words, [0xff80_8080]);

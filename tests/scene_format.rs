@@ -188,7 +188,7 @@ fn texels_are_packed_by_cutting_off() {
         let top = format!("textures: {{ \"t\": (format: {format}, source: {source}) }},");
         let loaded = draw("Nv2a", &top, "textures: [\"t\"]");
         match &loaded.scene.textures[0].image {
-            TextureImage::Texels { words, .. } => words.to_vec(),
+            TextureImage::Texels(texels) => texels.words.to_vec(),
             TextureImage::Target { .. } => panic!("texels expected"),
         }
     };
@@ -220,10 +220,11 @@ fn units_targets_as_textures_and_combiners() {
          final_combiner: (a: Invert(Fog, Alpha), b: ETimesF, e: (Spare1, Alpha), g: (Spare1, Blue), invert_spare0: true)))])",
     );
     let (scene, draw) = (&loaded.scene, &loaded.scene.draws[1]);
-    assert_eq!(scene.textures[0].image, TextureImage::Target { target: 1, format: TextureFormat::L8 });
+    let texture = &scene.textures[0];
+    assert_eq!((&texture.image, texture.format), (&TextureImage::Target { target: 1 }, TextureFormat::L8));
     let unit = draw.textures[1].unwrap();
     assert!(draw.textures[0].is_none());
-    assert_eq!((unit.coordinate_set, unit.filter), (3, Filter::Nearest));
+    assert_eq!((draw.texture_shader[1].coordinate_set, unit.mag_filter), (3, Filter::Nearest));
     assert_eq!((unit.address_s, unit.address_t), (AddressMode::Mirror, AddressMode::ClampToBorder));
     assert_eq!((unit.border_color, unit.signed), ([1, 2, 3, 255], [true, false, false, false]));
     let [first, second] = &draw.combiners.stages[..] else { panic!("two stages") };

@@ -25,10 +25,11 @@ impl Cost {
     pub(crate) fn of(scene: &Scene) -> Cost {
         let (mut texels, mut texture_bytes) = (0, 0);
         for texture in &scene.textures {
-            if let TextureImage::Texels { width, height, format, .. } = &texture.image {
-                let area = u64::from(*width) * u64::from(*height);
-                texels += area;
-                texture_bytes += area * u64::from(format.bytes());
+            if let TextureImage::Texels(image) = &texture.image {
+                let words = image.words.len() as u64;
+                texels += words;
+                texture_bytes +=
+                    words * if texture.format.is_compressed() { 4 } else { u64::from(texture.format.bytes()) };
             }
         }
         let target_pixels = scene.targets.iter().map(pixels).sum();

@@ -69,7 +69,7 @@ fn coordinate_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
         let relative = relative(plan, draw, &vertices);
         draw.units.iter().flat_map(move |unit| {
-            let sets = vertices.map(|v| v.texture_coordinates[unit.state.coordinate_set]);
+            let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
             // Planes are floored to 2^-27 of a step.
             [(0, unit.width), (1, unit.height)].map(|(axis, side)| {
                 let (low, high) = range(sets.map(|set| f64::from(set[axis])));

@@ -247,16 +247,17 @@ fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
 /// The textures now. Without surfaces nothing reads those that are targets.
 fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
     let surface = |texture: &Texture| match &texture.image {
-        TextureImage::Target { target, format } => {
+        TextureImage::Target { target } => {
             let surface = plan.targets[*target].format;
             // Bits read as another format are not what the lane holds.
-            let channels = if surface.texture_format() == *format { surface::sampled_channels(surface) } else { 0 };
+            let channels =
+                if surface.texture_format() == texture.format { surface::sampled_channels(surface) } else { 0 };
             surfaces.get(*target).map(|s| (s, channels))
         }
-        TextureImage::Texels { .. } => None,
+        TextureImage::Texels(_) => None,
     };
     let words = |texture: &'a Texture| match &texture.image {
-        TextureImage::Texels { words, .. } => &words[..],
+        TextureImage::Texels(texels) => &texels.words[..],
         TextureImage::Target { .. } => surface(texture).map_or(&[][..], |(s, _)| &s.words),
     };
     Images {

@@ -100,8 +100,8 @@ pub(crate) fn cleared_colors(target: &Target) -> [u8; 4] {
 /// Each texture as it stands at this moment.
 pub(crate) fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Image<'a, L>> {
     let words = |texture: &'a Texture| match &texture.image {
-        TextureImage::Texels { words, .. } => &words[..],
-        TextureImage::Target { target, .. } => &surfaces[*target].words,
+        TextureImage::Texels(texels) => &texels.words[..],
+        TextureImage::Target { target } => &surfaces[*target].words,
     };
     plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
 }

@@ -76,7 +76,7 @@ impl<'a> TriangleContext<'a> {
         };
         let mut coordinates = [None; 4];
         for unit in &draw.units {
-            let sets = vertices.map(|v| v.texture_coordinates[unit.state.coordinate_set]);
+            let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
             coordinates[unit.index] = Some(Coordinates::new(&triangle, sets, unit));
         }
         let uses_fog = draw.fog.enabled && draw.fog_channels & 8 != 0;
@@ -267,7 +267,7 @@ impl<'a> TriangleContext<'a> {
         for planned in &self.draw.units {
             let Some(coordinates) = &self.coordinates[planned.index] else { continue };
             let ideal = || {
-                let sets = self.vertices.map(|v| v.texture_coordinates[planned.state.coordinate_set]);
+                let sets = self.vertices.map(|v| v.texture_coordinates[planned.stage.coordinate_set]);
                 ideal::texel_coordinates(self.barycentrics(sample), sets, [planned.width, planned.height])
             };
             let image = &textures[planned.state.texture];

@@ -49,7 +49,7 @@ fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
     let mut amounts = Amounts::default();
     let mut add = |work: Work, amount: u64| amounts[work as usize] += amount;
     for unit in &planned.units {
-        match unit.state.filter {
+        match unit.state.mag_filter {
             Filter::Nearest => add(Work::Texels, 1),
             Filter::Linear => {
                 add(Work::Texels, 4);

@@ -55,7 +55,7 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
     }
     for unit in &planned.units {
         let texture = &scene.textures[unit.state.texture].name;
-        let filter = unit.state.filter.name().to_lowercase();
+        let filter = unit.state.mag_filter.name().to_lowercase();
         let address = |mode: AddressMode| mode.name();
         lines.push(format!(
             "tex{}.{} = {filter}(`{texture}`, {} x {} {}, {}/{})",

@@ -203,8 +203,8 @@ impl Plan {
 /// Columns and rows of a texture.
 pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
     match &scene.textures[texture].image {
-        TextureImage::Texels { width, height, .. } => (*width, *height),
-        TextureImage::Target { target, .. } => (scene.targets[*target].width, scene.targets[*target].height),
+        TextureImage::Texels(texels) => (texels.width, texels.height),
+        TextureImage::Target { target } => (scene.targets[*target].width, scene.targets[*target].height),
     }
 }
 
@@ -212,10 +212,11 @@ pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
 fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<PlanError>) {
     const MOST_ERRORS: usize = 8;
     let mut found = 0;
-    for unit in draw.textures.iter().flatten() {
+    for (unit, stage) in draw.textures.iter().zip(&draw.texture_shader) {
+        let Some(unit) = unit else { continue };
         let (width, height) = texture_size(scene, unit.texture);
         for (vertex, v) in draw.vertices.iter().enumerate() {
-            let set = v.texture_coordinates[unit.coordinate_set];
+            let set = v.texture_coordinates[stage.coordinate_set];
             let outside = |n: usize, size: u32| set[3] == 1.0 && set[n].abs() > (TEXEL_LIMIT / i64::from(size)) as f32;
             if (outside(0, width) || outside(1, height) || set.iter().any(|c| !c.is_finite())) && found < MOST_ERRORS {
                 found += 1;
@@ -283,10 +284,8 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         .filter_map(|(index, live)| {
             let state = draw.textures[index].filter(|_| *live != 0)?;
             let (width, height) = texture_size(scene, state.texture);
-            let format = match &scene.textures[state.texture].image {
-                TextureImage::Texels { format, .. } | TextureImage::Target { format, .. } => *format,
-            };
-            Some(PlannedUnit { index, state, width, height, format, live: *live })
+            let (format, stage) = (scene.textures[state.texture].format, draw.texture_shader[index]);
+            Some(PlannedUnit { index, state, stage, width, height, format, live: *live })
         })
         .collect();
     PlannedDraw {

@@ -9,6 +9,7 @@ mod named;
 mod policy;
 mod primitive;
 mod rop;
+mod shader;
 mod texture;
 
 pub use combiner::{
@@ -22,13 +23,18 @@ pub use policy::{
     PolicyError, RegisterFloor, SumRounding,
 };
 pub use primitive::{
-    Cull, Fog, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology, Vertex, VertexColor, Viewport,
+    Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology, Vertex,
+    VertexColor, Viewport,
 };
 pub use rop::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthBuffer, DepthFormat, DepthTest, SurfaceFormat,
     Target,
 };
-pub use texture::{AddressMode, Filter, TEXTURE_UNITS, Texture, TextureFormat, TextureImage, TextureUnit};
+pub use shader::{DotMapping, ShaderOperation, ShaderStage};
+pub use texture::{
+    AddressMode, BORDER_TEXELS, CUBE_FACES, Filter, Level, MipFilter, Palette, TEXTURE_UNITS, Texels, Texture,
+    TextureFormat, TextureImage, TextureKind, TextureUnit,
+};
 
 named! {
     /// Which chip is modelled: its limits and the rules that differ.
@@ -70,6 +76,8 @@ pub struct Scene {
     pub targets: Vec<Target>,
     /// Textures, referred to by index from [`TextureUnit::texture`].
     pub textures: Vec<Texture>,
+    /// Palettes, referred to by index from [`TextureUnit::palette`].
+    pub palettes: Vec<Palette>,
     /// Draws in submission order.
     pub draws: Vec<Draw>,
 }
@@ -105,6 +113,8 @@ pub struct Draw {
     pub fog: Fog,
     /// Texture units; `None` is an unbound unit (TEX-16).
     pub textures: [Option<TextureUnit>; TEXTURE_UNITS],
+    /// What each unit does; [`ShaderStage::conventional`] unless a texture shader is given (nv2a).
+    pub texture_shader: [ShaderStage; TEXTURE_UNITS],
     /// Register combiners.
     pub combiners: Combiners,
     /// Alpha test (ROP-1). `None`: every fragment passes.

@@ -103,7 +103,7 @@ pub struct Vertex {
     pub diffuse: VertexColor,
     /// Specular: the secondary colour. Absent in a scene: zero.
     pub specular: VertexColor,
-    /// Fog factor, 0 (all fog) to 1 (no fog).
+    /// Fog factor, 0 (all fog) to 1 (no fog); with a [fog function](FogFunction), the coordinate that it is evaluated at.
     pub fog: f32,
     /// Four coordinate sets of s, t, r, q. Absent components are 0, 0, 0, 1.
     pub texture_coordinates: [[f32; 4]; 4],
@@ -121,13 +121,44 @@ impl Default for Vertex {
     }
 }
 
-/// Fog colour, and whether the fog factor of the vertices reaches FOG.a (off: 255).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+named! {
+    /// The curve of a [`FogFunction`] (INT-5).
+    pub enum FogMode {
+        /// p0 + d p1 - 1.
+        Linear,
+        /// p0 + 2^(16 d p1) - 1.5.
+        Exp,
+        /// p0 + 2^(-32 d^2 p1^2) - 1.5.
+        Exp2,
+        /// The magnitude of `Linear`.
+        LinearAbs,
+        /// The magnitude of `Exp`.
+        ExpAbs,
+        /// The magnitude of `Exp2`.
+        Exp2Abs,
+    }
+}
+
+/// Fog factor from the interpolated fog coordinate d, for each pixel (INT-5; nv2a).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FogFunction {
+    /// The curve.
+    pub mode: FogMode,
+    /// First parameter.
+    pub p0: f32,
+    /// Second parameter.
+    pub p1: f32,
+}
+
+/// Fog colour, and how the fog of the vertices reaches FOG.a (off: 255).
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fog {
-    /// Interpolated fog factors are used.
+    /// The fog of the vertices is used.
     pub enabled: bool,
     /// R, G, B bytes of the fog register.
     pub color: [u8; 3],
+    /// What it goes through for each pixel (INT-5); `None`: the vertices give factors, which are interpolated (INT-5n).
+    pub function: Option<FogFunction>,
 }
 
 /// A rectangle of pixels.

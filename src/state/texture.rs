@@ -6,35 +6,126 @@ use std::sync::Arc;
 /// Number of texture units in the state. NV10 has the first two.
 pub const TEXTURE_UNITS: usize = 4;
 
+/// Texels that a texture with border texels stores beyond each edge (TEX-7).
+pub const BORDER_TEXELS: u32 = 4;
+
+/// Faces of a cube map, in the order +X, -X, +Y, -Y, +Z, -Z (TEX-12).
+pub const CUBE_FACES: u32 = 6;
+
 named! {
-    /// How the bits of a texel become R, G, B, A (TEX-1).
+    /// What a texture is sampled as.
+    pub enum TextureKind {
+        /// Two coordinates, 1.0 the whole texture; sides are powers of two.
+        TwoDimensional,
+        /// Six square faces, chosen by a direction (TEX-12).
+        Cube,
+        /// Two coordinates in texels; any sides, one level (the chip's linear layouts).
+        Rectangle,
+    }
+}
+
+named! {
+    /// How the bits of a texel become R, G, B, A (TEX-1 to TEX-4).
     pub enum TextureFormat {
         /// 32 bits, A in the top byte.
         A8R8G8B8,
         /// 32 bits, top byte ignored, alpha 255.
         X8R8G8B8,
+        /// 32 bits, A in the top byte, then B, G, R (nv2a).
+        A8B8G8R8,
+        /// 32 bits, B in the top byte, then G, R, A (nv2a).
+        B8G8R8A8,
+        /// 32 bits, R in the top byte, then G, B, A (nv2a).
+        R8G8B8A8,
         /// 16 bits, alpha 255.
         R5G6B5,
+        /// 16 bits: 6, 5, 5; alpha 255 (nv2a).
+        R6G5B5,
         /// 16 bits, top bit ignored, alpha 255.
         X1R5G5B5,
         /// 16 bits, the top bit is alpha: 0 or 255.
         A1R5G5B5,
+        /// 16 bits, 4 a channel.
+        A4R4G4B4,
         /// Luminance byte: L, L, L, 255.
         L8,
+        /// Intensity byte (the Xbox's AY8): L, L, L, L.
+        I8,
         /// Alpha byte: 255, 255, 255, A.
         A8,
+        /// 16 bits, A in the high byte: L, L, L, A (nv2a).
+        A8L8,
         /// 16 bits, G in the high byte: R = B, A = G (nv2a).
         G8B8,
+        /// 16 bits, R in the high byte: G = B, A = R (nv2a).
+        R8B8,
+        /// Two halves of 16 bits, filtered at 16 bits, read as the bytes of A8R8G8B8 (nv2a; HILO).
+        R16B16,
+        /// 16 bits, filtered at 16 bits: R 255, G the high byte, B the low byte, A 255 (nv2a).
+        Y16,
+        /// A byte that is looked up in the unit's palette, index masked to its length.
+        P8,
+        /// Blocks of 4 x 4 texels in 8 bytes; dithered on nv2a (TEX-3, TEX-4).
+        Dxt1 = "DXT1",
+        /// Blocks of 4 x 4 texels in 16 bytes, 4 bits of alpha each.
+        Dxt3 = "DXT3",
+        /// Blocks of 4 x 4 texels in 16 bytes, alpha between two bytes.
+        Dxt5 = "DXT5",
     }
 }
 
 impl TextureFormat {
-    /// Bytes of one texel.
+    /// Bytes of one texel, or of one block of a compressed format.
     pub fn bytes(self) -> u32 {
         match self {
-            TextureFormat::A8R8G8B8 | TextureFormat::X8R8G8B8 => 4,
-            TextureFormat::R5G6B5 | TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5 | TextureFormat::G8B8 => 2,
-            TextureFormat::L8 | TextureFormat::A8 => 1,
+            TextureFormat::Dxt3 | TextureFormat::Dxt5 => 16,
+            TextureFormat::Dxt1 => 8,
+            TextureFormat::A8R8G8B8
+            | TextureFormat::X8R8G8B8
+            | TextureFormat::A8B8G8R8
+            | TextureFormat::B8G8R8A8
+            | TextureFormat::R8G8B8A8
+            | TextureFormat::R16B16 => 4,
+            TextureFormat::R5G6B5
+            | TextureFormat::R6G5B5
+            | TextureFormat::X1R5G5B5
+            | TextureFormat::A1R5G5B5
+            | TextureFormat::A4R4G4B4
+            | TextureFormat::A8L8
+            | TextureFormat::G8B8
+            | TextureFormat::R8B8
+            | TextureFormat::Y16 => 2,
+            TextureFormat::L8 | TextureFormat::I8 | TextureFormat::A8 | TextureFormat::P8 => 1,
+        }
+    }
+
+    /// Whether texels come in blocks of 4 x 4.
+    pub fn is_compressed(self) -> bool {
+        matches!(self, TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5)
+    }
+
+    /// Whether only nv2a has it.
+    pub fn is_nv2a_only(self) -> bool {
+        matches!(
+            self,
+            TextureFormat::A8B8G8R8
+                | TextureFormat::B8G8R8A8
+                | TextureFormat::R8G8B8A8
+                | TextureFormat::R6G5B5
+                | TextureFormat::A8L8
+                | TextureFormat::G8B8
+                | TextureFormat::R8B8
+                | TextureFormat::R16B16
+                | TextureFormat::Y16
+        )
+    }
+
+    /// Words that a level of so many texels takes: one a texel, whatever its size; two (DXT1) or four a block.
+    pub fn words(self, width: u32, height: u32) -> usize {
+        if self.is_compressed() {
+            (self.bytes() / 4 * width.div_ceil(4) * height.div_ceil(4)) as usize
+        } else {
+            width as usize * height as usize
         }
     }
 }
@@ -48,7 +139,7 @@ named! {
         Mirror,
         /// 0..n-1.
         ClampToEdge,
-        /// Outside reads the border colour (nv2a).
+        /// Outside reads the border: the border colour, or the texture's own border texels (nv2a).
         ClampToBorder,
         /// OpenGL's clamp, taken as clamp to edge.
         Clamp,
@@ -63,12 +154,27 @@ named! {
         Linear,
     }
 }
+named! {
+    /// Which levels are mixed when a texture is minified (TEX-9).
+    pub enum MipFilter {
+        /// Level 0 only.
+        None,
+        /// The nearest level.
+        Nearest,
+        /// Two levels.
+        Linear,
+    }
+}
 
 /// A named image.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     /// Name in the scene.
     pub name: String,
+    /// What it is sampled as.
+    pub kind: TextureKind,
+    /// Meaning of its words.
+    pub format: TextureFormat,
     /// Where the texels are.
     pub image: TextureImage,
 }
@@ -76,24 +182,67 @@ pub struct Texture {
 /// Texels given, or the contents of a render target drawn before.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TextureImage {
-    /// Raw texels, row by row from the top; one word a texel, unused high bits zero. Sides are powers of two.
-    Texels {
-        /// Columns.
-        width: u32,
-        /// Rows.
-        height: u32,
-        /// Meaning of the words.
-        format: TextureFormat,
-        /// `width * height` raw texels; shared, because plans hold them too.
-        words: Arc<[u32]>,
-    },
-    /// The words of a render target, read as `format` (of the same number of bytes).
+    /// Raw texels.
+    Texels(Texels),
+    /// The words of a render target, of as many bytes as the format has; one level.
     Target {
         /// Index into [`Scene::targets`](super::Scene::targets).
         target: usize,
-        /// Meaning of the words.
-        format: TextureFormat,
     },
+}
+
+/// Raw texels of all faces and levels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texels {
+    /// Columns of level 0, border texels not counted.
+    pub width: u32,
+    /// Rows of level 0.
+    pub height: u32,
+    /// Levels, at least 1. Sides halve from level to level, rounded down, at least 1.
+    pub levels: u32,
+    /// Each level stores [`BORDER_TEXELS`] more texels beyond each of its edges.
+    pub border: bool,
+    /// The words: face after face (one, or six of a cube map), in it level after level, in it row after row from the top. One word a
+    /// texel, unused high bits zero; a compressed block is 2 (DXT1) or 4 words, little-endian, row of blocks after row of blocks.
+    /// Shared, because plans hold them too.
+    pub words: Arc<[u32]>,
+}
+
+/// Where one level of one face lies in [`Texels::words`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Level {
+    /// Index of its first word.
+    pub offset: usize,
+    /// Columns, border texels not counted.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Level {
+    /// All levels of one face, level 0 first, and the words of one face.
+    pub fn chain(format: TextureFormat, width: u32, height: u32, levels: u32, border: bool) -> (Vec<Level>, usize) {
+        let beyond = if border { 2 * BORDER_TEXELS } else { 0 };
+        let mut offset = 0;
+        let levels = (0..levels)
+            .map(|n| {
+                let (width, height) = ((width >> n).max(1), (height >> n).max(1));
+                let level = Level { offset, width, height };
+                offset += format.words(width + beyond, height + beyond);
+                level
+            })
+            .collect();
+        (levels, offset)
+    }
+}
+
+/// Colours that texels of [`TextureFormat::P8`] stand for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Palette {
+    /// Name in the scene.
+    pub name: String,
+    /// 32, 64, 128 or 256 words, A8R8G8B8.
+    pub entries: Arc<[u32]>,
 }
 
 /// A texture unit's state.
@@ -101,16 +250,46 @@ pub enum TextureImage {
 pub struct TextureUnit {
     /// Index into [`Scene::textures`](super::Scene::textures).
     pub texture: usize,
-    /// Which of the vertex's four coordinate sets is used.
-    pub coordinate_set: usize,
-    /// Along s.
+    /// Index into [`Scene::palettes`](super::Scene::palettes); given where the texture's format is [`TextureFormat::P8`].
+    pub palette: Option<usize>,
+    /// Along s. Cube maps ignore it (TEX-14).
     pub address_s: AddressMode,
     /// Along t.
     pub address_t: AddressMode,
-    /// Filter.
-    pub filter: Filter,
+    /// Filter within a level where the texture is minified (lod > 0).
+    pub min_filter: Filter,
+    /// Filter where it is magnified (lod <= 0).
+    pub mag_filter: Filter,
+    /// Levels where it is minified.
+    pub mip_filter: MipFilter,
+    /// Added to the lod: signed 5.8, -4096..=4095 (TEX-9).
+    pub lod_bias: i32,
+    /// Least lod, unsigned 4.8, 0..=4095.
+    pub min_lod: i32,
+    /// Greatest lod, unsigned 4.8, 0..=4095.
+    pub max_lod: i32,
     /// Border colour, R, G, B, A bytes (NUM-5).
     pub border_color: [u8; 4],
     /// Channels (R, G, B, A) read as two's complement (TEX-18; nv2a).
     pub signed: [bool; 4],
+}
+
+impl TextureUnit {
+    /// The unit as it is unless a scene says otherwise: wraps, bilinear without levels, no bias, all lods, nothing signed.
+    pub fn new(texture: usize) -> TextureUnit {
+        TextureUnit {
+            texture,
+            palette: None,
+            address_s: AddressMode::Wrap,
+            address_t: AddressMode::Wrap,
+            min_filter: Filter::Linear,
+            mag_filter: Filter::Linear,
+            mip_filter: MipFilter::None,
+            lod_bias: 0,
+            min_lod: 0,
+            max_lod: 4095,
+            border_color: [0; 4],
+            signed: [false; 4],
+        }
+    }
 }

@@ -30,6 +30,17 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
             let a = if word >> 15 & 1 == 0 { 0 } else { 255 };
             [replicate5(word >> 10 & 31), replicate5(word >> 5 & 31), replicate5(word & 31), a]
         }
+        TextureFormat::A8B8G8R8 => [byte(0), byte(8), byte(16), byte(24)],
+        TextureFormat::B8G8R8A8 => [byte(8), byte(16), byte(24), byte(0)],
+        TextureFormat::R8G8B8A8 => [byte(24), byte(16), byte(8), byte(0)],
+        TextureFormat::R6G5B5 => [replicate6(word >> 10 & 63), replicate5(word >> 5 & 31), replicate5(word & 31), 255],
+        TextureFormat::A4R4G4B4 => [8, 4, 0, 12].map(|shift| (word >> shift & 15) as u8 * 17),
+        TextureFormat::I8 => [byte(0); 4],
+        TextureFormat::A8L8 => [byte(0), byte(0), byte(0), byte(8)],
+        TextureFormat::R8B8 => [byte(8), byte(0), byte(0), byte(8)],
+        TextureFormat::R16B16 => [byte(16), byte(8), byte(0), byte(24)],
+        TextureFormat::Y16 => [255, byte(8), byte(0), 255],
+        TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => [0; 4],
         TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
         TextureFormat::A8 => [255, 255, 255, byte(0)],
         TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
@@ -38,7 +49,14 @@ pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
 
 /// Whether channels of the format have less than 8 bits, so that widening them is off.
 pub fn is_narrow(format: TextureFormat) -> bool {
-    matches!(format, TextureFormat::R5G6B5 | TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5)
+    matches!(
+        format,
+        TextureFormat::R5G6B5
+            | TextureFormat::R6G5B5
+            | TextureFormat::X1R5G5B5
+            | TextureFormat::A1R5G5B5
+            | TextureFormat::A4R4G4B4
+    )
 }
 
 /// [`expand`] in a lane, whose ideal takes 5-bit channels as v/31. Signed channels (TEX-18) come as their two's complement value,
@@ -53,11 +71,8 @@ pub fn lanes<L: Lane>(format: TextureFormat, word: u32, signed: &[bool; 4]) -> [
         TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5 => {
             [field(r, 10, 31), field(g, 5, 31), field(b, 0, 31), whole(a)]
         }
-        TextureFormat::A8R8G8B8
-        | TextureFormat::X8R8G8B8
-        | TextureFormat::L8
-        | TextureFormat::A8
-        | TextureFormat::G8B8 => [whole(r), whole(g), whole(b), whole(a)],
+        TextureFormat::R6G5B5 => [field(r, 10, 63), field(g, 5, 31), field(b, 0, 31), whole(a)],
+        _ => [whole(r), whole(g), whole(b), whole(a)],
     };
     if *signed == [false; 4] {
         return plain;

@@ -7,7 +7,7 @@ use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
 use crate::raster::setup::Triangle;
-use crate::state::{AddressMode, Filter, TextureFormat, TextureUnit};
+use crate::state::{AddressMode, Filter, ShaderStage, TextureFormat, TextureUnit};
 use crate::trace::{Decision, Observer, Operand, Rule, Step, Work, part, plain, report};
 
 /// A texture unit with the image it samples.
@@ -17,6 +17,8 @@ pub struct PlannedUnit {
     pub index: usize,
     /// Its state.
     pub state: TextureUnit,
+    /// Its part of the texture shader.
+    pub stage: ShaderStage,
     /// Columns of the image.
     pub width: u32,
     /// Rows of the image.
@@ -85,7 +87,7 @@ pub fn sample<L: Lane, O: Observer>(
     let real = if O::ON || O::MEASURES || L::DECIDES { ideal() } else { [0.0; 2] };
     let [u, v] = if L::DECIDES { real.map(floored) } else { settled.map(|c| c.value) };
     if O::MEASURES {
-        let texel = |[u, v]: [i64; 2]| match unit.state.filter {
+        let texel = |[u, v]: [i64; 2]| match unit.state.mag_filter {
             Filter::Nearest => nearest(u) << 32 ^ nearest(v),
             Filter::Linear => linear(u).0 << 32 ^ linear(v).0,
         };
@@ -95,7 +97,7 @@ pub fn sample<L: Lane, O: Observer>(
     if O::ON {
         report.coordinates(coordinates, at, settled, real, observer);
     }
-    let value = match unit.state.filter {
+    let value = match unit.state.mag_filter {
         Filter::Nearest => {
             let (x, y) = (nearest(u), nearest(v));
             if O::ON {
@@ -424,7 +426,7 @@ impl Report<'_> {
 
     fn register<L: Lane, O: Observer>(&self, channel: usize, value: L, register: L, observer: &mut O) {
         let suffix = channel_name(channel);
-        let source = match self.unit.state.filter {
+        let source = match self.unit.state.mag_filter {
             Filter::Nearest => self.name(&format!("texel.{suffix}")),
             Filter::Linear => self.name(suffix),
         };

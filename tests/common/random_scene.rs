@@ -147,13 +147,18 @@ pub fn build(tape: &[u32]) -> Scene {
         if t.width.is_power_of_two() && t.height.is_power_of_two() && t.width.max(t.height) <= 16 {
             let fitting: Vec<TextureFormat> =
                 texture_formats(profile).into_iter().filter(|f| f.bytes() == t.format.bytes()).collect();
-            let image = TextureImage::Target { target: n, format: c.pick(&fitting) };
-            textures.push(Texture { name: format!("view{n}"), image });
+            let (kind, format) = (TextureKind::TwoDimensional, c.pick(&fitting));
+            textures.push(Texture {
+                name: format!("view{n}"),
+                kind,
+                format,
+                image: TextureImage::Target { target: n },
+            });
         }
     }
     let count = [2, 3, 4, 1][c.below(4) as usize];
     let draws = (0..count).map(|n| draw(&mut tape.part(DRAW), profile, &targets, &textures, n)).collect();
-    Scene { profile, targets, textures, draws }
+    Scene { profile, targets, textures, palettes: vec![], draws }
 }
 
 fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target {
@@ -185,7 +190,20 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
 }
 
 fn texture_formats(profile: Profile) -> Vec<TextureFormat> {
-    let legal = |f: &TextureFormat| profile == Profile::Nv2a || *f != TextureFormat::G8B8;
+    let legal = |f: &TextureFormat| {
+        let whole = matches!(
+            f,
+            TextureFormat::A8R8G8B8
+                | TextureFormat::X8R8G8B8
+                | TextureFormat::R5G6B5
+                | TextureFormat::X1R5G5B5
+                | TextureFormat::A1R5G5B5
+                | TextureFormat::L8
+                | TextureFormat::A8
+                | TextureFormat::G8B8
+        );
+        (profile == Profile::Nv2a || !f.is_nv2a_only()) && whole
+    };
     TextureFormat::ALL.iter().copied().filter(legal).collect()
 }
 
@@ -196,7 +214,9 @@ fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     // Few words of tape a texture: the rest follows from them.
     let (seed, step) = (c.word(), c.word());
     let words = (0..width * height).map(|k| seed.wrapping_add(step.wrapping_mul(k)) & mask).collect::<Vec<_>>().into();
-    Texture { name: format!("texture{n}"), image: TextureImage::Texels { width, height, format, words } }
+    let texels = Texels { width, height, levels: 1, border: false, words };
+    let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
+    Texture { name: format!("texture{n}"), kind, format, image }
 }
 
 fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[Texture], n: u32) -> Draw {
@@ -204,10 +224,18 @@ fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[T
     let target = c.below(targets.len() as u32) as usize;
     let surface = &targets[target];
     let usable: Vec<usize> = (0..textures.len())
-        .filter(|t| !matches!(textures[*t].image, TextureImage::Target { target: other, .. } if other == target))
+        .filter(|t| !matches!(textures[*t].image, TextureImage::Target { target: other } if other == target))
         .collect();
     let units = profile.texture_units();
-    let bound = std::array::from_fn(|k| (k < units && c.below(3) != 0).then(|| unit(c, profile, &usable)));
+    let mut texture_shader = [0, 1, 2, 3].map(|k| ShaderStage::conventional(k, false));
+    let textures = std::array::from_fn(|k| {
+        (k < units && c.below(3) != 0).then(|| {
+            let unit = unit(c, profile, &usable);
+            let coordinate_set = c.below(profile.texture_units() as u32) as usize;
+            texture_shader[k] = ShaderStage { coordinate_set, ..ShaderStage::conventional(k, true) };
+            unit
+        })
+    });
     let topology: Topology = c.any();
     let (vertices, positions) = vertices(&mut vertex_tape, topology, surface);
     let mut indices: Vec<u32> = (0..vertices.len() as u32).collect();
@@ -236,8 +264,9 @@ fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[T
             width: c.size(1, 40),
             height: c.size(1, 40),
         }),
-        fog: Fog { enabled: c.once_in(2), color: [c.byte(), c.byte(), c.byte()] },
-        textures: bound,
+        fog: Fog { enabled: c.once_in(2), color: [c.byte(), c.byte(), c.byte()], function: None },
+        textures,
+        texture_shader,
         alpha_test: c.once_in(5).then(|| AlphaTest { function: c.any(), reference: c.byte() }),
         depth_test: (surface.depth.is_some() && c.below(3) != 0)
             .then(|| DepthTest { function: c.any(), write: c.below(4) != 0 }),
@@ -258,14 +287,15 @@ fn unit(c: &mut Choices<'_>, profile: Profile, usable: &[usize]) -> TextureUnit 
         Profile::Nv2a => AddressMode::ALL,
         Profile::Nv10 => &[AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge, AddressMode::Clamp],
     };
+    let filter = c.any();
     TextureUnit {
-        texture: c.pick(usable),
-        coordinate_set: c.below(profile.texture_units() as u32) as usize,
         address_s: c.pick(modes),
         address_t: c.pick(modes),
-        filter: c.any(),
+        min_filter: filter,
+        mag_filter: filter,
         border_color: c.bytes(),
         signed: std::array::from_fn(|_| nv2a && c.once_in(5)),
+        ..TextureUnit::new(c.pick(usable))
     }
 }
 

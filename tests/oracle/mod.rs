@@ -82,7 +82,11 @@ fn shade(draw: &Draw, images: &[Option<Image>], setup: &Setup, sample: &Sample, 
     let mut textures = [[0, 0, 0, 255]; 4];
     for (k, unit) in draw.textures.iter().enumerate() {
         if let (Some(unit), Some(image)) = (unit, &images[k]) {
-            textures[k] = texture::sample(unit, image, setup.coordinates(sample, unit.coordinate_set, image.size));
+            textures[k] = texture::sample(
+                unit,
+                image,
+                setup.coordinates(sample, draw.texture_shader[k].coordinate_set, image.size),
+            );
         }
     }
     let [r, g, b] = draw.fog.color.map(i128::from);

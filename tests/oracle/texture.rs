@@ -13,12 +13,12 @@ pub struct Image {
 impl Image {
     pub fn new(texture: &Texture, surfaces: &[Surface]) -> Image {
         match &texture.image {
-            TextureImage::Texels { width, height, format, words } => {
-                Image { size: [*width, *height], format: *format, words: words.to_vec() }
+            TextureImage::Texels(texels) => {
+                Image { size: [texels.width, texels.height], format: texture.format, words: texels.words.to_vec() }
             }
-            TextureImage::Target { target, format } => {
+            TextureImage::Target { target } => {
                 let s = &surfaces[*target];
-                Image { size: [s.width, s.height], format: *format, words: s.words.clone() }
+                Image { size: [s.width, s.height], format: texture.format, words: s.words.clone() }
             }
         }
     }
@@ -43,6 +43,7 @@ pub fn texel_bytes(format: TextureFormat, word: u32) -> [i128; 4] {
         TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
         TextureFormat::A8 => [255, 255, 255, byte(0)],
         TextureFormat::G8B8 => [byte(0), byte(1), byte(0), byte(1)],
+        other => unimplemented!("{other:?}"),
     }
 }
 
@@ -76,7 +77,7 @@ pub fn sample(unit: &TextureUnit, image: &Image, [u, v]: [i128; 2]) -> [i128; 4]
         };
         std::array::from_fn(|c| if unit.signed[c] && bytes[c] >= 128 { bytes[c] - 256 } else { bytes[c] })
     };
-    let filtered: [i128; 4] = match unit.filter {
+    let filtered: [i128; 4] = match unit.mag_filter {
         Filter::Nearest => fetch(u >> 8, v >> 8),
         Filter::Linear => {
             let (u, v) = (u - 128, v - 128);

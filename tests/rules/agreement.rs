@@ -247,7 +247,7 @@ fn the_table_of_vectors_is_right() {
 /// The table of bounds is what comparisons are held to.
 #[test]
 fn bounds_are_those_of_the_comparison() {
-    let scene = Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], draws: vec![] };
+    let scene = Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], palettes: vec![], draws: vec![] };
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
     let text = read("docs/numerics.md");
     for rule in Rule::ALL {

@@ -40,7 +40,7 @@ impl Pixel {
 
 /// A pixel of `format`, cleared to `clear`.
 pub fn scene(profile: Profile, format: SurfaceFormat, clear: [u8; 4], draws: Vec<Draw>) -> Scene {
-    Scene { profile, targets: vec![target(1, 1, format, clear)], textures: vec![], draws }
+    Scene { profile, targets: vec![target(1, 1, format, clear)], textures: vec![], palettes: vec![], draws }
 }
 
 /// Stores the primary colour in the pixel. All corners are alike, so nothing depends on weights.

@@ -10,21 +10,15 @@ use ninebit::texture::filter;
 /// A pixel that shows TEXTURE0: unit 0 samples a row of texels at s, t = 0, with this q.
 fn sampled(format: TextureFormat, words: &[u32], s: f32, q: f32, change: impl Fn(&mut TextureUnit)) -> Pixel {
     let mut draw = covering(Vertex { texture_coordinates: [[s, 0.0, 0.0, q]; TEXTURE_UNITS], ..Vertex::default() });
-    let mut unit = TextureUnit {
-        texture: 0,
-        coordinate_set: 0,
-        address_s: AddressMode::Wrap,
-        address_t: AddressMode::Wrap,
-        filter: Filter::Nearest,
-        border_color: [0; 4],
-        signed: [false; 4],
-    };
+    let mut unit = TextureUnit { min_filter: Filter::Nearest, mag_filter: Filter::Nearest, ..TextureUnit::new(0) };
     change(&mut unit);
+    draw.texture_shader[0] = ShaderStage::conventional(0, true);
     draw.textures[0] = Some(unit);
     draw.combiners = shows(FinalRegister::Texture0);
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
-    let image = TextureImage::Texels { width: words.len() as u32, height: 1, format, words: words.into() };
-    scene.textures.push(Texture { name: "row".to_string(), image });
+    let texels = Texels { width: words.len() as u32, height: 1, levels: 1, border: false, words: words.into() };
+    let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
+    scene.textures.push(Texture { name: "row".to_string(), kind, format, image });
     Pixel::of(&scene, Policies::DEFAULT)
 }
 
@@ -47,7 +41,7 @@ fn examples_of_texture_units() {
         "TEX-6",
         "u = 435 (1.7 texels): f = 307, texel 1, weight 51; L(10, 200, 51) = 12378 >> 8 = 48 (real: 47.85).",
     );
-    let linear = |unit: &mut TextureUnit| unit.filter = Filter::Linear;
+    let linear = |unit: &mut TextureUnit| (unit.min_filter, unit.mag_filter) = (Filter::Linear, Filter::Linear);
     let mixed = sampled(TextureFormat::L8, &[0, 10, 200, 0], 435.0 / 1024.0, 1.0, linear);
     tex6.gives("u", mixed.value("unit0.u"), 435).shows("in texels", 435.0 / 256.0, 1, "1.7");
     tex6.gives("texel", mixed.value("unit0.x0"), 1).gives("weight", mixed.value("unit0.weight_u"), 51);

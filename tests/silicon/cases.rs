@@ -27,7 +27,7 @@ const HEIGHT: u32 = 480;
 fn scene(background: [u8; 3], draws: Vec<Draw>) -> Scene {
     let [r, g, b] = background;
     let target = target(WIDTH, HEIGHT, SurfaceFormat::A8R8G8B8, [r, g, b, 0]);
-    Scene { profile: Profile::Nv2a, targets: vec![target], textures: vec![], draws }
+    Scene { profile: Profile::Nv2a, targets: vec![target], textures: vec![], palettes: vec![], draws }
 }
 
 /// A vertex at a snapped position (1/16 pixel).

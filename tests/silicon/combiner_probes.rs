@@ -133,7 +133,7 @@ fn fogged(mut draw: Draw, fog: f32, b: [u8; 3], c: [u8; 3]) -> Draw {
         vertex.fog = fog;
         vertex.diffuse = VertexColor::Bytes([b[0], b[1], b[2], 255]);
     }
-    draw.fog = Fog { enabled: true, color: c };
+    draw.fog = Fog { enabled: true, color: c, function: None };
     let zero = FinalInput::zero(Component::Rgb);
     let factor = FinalInput { register: FinalRegister::Fog, component: Component::Alpha, invert: false };
     let (b, c) = (input(FinalRegister::PrimaryColor), input(FinalRegister::Fog));

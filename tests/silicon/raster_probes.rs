@@ -21,7 +21,8 @@ fn pixels(scene: &Scene, rows: &[Row]) -> Answers {
 /// alpha-ramp: quads of 512 x 64 pixels. Their area is a power of two: INT-3's exception.
 pub fn alpha_ramp(rows: &[Row]) -> Answers {
     let frame = target(640, 480, SurfaceFormat::A8R8G8B8, rows[0].bytes("destination"));
-    let mut scene = Scene { profile: Profile::Nv2a, targets: vec![frame], textures: vec![], draws: vec![] };
+    let mut scene =
+        Scene { profile: Profile::Nv2a, targets: vec![frame], textures: vec![], palettes: vec![], draws: vec![] };
     for top in [149, 213, 277] {
         let Some(row) = rows.iter().find(|row| (top..top + 64).contains(&row.number::<u32>("y"))) else { continue };
         let [r, g, b] = row.bytes("source");

@@ -28,7 +28,9 @@ pub struct Sheet {
 impl Sheet {
     /// No targets yet.
     pub fn new() -> Sheet {
-        Sheet { scene: Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], draws: vec![] } }
+        Sheet {
+            scene: Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], palettes: vec![], draws: vec![] },
+        }
     }
 
     /// Another target.
@@ -39,7 +41,7 @@ impl Sheet {
 
     /// A texture that reads a target.
     pub fn reads(&mut self, target: usize, format: TextureFormat) -> usize {
-        self.texture(TextureImage::Target { target, format })
+        self.texture(format, TextureImage::Target { target })
     }
 
     /// A texture of one texel a probe.
@@ -47,11 +49,13 @@ impl Sheet {
         let mut words: Vec<u32> = texels.map(|[r, g, b, a]| u32::from_be_bytes([a, r, g, b])).collect();
         words.resize(WIDTH, 0);
         let (width, words) = (WIDTH as u32, words.into());
-        self.texture(TextureImage::Texels { width, height: 1, format: TextureFormat::A8R8G8B8, words })
+        let texels = Texels { width, height: 1, levels: 1, border: false, words };
+        self.texture(TextureFormat::A8R8G8B8, TextureImage::Texels(texels))
     }
 
-    fn texture(&mut self, image: TextureImage) -> usize {
-        self.scene.textures.push(Texture { name: "texture".to_string(), image });
+    fn texture(&mut self, format: TextureFormat, image: TextureImage) -> usize {
+        let kind = TextureKind::TwoDimensional;
+        self.scene.textures.push(Texture { name: "texture".to_string(), kind, format, image });
         self.scene.textures.len() - 1
     }
 
@@ -96,14 +100,13 @@ pub fn copy(target: usize, texture: usize) -> Draw {
 /// Binds a texture to a unit.
 pub fn bind(draw: &mut Draw, unit: usize, texture: usize) {
     draw.textures[unit] = Some(TextureUnit {
-        texture,
-        coordinate_set: unit,
         address_s: AddressMode::ClampToEdge,
         address_t: AddressMode::ClampToEdge,
-        filter: Filter::Nearest,
-        border_color: [0; 4],
-        signed: [false; 4],
+        min_filter: Filter::Nearest,
+        mag_filter: Filter::Nearest,
+        ..TextureUnit::new(texture)
     });
+    draw.texture_shader[unit] = ShaderStage::conventional(unit, true);
 }
 
 /// The alpha of a fragment is 255.

@@ -2,7 +2,7 @@
 
 use clap::Args;
 use ninebit::number::{Lane, Paired};
-use ninebit::state::{AddressMode, Filter, TextureFormat, TextureUnit};
+use ninebit::state::{ShaderStage, TextureFormat, TextureUnit};
 use ninebit::texture::unit::{self, PlannedUnit};
 use ninebit::trace::{Observer, Rule};
 use serde_json::json;
@@ -65,16 +65,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         columns.iter_mut().skip(4).zip([u, v]).try_for_each(|(column, value)| set(column, value))?;
     }
     // One channel stands for all: they do not touch each other.
-    let state = TextureUnit {
-        texture: 0,
-        coordinate_set: 0,
-        address_s: AddressMode::Wrap,
-        address_t: AddressMode::Wrap,
-        filter: Filter::Linear,
-        border_color: [0; 4],
-        signed: [arguments.signed; 4],
-    };
-    let unit = PlannedUnit { index: 0, state, width: 1, height: 1, format: TextureFormat::A8R8G8B8, live: 1 };
+    let state = TextureUnit { signed: [arguments.signed; 4], ..TextureUnit::new(0) };
+    let stage = ShaderStage::conventional(0, true);
+    let unit = PlannedUnit { index: 0, state, stage, width: 1, height: 1, format: TextureFormat::A8R8G8B8, live: 1 };
     drive(&Mix { unit, coordinates, columns }, &arguments.common)
 }
 

@@ -109,7 +109,7 @@ fn draw<'a>(
     reader.reserve(&fields.truth, "the draw's truth (light, viewer, material)");
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
-    let (units, unit_places) = unit::units(reader, names, textures, &fields.textures);
+    let units = unit::units(reader, names, textures, &fields.textures);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
     let topology = reader.name_or(&fields.topology, Topology::Triangles);
     let (combiners, reads) = match &program {
@@ -130,7 +130,8 @@ fn draw<'a>(
         front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
         scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
         fog: raster::fog(reader, names, &fields.fog),
-        textures: units,
+        textures: units.bound,
+        texture_shader: units.shader,
         combiners,
         alpha_test: None,
         depth_test: None,
@@ -140,7 +141,7 @@ fn draw<'a>(
     };
     raster::operations(reader, names, targets, fields, &mut draw);
     for (unit, read) in reads.iter().enumerate() {
-        if let (Some(place), None) = (read, &units[unit]) {
+        if let (Some(place), None) = (read, &units.bound[unit]) {
             reader.push(
                 Diagnostic::warning("NB0902", place.clone(), format!("texture unit {unit} is read but has no texture"))
                     .label("gives black, opaque")
@@ -150,7 +151,7 @@ fn draw<'a>(
             );
         }
     }
-    let bound = units.iter().zip(&unit_places).filter_map(|(unit, place)| Some((unit.as_ref()?, place)));
+    let bound = units.bound.iter().zip(&units.places).filter_map(|(unit, place)| Some((unit.as_ref()?, place)));
     for (unit, place) in bound {
         feedback(reader, targets, &textures.list[unit.texture], draw.target, place, written);
     }
@@ -197,7 +198,7 @@ fn feedback(
     place: &Range<usize>,
     written: &[bool],
 ) {
-    let TextureImage::Target { target: sampled, .. } = texture.image else { return };
+    let TextureImage::Target { target: sampled } = texture.image else { return };
     let name = targets.list.get(sampled).map_or("", |target| target.name.as_str());
     if sampled == target {
         reader.push(

@@ -93,7 +93,8 @@ pub(super) fn scene<'a>(
         return None;
     }
     let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().unzip();
-    let scene = Scene { profile: reader.profile, targets: targets.list, textures: textures.list, draws };
+    let scene =
+        Scene { profile: reader.profile, targets: targets.list, textures: textures.list, palettes: Vec::new(), draws };
     plan(reader, &scene, &spans).map(|plan| (scene, plan, spans))
 }
 

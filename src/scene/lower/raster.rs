@@ -127,7 +127,7 @@ pub(super) fn four_flags<'a>(
 
 /// Reads the fog state.
 pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<Raw<'a, source::Fog<'a>>>) -> Fog {
-    let mut fog = Fog { enabled: false, color: [0; 3] };
+    let mut fog = Fog { enabled: false, color: [0; 3], function: None };
     let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return fog };
     fog.enabled = reader.or(&fields.enabled, true);
     let [r, g, b, _] = color::constant_or(reader, names, &fields.color, [0; 4]);

@@ -8,7 +8,8 @@ use super::*;
 use crate::scene::image::{self, ImageLimits};
 use crate::scene::path;
 use crate::scene::reader::Entry;
-use crate::state::{Texture, TextureFormat, TextureImage};
+use crate::state::Named;
+use crate::state::{Texels, Texture, TextureFormat, TextureImage, TextureKind};
 
 const SOURCES: &[&str] = &["File", "Texels", "Solid", "Checker", "Ramp", "Target"];
 
@@ -70,8 +71,9 @@ pub(super) fn textures<'a>(
     let mut left = reader.limits.texture_bytes;
     for entry in entries {
         let image = texture(reader, names, targets, &entry, folder, &mut left);
-        let index = image.map(|image| {
-            textures.list.push(Texture { name: entry.name.clone(), image });
+        let index = image.map(|(format, image)| {
+            let kind = TextureKind::TwoDimensional;
+            textures.list.push(Texture { name: entry.name.clone(), kind, format, image });
             textures.list.len() - 1
         });
         textures.by_name.insert(entry.name.clone(), index);
@@ -98,7 +100,7 @@ fn texture<'a>(
     entry: &Entry<'a, source::Texture<'a>>,
     folder: &Path,
     left: &mut u64,
-) -> Option<TextureImage> {
+) -> Option<(TextureFormat, TextureImage)> {
     let opening = reader.range(entry.value.text.get(..1).unwrap_or(entry.value.text));
     let fields = reader.read(&entry.value)?;
     if let Some(raw) = &fields.kind {
@@ -114,8 +116,12 @@ fn texture<'a>(
     let format = match &fields.format {
         Some(raw) => {
             let format = reader.name(raw)?;
-            if format == TextureFormat::G8B8 && reader.profile == Profile::Nv10 {
-                reader.push(target::only_nv2a("NB0320", reader.span(raw), "texture format G8B8", "TEX-1"));
+            if format.is_nv2a_only() && reader.profile == Profile::Nv10 {
+                let what = format!("texture format {}", format.name());
+                reader.push(target::only_nv2a("NB0320", reader.span(raw), &what, "TEX-1"));
+            }
+            if format == TextureFormat::P8 || format.is_compressed() {
+                reader.not_built(reader.span(raw), "palettes and compressed textures");
             }
             Some((format, reader.span(raw)))
         }
@@ -137,7 +143,8 @@ fn texture<'a>(
             (width, height, pack(&pixels, words_as))
         }
     };
-    Some(TextureImage::Texels { width, height, format: words_as, words: words.into() })
+    let texels = Texels { width, height, levels: 1, border: false, words: words.into() };
+    Some((words_as, TextureImage::Texels(texels)))
 }
 
 /// The only value in the parentheses of `Variant(value)`.
@@ -157,7 +164,7 @@ fn of_target<'a>(
     targets: &Targets,
     text: &'a str,
     format: Option<(TextureFormat, Range<usize>)>,
-) -> Option<TextureImage> {
+) -> Option<(TextureFormat, TextureImage)> {
     let raw = only::<String>(reader, text, "the name of one target")?;
     let index = targets.find(reader, &raw)?;
     let target = &targets.list[index];
@@ -176,7 +183,7 @@ fn of_target<'a>(
         None => own,
     };
     check_sides(reader, reader.span(&raw), target.width, target.height)?;
-    Some(TextureImage::Target { target: index, format })
+    Some((format, TextureImage::Target { target: index }))
 }
 
 /// Sides are powers of two, within what the chip and the limits allow.
@@ -394,9 +401,19 @@ fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
             TextureFormat::R5G6B5 => (r >> 3) << 11 | (g >> 2) << 5 | b >> 3,
             TextureFormat::X1R5G5B5 => (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
             TextureFormat::A1R5G5B5 => (a >> 7) << 15 | (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
-            TextureFormat::L8 => r,
+            TextureFormat::A8B8G8R8 => a << 24 | b << 16 | g << 8 | r,
+            TextureFormat::B8G8R8A8 => b << 24 | g << 16 | r << 8 | a,
+            TextureFormat::R8G8B8A8 => r << 24 | g << 16 | b << 8 | a,
+            TextureFormat::R6G5B5 => (r >> 2) << 10 | (g >> 3) << 5 | b >> 3,
+            TextureFormat::A4R4G4B4 => (a >> 4) << 12 | (r >> 4) << 8 | (g >> 4) << 4 | b >> 4,
+            TextureFormat::L8 | TextureFormat::I8 => r,
             TextureFormat::A8 => a,
-            TextureFormat::G8B8 => g << 8 | b,
+            TextureFormat::A8L8 => a << 8 | r,
+            TextureFormat::G8B8 | TextureFormat::Y16 => g << 8 | b,
+            TextureFormat::R8B8 => r << 8 | b,
+            TextureFormat::R16B16 => a << 24 | r << 16 | g << 8 | b,
+            // Refused before it comes to this.
+            TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => 0,
         }
     };
     pixels.iter().map(word).collect()

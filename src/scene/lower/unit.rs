@@ -3,7 +3,15 @@
 use super::names::Names;
 use super::texture::Textures;
 use super::*;
-use crate::state::{AddressMode, Filter, TEXTURE_UNITS, TextureUnit};
+use crate::state::{AddressMode, Filter, ShaderStage, TEXTURE_UNITS, TextureUnit};
+
+/// The units of a draw.
+pub(super) struct Units {
+    pub(super) bound: [Option<TextureUnit>; TEXTURE_UNITS],
+    pub(super) shader: [ShaderStage; TEXTURE_UNITS],
+    /// Where the names of their textures stand.
+    pub(super) places: [Range<usize>; TEXTURE_UNITS],
+}
 
 /// Reads the units of a draw. The place of each texture's name comes with it.
 pub(super) fn units<'a>(
@@ -11,9 +19,12 @@ pub(super) fn units<'a>(
     names: &Names<'a>,
     textures: &mut Textures,
     raw: &Option<Raw<'a, source::List<'a, source::Unit>>>,
-) -> ([Option<TextureUnit>; TEXTURE_UNITS], [Range<usize>; TEXTURE_UNITS]) {
-    let mut units = [None; TEXTURE_UNITS];
-    let mut places = [0..0, 0..0, 0..0, 0..0];
+) -> Units {
+    let mut units = Units {
+        bound: [None; TEXTURE_UNITS],
+        shader: [0, 1, 2, 3].map(|index| ShaderStage::conventional(index, false)),
+        places: [0..0, 0..0, 0..0, 0..0],
+    };
     let list = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     let available = reader.profile.texture_units();
     for (index, raw) in list.iter().enumerate() {
@@ -33,12 +44,13 @@ pub(super) fn units<'a>(
         if index >= available {
             reader.push(target::only_nv2a("NB0319", place.clone(), &format!("texture unit {index}"), "CMB-12"));
         }
-        if let Some((unit, place)) = unit(reader, names, textures, raw, index) {
-            units[index] = Some(unit);
-            places[index] = place;
+        if let Some((unit, coordinate_set, place)) = unit(reader, names, textures, raw, index) {
+            units.bound[index] = Some(unit);
+            units.shader[index] = ShaderStage { coordinate_set, ..ShaderStage::conventional(index, true) };
+            units.places[index] = place;
         }
     }
-    (units, places)
+    units
 }
 
 fn unit<'a>(
@@ -47,26 +59,19 @@ fn unit<'a>(
     textures: &mut Textures,
     raw: &Raw<'a, source::Unit>,
     index: usize,
-) -> Option<(TextureUnit, Range<usize>)> {
-    let mut unit = TextureUnit {
-        texture: 0,
-        coordinate_set: index,
-        address_s: AddressMode::Wrap,
-        address_t: AddressMode::Wrap,
-        filter: Filter::Linear,
-        border_color: [0; 4],
-        signed: [false; 4],
-    };
+) -> Option<(TextureUnit, usize, Range<usize>)> {
+    let mut unit = TextureUnit::new(0);
+    let mut coordinate_set = index;
     if raw.is_text() {
         unit.texture = textures.find(reader, &raw.as_other())?;
-        return Some((unit, reader.span(raw)));
+        return Some((unit, coordinate_set, reader.span(raw)));
     }
     let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let fields = reader.read(&raw.as_other::<source::UnitState<'a>>())?;
     let texture = reader.required(&fields.texture, "texture", "texture unit", opening);
     let found = texture.as_ref().and_then(|raw| textures.find(reader, raw));
     if let Some(raw) = &fields.coordinates {
-        unit.coordinate_set = reader.whole(raw, "a set of texture coordinates", 0..=3).unwrap_or(0) as usize;
+        coordinate_set = reader.whole(raw, "a set of texture coordinates", 0..=3).unwrap_or(0) as usize;
     }
     let both = reader.name_or(&fields.address, AddressMode::Wrap);
     unit.address_s = reader.name_or(&fields.address_s, both);
@@ -101,14 +106,15 @@ fn unit<'a>(
     reader.reserve(&fields.color_key, "colour keys");
     unit.texture = found?;
     let place = texture.map_or(0..0, |raw| reader.span(&raw));
-    Some((unit, place))
+    Some((unit, coordinate_set, place))
 }
 
 /// Three fields; built is one filter for both directions, without mipmaps.
 fn filters<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
     let min = fields.min_filter.as_ref().and_then(|raw| reader.name(raw));
     let mag = fields.mag_filter.as_ref().and_then(|raw| reader.name(raw));
-    unit.filter = mag.or(min).unwrap_or(Filter::Linear);
+    unit.mag_filter = mag.or(min).unwrap_or(Filter::Linear);
+    unit.min_filter = unit.mag_filter;
     if let (Some(min), Some(mag), Some(raw)) = (min, mag, &fields.min_filter)
         && min != mag
     {
