@@ -24,9 +24,11 @@ fn check(what: &str, scene: &Scene, plan: &Plan) -> (u64, u64) {
         assert_eq!(cost.fragments, counts.fragments, "{what}: fragments of {}", draw.name);
         let at_most = |work: Work| cost.lod_decides && matches!(work, Work::Texels | Work::Lerps);
         let agree = |most: &[u64]| {
-            Work::ALL.iter().zip(most).zip(&counts.work).all(|((work, most), counted)| {
-                if at_most(*work) { counted <= most } else { counted == most }
-            })
+            Work::ALL
+                .iter()
+                .zip(most)
+                .zip(&counts.work)
+                .all(|((work, most), counted)| if at_most(*work) { counted <= most } else { counted == most })
         };
         assert!(agree(&cost.with(counts.stored)), "{what}: {} {cost:?} {:?}", draw.name, counts.work);
         if cost.tested {

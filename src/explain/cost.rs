@@ -2,8 +2,8 @@
 
 use crate::combiner::general::PlannedPortion;
 use crate::plan::PlannedDraw;
-use crate::texture::unit::PlannedUnit;
 use crate::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, SumRounding};
+use crate::texture::unit::PlannedUnit;
 use crate::trace::Work;
 
 /// Work by kind, in the order of `Work::ALL`.

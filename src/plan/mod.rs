@@ -14,8 +14,9 @@ use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::surface;
 use crate::state::named;
 use crate::state::{
-    AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies, Profile, Rectangle,
-    Scene, ShadeModel, ShaderOperation, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texture, TextureImage, TextureKind, TextureUnit,
+    AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies,
+    Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texture,
+    TextureImage, TextureKind, TextureUnit,
 };
 use crate::texture::unit::PlannedUnit;
 use liveness::Liveness;
@@ -225,7 +226,9 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                 _ if set.iter().any(|c| !c.is_finite()) => (true, "is not a finite number".to_string()),
                 Some((Texture { kind: TextureKind::TwoDimensional, name, .. }, (width, height))) => (
                     far(0, width) || far(1, height),
-                    format!("is more than 65536 texels of the {width} x {height} texture `{name}` away from its origin"),
+                    format!(
+                        "is more than 65536 texels of the {width} x {height} texture `{name}` away from its origin"
+                    ),
                 ),
                 Some((Texture { kind: TextureKind::Rectangle, name, .. }, _)) => {
                     (far(0, 1) || far(1, 1), format!("is more than 65536 texels away from the origin of `{name}`"))

@@ -81,12 +81,10 @@ mod tests {
     fn axes_ties_and_zero() {
         let axes = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]];
         assert_eq!(axes.map(of).as_slice(), <Face as crate::state::Named>::ALL);
-        assert_eq!([[1, 1, 1], [-1, 1, 1], [0, -1, 1], [0, 0, 0]].map(of), [
-            Face::PositiveX,
-            Face::NegativeX,
-            Face::NegativeY,
-            Face::PositiveX
-        ]);
+        assert_eq!(
+            [[1, 1, 1], [-1, 1, 1], [0, -1, 1], [0, 0, 0]].map(of),
+            [Face::PositiveX, Face::NegativeX, Face::NegativeY, Face::PositiveX]
+        );
     }
 
     /// u and v stay within 0..1 on the face that is chosen.

@@ -38,9 +38,11 @@ impl Coordinates {
 
 /// The three linear functions of sc, tc and |ma| of a direction on a face.
 pub fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
-    face.components().map(|Signed { axis, negative }| {
-        if negative { direction[axis].map(|g| -g) } else { direction[axis] }
-    })
+    face.components().map(
+        |Signed { axis, negative }| {
+            if negative { direction[axis].map(|g| -g) } else { direction[axis] }
+        },
+    )
 }
 
 /// Real coordinates.
@@ -247,9 +249,7 @@ impl Place for Interpolated<'_> {
                     inputs.extend(report.planes("INT-4", "N_q", &planes[2], observer));
                     ("TEX-15", "floor_ratio", inputs)
                 }
-                Coordinates::Direction(_) => {
-                    ("TEX-12", ["floor_face_u", "floor_face_v"][axis], direction.clone())
-                }
+                Coordinates::Direction(_) => ("TEX-12", ["floor_face_u", "floor_face_v"][axis], direction.clone()),
             };
             inputs.extend(edges.clone());
             match self.coordinates {

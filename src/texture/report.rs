@@ -124,8 +124,7 @@ impl Report<'_> {
             MipFilter::Nearest => "nearest_level",
             MipFilter::Linear => "lower_level",
         };
-        let inputs =
-            || vec![part(self.name("lod"), i64::from(lod)), plain("levels", self.unit.levels.len() as i64)];
+        let inputs = || vec![part(self.name("lod"), i64::from(lod)), plain("levels", self.unit.levels.len() as i64)];
         let level = Step::given(&block, "TEX-9", self.name("level"), choice.level as i64);
         observer.step(level.by(operation, inputs()));
         if let Some((next, _)) = choice.next {
@@ -259,8 +258,7 @@ impl Report<'_> {
                     inputs.push(plain(name(&format!("block{n}")), i64::from(*word)));
                 }
                 inputs.extend(place);
-                let decoded =
-                    super::compressed::decode(self.unit.format, self.unit.dithered, raw, x as u32, y as u32);
+                let decoded = super::compressed::decode(self.unit.format, self.unit.dithered, raw, x as u32, y as u32);
                 let [r, g, b, a] = decoded.bytes.map(u32::from);
                 let (rule, operation) = match (self.unit.format, self.unit.dithered) {
                     (TextureFormat::Dxt1, true) => ("TEX-3", "decode_dxt1_dithered"),
@@ -285,8 +283,7 @@ impl Report<'_> {
         let suffix = self.lane(lane);
         let rows = [lerp(texels[0], texels[1], weights[0]), lerp(texels[2], texels[3], weights[0])];
         let weight = |n: usize| part(self.name(["weight_u", "weight_v"][n]), L::observe_weight(weights[n]).0);
-        let texel =
-            |n: usize| self.lane_operand(self.name(&format!("texel{}{}.{suffix}", n & 1, n >> 1)), texels[n]);
+        let texel = |n: usize| self.lane_operand(self.name(&format!("texel{}{}.{suffix}", n & 1, n >> 1)), texels[n]);
         let row_name = |row: usize| self.name(&format!("row{row}.{suffix}"));
         for (row, mixed) in rows.into_iter().enumerate() {
             let inputs = vec![texel(2 * row), texel(2 * row + 1), weight(0)];

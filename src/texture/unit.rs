@@ -292,12 +292,7 @@ pub fn load<L: Lane, O: Observer>(unit: &PlannedUnit, value: [L; 4], from: &str,
 }
 
 /// TEX-1 of the formats that are filtered at 16 bits: the bytes of the halves. The high byte of a signed half enters doubled (TEX-18).
-fn load_halves<L: Lane, O: Observer>(
-    halves: [L; 4],
-    from: &str,
-    report: &Report<'_>,
-    observer: &mut O,
-) -> [L; 4] {
+fn load_halves<L: Lane, O: Observer>(halves: [L; 4], from: &str, report: &Report<'_>, observer: &mut O) -> [L; 4] {
     let unit = report.unit;
     let mut register = [L::ONE; 4];
     // Channel, lane, and whether it is the high byte.

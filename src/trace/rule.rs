@@ -81,7 +81,9 @@ impl Rule {
     pub fn part(self) -> Part {
         match self {
             Rule::Num4 | Rule::Num6 | Rule::Int2 | Rule::Int4 | Rule::Tex12 | Rule::Tex15 => Part::Interpolation,
-            Rule::Tex1 | Rule::Tex2 | Rule::Tex3 | Rule::Tex4 | Rule::Tex6 | Rule::Tex9 | Rule::Tex18 => Part::Filtering,
+            Rule::Tex1 | Rule::Tex2 | Rule::Tex3 | Rule::Tex4 | Rule::Tex6 | Rule::Tex9 | Rule::Tex18 => {
+                Part::Filtering
+            }
             Rule::Cmb2 | Rule::Cmb3 | Rule::Cmb4 | Rule::Cmb5 => Part::Expansion,
             Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 | Rule::Cmb9 | Rule::Num3 | Rule::Fin2 | Rule::Fin4 => Part::Product,
             Rule::Rop2 | Rule::Rop5 => Part::Store,
