@@ -86,6 +86,7 @@ fn scene(perspective: bool) -> Scene {
         textures: [Some(unit), None, None, None],
         texture_shader: [0, 1, 2, 3].map(|n| ShaderStage::conventional(n, n == 0)),
         combiners: dot3(),
+        program_origin: vec![],
         alpha_test: None,
         depth_test: None,
         blend: None,

@@ -65,6 +65,7 @@
 //!     textures: [None; TEXTURE_UNITS],
 //!     texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, false)),
 //!     combiners: Combiners { stages: vec![idle], mux_select: MuxSelect::Msb, final_combiner },
+//!     program_origin: vec![],
 //!     alpha_test: None,
 //!     depth_test: None,
 //!     blend: None,
@@ -100,10 +101,12 @@ pub mod number;
 pub mod output;
 pub mod picture;
 pub mod plan;
+pub mod program;
 pub mod raster;
 pub mod report;
 pub mod rop;
 pub mod scene;
+mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;

@@ -243,6 +243,15 @@ pub struct FinalCombiner {
     pub constants: [[u8; 4]; 2],
 }
 
+/// What a general stage was written as, in the language of an API. For reports; nothing is computed from it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct StageOrigin {
+    /// The RGB portion: "stage 0: ColorOp DotProduct3(Texture, Diffuse)".
+    pub rgb: String,
+    /// The alpha portion.
+    pub alpha: String,
+}
+
 /// A whole combiner program.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Combiners {

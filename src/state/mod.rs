@@ -14,7 +14,7 @@ mod texture;
 
 pub use combiner::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
-    MuxSelect, Portion, Register, Scale,
+    MuxSelect, Portion, Register, Scale, StageOrigin,
 };
 pub use named::Named;
 pub(crate) use named::named;
@@ -117,6 +117,8 @@ pub struct Draw {
     pub texture_shader: [ShaderStage; TEXTURE_UNITS],
     /// Register combiners.
     pub combiners: Combiners,
+    /// What each general stage was written as; empty if the program was written for the combiners.
+    pub program_origin: Vec<StageOrigin>,
     /// Alpha test (ROP-1). `None`: every fragment passes.
     pub alpha_test: Option<AlphaTest>,
     /// Depth test (DEP-1, DEP-2). `None`: neither test nor write.

@@ -278,6 +278,7 @@ fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[T
         blend_constant: c.bytes(),
         color_mask: if c.once_in(5) { std::array::from_fn(|_| c.below(3) != 0) } else { [true; 4] },
         combiners: combiners(c, profile),
+        program_origin: vec![],
     }
 }
 

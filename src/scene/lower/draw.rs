@@ -133,6 +133,7 @@ fn draw<'a>(
         textures: units.bound,
         texture_shader: units.shader,
         combiners,
+        program_origin: Vec::new(),
         alpha_test: None,
         depth_test: None,
         blend: None,

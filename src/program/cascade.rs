@@ -1,0 +1,466 @@
+//! A cascade of equations becomes general stages: one stage for each, its colour and alpha side by side.
+//!
+//! APIs clamp the result of every stage to 0..1. The combiners clamp a written register to -1..1 only, so the lower limit is left to
+//! whoever reads: a value that may be negative is read by a mapping that takes max(0, x), never by a signed one.
+
+use std::ops::Range;
+
+use super::Finding;
+use crate::state::{
+    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
+    MuxSelect, Portion, Profile, Register, Scale, StageOrigin,
+};
+
+/// Where an argument comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// 0.
+    Zero,
+    /// A constant colour, R, G, B, A bytes.
+    Constant([u8; 4]),
+    /// The interpolated diffuse colour.
+    Primary,
+    /// The interpolated specular colour.
+    Secondary,
+    /// A texture unit's colour.
+    Texture(usize),
+    /// What the stages so far have made of the colour.
+    Current,
+    /// A second result, 0 until a stage writes it.
+    Temporary,
+}
+
+/// Which channels of a source an argument takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Channel {
+    /// R, G, B for a colour, A for an alpha.
+    Own,
+    /// Blue, for an alpha.
+    Blue,
+    /// Alpha, for all channels.
+    Alpha,
+}
+
+/// One argument of an equation: x, or 1 - x.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Argument {
+    /// Where x comes from.
+    pub source: Source,
+    /// Its channels.
+    pub channel: Channel,
+    /// 1 - x.
+    pub complement: bool,
+}
+
+impl Argument {
+    /// 0.
+    pub const ZERO: Argument = Argument::new(Source::Zero);
+    /// 1.
+    pub const ONE: Argument = Argument { complement: true, ..Argument::ZERO };
+
+    /// A source as it is.
+    pub const fn new(source: Source) -> Argument {
+        Argument { source, channel: Channel::Own, complement: false }
+    }
+
+    /// The source's alpha in all channels; 1 - x stays.
+    pub const fn alpha(self) -> Argument {
+        Argument { channel: Channel::Alpha, ..self }
+    }
+
+    /// 1 - x.
+    pub const fn inverted(self) -> Argument {
+        Argument { complement: !self.complement, ..self }
+    }
+}
+
+/// How an argument enters a product.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Use {
+    /// x.
+    Plain,
+    /// 2x - 1.
+    Expanded,
+    /// x - 1/2.
+    HalfBiased,
+}
+
+/// A B + C D, or A B - C D, or the dot product of A and B; then biased, scaled and limited to 0..1.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Equation {
+    ab: [Argument; 2],
+    cd: Option<[Argument; 2]>,
+    form: Form,
+    bias: Bias,
+    scale: Scale,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Sum,
+    /// A - C; B and D are 1.
+    Difference,
+    /// Sum of (2a - 1)(2b - 1) over R, G, B.
+    Dot,
+    /// A + (C - 1/2), B and D being 1: what bias and scale 4 cannot say together.
+    HalfBiased,
+}
+
+impl Equation {
+    const fn of(ab: [Argument; 2], cd: Option<[Argument; 2]>, form: Form) -> Equation {
+        Equation { ab, cd, form, bias: Bias::None, scale: Scale::One }
+    }
+
+    /// a.
+    pub const fn copy(a: Argument) -> Equation {
+        Equation::product(a, Argument::ONE)
+    }
+
+    /// a b.
+    pub const fn product(a: Argument, b: Argument) -> Equation {
+        Equation::of([a, b], None, Form::Sum)
+    }
+
+    /// a b + c d.
+    pub const fn products(ab: [Argument; 2], cd: [Argument; 2]) -> Equation {
+        Equation::of(ab, Some(cd), Form::Sum)
+    }
+
+    /// a + b.
+    pub const fn sum(a: Argument, b: Argument) -> Equation {
+        Equation::products([a, Argument::ONE], [b, Argument::ONE])
+    }
+
+    /// f a + (1 - f) b.
+    pub const fn lerp(f: Argument, a: Argument, b: Argument) -> Equation {
+        Equation::products([a, f], [b, f.inverted()])
+    }
+
+    /// a - b.
+    pub const fn difference(a: Argument, b: Argument) -> Equation {
+        Equation::of([a, Argument::ONE], Some([b, Argument::ONE]), Form::Difference)
+    }
+
+    /// The sum over R, G, B of (2a - 1)(2b - 1).
+    pub const fn dot(a: Argument, b: Argument) -> Equation {
+        Equation::of([a, b], None, Form::Dot)
+    }
+
+    /// (a + b - 1/2) times 1, 2 or 4.
+    pub fn signed_sum(a: Argument, b: Argument, scale: Scale) -> Equation {
+        match scale {
+            Scale::Four | Scale::Half => Equation {
+                scale,
+                ..Equation::of([a, Argument::ONE], Some([b, Argument::ONE]), Form::HalfBiased)
+            },
+            _ => Equation { bias: Bias::NegativeHalf, scale, ..Equation::sum(a, b) },
+        }
+    }
+
+    /// Less 1/2; goes with scales 1 and 2.
+    pub const fn biased(self) -> Equation {
+        Equation { bias: Bias::NegativeHalf, ..self }
+    }
+
+    /// Times a scale.
+    pub const fn scaled(self, scale: Scale) -> Equation {
+        Equation { scale, ..self }
+    }
+
+    /// Whether it can be below 0 before the limit.
+    fn is_signed(&self) -> bool {
+        self.form != Form::Sum || self.bias != Bias::None
+    }
+}
+
+/// The alpha of a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Alpha {
+    /// Its own equation.
+    Equation(Equation),
+    /// The dot product that is the colour.
+    DotProduct,
+}
+
+/// Where a stage's result goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Destination {
+    /// The colour that the next stage reads as [`Source::Current`]; SPARE0.
+    Current,
+    /// [`Source::Temporary`]; SPARE1.
+    Temporary,
+}
+
+/// What follows the last stage, in the final combiner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct End {
+    /// The secondary colour is added, up to 1.0.
+    pub specular: bool,
+    /// The result is blended with the fog colour by the fog factor.
+    pub fog: bool,
+}
+
+/// Where a result lies.
+#[derive(Clone, Copy, Debug)]
+struct Value {
+    register: Register,
+    /// Its alpha is its blue: a dot product on a chip without blue-to-alpha.
+    alpha_is_blue: bool,
+    signed: bool,
+}
+
+/// General stages under construction.
+#[derive(Debug)]
+pub struct Cascade {
+    profile: Profile,
+    /// Texture units whose colours can be negative.
+    signed_textures: [bool; 4],
+    stages: Vec<GeneralStage>,
+    origins: Vec<StageOrigin>,
+    places: Vec<Range<usize>>,
+    /// Constants so far: of the current stage, or on nv10 of the whole program.
+    constants: Vec<[u8; 4]>,
+    current: Value,
+    temporary: Option<Value>,
+    findings: Vec<Finding>,
+}
+
+/// A finished cascade.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Lowered {
+    /// The program.
+    pub combiners: Combiners,
+    /// What each general stage came from.
+    pub origins: Vec<StageOrigin>,
+}
+
+impl Cascade {
+    /// No stages yet: the current colour is the primary colour.
+    pub fn new(profile: Profile, signed_textures: [bool; 4]) -> Cascade {
+        Cascade {
+            profile,
+            signed_textures,
+            stages: Vec::new(),
+            origins: Vec::new(),
+            places: Vec::new(),
+            constants: Vec::new(),
+            current: Value { register: Register::PrimaryColor, alpha_is_blue: false, signed: false },
+            temporary: None,
+            findings: Vec::new(),
+        }
+    }
+
+    /// Adds a stage. `place` is for findings about it, `origin` for reports.
+    pub fn stage(
+        &mut self,
+        place: Range<usize>,
+        rgb: &Equation,
+        alpha: Alpha,
+        destination: Destination,
+        origin: StageOrigin,
+    ) {
+        if self.profile == Profile::Nv2a {
+            self.constants.clear();
+        }
+        let register = match destination {
+            Destination::Current => Register::Spare0,
+            Destination::Temporary => Register::Spare1,
+        };
+        let blue_to_alpha = alpha == Alpha::DotProduct && self.profile == Profile::Nv2a;
+        let mut rgb_portion = self.portion(rgb, false, register, &place);
+        rgb_portion.ab_blue_to_alpha = blue_to_alpha;
+        let (alpha_portion, signed_alpha) = match &alpha {
+            Alpha::Equation(equation) => (self.portion(equation, true, register, &place), equation.is_signed()),
+            Alpha::DotProduct => (Portion::idle(Component::Alpha), true),
+        };
+        let mut constants = [[0; 4]; 2];
+        for (slot, constant) in constants.iter_mut().zip(&self.constants) {
+            *slot = *constant;
+        }
+        self.stages.push(GeneralStage { rgb: rgb_portion, alpha: alpha_portion, constants });
+        self.origins.push(origin);
+        self.places.push(place);
+        let value = Value {
+            register,
+            alpha_is_blue: alpha == Alpha::DotProduct && !blue_to_alpha,
+            signed: rgb.is_signed() || signed_alpha,
+        };
+        match destination {
+            Destination::Current => self.current = value,
+            Destination::Temporary => self.temporary = Some(value),
+        }
+    }
+
+    fn portion(&mut self, equation: &Equation, alpha: bool, register: Register, place: &Range<usize>) -> Portion {
+        let mut portion = Portion::idle(if alpha { Component::Alpha } else { Component::Rgb });
+        let used = if equation.form == Form::Dot { Use::Expanded } else { Use::Plain };
+        portion.inputs[0] = self.input(&equation.ab[0], used, alpha, place);
+        portion.inputs[1] = self.input(&equation.ab[1], used, alpha, place);
+        if let Some([c, d]) = &equation.cd {
+            let [c, d] = match equation.form {
+                Form::Difference => self.negative(c, alpha, place),
+                Form::HalfBiased => [self.input(c, Use::HalfBiased, alpha, place), one(alpha)],
+                Form::Sum | Form::Dot => {
+                    [self.input(c, Use::Plain, alpha, place), self.input(d, Use::Plain, alpha, place)]
+                }
+            };
+            portion.inputs[2] = c;
+            portion.inputs[3] = d;
+        }
+        if equation.form == Form::Dot {
+            portion.ab_dot_product = true;
+            portion.ab_output = register;
+        } else {
+            portion.sum_output = register;
+        }
+        portion.bias = equation.bias;
+        portion.scale = equation.scale;
+        portion
+    }
+
+    /// C D = -x: -x times 1 where x is at least 0; otherwise max(0, x) or 1 - max(0, x) times -1.
+    fn negative(&mut self, x: &Argument, alpha: bool, place: &Range<usize>) -> [CombinerInput; 2] {
+        let plain = self.input(x, Use::Plain, alpha, place);
+        if !x.complement && !self.may_be_negative(x.source) {
+            return [CombinerInput { mapping: InputMapping::SignedNegate, ..plain }, one(alpha)];
+        }
+        [plain, CombinerInput { mapping: InputMapping::ExpandNormal, ..one(alpha) }]
+    }
+
+    fn may_be_negative(&self, source: Source) -> bool {
+        match source {
+            Source::Current => self.current.signed,
+            Source::Temporary => self.temporary.is_some_and(|value| value.signed),
+            Source::Texture(unit) => self.signed_textures.get(unit).copied().unwrap_or(false),
+            Source::Zero | Source::Constant(_) | Source::Primary | Source::Secondary => false,
+        }
+    }
+
+    fn input(&mut self, argument: &Argument, used: Use, alpha: bool, place: &Range<usize>) -> CombinerInput {
+        let plain = |register| Value { register, alpha_is_blue: false, signed: false };
+        let value = match argument.source {
+            Source::Zero => plain(Register::Zero),
+            Source::Primary => plain(Register::PrimaryColor),
+            Source::Secondary => plain(Register::SecondaryColor),
+            Source::Texture(0) => plain(Register::Texture0),
+            Source::Texture(1) => plain(Register::Texture1),
+            Source::Texture(2) => plain(Register::Texture2),
+            Source::Texture(_) => plain(Register::Texture3),
+            Source::Current => self.current,
+            Source::Temporary => self.temporary.unwrap_or(plain(Register::Zero)),
+            Source::Constant(color) => plain(self.constant(color, place)),
+        };
+        let component = match (argument.channel, alpha) {
+            (Channel::Own, false) => Component::Rgb,
+            // A dot product has the same in all three channels.
+            (Channel::Alpha, false) if value.alpha_is_blue => Component::Rgb,
+            (Channel::Own | Channel::Alpha, true) if value.alpha_is_blue => Component::Blue,
+            (Channel::Blue, true) => Component::Blue,
+            _ => Component::Alpha,
+        };
+        let mapping = match (used, argument.complement) {
+            (Use::Plain, false) => InputMapping::UnsignedIdentity,
+            (Use::Plain, true) => InputMapping::UnsignedInvert,
+            (Use::Expanded, false) => InputMapping::ExpandNormal,
+            // 2 (1 - x) - 1 = 1 - 2x.
+            (Use::Expanded, true) => InputMapping::ExpandNegate,
+            (Use::HalfBiased, false) => InputMapping::HalfBiasNormal,
+            // (1 - x) - 1/2 = 1/2 - x.
+            (Use::HalfBiased, true) => InputMapping::HalfBiasNegate,
+        };
+        CombinerInput { register: value.register, component, mapping }
+    }
+
+    /// The register that holds a constant.
+    fn constant(&mut self, color: [u8; 4], place: &Range<usize>) -> Register {
+        let found = self.constants.iter().position(|constant| *constant == color);
+        let index = found.unwrap_or_else(|| {
+            self.constants.push(color);
+            self.constants.len() - 1
+        });
+        if index == 2 && found.is_none() {
+            let (message, help) = match self.profile {
+                Profile::Nv10 => (
+                    "this program needs 3 constant colours; Nv10 has 2",
+                    "make two of them equal, or pass one in as the vertex's specular colour; profile Nv2a has two a stage",
+                ),
+                Profile::Nv2a => ("this stage needs 3 constant colours; it has 2", "make two of them equal"),
+            };
+            let finding = Finding::new("NB0351", place.clone(), message, "the third is read here", help);
+            self.findings.push(finding.rule("CMB-12"));
+        }
+        if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
+    }
+
+    /// The program; or everything that keeps it from being one. `what` is what users call it: "cascade".
+    pub fn finish(mut self, what: &str, end: End) -> Result<Lowered, Vec<Finding>> {
+        if self.current.register != Register::Spare0 {
+            // Nothing that was computed is seen.
+            self.stages.clear();
+            self.origins.clear();
+            self.places.clear();
+            self.constants.clear();
+            let copy = Equation::copy(Argument::new(Source::Current));
+            let origin = |part: &str| format!("no stage changes the {part} of the vertices");
+            let origin = StageOrigin { rgb: origin("colour"), alpha: origin("alpha") };
+            self.stage(0..0, &copy, Alpha::Equation(copy), Destination::Current, origin);
+        }
+        let (needed, most) = (self.stages.len(), self.profile.general_stages());
+        if let Some(place) = self.places.get(most) {
+            let help = match self.profile {
+                Profile::Nv10 if needed <= Profile::Nv2a.general_stages() => {
+                    "use fewer stages, draw in two passes with `blend`, or write `profile: Nv2a`, which has 8"
+                }
+                _ => "use fewer stages, or draw in two passes with `blend`",
+            };
+            let chip = format!("{:?}", self.profile).to_lowercase();
+            let finding = Finding::new(
+                "NB0350",
+                place.clone(),
+                format!("this {what} needs {needed} general stages; {chip} has {most}"),
+                "the first too many",
+                help,
+            );
+            self.findings.push(finding.rule("CMB-12"));
+        }
+        if !self.findings.is_empty() {
+            return Err(self.findings);
+        }
+        let constants = self.stages.last().map_or([[0; 4]; 2], |stage| stage.constants);
+        if self.profile == Profile::Nv10 {
+            for stage in &mut self.stages {
+                stage.constants = constants;
+            }
+        }
+        let final_combiner = final_combiner(end, self.current.alpha_is_blue, constants);
+        let combiners = Combiners { stages: self.stages, mux_select: MuxSelect::Msb, final_combiner };
+        Ok(Lowered { combiners, origins: self.origins })
+    }
+}
+
+fn one(alpha: bool) -> CombinerInput {
+    let component = if alpha { Component::Alpha } else { Component::Rgb };
+    CombinerInput { mapping: InputMapping::UnsignedInvert, ..CombinerInput::zero(component) }
+}
+
+/// The colour, perhaps with the secondary colour added: alone in D, or blended with the fog colour by A.
+fn final_combiner(end: End, alpha_is_blue: bool, constants: [[u8; 4]; 2]) -> FinalCombiner {
+    let input = |register, component| FinalInput { register, component, invert: false };
+    let zero = FinalInput::zero(Component::Rgb);
+    let color = if end.specular { FinalRegister::Spare0PlusSecondary } else { FinalRegister::Spare0 };
+    let color = input(color, Component::Rgb);
+    let inputs = if end.fog {
+        let [factor, fog] = [Component::Alpha, Component::Rgb].map(|component| input(FinalRegister::Fog, component));
+        [factor, color, fog, zero, zero, zero]
+    } else {
+        [zero, zero, zero, color, zero, zero]
+    };
+    FinalCombiner {
+        inputs,
+        g: input(FinalRegister::Spare0, if alpha_is_blue { Component::Blue } else { Component::Alpha }),
+        color_sum_clamp: true,
+        invert_spare0: false,
+        invert_secondary: false,
+        constants,
+    }
+}

@@ -1,0 +1,195 @@
+//! The OpenGL texture environment (OpenGL 1.3, and extensions of its time) and how it becomes general stages.
+//!
+//! A unit becomes one general stage. See `docs/programs.md` for the form that each function takes.
+
+mod combine;
+mod lower;
+
+use std::ops::Range;
+
+use crate::program::At;
+use crate::state::{Scale, TextureFormat, named};
+
+pub use lower::{Context, lower};
+
+named! {
+    /// TEXTURE_ENV_MODE.
+    pub enum Mode {
+        /// The texture's colour.
+        Replace,
+        /// The product.
+        Modulate,
+        /// Blended by the texture's alpha.
+        Decal,
+        /// Blended with the environment colour by the texture's colour.
+        Blend,
+        /// The sum.
+        Add,
+        /// As the combine functions say.
+        Combine,
+        /// COMBINE4_NV (NV_texture_env_combine4): sums of two products.
+        Combine4,
+    }
+}
+named! {
+    /// COMBINE_RGB, COMBINE_ALPHA. a0 to a3 are the arguments; results are scaled, then limited to 0..1.
+    pub enum Function {
+        /// a0.
+        Replace,
+        /// a0 a1.
+        Modulate,
+        /// a0 + a1. Combine4: a0 a1 + a2 a3.
+        Add,
+        /// a0 + a1 - 1/2. Combine4: a0 a1 + a2 a3 - 1/2.
+        AddSigned,
+        /// a0 a2 + a1 (1 - a2).
+        Interpolate,
+        /// a0 - a1.
+        Subtract,
+        /// The sum over R, G, B of (2 a0 - 1)(2 a1 - 1), scaled (ARB_texture_env_dot3). RGB only.
+        Dot3RgbArb,
+        /// The same in all four channels.
+        Dot3RgbaArb,
+        /// The dot product without scale (EXT_texture_env_dot3). RGB only.
+        Dot3RgbExt,
+        /// The same in all four channels.
+        Dot3RgbaExt,
+    }
+}
+named! {
+    /// SOURCE0_RGB and the like.
+    pub enum EnvironmentSource {
+        /// The unit's own texture.
+        Texture,
+        /// Unit 0's texture (crossbar).
+        Texture0,
+        /// Unit 1's texture (crossbar).
+        Texture1,
+        /// Unit 2's texture (crossbar).
+        Texture2,
+        /// Unit 3's texture (crossbar).
+        Texture3,
+        /// The environment colour of the unit.
+        Constant,
+        /// The interpolated primary colour.
+        PrimaryColor,
+        /// The result of the unit before; the primary colour in unit 0.
+        Previous,
+        /// 0 (Combine4).
+        Zero,
+    }
+}
+named! {
+    /// OPERAND0_RGB and the like.
+    pub enum Operand {
+        /// c.
+        SourceColor,
+        /// 1 - c.
+        OneMinusSourceColor,
+        /// a.
+        SourceAlpha,
+        /// 1 - a.
+        OneMinusSourceAlpha,
+    }
+}
+named! {
+    /// The base internal format of a texture: which of its channels count.
+    pub enum BaseFormat {
+        /// 0, 0, 0, A.
+        Alpha,
+        /// L, L, L, 1.
+        Luminance,
+        /// L, L, L, A.
+        LuminanceAlpha,
+        /// I, I, I, I.
+        Intensity,
+        /// R, G, B, 1.
+        Rgb,
+        /// R, G, B, A.
+        Rgba,
+    }
+}
+
+impl BaseFormat {
+    /// What a texel format is to OpenGL.
+    pub fn of(format: TextureFormat) -> BaseFormat {
+        match format {
+            TextureFormat::A8 => BaseFormat::Alpha,
+            TextureFormat::L8 => BaseFormat::Luminance,
+            TextureFormat::A8L8 => BaseFormat::LuminanceAlpha,
+            TextureFormat::I8 => BaseFormat::Intensity,
+            TextureFormat::X8R8G8B8
+            | TextureFormat::R5G6B5
+            | TextureFormat::R6G5B5
+            | TextureFormat::X1R5G5B5
+            | TextureFormat::Y16 => BaseFormat::Rgb,
+            _ => BaseFormat::Rgba,
+        }
+    }
+}
+
+/// The colour or the alpha half of a combining unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Half {
+    /// COMBINE_RGB or COMBINE_ALPHA.
+    pub function: At<Function>,
+    /// SOURCE0 to SOURCE3.
+    pub sources: [At<EnvironmentSource>; 4],
+    /// OPERAND0 to OPERAND3.
+    pub operands: [At<Operand>; 4],
+    /// RGB_SCALE or ALPHA_SCALE: One, Two, Four.
+    pub scale: Scale,
+}
+
+/// The environment of one texture unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unit {
+    /// TEXTURE_ENV_MODE.
+    pub mode: Mode,
+    /// COMBINE_RGB and what belongs to it.
+    pub rgb: Half,
+    /// COMBINE_ALPHA and what belongs to it.
+    pub alpha: Half,
+    /// TEXTURE_ENV_COLOR, R, G, B, A bytes.
+    pub color: [u8; 4],
+    /// What the texture counts as; `None`: as its texel format says.
+    pub base_format: Option<BaseFormat>,
+    /// Where it is written; empty if it is not.
+    pub place: Range<usize>,
+}
+
+impl Unit {
+    /// The API's initial state in a mode: those of Combine and Combine4 differ in nothing that both read.
+    pub fn initial() -> Unit {
+        let half = |operands: [Operand; 4]| Half {
+            function: At::default_of(Function::Modulate),
+            sources: [
+                EnvironmentSource::Texture,
+                EnvironmentSource::Previous,
+                EnvironmentSource::Constant,
+                EnvironmentSource::Zero,
+            ]
+            .map(At::default_of),
+            operands: operands.map(At::default_of),
+            scale: Scale::One,
+        };
+        let (color, alpha) = (Operand::SourceColor, Operand::SourceAlpha);
+        Unit {
+            mode: Mode::Modulate,
+            rgb: half([color, color, alpha, Operand::OneMinusSourceColor]),
+            alpha: half([alpha, alpha, alpha, Operand::OneMinusSourceAlpha]),
+            color: [0; 4],
+            base_format: None,
+            place: 0..0,
+        }
+    }
+}
+
+/// The texture environment of all units.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct TextureEnvironment {
+    /// Units from 0; those not given are in their initial state.
+    pub units: Vec<Unit>,
+    /// COLOR_SUM, or a separate specular colour.
+    pub color_sum: bool,
+}

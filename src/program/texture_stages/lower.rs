@@ -1,0 +1,282 @@
+//! From texture stages to general stages.
+
+use std::ops::Range;
+
+use super::operation::Surroundings;
+use super::{ArgumentSource, Half, Operation, ResultArgument, StageArgument, TextureStage, TextureStages};
+use crate::program::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
+use crate::program::{At, Finding};
+use crate::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
+
+/// What of the draw the lowering depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Context {
+    /// The chip.
+    pub profile: Profile,
+    /// Units that have a texture.
+    pub bound: [bool; TEXTURE_UNITS],
+    /// Units whose colours can be negative.
+    pub signed: [bool; TEXTURE_UNITS],
+    /// Fog is enabled.
+    pub fog: bool,
+}
+
+/// What a program changes about a texture unit.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct UnitChange {
+    /// Its coordinate set.
+    pub coordinate_set: Option<usize>,
+    /// Its texture shader operation, and the earlier unit that it reads.
+    pub operation: Option<(ShaderOperation, usize)>,
+}
+
+/// Lowered texture stages.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lowered {
+    /// The program.
+    pub combiners: Combiners,
+    /// What each general stage came from.
+    pub origins: Vec<StageOrigin>,
+    /// What becomes of the texture units.
+    pub units: [UnitChange; TEXTURE_UNITS],
+}
+
+/// Lowers the stages for a draw.
+///
+/// # Errors
+/// Everything that the chip, or this version, has no form for.
+pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Finding>> {
+    let active = program.stages.iter().take_while(|stage| stage.color.operation.value != Operation::Disable).count();
+    let mut walk = Walk { program, context, active, findings: Vec::new(), units: Default::default() };
+    let mut cascade = Cascade::new(context.profile, context.signed);
+    for (index, stage) in program.stages.iter().take(active).enumerate() {
+        walk.coordinates(index, stage);
+        if stage.color.operation.value.is_bump() {
+            walk.bump(index, stage);
+            continue;
+        }
+        let rgb = walk.half(index, &stage.color, false);
+        let alpha = if stage.color.operation.value == Operation::DotProduct3 {
+            Alpha::DotProduct
+        } else {
+            Alpha::Equation(walk.half(index, &stage.alpha, true))
+        };
+        let destination = match stage.result {
+            ResultArgument::Current => Destination::Current,
+            ResultArgument::Temp => Destination::Temporary,
+        };
+        cascade.stage(stage.color.operation.place.clone(), &rgb, alpha, destination, origin(index, stage));
+    }
+    let mut findings = walk.findings;
+    match cascade.finish("cascade", End { specular: program.specular_enable, fog: context.fog }) {
+        Ok(lowered) if findings.is_empty() => {
+            Ok(Lowered { combiners: lowered.combiners, origins: lowered.origins, units: walk.units })
+        }
+        Ok(_) => Err(findings),
+        Err(more) => {
+            findings.extend(more);
+            Err(findings)
+        }
+    }
+}
+
+/// What is known while the stages are gone through.
+struct Walk<'p> {
+    program: &'p TextureStages,
+    context: &'p Context,
+    /// Stages before the first disabled one.
+    active: usize,
+    findings: Vec<Finding>,
+    units: [UnitChange; TEXTURE_UNITS],
+}
+
+impl Walk<'_> {
+    /// The equation of the colour or the alpha of a stage.
+    fn half(&mut self, index: usize, half: &Half, alpha: bool) -> crate::program::cascade::Equation {
+        let operation = half.operation.value;
+        if alpha && operation.is_color_only() {
+            self.findings.push(Finding::new(
+                "NB0353",
+                half.operation.place.clone(),
+                format!("AlphaOp cannot be {}", operation.name()),
+                "a colour operation",
+                "alpha has SelectArg1 to AddSmooth, the Blend operations, PreModulate, MultiplyAdd and Lerp",
+            ));
+        }
+        let reads = operation.reads();
+        let arguments = std::array::from_fn(|n| {
+            if reads[n] { self.argument(index, &half.arguments[n], alpha) } else { Argument::ZERO }
+        });
+        let texture = match operation {
+            Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => {
+                self.texture(index, half.operation.place.clone())
+            }
+            _ => Argument::ONE,
+        };
+        let next_texture = match operation {
+            Operation::PreModulate if index + 1 < self.active => {
+                self.texture(index + 1, half.operation.place.clone())
+            }
+            _ => Argument::ONE,
+        };
+        let around = Surroundings {
+            diffuse: Argument::new(Source::Primary),
+            texture,
+            factor: Argument::new(Source::Constant(self.program.texture_factor)),
+            current: Argument::new(Source::Current),
+            next_texture,
+        };
+        operation.equation(arguments, &around)
+    }
+
+    fn argument(&mut self, index: usize, at: &At<StageArgument>, alpha: bool) -> Argument {
+        let StageArgument { source, complement, alpha_replicate } = at.value;
+        let mut argument = match source {
+            ArgumentSource::Diffuse => Argument::new(Source::Primary),
+            ArgumentSource::Current => Argument::new(Source::Current),
+            ArgumentSource::Texture => self.texture(index, at.place.clone()),
+            ArgumentSource::TextureFactor => Argument::new(Source::Constant(self.program.texture_factor)),
+            ArgumentSource::Specular => Argument::new(Source::Secondary),
+            ArgumentSource::Temp => Argument::new(Source::Temporary),
+            ArgumentSource::Constant => Argument::new(Source::Constant(self.program.stages[index].constant)),
+        };
+        if source == ArgumentSource::Specular && (alpha || alpha_replicate) && self.context.profile == Profile::Nv10 {
+            let finding = Finding::new(
+                "NB0309",
+                at.place.clone(),
+                "the alpha of Specular is not defined on Nv10",
+                "undefined",
+                "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of Diffuse",
+            );
+            self.findings.push(finding.rule("CMB-13"));
+        }
+        if alpha_replicate {
+            argument = argument.alpha();
+        }
+        if complement { argument.inverted() } else { argument }
+    }
+
+    /// The colour of a unit's texture: opaque white if it has none.
+    fn texture(&mut self, unit: usize, place: Range<usize>) -> Argument {
+        let units = self.context.profile.texture_units();
+        if unit >= units {
+            let chip = self.context.profile.name();
+            let finding = Finding::new(
+                "NB0319",
+                place,
+                format!("stage {unit} reads texture {unit}; {chip} has textures 0 to {}", units - 1),
+                "a texture unit that the chip lacks",
+                match self.context.profile {
+                    Profile::Nv10 => "profile Nv2a has 4: write `profile: Nv2a`, or draw in two passes with `blend`",
+                    Profile::Nv2a => "draw in two passes with `blend`",
+                },
+            );
+            self.findings.push(finding.rule("CMB-12"));
+            return Argument::ONE;
+        }
+        if self.context.bound[unit] { Argument::new(Source::Texture(unit)) } else { Argument::ONE }
+    }
+
+    /// TEXCOORDINDEX and TEXTURETRANSFORMFLAGS.
+    fn coordinates(&mut self, index: usize, stage: &TextureStage) {
+        if let Some(at) = &stage.coordinate_index {
+            if at.value.generation != 0 {
+                self.findings.push(Finding::new(
+                    "NB0401",
+                    at.place.clone(),
+                    "not built yet: camera-space texture coordinates in texture stages",
+                    "reserved for a later version",
+                    "write the draw's `texgen: [...]` for this unit, and its coordinate set here",
+                ));
+            } else if at.value.set >= 4 {
+                self.findings.push(Finding::new(
+                    "NB0206",
+                    at.place.clone(),
+                    format!("a set of texture coordinates cannot be {}", at.value.set),
+                    "out of range",
+                    "write 0 to 3",
+                ));
+            } else if let Some(unit) = self.units.get_mut(index) {
+                unit.coordinate_set = Some(at.value.set as usize);
+            }
+        }
+        if stage.transform_flags.value != 0 {
+            self.findings.push(Finding::new(
+                "NB0401",
+                stage.transform_flags.place.clone(),
+                "not built yet: texture coordinate transforms in texture stages",
+                "reserved for a later version",
+                "write D3DTTFF_DISABLE, and the draw's `texture_matrices: [...]`",
+            ));
+        }
+    }
+
+    /// BUMPENVMAP: the next unit looks up where this one's texture moves it to.
+    fn bump(&mut self, index: usize, stage: &TextureStage) {
+        let operation = &stage.color.operation;
+        if self.context.profile == Profile::Nv10 {
+            let finding = Finding::new(
+                "NB0352",
+                operation.place.clone(),
+                format!("Nv10 has no {}", operation.value.name()),
+                "not on this chip",
+                "it needs the texture shader, which a texture unit of Nv10 does not have: write `profile: Nv2a`",
+            );
+            self.findings.push(finding.rule("TSH-7"));
+            return;
+        }
+        self.texture(index, operation.place.clone());
+        let next = index + 1;
+        let both = self.context.bound.get(index..=next).is_some_and(|bound| bound == [true; 2]);
+        if !both || next >= self.active {
+            return;
+        }
+        // u' = u + M00 du + M10 dv, v' = v + M01 du + M11 dv: the registers' order is M00, M01, M11, M10.
+        let [m00, m01, m10, m11] = stage.bump_matrix;
+        let luminance = (operation.value == Operation::BumpEnvMapLuminance).then_some(stage.bump_luminance);
+        let operation = ShaderOperation::BumpEnvironment { matrix: [m00, m01, m11, m10], luminance };
+        self.units[next].operation = Some((operation, index));
+    }
+}
+
+/// What reports call the stage.
+fn origin(index: usize, stage: &TextureStage) -> StageOrigin {
+    let to = match stage.result {
+        ResultArgument::Current => "",
+        ResultArgument::Temp => " to Temp",
+    };
+    let rgb = format!("texture stage {index}: ColorOp {}{to}", half_text(&stage.color));
+    let alpha = if stage.color.operation.value == Operation::DotProduct3 {
+        format!("texture stage {index}: alpha of ColorOp DotProduct3{to}")
+    } else {
+        format!("texture stage {index}: AlphaOp {}{to}", half_text(&stage.alpha))
+    };
+    StageOrigin { rgb, alpha }
+}
+
+fn half_text(half: &Half) -> String {
+    let operation = half.operation.value;
+    let arguments: Vec<String> = operation
+        .reads()
+        .iter()
+        .zip(&half.arguments)
+        .filter(|(reads, _)| **reads)
+        .map(|(_, argument)| argument_text(&argument.value))
+        .collect();
+    if arguments.is_empty() {
+        operation.name().to_owned()
+    } else {
+        format!("{}({})", operation.name(), arguments.join(", "))
+    }
+}
+
+fn argument_text(argument: &StageArgument) -> String {
+    let mut text = argument.source.name().to_owned();
+    if argument.complement {
+        text.push_str(" | Complement");
+    }
+    if argument.alpha_replicate {
+        text.push_str(" | AlphaReplicate");
+    }
+    text
+}
