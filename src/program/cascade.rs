@@ -149,10 +149,9 @@ impl Equation {
     /// (a + b - 1/2) times 1, 2 or 4.
     pub fn signed_sum(a: Argument, b: Argument, scale: Scale) -> Equation {
         match scale {
-            Scale::Four | Scale::Half => Equation {
-                scale,
-                ..Equation::of([a, Argument::ONE], Some([b, Argument::ONE]), Form::HalfBiased)
-            },
+            Scale::Four | Scale::Half => {
+                Equation { scale, ..Equation::of([a, Argument::ONE], Some([b, Argument::ONE]), Form::HalfBiased) }
+            }
             _ => Equation { bias: Bias::NegativeHalf, scale, ..Equation::sum(a, b) },
         }
     }

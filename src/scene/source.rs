@@ -8,6 +8,8 @@ use serde::Deserialize;
 use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
 use super::reader::Name;
 use super::split;
+use crate::program::texture_environment;
+use crate::program::texture_stages::{Operation, ResultArgument};
 use crate::state;
 
 /// What a value of a type looks like, for "expected ...".
@@ -111,6 +113,8 @@ pub(super) struct Input;
 pub(super) struct FinalInput;
 /// A destination of a combiner portion.
 pub(super) struct Output;
+/// An argument of a texture stage.
+pub(super) struct StageArgument;
 /// A word without further meaning to the types: one of a few.
 pub(super) struct Word;
 
@@ -265,6 +269,43 @@ source! {
         mux_select: Name<state::MuxSelect>,
         stages: List<'a, Stage<'a>>,
         final_combiner: FinalCombiner<'a>,
+    }
+    struct TextureStages {
+        stages: List<'a, TextureStage<'a>>,
+        texture_factor: Color,
+        specular_enable: bool,
+        text: String,
+        file: String,
+    }
+    struct TextureStage {
+        color_op: Name<Operation>,
+        color_arg0: StageArgument,
+        color_arg1: StageArgument,
+        color_arg2: StageArgument,
+        alpha_op: Name<Operation>,
+        alpha_arg0: StageArgument,
+        alpha_arg1: StageArgument,
+        alpha_arg2: StageArgument,
+        result_arg: Name<ResultArgument>,
+        constant: Color,
+        texture_coordinate_index: Word,
+        texture_transform_flags: Word,
+        bump_matrix: Numbers,
+        bump_luminance: Numbers,
+    }
+    struct TextureEnvironment { units: List<'a, EnvironmentUnit<'a>>, color_sum: bool }
+    struct EnvironmentUnit {
+        mode: Name<texture_environment::Mode>,
+        combine_rgb: Name<texture_environment::Function>,
+        combine_alpha: Name<texture_environment::Function>,
+        sources_rgb: List<'a, Name<texture_environment::EnvironmentSource>>,
+        sources_alpha: List<'a, Name<texture_environment::EnvironmentSource>>,
+        operands_rgb: List<'a, Name<texture_environment::Operand>>,
+        operands_alpha: List<'a, Name<texture_environment::Operand>>,
+        scale_rgb: u32,
+        scale_alpha: u32,
+        color: Color,
+        base_format: Name<texture_environment::BaseFormat>,
     }
     struct Stage { rgb: Portion<'a>, alpha: Portion<'a>, constants: Tuple<'a, Color> }
     struct Portion {

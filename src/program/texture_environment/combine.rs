@@ -47,14 +47,15 @@ pub(super) fn unit(
     for (half, alpha) in halves {
         legal(unit.mode, half, *alpha, findings);
     }
-    let crossbar = halves.iter().flat_map(|(half, _)| read(unit.mode, half)).filter_map(|source| other(source));
+    let crossbar = halves.iter().flat_map(|(half, _)| read(unit.mode, half)).filter_map(other);
     if unit.mode == Mode::Combine && crossbar.into_iter().any(|other| textures[other].is_none()) {
         // ARB_texture_env_crossbar: a unit that reads a disabled texture is disabled itself.
         return;
     }
     let walk = Arguments { index, unit, textures };
     let rgb_scale = if function.is_unscaled() { Scale::One } else { unit.rgb.scale };
-    let alpha_scale = if function.is_unscaled() { Scale::One } else { unit.alpha.scale };
+    // The EXT functions leave ALPHA_SCALE to a separate alpha.
+    let alpha_scale = if function == Function::Dot3RgbaExt { Scale::One } else { unit.alpha.scale };
     let origin = StageOrigin { rgb: origin(index, unit, false), alpha: origin(index, unit, true) };
     let mut rgb = Combined::of(unit.mode, function, walk.all(&unit.rgb, false), rgb_scale);
     let mut alpha = if function.writes_alpha() {
@@ -72,7 +73,8 @@ pub(super) fn unit(
     cascade.stage(unit.place.clone(), &rgb.first, first, Destination::Current, origin.clone());
     if rgb.then.is_some() || alpha.then.is_some() {
         let current = Argument::new(Source::Current);
-        let [rgb, alpha] = [rgb.then, alpha.then].map(|scale| Equation::copy(current).scaled(scale.unwrap_or(Scale::One)));
+        let [rgb, alpha] =
+            [rgb.then, alpha.then].map(|scale| Equation::copy(current).scaled(scale.unwrap_or(Scale::One)));
         let text = |text: String| format!("{text}, scale");
         let origin = StageOrigin { rgb: text(origin.rgb), alpha: text(origin.alpha) };
         cascade.stage(unit.place.clone(), &rgb, Alpha::Equation(alpha), Destination::Current, origin);
@@ -169,11 +171,7 @@ impl Arguments<'_> {
     fn all(&self, half: &Half, alpha: bool) -> [Argument; 4] {
         let reads = half.function.value.reads(self.unit.mode);
         std::array::from_fn(|n| {
-            if reads[n] {
-                self.argument(half.sources[n].value, half.operands[n].value, alpha)
-            } else {
-                Argument::ZERO
-            }
+            if reads[n] { self.argument(half.sources[n].value, half.operands[n].value, alpha) } else { Argument::ZERO }
         })
     }
 

@@ -109,9 +109,7 @@ fn classic(mode: Mode, own: Own, constant: Argument) -> (Equation, Equation) {
     let modulated = if has_alpha { Equation::product(previous, alpha) } else { pass };
     let color = |equation: Equation| if has_color { equation } else { pass };
     match mode {
-        Mode::Replace => {
-            (color(Equation::copy(texture)), if has_alpha { Equation::copy(alpha) } else { pass })
-        }
+        Mode::Replace => (color(Equation::copy(texture)), if has_alpha { Equation::copy(alpha) } else { pass }),
         Mode::Modulate => (color(Equation::product(previous, texture)), modulated),
         Mode::Decal => match own.format {
             BaseFormat::Rgb => (Equation::copy(texture), pass),

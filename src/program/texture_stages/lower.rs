@@ -114,9 +114,7 @@ impl Walk<'_> {
             _ => Argument::ONE,
         };
         let next_texture = match operation {
-            Operation::PreModulate if index + 1 < self.active => {
-                self.texture(index + 1, half.operation.place.clone())
-            }
+            Operation::PreModulate if index + 1 < self.active => self.texture(index + 1, half.operation.place.clone()),
             _ => Argument::ONE,
         };
         let around = Surroundings {

@@ -129,9 +129,7 @@ impl Operation {
             Operation::BlendTextureAlpha => Equation::lerp(around.texture.alpha(), a1, a2),
             Operation::BlendFactorAlpha => Equation::lerp(around.factor.alpha(), a1, a2),
             Operation::BlendCurrentAlpha => Equation::lerp(around.current.alpha(), a1, a2),
-            Operation::BlendTextureAlphaPM => {
-                Equation::products([a1, ONE], [a2, around.texture.alpha().inverted()])
-            }
+            Operation::BlendTextureAlphaPM => Equation::products([a1, ONE], [a2, around.texture.alpha().inverted()]),
             Operation::PreModulate => Equation::product(a1, around.next_texture),
             Operation::ModulateAlphaAddColor => Equation::products([a1.alpha(), a2], [a1, ONE]),
             Operation::ModulateColorAddAlpha => Equation::products([a1, a2], [a1.alpha(), ONE]),

@@ -10,10 +10,11 @@ use crate::state::{
 };
 
 /// A program, and what only a draw can judge.
-pub(super) struct ProgramData {
-    pub(super) combiners: Combiners,
-    /// The first place that reads each texture unit.
-    pub(super) reads: [Option<Range<usize>>; 4],
+pub(super) enum ProgramData {
+    /// Written for the combiners, with the first place that reads each texture unit.
+    Combiners(Combiners, [Option<Range<usize>>; 4]),
+    /// Written for an API: what it becomes depends on the draw.
+    Api(api_program::ApiProgram),
 }
 
 /// OpenGL's initial program: the colours of the vertices, with fog.
@@ -66,15 +67,14 @@ pub(super) fn program<'a>(
     raw: &Raw<'a, source::Program>,
 ) -> Option<ProgramData> {
     let (kind, rest) = reader.variant(raw, "pixel program", KINDS)?;
+    if kind == 1 {
+        return texture_stages::texture_stages(reader, names, rest).map(ProgramData::Api);
+    }
+    if kind == 2 {
+        return texture_environment::texture_environment(reader, names, rest).map(ProgramData::Api);
+    }
     if kind > 0 {
-        let what = [
-            "",
-            "Direct3D texture stages",
-            "the OpenGL texture environment",
-            "the combiner text language",
-            "pixel shader text",
-            "raw register words",
-        ][kind];
+        let what = ["", "", "", "the combiner text language", "pixel shader text", "raw register words"][kind];
         reader.not_built(reader.range(&raw.text[..KINDS[kind].len()]), what);
         return None;
     }
@@ -90,7 +90,7 @@ pub(super) fn program<'a>(
         None => default_final(shared),
     };
     let mux_select = reader.name_or(&fields.mux_select, MuxSelect::Msb);
-    Some(ProgramData { combiners: Combiners { stages, mux_select, final_combiner }, reads: walk.reads })
+    Some(ProgramData::Combiners(Combiners { stages, mux_select, final_combiner }, walk.reads))
 }
 
 fn reader_opening<'a>(text: &'a str, reader: &Reader<'a>) -> Range<usize> {

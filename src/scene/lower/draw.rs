@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use super::attribute::{Outputs, Source};
+use super::combiner::ProgramData;
 use super::names::Names;
 use super::target::Targets;
 use super::texture::Textures;
@@ -112,9 +113,17 @@ fn draw<'a>(
     let units = unit::units(reader, names, textures, &fields.textures);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
     let topology = reader.name_or(&fields.topology, Topology::Triangles);
-    let (combiners, reads) = match &program {
-        Some(Some(program)) => (program.combiners.clone(), program.reads.clone()),
-        _ => (combiner::default_program(), [None, None, None, None]),
+    let fog = raster::fog(reader, names, &fields.fog);
+    let mut program_origin = Vec::new();
+    let mut texture_shader = units.shader;
+    let (combiners, reads) = match program.flatten().as_deref() {
+        Some(ProgramData::Combiners(combiners, reads)) => (combiners.clone(), reads.clone()),
+        Some(ProgramData::Api(program)) => {
+            let lowered = program.lower(reader, &units, textures, fog.enabled);
+            (program_origin, texture_shader) = (lowered.origins, lowered.shader);
+            (lowered.combiners, [None, None, None, None])
+        }
+        None => (combiner::default_program(), [None, None, None, None]),
     };
     let mut draw = Draw {
         name: header.name,
@@ -129,11 +138,11 @@ fn draw<'a>(
         cull: reader.name_or(&fields.cull, Cull::None),
         front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
         scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
-        fog: raster::fog(reader, names, &fields.fog),
+        fog,
         textures: units.bound,
-        texture_shader: units.shader,
+        texture_shader,
         combiners,
-        program_origin: Vec::new(),
+        program_origin,
         alpha_test: None,
         depth_test: None,
         blend: None,

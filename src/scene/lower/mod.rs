@@ -1,5 +1,6 @@
 //! From the fields of the file to the checked state, one file per part of the scene.
 
+mod api_program;
 mod attribute;
 mod color;
 mod combiner;
@@ -11,9 +12,11 @@ mod palette;
 mod raster;
 mod target;
 mod texture;
+mod texture_environment;
 mod texture_legal;
 mod texture_levels;
 mod texture_source;
+mod texture_stages;
 mod unit;
 mod unit_texture;
 mod vertex;

@@ -124,7 +124,10 @@ impl<'t> Parser<'t> {
         let digits = text.trim_end_matches(['f', 'F']);
         let plain = digits.bytes().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'e' | b'E'));
         match digits.parse::<f32>() {
-            Ok(value) if plain && value.is_finite() => Some(PartKind::Float(if negative { -value } else { value })),
+            Ok(value) if plain && value.is_finite() => {
+                // The sign bit: no arithmetic here.
+                Some(PartKind::Float(f32::from_bits(value.to_bits() ^ u32::from(negative) << 31)))
+            }
             _ => {
                 let help = "write a whole number, a hexadecimal one such as 0xff8040, or a fraction such as 0.5f";
                 self.findings.push(Finding::new(

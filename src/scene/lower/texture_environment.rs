@@ -1,0 +1,101 @@
+//! `TextureEnvironment(...)`: the OpenGL texture environment.
+
+use super::api_program::{ApiProgram, name_at};
+use super::names::Names;
+use super::*;
+use crate::program::At;
+use crate::program::texture_environment::{Half, Mode, TextureEnvironment, Unit};
+use crate::scene::reader::Name;
+use crate::scene::source::List;
+use crate::state::{Named, Scale};
+
+/// Reads the fields in the parentheses.
+pub(super) fn texture_environment<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
+    let fields = reader.read(&Raw::<source::TextureEnvironment<'a>>::new(text))?;
+    let mut program = TextureEnvironment { units: Vec::new(), color_sum: reader.or(&fields.color_sum, false) };
+    for raw in fields.units.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default() {
+        let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        let Some(fields) = reader.read(&raw) else { continue };
+        program.units.push(unit(reader, names, &fields, place));
+    }
+    Some(ApiProgram::Environment(program))
+}
+
+fn unit<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    fields: &source::EnvironmentUnit<'a>,
+    place: Range<usize>,
+) -> Unit {
+    let mut unit = Unit { place, ..Unit::initial() };
+    unit.mode = reader.name_or(&fields.mode, unit.mode);
+    name_at(reader, &fields.combine_rgb, &mut unit.rgb.function);
+    name_at(reader, &fields.combine_alpha, &mut unit.alpha.function);
+    list(reader, &fields.sources_rgb, &mut unit.rgb.sources, "sources");
+    list(reader, &fields.sources_alpha, &mut unit.alpha.sources, "sources");
+    list(reader, &fields.operands_rgb, &mut unit.rgb.operands, "operands");
+    list(reader, &fields.operands_alpha, &mut unit.alpha.operands, "operands");
+    scale(reader, &fields.scale_rgb, &mut unit.rgb);
+    scale(reader, &fields.scale_alpha, &mut unit.alpha);
+    unit.color = color::constant_or(reader, names, &fields.color, unit.color);
+    unit.base_format = fields.base_format.as_ref().and_then(|raw| reader.name(raw));
+    combine_only(reader, fields, unit.mode);
+    unit
+}
+
+/// At most four names, the first of a list in which the others keep their defaults.
+fn list<'a, T: Named>(
+    reader: &mut Reader<'a>,
+    raw: &Option<Raw<'a, List<'a, Name<T>>>>,
+    slots: &mut [At<T>; 4],
+    what: &str,
+) {
+    let Some(raw) = raw else { return };
+    let list = reader.read(raw).unwrap_or_default();
+    if list.len() > slots.len() {
+        let message = format!("a unit has at most 4 {what}, not {}", list.len());
+        reader.push(Diagnostic::error("NB0211", reader.span(raw), message).label("too many"));
+    }
+    for (slot, raw) in slots.iter_mut().zip(list) {
+        name_at(reader, &Some(raw), slot);
+    }
+}
+
+fn scale<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, u32>>, half: &mut Half) {
+    let Some(raw) = raw else { return };
+    half.scale = match reader.read(raw) {
+        Some(1) | None => Scale::One,
+        Some(2) => Scale::Two,
+        Some(4) => Scale::Four,
+        Some(other) => {
+            reader.push(
+                Diagnostic::error("NB0206", reader.span(raw), format!("a scale cannot be {other}"))
+                    .label("out of range")
+                    .help("write 1, 2 or 4"),
+            );
+            Scale::One
+        }
+    };
+}
+
+/// Refuses what only combining reads in another mode: it was meant to do something.
+fn combine_only<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a>, mode: Mode) {
+    if matches!(mode, Mode::Combine | Mode::Combine4) {
+        return;
+    }
+    let first = fields.combine_rgb.as_ref().map(|raw| raw.text);
+    let first = first.or(fields.combine_alpha.as_ref().map(|raw| raw.text));
+    let first = first.or(fields.sources_rgb.as_ref().map(|raw| raw.text));
+    let first = first.or(fields.sources_alpha.as_ref().map(|raw| raw.text));
+    let first = first.or(fields.operands_rgb.as_ref().map(|raw| raw.text));
+    let first = first.or(fields.operands_alpha.as_ref().map(|raw| raw.text));
+    let first = first.or(fields.scale_rgb.as_ref().map(|raw| raw.text));
+    if let Some(text) = first.or(fields.scale_alpha.as_ref().map(|raw| raw.text)) {
+        let place = reader.range(text);
+        reader.push(
+            Diagnostic::error("NB0355", place, format!("mode {} does not combine", mode.name()))
+                .label("read in modes Combine and Combine4 only")
+                .help("write `mode: Combine`, or leave this out"),
+        );
+    }
+}

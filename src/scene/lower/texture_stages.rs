@@ -1,0 +1,112 @@
+//! `TextureStages(...)`: Direct3D texture stage states.
+
+use super::api_program::{ApiProgram, name_at};
+use super::names::Names;
+use super::*;
+use crate::program::At;
+use crate::program::texture_stages::{
+    ArgumentSource, CoordinateIndex, Half, STAGES, StageArgument, TextureStage, TextureStages,
+};
+use crate::scene::raw::Tuple;
+use crate::state::Named;
+
+/// Reads the fields in the parentheses.
+pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
+    let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
+    let mut program = TextureStages::default();
+    if let Some(raw) = &fields.stages {
+        let list = reader.read(raw)?;
+        if let Some(extra) = list.get(STAGES) {
+            let place = reader.range(extra.text.get(..1).unwrap_or(extra.text));
+            reader.push(
+                Diagnostic::error("NB0206", place, format!("there is no texture stage {STAGES}"))
+                    .label("one too many")
+                    .help(format!("the API has stages 0 to {}", STAGES - 1)),
+            );
+        }
+        for (index, raw) in list.iter().enumerate().take(STAGES) {
+            let Some(fields) = reader.read(raw) else { continue };
+            if let Some(stage) = program.stage_mut(index) {
+                self::stage(reader, names, &fields, stage);
+            }
+        }
+    }
+    program.texture_factor = color::constant_or(reader, names, &fields.texture_factor, program.texture_factor);
+    program.specular_enable = reader.or(&fields.specular_enable, program.specular_enable);
+    Some(ApiProgram::Stages(program))
+}
+
+fn stage<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {
+    name_at(reader, &fields.color_op, &mut stage.color.operation);
+    name_at(reader, &fields.alpha_op, &mut stage.alpha.operation);
+    arguments(reader, [&fields.color_arg0, &fields.color_arg1, &fields.color_arg2], &mut stage.color);
+    arguments(reader, [&fields.alpha_arg0, &fields.alpha_arg1, &fields.alpha_arg2], &mut stage.alpha);
+    stage.result = reader.name_or(&fields.result_arg, stage.result);
+    stage.constant = color::constant_or(reader, names, &fields.constant, stage.constant);
+    coordinates(reader, fields, stage);
+    if let Some(raw) = &fields.bump_matrix
+        && let Some(matrix) = reader.numbers(raw, "a bump matrix", 4, 4, [0.0; 4])
+    {
+        stage.bump_matrix = matrix;
+    }
+    if let Some(raw) = &fields.bump_luminance
+        && let Some([scale, offset, ..]) = reader.numbers(raw, "a bump luminance", 2, 2, [0.0; 4])
+    {
+        stage.bump_luminance = [scale, offset];
+    }
+}
+
+fn arguments<'a>(reader: &mut Reader<'a>, fields: [&Option<Raw<'a, source::StageArgument>>; 3], half: &mut Half) {
+    for (slot, field) in half.arguments.iter_mut().zip(fields) {
+        if let Some(raw) = field
+            && let Some(value) = argument(reader, raw)
+        {
+            *slot = At { value, place: reader.span(raw) };
+        }
+    }
+}
+
+const MODIFIERS: &[&str] = &["Complement", "AlphaReplicate"];
+
+/// `Texture`, or `(Texture, Complement, AlphaReplicate)`.
+fn argument<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StageArgument>) -> Option<StageArgument> {
+    let (head, rest) = raw.split();
+    if !head.is_empty() || !rest.starts_with('(') {
+        return reader.name(&raw.as_other()).map(StageArgument::new);
+    }
+    let list = reader.read(&raw.as_other::<Tuple<'a, source::Word>>())?.0;
+    let Some((first, modifiers)) = list.split_first() else {
+        reader.unknown_variant(raw, "texture argument", ArgumentSource::NAMES);
+        return None;
+    };
+    let mut argument = StageArgument::new(reader.name(&first.as_other())?);
+    for modifier in modifiers {
+        match reader.variant(modifier, "argument modifier", MODIFIERS)? {
+            (0, _) => argument.complement = true,
+            _ => argument.alpha_replicate = true,
+        }
+    }
+    Some(argument)
+}
+
+const GENERATIONS: &[&str] = &["CameraSpaceNormal", "CameraSpacePosition", "CameraSpaceReflectionVector", "SphereMap"];
+const TRANSFORMS: &[&str] = &["Disable", "Count1", "Count2", "Count3", "Count4", "Projected"];
+
+fn coordinates<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {
+    if let Some(raw) = &fields.texture_coordinate_index {
+        let place = reader.span(raw);
+        let value = if raw.split().0.is_empty() {
+            let set = reader.whole(&raw.as_other(), "a set of texture coordinates", 0..=3);
+            set.map(|set| CoordinateIndex { set, generation: 0 })
+        } else {
+            let generation = reader.variant(raw, "source of coordinates", GENERATIONS);
+            generation.map(|(index, _)| CoordinateIndex { set: 0, generation: 1 + index as u32 })
+        };
+        stage.coordinate_index = value.map(|value| At { value, place });
+    }
+    if let Some(raw) = &fields.texture_transform_flags
+        && let Some((index, _)) = reader.variant(raw, "transform flag", TRANSFORMS)
+    {
+        stage.transform_flags = At { value: index as u32, place: reader.span(raw) };
+    }
+}

@@ -1,0 +1,304 @@
+//! Cases of public test suites for Direct3D texture stages and the OpenGL texture environment, brought through the front end whole: a scene
+//! text for each, drawn, one pixel looked at within the suite's own tolerance.
+//!
+//! `NINEBIT_CASES=FILE` runs another file of the same form instead.
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_arithmetic,
+    reason = "a test fails by panicking; colours of suites are floats"
+)]
+
+use ninebit::engine::{self, RenderOptions};
+use ninebit::limits::Limits;
+use ninebit::program::texture_environment::{EnvironmentSource, Function, Mode};
+use ninebit::program::texture_stages::{ArgumentSource, Operation};
+use ninebit::scene;
+use ninebit::state::Named;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+/// The list of cases that this model gives otherwise, with the reason: `docs/known-differences.md`.
+fn listed() -> String {
+    fs::read_to_string("docs/known-differences.md").unwrap()
+}
+
+fn cases(file: &str) -> Vec<Value> {
+    let text = fs::read_to_string(file).unwrap();
+    let mut document: Value = serde_json::from_str(&text).unwrap();
+    let Value::Array(cases) = document["cases"].take() else { panic!("{file} has no cases") };
+    cases
+}
+
+#[test]
+fn every_case_of_texture_stages() {
+    run("vectors/third-party/texture-stages.json", stages_scene);
+}
+
+#[test]
+fn every_case_of_the_texture_environment() {
+    run("vectors/third-party/texture-environment.json", environment_scene);
+}
+
+fn run(file: &str, text_of: fn(&Value, &str) -> String) {
+    let kept = listed();
+    let cases = cases(file);
+    let (mut wrong, mut excepted) = (Vec::new(), 0);
+    for case in &cases {
+        let id = case["id"].as_str().unwrap();
+        let profile = if case["profile"] == "nv10" { "Nv10" } else { "Nv2a" };
+        let text = text_of(&case["inputs"], profile);
+        let problem = differs(case, &text);
+        match (problem, kept.contains(&format!("`{id}`"))) {
+            (None, false) => {}
+            (Some(_), true) => excepted += 1,
+            (None, true) => wrong.push(format!("{id} is listed as different and is not")),
+            (Some(problem), false) => wrong.push(format!("{id}: {problem}\n{text}")),
+        }
+    }
+    let total = cases.len();
+    assert!(wrong.is_empty(), "{} of {total} are wrong:\n{}", wrong.len(), wrong.join("\n"));
+    assert!(20 * excepted <= total, "{excepted} of {total} are excepted");
+}
+
+/// What is wrong with the pixel, if anything.
+fn differs(case: &Value, text: &str) -> Option<String> {
+    let loaded = match scene::parse(text, Path::new("case.ron"), &Limits::default()) {
+        Ok(loaded) => loaded,
+        Err(error) => return Some(error.render(false)),
+    };
+    let frames = engine::render(&loaded.plan, &RenderOptions::default());
+    let shown = frames.surfaces[0].rgba8()[0];
+    let tolerance = case["tolerance"].as_f64().unwrap();
+    let expected = case["expected"].as_array().unwrap();
+    let off = (0..4).any(|n| expected[n].as_f64().is_some_and(|value| (value - f64::from(shown[n])).abs() > tolerance));
+    off.then(|| format!("{shown:?}, not {expected:?} within {tolerance}"))
+}
+
+/// One quad over one pixel.
+fn scene_text(profile: &str, textures: &[(usize, String)], diffuse: &str, specular: &str, rest: &str) -> String {
+    let table: Vec<String> = textures.iter().map(|(unit, fields)| format!("\"t{unit}\": ({fields})")).collect();
+    let most = textures.iter().map(|(unit, _)| unit + 1).max().unwrap_or(0);
+    let units: Vec<String> = (0..most)
+        .map(|unit| match textures.iter().find(|(bound, _)| *bound == unit) {
+            Some((_, fields)) if fields.contains("V8U8") => {
+                format!("(texture: \"t{unit}\", signed: (true, true, true, true), min_filter: Nearest)")
+            }
+            Some(_) => format!("\"t{unit}\""),
+            None => "Unbound".to_owned(),
+        })
+        .collect();
+    format!(
+        "(version: 1, profile: {profile}, targets: [(name: \"frame\", width: 1, height: 1, format: A8R8G8B8{})], \
+         textures: {{ {} }}, draws: [(topology: Quads, vertices: Window([{}]), textures: [{}], {})])",
+        rest.split_once("CLEAR").map_or(String::new(), |(_, color)| format!(", clear: (color: {color})")),
+        table.join(", "),
+        [(0, 0), (1, 0), (1, 1), (0, 1)]
+            .map(|(x, y)| format!("(position: ({x}, {y}), diffuse: {diffuse}, specular: {specular})"))
+            .join(", "),
+        units.join(", "),
+        rest.split("CLEAR").next().unwrap(),
+    )
+}
+
+fn bytes(value: &Value) -> String {
+    let parts: Vec<String> = value.as_array().unwrap().iter().map(Value::to_string).collect();
+    format!("({})", parts.join(", "))
+}
+
+/// A colour of floats as a scene's.
+fn floats(value: &Value) -> String {
+    format!("Float{}", bytes(value))
+}
+
+fn folded(name: &str) -> String {
+    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
+}
+
+/// The name of an enumeration that a suite spells in capitals.
+fn named<T: Named>(name: &str) -> &'static str {
+    let found = T::NAMES.iter().find(|known| folded(known) == folded(name));
+    found.unwrap_or_else(|| panic!("{name} is not in {:?}", T::NAMES))
+}
+
+fn factor(name: &str) -> &'static str {
+    match folded(name).as_str() {
+        "srcalpha" => "SourceAlpha",
+        "invsrcalpha" | "oneminussrcalpha" => "OneMinusSourceAlpha",
+        "one" => "One",
+        "zero" => "Zero",
+        other => panic!("{other}"),
+    }
+}
+
+fn blend(value: &Value, destination: &str) -> String {
+    let [source, target] = ["src", "dst"].map(|side| factor(value[side].as_str().unwrap()));
+    format!("blend: (equation: Add, source: {source}, destination: {target}), CLEAR{destination}")
+}
+
+/// A Direct3D case.
+fn stages_scene(inputs: &Value, profile: &str) -> String {
+    let mut textures = Vec::new();
+    for (unit, texture) in inputs["textures"].as_object().into_iter().flatten() {
+        let fields = match texture.get("V8U8") {
+            Some(pair) => {
+                let [u, v] = [0, 1].map(|n| pair[n].as_i64().unwrap() as u8);
+                format!("/* V8U8 */ source: Solid(width: 1, height: 1, color: (0, {v}, {u}, 255))")
+            }
+            None => format!("source: Solid(width: 1, height: 1, color: {})", bytes(texture)),
+        };
+        textures.push((unit.parse().unwrap(), fields));
+    }
+    let mut stages = Vec::new();
+    for stage in inputs["stages"].as_array().unwrap() {
+        let mut fields = Vec::new();
+        for half in ["color", "alpha"] {
+            for (key, value) in stage[half].as_object().into_iter().flatten() {
+                let value = value.as_str().unwrap();
+                let key = if key == "op" { "_op".to_owned() } else { key.replace("arg", "_arg") };
+                let value = if key == "_op" { named::<Operation>(value).to_owned() } else { argument(value) };
+                fields.push(format!("{half}{key}: {value}"));
+            }
+        }
+        if let Some(result) = stage["result"].as_str() {
+            fields.push(format!("result_arg: {}", named::<ArgumentSource>(result)));
+        }
+        if stage["constant"].is_array() {
+            fields.push(format!("constant: {}", bytes(&stage["constant"])));
+        }
+        if stage["bumpenvmat"].is_array() {
+            fields.push(format!("bump_matrix: {}", bytes(&stage["bumpenvmat"])));
+        }
+        stages.push(format!("({})", fields.join(", ")));
+    }
+    let factor = &inputs["tfactor"];
+    let factor = if factor.is_array() { format!(", texture_factor: {}", bytes(factor)) } else { String::new() };
+    let specular = inputs["specular_enable"] == true;
+    let mut rest =
+        format!("program: TextureStages(stages: [{}]{factor}, specular_enable: {specular}), ", stages.join(", "));
+    if inputs["blend"].is_object() {
+        rest.push_str(&blend(&inputs["blend"], &bytes(&inputs["blend"]["dest"])));
+    }
+    let color = |name: &str| if inputs[name].is_array() { bytes(&inputs[name]) } else { "(0, 0, 0, 0)".to_owned() };
+    scene_text(profile, &textures, &color("diffuse"), &color("specular"), &rest)
+}
+
+/// `CURRENT|ALPHAREPLICATE`.
+fn argument(text: &str) -> String {
+    let words: Vec<&str> = text
+        .split('|')
+        .map(|word| match word.trim() {
+            "COMPLEMENT" => "Complement",
+            "ALPHAREPLICATE" => "AlphaReplicate",
+            "TFACTOR" => "TextureFactor",
+            word => named::<ArgumentSource>(word),
+        })
+        .collect();
+    if words.len() == 1 { words[0].to_owned() } else { format!("({})", words.join(", ")) }
+}
+
+/// An OpenGL case.
+fn environment_scene(inputs: &Value, profile: &str) -> String {
+    let several = |value: &Value| match value[0].is_array() {
+        true => value.as_array().unwrap().clone(),
+        false => vec![value.clone()],
+    };
+    let constants = several(&inputs["constant_f"]);
+    let mode = named::<Mode>(inputs["mode"].as_str().unwrap().trim_end_matches("_NV"));
+    let format = inputs["format"].as_str();
+    let mut textures = Vec::new();
+    let mut units = Vec::new();
+    for (index, color) in several(&inputs["texture_f"]).iter().enumerate() {
+        let (texture, base) = texture(color, format);
+        textures.push((index, texture));
+        let mut fields = vec![format!("mode: {mode}"), format!("color: {}", floats(&constants[index]))];
+        if let Some(base) = base {
+            fields.push(format!("base_format: {base}"));
+        }
+        if mode == "Combine4" {
+            fields.extend(four(inputs));
+        } else if let Some(unit) = inputs["units"].get(index) {
+            fields.extend(combine(unit));
+        }
+        units.push(format!("({})", fields.join(", ")));
+    }
+    let mut rest = format!("program: TextureEnvironment(units: [{}]), ", units.join(", "));
+    if inputs["then_blend"].is_object() {
+        rest.push_str(&blend(&inputs["then_blend"], &floats(&inputs["then_blend"]["dest_f"])));
+    }
+    scene_text(profile, &textures, &floats(&inputs["primary_f"]), "(0, 0, 0, 0)", &rest)
+}
+
+/// A texture of one texel whose channels are those that the base format takes of the colour, and the base format if no texel format says it.
+fn texture(color: &Value, format: Option<&str>) -> (String, Option<&'static str>) {
+    let [r, _, _, a] = [0, 1, 2, 3].map(|n| color[n].as_f64().unwrap());
+    let plain = floats(color);
+    let (texel, color, base) = match format {
+        None | Some("RGBA") => ("A8R8G8B8", plain, None),
+        Some("RGB") => ("X8R8G8B8", plain, None),
+        Some("ALPHA") => ("A8", plain, None),
+        Some("LUMINANCE") => ("L8", plain, None),
+        Some("INTENSITY") => ("I8", plain, None),
+        Some("LUMINANCE_ALPHA") => ("A8R8G8B8", format!("Float({r}, {r}, {r}, {a})"), Some("LuminanceAlpha")),
+        Some(other) => panic!("{other}"),
+    };
+    (format!("format: {texel}, source: Solid(width: 1, height: 1, color: {color})"), base)
+}
+
+/// One list of sources and operands for both halves.
+fn four(inputs: &Value) -> Vec<String> {
+    let function = named::<Function>(inputs["combine"].as_str().unwrap());
+    let list = |value: &Value, name: fn(&str) -> String| {
+        let names: Vec<String> = value.as_array().unwrap().iter().map(|v| name(v.as_str().unwrap())).collect();
+        format!("[{}]", names.join(", "))
+    };
+    let sources = list(&inputs["sources"], |name| named::<EnvironmentSource>(name).to_owned());
+    let color = list(&inputs["operands"], |name| operand(&format!("{name}_COLOR")).to_owned());
+    let alpha = list(&inputs["operands"], |name| operand(&format!("{name}_ALPHA")).to_owned());
+    vec![
+        format!("combine_rgb: {function}, combine_alpha: {function}"),
+        format!("sources_rgb: {sources}, sources_alpha: {sources}, operands_rgb: {color}, operands_alpha: {alpha}"),
+    ]
+}
+
+fn operand(name: &str) -> &'static str {
+    match name {
+        "SRC_COLOR" => "SourceColor",
+        "ONE_MINUS_SRC_COLOR" => "OneMinusSourceColor",
+        "SRC_ALPHA" => "SourceAlpha",
+        "ONE_MINUS_SRC_ALPHA" => "OneMinusSourceAlpha",
+        other => panic!("{other}"),
+    }
+}
+
+/// What is not given has the API's default.
+fn combine(unit: &Value) -> Vec<String> {
+    let mut fields = Vec::new();
+    for (half, color) in [("RGB", true), ("ALPHA", false)] {
+        let get = |name: String| unit[&name].as_str();
+        let lower = half.to_lowercase();
+        if let Some(function) = get(format!("COMBINE_{half}")) {
+            let function = match function {
+                "DOT3_RGB" | "DOT3_RGBA" => format!("{function}_ARB"),
+                other => other.to_owned(),
+            };
+            fields.push(format!("combine_{lower}: {}", named::<Function>(&function)));
+        }
+        let sources: Vec<&str> = ["TEXTURE", "PREVIOUS", "CONSTANT"]
+            .iter()
+            .enumerate()
+            .map(|(n, default)| named::<EnvironmentSource>(get(format!("SOURCE{n}_{half}")).unwrap_or(default)))
+            .collect();
+        let plain = if color { "SRC_COLOR" } else { "SRC_ALPHA" };
+        let operands: Vec<&str> = [plain, plain, "SRC_ALPHA"]
+            .iter()
+            .enumerate()
+            .map(|(n, default)| operand(get(format!("OPERAND{n}_{half}")).unwrap_or(default)))
+            .collect();
+        fields.push(format!("sources_{lower}: [{}], operands_{lower}: [{}]", sources.join(", "), operands.join(", ")));
+        if let Some(scale) = unit[&format!("{half}_SCALE")].as_u64() {
+            fields.push(format!("scale_{lower}: {scale}"));
+        }
+    }
+    fields
+}
