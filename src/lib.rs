@@ -88,6 +88,7 @@
 
 pub mod combiner;
 pub mod compare;
+pub mod diagnostic;
 pub mod diff;
 pub mod engine;
 pub mod expectation;
@@ -100,6 +101,7 @@ pub mod number;
 pub mod output;
 pub mod picture;
 pub mod plan;
+pub mod program;
 pub mod raster;
 pub mod report;
 pub mod rop;

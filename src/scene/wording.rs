@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::diagnostic::Diagnostic;
+pub(super) use super::diagnostic::words::{closest, shorten};
 use super::raw::trim;
 
 /// The finding that a name is taken.
@@ -75,46 +76,4 @@ pub(super) fn describe(text: &str) -> String {
         Some('\'') => format!("the character {}", shorten(text)),
         Some(_) => format!("`{}`", shorten(text)),
     }
-}
-
-/// At most forty characters of one line.
-pub(super) fn shorten(text: &str) -> String {
-    let line = text.lines().next().unwrap_or("");
-    if line.chars().count() <= 40 { line.to_owned() } else { line.chars().take(37).chain("...".chars()).collect() }
-}
-
-/// The candidate most like `word`, if any is like it at all.
-pub(super) fn closest<'n>(word: &str, candidates: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {
-    if word.len() > 64 {
-        return None;
-    }
-    let allowed = ((word.chars().count() + 1) / 3).max(1);
-    let word = word.to_lowercase();
-    candidates
-        .into_iter()
-        .filter(|candidate| candidate.len() <= 64)
-        .map(|candidate| {
-            let like = candidate.to_lowercase();
-            let begun = word.len() >= 4 && like.starts_with(&word);
-            (if begun { 1 } else { distance(&word, &like) }, candidate)
-        })
-        .filter(|(distance, _)| *distance <= allowed)
-        .min_by_key(|(distance, _)| *distance)
-        .map(|(_, candidate)| candidate)
-}
-
-/// Levenshtein distance, a swap of neighbours counting two.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let cost = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = cost.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
 }

@@ -8,6 +8,7 @@ mod input;
 mod matrix;
 mod names;
 mod palette;
+mod program;
 mod raster;
 mod target;
 mod texture;

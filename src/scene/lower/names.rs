@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::combiner::ProgramData;
+use super::program::ProgramData;
 use super::vertex::VertexData;
 use super::*;
 use crate::scene::mesh::Mesh;
@@ -172,7 +172,7 @@ impl<'a> Names<'a> {
         });
         names.programs.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
-            combiner::program(reader, &names, raw).map(Rc::new)
+            program::program(reader, &names, raw).map(Rc::new)
         });
         names.blends.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
@@ -213,7 +213,7 @@ impl<'a> Names<'a> {
         if raw.is_text() {
             self.programs.get(reader, raw, &|_, _, _, _| None, 0)
         } else {
-            combiner::program(reader, self, raw).map(Rc::new)
+            program::program(reader, self, raw).map(Rc::new)
         }
     }
 

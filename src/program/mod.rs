@@ -1,0 +1,15 @@
+//! Pixel programs in the languages that people have them in; each becomes the same [`Combiners`](crate::state::Combiners).
+//!
+//! * [`text`]: general stages and final combiner as statements, read and printed (`docs/combiner-language.md`).
+//! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
+//! * [`legality`]: what the chip allows (CMB-12), the same for every language. A front end says where the parts of a program
+//!   stand ([`Places`]) and what its words are ([`Notation`](legality::Notation)).
+//!
+//! Nothing here knows scenes or files.
+
+pub mod legality;
+mod place;
+pub mod registers;
+pub mod text;
+
+pub use place::{Part, Place, Places};
