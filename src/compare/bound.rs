@@ -3,6 +3,7 @@
 
 use crate::plan::{Plan, PlannedDraw};
 use crate::state::{ExpandCentre, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, Vertex};
+use crate::texture::unit::PlannedUnit;
 use crate::trace::Rule;
 
 /// Half a step, less what a quotient by 255 cannot reach.
@@ -23,8 +24,13 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and what the weights are off.
         Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
-        Rule::Tex15 => None,
+        Rule::Tex12 | Rule::Tex15 | Rule::Tex9 => None,
+        // A byte of a half is off by what the other byte is worth.
+        Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
         Rule::Tex1 => symmetric(0.715),
+        Rule::Tex2 => symmetric(1.0),
+        Rule::Tex3 => symmetric(5.0),
+        Rule::Tex4 => symmetric(9.0),
         Rule::Tex6 => symmetric(0.5),
         Rule::Tex18 => symmetric(3.0),
         Rule::Cmb2 => symmetric(0.0),
@@ -70,15 +76,20 @@ fn coordinate_slack(plan: &Plan) -> f64 {
         let relative = relative(plan, draw, &vertices);
         draw.units.iter().flat_map(move |unit| {
             let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
+            let sides = unit.scale(&unit.levels[0]);
             // Planes are floored to 2^-27 of a step.
-            [(0, unit.width), (1, unit.height)].map(|(axis, side)| {
+            [0, 1].map(|axis| {
                 let (low, high) = range(sets.map(|set| f64::from(set[axis])));
-                2.0 * relative * (high - low) * 256.0 * f64::from(side) + 2.0_f64.powi(-26)
+                2.0 * relative * (high - low) * 256.0 * f64::from(sides[axis]) + 2.0_f64.powi(-26)
             })
         })
     });
     // The last bits of the ideal's own float64.
     slack.fold(1e-6, f64::max)
+}
+
+fn any_unit(plan: &Plan, is: impl Fn(&PlannedUnit) -> bool) -> bool {
+    plan.draws.iter().flat_map(|draw| &draw.units).any(is)
 }
 
 fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, [&Vertex; 3])> {

@@ -10,7 +10,8 @@ use crate::raster::setup::Triangle;
 use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
 use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
-use crate::texture::unit::{self, Coordinates, Image};
+use crate::texture::place::{Coordinates, Interpolated};
+use crate::texture::unit::{self, Image};
 use crate::trace::{Decision, Observer, Operand, Rule, Step, Work, plain, report};
 
 /// A triangle of a draw, set up.
@@ -113,7 +114,7 @@ impl<'a> TriangleContext<'a> {
         }
         let mut registers = Registers::<L>::new();
         self.interpolate_colors(&sample, &mut registers, observer);
-        self.sample_textures(&sample, &mut registers, textures, observer);
+        self.sample_textures(&sample, fragment.pixel, &mut registers, textures, observer);
         if O::ON {
             reports::stage_constants(0, draw, observer);
         }
@@ -244,6 +245,7 @@ impl<'a> TriangleContext<'a> {
     fn sample_textures<L: Lane, O: Observer>(
         &self,
         sample: &Sample<'_>,
+        pixel: (i64, i64),
         registers: &mut Registers<L>,
         textures: &[Image<'_, L>],
         observer: &mut O,
@@ -266,12 +268,16 @@ impl<'a> TriangleContext<'a> {
         }
         for planned in &self.draw.units {
             let Some(coordinates) = &self.coordinates[planned.index] else { continue };
-            let ideal = || {
-                let sets = self.vertices.map(|v| v.texture_coordinates[planned.stage.coordinate_set]);
-                ideal::texel_coordinates(self.barycentrics(sample), sets, [planned.width, planned.height])
+            let place = Interpolated {
+                unit: planned,
+                coordinates,
+                at: sample,
+                pixel,
+                vertices: self.vertices.map(|v| v.texture_coordinates[planned.stage.coordinate_set]),
+                w: self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 }),
             };
             let image = &textures[planned.state.texture];
-            let value = unit::sample::<L, O>(planned, image, coordinates, sample, ideal, observer);
+            let value = unit::sample::<L, O>(planned, image, &place, observer);
             registers.load(UNITS[planned.index], value);
         }
         if O::ON {
