@@ -149,6 +149,9 @@ impl Place {
         let quotient = |n: i128, d: i128| (d > 0).then(|| floor_div(n, d).0);
         let scale = size.map(|n| i128::from(n) << 16);
         let both = |[u, v]: [Option<i128>; 2]| Some([u?, v?]);
+        if sample.d <= 0 {
+            return None;
+        }
         match self {
             Place::Set(set) if setup.is_plane(*set) => both([0, 1].map(|a| {
                 quotient(256 * Setup::total(sample, setup.plane(setup.component(*set, a), size[a])), sample.d)

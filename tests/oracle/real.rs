@@ -91,7 +91,7 @@ pub fn nearest_f32(n: i128, d: i128, e: i32) -> f32 {
     let e = e - up;
     // Twenty-four bits, or the grid of the smallest numbers.
     let drop = (bits(q) - 24).max(-149 - e);
-    let rounded = if drop > 100 {
+    let rounded = if drop > 126 {
         0
     } else {
         let (kept, lost) = (q >> drop, q & ((1 << drop) - 1));

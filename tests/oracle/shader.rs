@@ -191,9 +191,9 @@ fn mapped(mapping: DotMapping, bytes: [i128; 4]) -> [f32; 3] {
     }
 }
 
-/// TSH-5: 2n(n.e)/(n.n) - e.
+/// TSH-5: 2n(n.e)/(n.n) - e, the quotient first.
 fn reflect(n: [f32; 3], e: [f32; 3]) -> [f32; 3] {
     let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let (ne, nn) = (dot(n, e), dot(n, n));
-    [0, 1, 2].map(|c| 2.0 * n[c] * ne / nn - e[c])
+    let scale = 2.0 * dot(n, e) / dot(n, n);
+    [0, 1, 2].map(|c| scale * n[c] - e[c])
 }
