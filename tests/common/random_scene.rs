@@ -171,8 +171,9 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
     let (width, height) = match c.below(4) {
         _ if large => (c.size(120, 150), c.size(140, 160)),
         0 => (16, 16),
-        1 => (1 << c.below(5), 1 << c.below(5)),
-        2 => (c.size(1, 48), c.size(1, 48)),
+        1 if c.once_in(3) => (1 << c.below(5), 1 << c.below(5)),
+        1 => (8 << c.below(3), 8 << c.below(3)),
+        2 => (c.size(4, 48), c.size(4, 48)),
         _ => (c.size(13, 48), c.size(11, 48)),
     };
     let formats: &[SurfaceFormat] = match profile {
@@ -229,8 +230,8 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         cull: if c.once_in(6) { c.any() } else { Cull::None },
         front_face: c.any(),
         scissor: c.once_in(5).then(|| Rectangle {
-            x: c.below(surface.width),
-            y: c.below(surface.height),
+            x: c.below(surface.width.div_ceil(2)),
+            y: c.below(surface.height.div_ceil(2)),
             width: c.size(1, 40),
             height: c.size(1, 40),
         }),
@@ -239,8 +240,11 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         texture_shader,
         alpha_test: c.once_in(5).then(|| AlphaTest { function: c.any(), reference: c.byte() }),
         depth_test: (surface.depth.is_some() && c.below(3) != 0)
-            .then(|| DepthTest { function: c.any(), write: c.below(4) != 0 }),
-        blend: (blend_allowed && c.once_in(2)).then(|| Blend {
+            .then(|| DepthTest {
+                function: if c.once_in(2) { c.any() } else { CompareFunction::LessOrEqual },
+                write: c.below(4) != 0,
+            }),
+        blend: (blend_allowed && c.once_in(3)).then(|| Blend {
             equation: c.pick(equations),
             source: c.any(),
             destination: c.any(),
