@@ -8,6 +8,7 @@ mod input;
 mod matrix;
 mod names;
 mod raster;
+mod shader;
 mod target;
 mod texture;
 mod unit;
