@@ -124,6 +124,7 @@ mod tests {
     }
 
     /// Bytes, the i32 lane and the ideal of one word.
+    #[allow(clippy::float_arithmetic, reason = "the ideal against its formula")]
     fn check(format: TextureFormat, word: u32) {
         let Some(channels) = channels(format) else { return };
         let bytes = expand(format, word);
@@ -138,7 +139,6 @@ mod tests {
             };
             assert_eq!(bytes[n], byte, "{format:?} {word:#x} channel {n}");
             assert_eq!(fixed[n], i32::from(byte));
-            #[allow(clippy::float_arithmetic, reason = "the ideal against its formula")]
             let off = (ideal[n] - real).abs();
             assert!(off < 1e-9, "{format:?} {word:#x} channel {n}: {} is not {real}", ideal[n]);
             let exact = f64::from(byte) == ideal[n];
