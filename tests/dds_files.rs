@@ -266,7 +266,7 @@ fn a_dds_is_known_by_its_contents() {
     assert_eq!(image.words, [9]);
     std::fs::write(&path, b"DDT nothing").unwrap();
     let error = open(&path, &ImageLimits::default()).unwrap_err();
-    assert_eq!((error.code(), error.to_string().ends_with("is none of a PNG, TGA and DDS file")), ("NB0513", true));
+    assert_eq!((error.code(), error.to_string().ends_with("is neither a PNG, a TGA nor a DDS file")), ("NB0513", true));
 }
 
 proptest! {

@@ -222,7 +222,7 @@ pub fn open(path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
         return dds::decode(&bytes, path, limits).map(Contents::Texture);
     }
     decode(&bytes, path, limits).map(Contents::Picture).map_err(|error| match error {
-        ImageError::Format { path, .. } => ImageError::Format { path, known: "none of a PNG, TGA and DDS file" },
+        ImageError::Format { path, .. } => ImageError::Format { path, known: "neither a PNG, a TGA nor a DDS file" },
         error => error,
     })
 }
@@ -311,7 +311,7 @@ fn to_rgba(decoded: DynamicImage, path: &Path) -> Result<Rgba, ImageError> {
 }
 
 /// Reads a regular file of at most `limit` bytes.
-fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
+pub(super) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
     let classify = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ImageError::Missing { path: path.to_path_buf() },
         _ => ImageError::Unreadable { path: path.to_path_buf(), source },

@@ -126,6 +126,7 @@ source! {
         names: Names<'a>,
         targets: List<'a, Target<'a>>,
         textures: Entries<'a, Texture<'a>>,
+        palettes: Entries<'a, List<'a, String>>,
         draws: List<'a, Draw<'a>>,
         truth: Reserved,
     }
@@ -151,9 +152,19 @@ source! {
         kind: Word,
         format: Name<state::TextureFormat>,
         source: ImageSource,
-        levels: Reserved,
-        palette: Reserved,
-        border: Reserved,
+        levels: Word,
+        mips: List<'a, ImageSource>,
+        palette: String,
+        border: bool,
+    }
+    struct RawFile { file: String, width: u32, height: u32 }
+    struct Faces {
+        positive_x: ImageSource,
+        negative_x: ImageSource,
+        positive_y: ImageSource,
+        negative_y: ImageSource,
+        positive_z: ImageSource,
+        negative_z: ImageSource,
     }
     struct TexelRows { width: u32, height: u32, rows: List<'a, String> }
     struct SolidImage { width: u32, height: u32, color: Color }
@@ -229,6 +240,7 @@ source! {
     }
     struct UnitState {
         texture: String,
+        palette: String,
         coordinates: u32,
         address: Name<state::AddressMode>,
         address_s: Name<state::AddressMode>,

@@ -65,6 +65,7 @@ fn unit<'a>(
     let mut coordinate_set = index;
     if raw.is_text() {
         unit.texture = textures.find(reader, &raw.as_other())?;
+        unit_texture::check(reader, textures, None, &mut unit, reader.span(raw));
         return Some((unit, coordinate_set, reader.span(raw)));
     }
     let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
@@ -105,6 +106,7 @@ fn unit<'a>(
     reader.reserve(&fields.color_key, "colour keys");
     unit.texture = found?;
     let place = texture.map_or(0..0, |raw| reader.span(&raw));
+    unit_texture::check(reader, textures, Some(&fields), &mut unit, place.clone());
     Some((unit, coordinate_set, place))
 }
 
