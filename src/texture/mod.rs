@@ -9,4 +9,5 @@ pub mod format;
 pub mod lod;
 pub mod place;
 pub mod report;
+pub mod show;
 pub mod unit;
