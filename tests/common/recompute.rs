@@ -270,14 +270,8 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "floor_number" => Number { value: shader::floor_number(inputs, 4096).clamp(0, 4096), per_one: 4096 },
         "is_negative" => plain(i128::from(shader::numerator(inputs) < 0)),
         "is_not_negative" => plain(i128::from(shader::numerator(inputs) >= 0)),
-        "remap_zero_to_one"
-        | "remap_d3d"
-        | "remap_gl"
-        | "remap_twos_complement"
-        | "remap_half"
-        | "remap_half_signed"
-        | "third_of_unit"
-        | "float_one" => shader::remap(operation, inputs),
+        "remap_zero_to_one" | "remap_d3d" | "remap_gl" | "remap_twos_complement" => shader::remap(operation, inputs),
+        "remap_half" | "remap_half_signed" | "third_of_unit" | "float_one" => shader::remap(operation, inputs),
         "float_product" | "float_sum" | "float_dot" | "float_double_quotient" | "float_reflection" => {
             shader::float(operation, inputs)
         }
