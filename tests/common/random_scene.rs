@@ -239,11 +239,10 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         textures,
         texture_shader,
         alpha_test: c.once_in(5).then(|| AlphaTest { function: c.any(), reference: c.byte() }),
-        depth_test: (surface.depth.is_some() && c.below(3) != 0)
-            .then(|| DepthTest {
-                function: if c.once_in(2) { c.any() } else { CompareFunction::LessOrEqual },
-                write: c.below(4) != 0,
-            }),
+        depth_test: (surface.depth.is_some() && c.below(3) != 0).then(|| DepthTest {
+            function: if c.once_in(2) { c.any() } else { CompareFunction::LessOrEqual },
+            write: c.below(4) != 0,
+        }),
         blend: (blend_allowed && c.once_in(3)).then(|| Blend {
             equation: c.pick(equations),
             source: c.any(),
@@ -479,7 +478,8 @@ fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
         // Rows of a matrix, nearly, with an eye in q.
         _ => {
             let row = c.below(3) as usize;
-            let mut out = [c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-1.0, 1.0)];
+            let mut out =
+                [c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-1.0, 1.0)];
             out[row] = c.pick(&[1.0, -1.0, 0.5]);
             out
         }

@@ -190,7 +190,9 @@ fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit
         }
     }
     // At unit 1 nothing that fetches no colour may come before a bump environment.
-    if matches!(stages[1].operation, BumpEnvironment { .. }) && matches!(stages[0].operation, None | CullFragment { .. }) {
+    if matches!(stages[1].operation, BumpEnvironment { .. })
+        && matches!(stages[0].operation, None | CullFragment { .. })
+    {
         stages[1].operation = Sample;
     }
 }
@@ -201,9 +203,7 @@ fn unit(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize]) -> TextureUnit
     let modes: &[AddressMode] = match (given.profile, given.textures[texture].kind) {
         (Profile::Nv2a, _) => AddressMode::ALL,
         (Profile::Nv10, TextureKind::Rectangle) => &[AddressMode::ClampToEdge],
-        (Profile::Nv10, _) => {
-            &[AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge, AddressMode::Clamp]
-        }
+        (Profile::Nv10, _) => &[AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge, AddressMode::Clamp],
     };
     let palette = c.below(given.palettes as u32) as usize;
     let limited = c.once_in(4);

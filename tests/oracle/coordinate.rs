@@ -97,11 +97,7 @@ impl Setup {
             return 0;
         }
         let (_, dominant) = self.weights(sample);
-        [0, 2]
-            .into_iter()
-            .filter(|i| *i != dominant)
-            .map(|i| sample.e[i] * (x[i] * self.p[1] - self.p[i] * x[1]))
-            .sum()
+        [0, 2].into_iter().filter(|i| *i != dominant).map(|i| sample.e[i] * (x[i] * self.p[1] - self.p[i] * x[1])).sum()
     }
 
     /// Whether q is 1 at all vertices.

@@ -21,12 +21,7 @@ pub fn shift(n: i128, e: i32) -> i128 {
 
 /// Block floating point: the largest magnitude gets exactly `keep` bits, the others share its exponent, floored.
 pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> [i128; N] {
-    let top = values
-        .iter()
-        .filter(|(m, _)| *m != 0)
-        .map(|(m, e)| bits(*m) + e)
-        .max()
-        .unwrap_or(0);
+    let top = values.iter().filter(|(m, _)| *m != 0).map(|(m, e)| bits(*m) + e).max().unwrap_or(0);
     values.map(|(m, e)| shift(m, e + keep - top))
 }
 
