@@ -21,12 +21,7 @@ pub struct Units<'a> {
 }
 
 impl<'a> Units<'a> {
-    pub fn new(
-        draw: &'a Draw,
-        images: &'a [Option<Image>],
-        setup: &'a Setup,
-        policies: &'a Policies,
-    ) -> Units<'a> {
+    pub fn new(draw: &'a Draw, images: &'a [Option<Image>], setup: &'a Setup, policies: &'a Policies) -> Units<'a> {
         Units { draw, images, setup, policies, lods: RefCell::default() }
     }
 
