@@ -9,6 +9,8 @@ named! {
         Num4 = "NUM-4",
         /// Fog factors.
         Num6 = "NUM-6",
+        /// Fog functions of an interpolated coordinate, and the byte made of their factor.
+        Int5 = "INT-5",
         /// Interpolated colours.
         Int2 = "INT-2",
         /// Texture coordinates, as the weights of the filter.
@@ -70,7 +72,7 @@ impl Rule {
     /// The part that the rule's error counts in.
     pub fn part(self) -> Part {
         match self {
-            Rule::Num4 | Rule::Num6 | Rule::Int2 | Rule::Int4 | Rule::Tex15 => Part::Interpolation,
+            Rule::Num4 | Rule::Num6 | Rule::Int5 | Rule::Int2 | Rule::Int4 | Rule::Tex15 => Part::Interpolation,
             Rule::Tex1 | Rule::Tex6 | Rule::Tex18 => Part::Filtering,
             Rule::Cmb2 | Rule::Cmb3 | Rule::Cmb4 | Rule::Cmb5 => Part::Expansion,
             Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 | Rule::Cmb9 | Rule::Num3 | Rule::Fin2 | Rule::Fin4 => Part::Product,
