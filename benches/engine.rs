@@ -160,7 +160,8 @@ fn state(c: &mut Criterion) {
     bench("smooth", &|s| s.draws[0].combiners = shown(FinalRegister::PrimaryColor));
     bench("nearest", &|s| {
         s.draws[0].combiners = shown(FinalRegister::Texture0);
-        s.draws[0].textures[0].as_mut().unwrap().mag_filter = Filter::Nearest;
+        let unit = s.draws[0].textures[0].as_mut().unwrap();
+        (unit.min_filter, unit.mag_filter) = (Filter::Nearest, Filter::Nearest);
     });
     bench("bilinear", &|s| s.draws[0].combiners = shown(FinalRegister::Texture0));
     bench("bilinear_dot3", &|_| {});

@@ -4,6 +4,7 @@
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::fog::LARGEST_POWER;
 use crate::state::{ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, Vertex};
+use crate::texture::unit::PlannedUnit;
 use crate::trace::Rule;
 
 /// Half a step, less what a quotient by 255 cannot reach.
@@ -28,8 +29,21 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and what the weights are off.
         Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
-        Rule::Tex15 => None,
+        Rule::Tex12 | Rule::Tex15 | Rule::Tex9 => None,
+        // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
+        Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
+        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
+        Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
+        Rule::Tsh9 => {
+            let slack = number_slack(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
+        // A byte of a half is off by what the other byte is worth.
+        Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
         Rule::Tex1 => symmetric(0.715),
+        Rule::Tex2 => symmetric(1.0),
+        Rule::Tex3 => symmetric(5.0),
+        Rule::Tex4 => symmetric(9.0),
         Rule::Tex6 => symmetric(0.5),
         Rule::Tex18 => symmetric(3.0),
         Rule::Cmb2 => symmetric(0.0),
@@ -75,10 +89,11 @@ fn coordinate_slack(plan: &Plan) -> f64 {
         let relative = relative(plan, draw, &vertices);
         draw.units.iter().flat_map(move |unit| {
             let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
+            let sides = unit.scale(&unit.levels[0]);
             // Planes are floored to 2^-27 of a step.
-            [(0, unit.width), (1, unit.height)].map(|(axis, side)| {
+            [0, 1].map(|axis| {
                 let (low, high) = range(sets.map(|set| f64::from(set[axis])));
-                2.0 * relative * (high - low) * 256.0 * f64::from(side) + 2.0_f64.powi(-26)
+                2.0 * relative * (high - low) * 256.0 * f64::from(sides[axis]) + 2.0_f64.powi(-26)
             })
         })
     });
@@ -111,6 +126,21 @@ fn fog_slack(plan: &Plan) -> f64 {
         255.0 * (slope * p1.abs() * moved + 2.0_f64.powi(-48) * (p0.abs() + (p1 * largest).abs() + 1.0))
     });
     slack.fold(0.0, f64::max)
+}
+
+/// The same for coordinates that become colours, in steps.
+fn number_slack(plan: &Plan) -> f64 {
+    let slack = triangles(plan).flat_map(|(draw, vertices)| {
+        let relative = relative(plan, draw, &vertices);
+        let sets = vertices.map(|v| v.texture_coordinates);
+        let spans = (0..16).map(move |n| range(sets.map(|set| f64::from(set[n / 4][n % 4]))));
+        spans.map(move |(low, high)| 2.0 * relative * (high - low) * 255.0)
+    });
+    slack.fold(1e-6, f64::max)
+}
+
+fn any_unit(plan: &Plan, is: impl Fn(&PlannedUnit) -> bool) -> bool {
+    plan.draws.iter().flat_map(|draw| &draw.units).any(is)
 }
 
 fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, [&Vertex; 3])> {

@@ -141,7 +141,7 @@ pub(super) fn fog<L: Lane, O: Observer>(
         FogPlane::Factor(g) => step.by("floor_factor", quotient(observer, *g)),
         FogPlane::Infinite(_) => step.note(Some("a coordinate or parameter is not finite".to_string())),
         FogPlane::Coordinate(function, attribute) => {
-            let (g, exponent) = attribute.parts();
+            let (g, exponent) = attribute.numbers();
             let mut inputs = quotient(observer, g);
             let (m, e) = found.coordinate;
             observer.step(Step::given(BLOCK, "INT-5", "fog.d", m).by("truncate_24", inputs.clone()));

@@ -2,7 +2,8 @@
 
 use crate::combiner::general::PlannedPortion;
 use crate::plan::PlannedDraw;
-use crate::state::{DotRounding, Filter, LerpRounding, Named, Policies, SumRounding};
+use crate::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, SumRounding};
+use crate::texture::unit::PlannedUnit;
 use crate::trace::Work;
 
 /// Work by kind, in the order of `Work::ALL`.
@@ -24,6 +25,8 @@ pub struct Cost {
     pub fragments: u64,
     /// A test decides which of them are stored: [`total`](Self::total) is then the most that it can be.
     pub tested: bool,
+    /// The lod decides how much texture units read (TEX-9): texels and filter steps are then the most that they can be.
+    pub lod_decides: bool,
     /// Of one fragment.
     pub fragment: FragmentCost,
 }
@@ -31,7 +34,12 @@ pub struct Cost {
 impl Cost {
     pub(super) fn of(planned: &PlannedDraw, policies: &Policies, fragments: u64) -> Cost {
         let fragment = FragmentCost { shaded: shaded(planned, policies), stored: stored(planned) };
-        Cost { fragments, tested: planned.alpha_test.is_some() || planned.depth_test.is_some(), fragment }
+        Cost {
+            fragments,
+            tested: planned.alpha_test.is_some() || planned.depth_test.is_some(),
+            lod_decides: planned.units.iter().any(PlannedUnit::needs_lod),
+            fragment,
+        }
     }
 
     /// The work if `stored` fragments pass the tests.
@@ -49,14 +57,9 @@ fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
     let mut amounts = Amounts::default();
     let mut add = |work: Work, amount: u64| amounts[work as usize] += amount;
     for unit in &planned.units {
-        match unit.state.mag_filter {
-            Filter::Nearest => add(Work::Texels, 1),
-            Filter::Linear => {
-                add(Work::Texels, 4);
-                // Two rows and their mix, in four channels.
-                add(Work::Lerps, 12);
-            }
-        }
+        let (texels, lerps) = unit_cost(unit);
+        add(Work::Texels, texels);
+        add(Work::Lerps, lerps);
     }
     for stage in &planned.stages {
         for (portion, channels) in [(&stage.rgb, 3), (&stage.alpha, 1)] {
@@ -75,6 +78,25 @@ fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
         add(Work::Roundings, channels * if policies.lerp_rounding == LerpRounding::Once { 1 } else { 2 });
     }
     amounts
+}
+
+/// Texels and filter steps of a unit; the most that they can be where the lod decides.
+fn unit_cost(unit: &PlannedUnit) -> (u64, u64) {
+    let level = |filter: Filter| match filter {
+        Filter::Nearest => (1, 0),
+        // Two rows and their mix, in four channels.
+        Filter::Linear => (4, 12),
+    };
+    let magnified = level(unit.state.mag_filter);
+    if !unit.needs_lod() {
+        return magnified;
+    }
+    let (texels, lerps) = level(unit.state.min_filter);
+    let minified = match unit.state.mip_filter {
+        MipFilter::Linear if unit.levels.len() > 1 => (2 * texels, 2 * lerps + 4),
+        _ => (texels, lerps),
+    };
+    (magnified.0.max(minified.0), magnified.1.max(minified.1))
 }
 
 /// Products and roundings of a portion of three channels or one.

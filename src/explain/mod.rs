@@ -13,7 +13,8 @@ pub use report::{explanation_json, explanation_text};
 use crate::engine;
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::{AddressMode, Blend, CompareFunction, Draw, Named, Register, Scene};
+use crate::state::{Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, TextureKind};
+use crate::texture::unit::PlannedUnit;
 
 /// A draw in words.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -55,17 +56,21 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
     }
     for unit in &planned.units {
         let texture = &scene.textures[unit.state.texture].name;
-        let filter = unit.state.mag_filter.name().to_lowercase();
-        let address = |mode: AddressMode| mode.name();
+        let modes = format!("{}/{}", unit.state.address_s.name(), unit.state.address_t.name());
         lines.push(format!(
-            "tex{}.{} = {filter}(`{texture}`, {} x {} {}, {}/{})",
+            "tex{}.{} = {}(`{texture}`, {} x {} {}{}, {})",
             unit.index,
             channels(unit.live),
-            unit.width,
-            unit.height,
+            filters(unit),
+            unit.levels[0].width,
+            unit.levels[0].height,
             unit.format.name(),
-            address(unit.state.address_s),
-            address(unit.state.address_t)
+            if unit.levels.len() > 1 { format!(", {} levels", unit.levels.len()) } else { String::new() },
+            match unit.kind {
+                TextureKind::Cube => "cube map".to_string(),
+                TextureKind::TwoDimensional => modes,
+                TextureKind::Rectangle => format!("{modes}, in texels"),
+            }
         ));
     }
     for (register, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
@@ -91,6 +96,20 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
         lines.push(format!("store {} to `{}`, {}", channels(planned.written), target.name, target.format.name()));
     }
     lines
+}
+
+/// How a unit filters: one word, or one for each side of lod 0 and one for levels.
+fn filters(unit: &PlannedUnit) -> String {
+    let state = &unit.state;
+    let [min, mag] = [state.min_filter, state.mag_filter].map(|filter| filter.name().to_lowercase());
+    if !unit.needs_lod() {
+        return mag;
+    }
+    match state.mip_filter {
+        MipFilter::Linear if unit.levels.len() > 1 => format!("{mag} or {min} of two levels"),
+        MipFilter::Nearest if unit.levels.len() > 1 => format!("{mag} or {min} of the nearest level"),
+        _ => format!("{mag} or, minified, {min}"),
+    }
 }
 
 fn comparison(function: CompareFunction) -> &'static str {

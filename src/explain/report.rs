@@ -32,7 +32,8 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
         }
         let cost = &draw.cost;
         let most = if cost.tested { ", at most, because tests decide" } else { "" };
-        writeln!(out, "  cost: {} fragments{most}", cost.fragments)?;
+        let lod = if cost.lod_decides { "; texels and filter steps at most, because the lod decides" } else { "" };
+        writeln!(out, "  cost: {} fragments{most}{lod}", cost.fragments)?;
         let counted = counted.map(|all| &all[number]);
         let total = cost.total();
         for (n, work) in Work::ALL.iter().enumerate().filter(|(n, _)| total[*n] > 0) {
@@ -63,6 +64,7 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
         json!({
             "fragments": cost.fragments,
             "tested": cost.tested,
+            "lod_decides": cost.lod_decides,
             "each_shaded": amounts(&cost.fragment.shaded),
             "each_stored": amounts(&cost.fragment.stored),
             "total": amounts(&cost.total()),

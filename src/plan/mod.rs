@@ -14,9 +14,11 @@ use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::surface;
 use crate::state::named;
 use crate::state::{
-    AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, MuxSelect, Policies, Profile, Rectangle,
-    Scene, ShadeModel, SurfaceFormat, TEXTURE_UNITS, Target, Texture, TextureImage,
+    AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies,
+    Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texture,
+    TextureImage, TextureKind, TextureUnit,
 };
+use crate::texture::chain::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
 use liveness::Liveness;
 
@@ -96,7 +98,9 @@ pub struct PlannedDraw {
     pub fog: Fog,
     /// Bound units that are read.
     pub units: Vec<PlannedUnit>,
-    /// Channels of each unbound unit that are read (TEX-16); 0 for bound ones.
+    /// The texture shader, where there is one: units then run as its stages.
+    pub shader: Option<PlannedShader>,
+    /// Channels of each unit that does nothing that are read (TEX-16).
     pub unbound: [u8; TEXTURE_UNITS],
     /// SPARE0's initial alpha is read (CMB-13).
     pub spare0_alpha: bool,
@@ -208,27 +212,42 @@ pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
     }
 }
 
-/// RAS-0 for texel coordinates: finite, and at most 65536 texels where q is 1.
+/// RAS-0 for texture coordinates: finite, and at most 65536 texels where q is 1 and they do not give a direction.
 fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<PlanError>) {
     const MOST_ERRORS: usize = 8;
     let mut found = 0;
+    let moves = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::BumpEnvironment { .. });
     for (unit, stage) in draw.textures.iter().zip(&draw.texture_shader) {
-        let Some(unit) = unit else { continue };
-        let (width, height) = texture_size(scene, unit.texture);
+        if stage.operation == ShaderOperation::None {
+            continue;
+        }
+        let sampled = unit.filter(|_| matches!(stage.operation, ShaderOperation::Sample) || moves(stage));
+        let texture = sampled.map(|unit| (&scene.textures[unit.texture], texture_size(scene, unit.texture)));
         for (vertex, v) in draw.vertices.iter().enumerate() {
             let set = v.texture_coordinates[stage.coordinate_set];
-            let outside = |n: usize, size: u32| set[3] == 1.0 && set[n].abs() > (TEXEL_LIMIT / i64::from(size)) as f32;
-            if (outside(0, width) || outside(1, height) || set.iter().any(|c| !c.is_finite())) && found < MOST_ERRORS {
+            // TSH-7 has no use for q.
+            let plane = set[3] == 1.0 || moves(stage);
+            let far = |n: usize, side: u32| plane && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;
+            let (outside, what) = match texture {
+                _ if set.iter().any(|c| !c.is_finite()) => (true, "is not a finite number".to_string()),
+                Some((Texture { kind: TextureKind::TwoDimensional, name, .. }, (width, height))) => (
+                    far(0, width) || far(1, height),
+                    format!(
+                        "is more than 65536 texels of the {width} x {height} texture `{name}` away from its origin"
+                    ),
+                ),
+                Some((Texture { kind: TextureKind::Rectangle, name, .. }, _)) => {
+                    (far(0, 1) || far(1, 1), format!("is more than 65536 texels away from the origin of `{name}`"))
+                }
+                _ => (false, String::new()),
+            };
+            if outside && found < MOST_ERRORS {
                 found += 1;
                 errors.push(PlanError {
                     draw: index,
                     vertex: Some(vertex),
                     rule: "RAS-0",
-                    message: format!(
-                        "texture coordinate ({}, {}) is more than 65536 texels of the {width} x {height} texture \
-                         `{}` away from its origin",
-                        set[0], set[1], scene.textures[unit.texture].name
-                    ),
+                    message: format!("texture coordinate ({}, {}) {what}", set[0], set[1]),
                     help: "shift the coordinates by whole repeats, or split the geometry".to_string(),
                 });
             }
@@ -277,17 +296,21 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
     let written = written_channels(target.format, write_mask);
     let blended = if options.prune { written } else { 15 };
     let liveness = Liveness::of(draw, alpha_test.is_some(), blend, written, options.prune);
-    let units = liveness
+    let sampled = |index: usize| draw.textures[index].filter(|_| draw.texture_shader[index].operation.samples());
+    let units: Vec<PlannedUnit> = liveness
         .units
         .iter()
         .enumerate()
         .filter_map(|(index, live)| {
-            let state = draw.textures[index].filter(|_| *live != 0)?;
-            let (width, height) = texture_size(scene, state.texture);
-            let (format, stage) = (scene.textures[state.texture].format, draw.texture_shader[index]);
-            Some(PlannedUnit { index, state, stage, width, height, format, live: *live })
+            let state = sampled(index).filter(|_| *live != 0)?;
+            Some(plan_unit(scene, index, state, draw.texture_shader[index], *live))
         })
         .collect();
+    let idle = |index: usize| match draw.texture_shader[index].operation {
+        ShaderOperation::None => true,
+        operation => operation.samples() && draw.textures[index].is_none(),
+    };
+    let shader = plan_shader(draw, &units, &liveness);
     PlannedDraw {
         name: draw.name.clone(),
         target: draw.target,
@@ -303,7 +326,8 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         fog_channels: liveness.fog,
         fog: draw.fog,
         units,
-        unbound: std::array::from_fn(|n| if draw.textures[n].is_none() { liveness.units[n] } else { 0 }),
+        shader,
+        unbound: std::array::from_fn(|n| if idle(n) { liveness.units[n] } else { 0 }),
         spare0_alpha: liveness.spare0_alpha,
         undefined: liveness.undefined,
         stages: liveness.stages,
@@ -320,6 +344,48 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         written,
         folded,
     }
+}
+
+/// A unit with the image it samples.
+fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage, live: u8) -> PlannedUnit {
+    let texture = &scene.textures[state.texture];
+    let (width, height) = texture_size(scene, state.texture);
+    let (count, border) = match &texture.image {
+        TextureImage::Texels(texels) => (texels.levels, texels.border),
+        TextureImage::Target { .. } => (1, false),
+    };
+    // Levels that no lod can reach are not planned.
+    let reachable = if state.mip_filter == MipFilter::None { 1 } else { count };
+    let (mut levels, face_words) = Level::chain(texture.format, width, height, count, border);
+    levels.truncate(reachable as usize);
+    PlannedUnit {
+        index,
+        state,
+        stage,
+        kind: texture.kind,
+        format: texture.format,
+        levels,
+        face_words,
+        border,
+        dithered: scene.profile == Profile::Nv2a,
+        palette: state.palette.map(|palette| scene.palettes[palette].entries.clone()),
+        live,
+    }
+}
+
+/// The texture shader of a draw, if its units do more than sample.
+fn plan_shader(draw: &Draw, units: &[PlannedUnit], liveness: &Liveness) -> Option<PlannedShader> {
+    let conventional = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::None | ShaderOperation::Sample);
+    if draw.texture_shader.iter().all(conventional) {
+        return None;
+    }
+    let stages = std::array::from_fn(|index| PlannedShaderStage {
+        state: draw.texture_shader[index],
+        unit: units.iter().position(|unit| unit.index == index),
+        live: liveness.units[index],
+        dots: liveness.dots[index],
+    });
+    Some(PlannedShader { stages })
 }
 
 /// Channels R, G, B, A of the fragment that the written bits keep.

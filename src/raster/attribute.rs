@@ -46,8 +46,8 @@ impl Triangle {
 }
 
 impl Attribute {
-    /// The three g and their exponent.
-    pub fn parts(&self) -> ([i64; 3], i32) {
+    /// g and the exponent, for observers.
+    pub fn numbers(&self) -> ([i64; 3], i32) {
         (self.g, self.exponent)
     }
 }

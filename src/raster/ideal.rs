@@ -2,7 +2,6 @@
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
 use super::fog::LARGEST_POWER;
-use super::interpolate::COORDINATE_LIMIT;
 use super::setup::Triangle;
 use crate::state::{FogFunction, FogMode};
 
@@ -39,15 +38,10 @@ pub fn color_channel(color: &crate::state::VertexColor, channel: usize) -> f64 {
     }
 }
 
-/// u and v in 1/256 texel: the coordinates divided by q, times the image's sides; limited as in TEX-15, 0/0 is 0.
-pub fn texel_coordinates(weights: [f64; 3], vertices: [[f32; 4]; 3], sizes: [u32; 2]) -> [f64; 2] {
-    let component = |n: usize| mix(weights, vertices.map(|v| f64::from(v[n])));
-    let q = component(3);
-    std::array::from_fn(|axis| {
-        let coordinate = component(axis) / q * 256.0 * f64::from(sizes[axis]);
-        let limit = COORDINATE_LIMIT as f64;
-        if coordinate.is_nan() { 0.0 } else { coordinate.clamp(-limit, limit) }
-    })
+/// A coordinate divided by q; 0/0 is 0.
+pub fn quotient(coordinate: f64, q: f64) -> f64 {
+    let quotient = coordinate / q;
+    if quotient.is_nan() { 0.0 } else { quotient }
 }
 
 /// 255 times the fog factor: interpolated from the vertices', or the function of their interpolated coordinate (INT-5).

@@ -87,13 +87,31 @@ impl<'a> Sample<'a> {
         }
         let scale = i128::from(size) << 8;
         let (numerator, denominator) = if nq > 0 { (ns * scale, nq) } else { (-ns * scale, -nq) };
+        let direction = |value: i128| (self.truncation(s) * scale - value * self.truncation(q)) * nq.signum();
+        self.settled_ratio(numerator, denominator, direction)
+    }
+
+    /// TEX-12: 128 n (s + m)/m as a floor, 1/256 texel of a face of n texels, for a minor direction s and the major one m, which is not
+    /// negative; the zero vector is 0 (TEX-13). Ties as in INT-4t.
+    pub fn face_coordinate(&self, s: &[i64; 3], m: &[i64; 3], size: u32) -> Settled {
+        let (ns, nm) = (self.sum(s), self.sum(m));
+        if nm <= 0 {
+            return Settled { value: 0, lowered: false };
+        }
+        let scale = i128::from(size) << 7;
+        let (ts, tm) = (self.truncation(s), self.truncation(m));
+        self.settled_ratio((ns + nm) * scale, nm, |value| (ts + tm) * scale - value * tm)
+    }
+
+    /// A floor within the limit; one step lower if it is exact and `direction`, the way that truncation moves it, is down.
+    #[inline(always)]
+    fn settled_ratio(&self, numerator: i128, denominator: i128, direction: impl Fn(i128) -> i128) -> Settled {
         let value = numerator.div_euclid(denominator);
         if value.abs() > i128::from(COORDINATE_LIMIT) {
             return Settled { value: COORDINATE_LIMIT * value.signum() as i64, lowered: false };
         }
         let tie = numerator.rem_euclid(denominator) == 0 && !self.triangle.exact_reciprocal;
-        let direction = || (self.truncation(s) * scale - value * self.truncation(q)) * nq.signum();
-        let lowered = tie && value > -i128::from(COORDINATE_LIMIT) && direction() > 0;
+        let lowered = tie && value > -i128::from(COORDINATE_LIMIT) && direction(value) > 0;
         Settled { value: value as i64 - i64::from(lowered), lowered }
     }
 
@@ -148,11 +166,11 @@ fn truncated_ratio(e: i64, whole: i64) -> (i128, u32) {
     (mantissa, exponent)
 }
 
-/// INT-3: the dominant one of three weights n_k / d.
+/// INT-3: the dominant one of three weights n_k / d. d is positive; outside the triangle some weights are not, and those are not dominant.
 fn dominant(n: [i64; 3], d: i64) -> usize {
     // Class c: the weight lies in (2^-(c+1), 2^-c].
     let class = n.map(|n| {
-        if n == 0 {
+        if n <= 0 {
             return u32::MAX;
         }
         (0..).find(|c| i128::from(n) << (c + 1) > i128::from(d)).unwrap_or(u32::MAX)
@@ -169,11 +187,14 @@ fn dominant(n: [i64; 3], d: i64) -> usize {
     }
 }
 
-/// floor(n / d) and whether nothing remains. 0 < d < 2^62, |n / d| < 2^26.
+/// floor(n / d) and whether nothing remains. 0 < d < 2^62; limited to 2^26, which only samples outside the triangle reach.
 ///
 /// The 128-bit division is avoided: the top 35 bits of d estimate the quotient within one step, and the exact remainder settles it.
 #[inline(always)]
 fn quotient(n: i128, d: i64) -> (i64, bool) {
+    if n.unsigned_abs() >> 26 >= u128::from(d.unsigned_abs()) {
+        return (n.signum() as i64 * (1 << 26), false);
+    }
     let excess = (64 - d.leading_zeros()).saturating_sub(35);
     let mut value = ((n >> excess) as i64).div_euclid(d >> excess);
     let mut remainder = n - i128::from(value) * i128::from(d);

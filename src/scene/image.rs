@@ -1,4 +1,4 @@
-//! Reads PNG and TGA files that nobody has looked at before.
+//! Reads PNG, TGA and DDS files that nobody has looked at before.
 //!
 //! The order matters: kind of file and its size, then the header against the limits, then the decoder, which runs under a
 //! guard because decoders panic on bytes nobody thought of. Of a PNG only the chunks that decide the pixels reach the decoder,
@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ImageFormat};
 use thiserror::Error;
 
+use super::dds::{self, Dds};
 use crate::guard;
 
 mod png;
@@ -43,6 +44,15 @@ pub struct Rgba {
     pub pixels: Vec<[u8; 4]>,
 }
 
+/// What an image file may be.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Contents {
+    /// Pixels, of a PNG or TGA file.
+    Picture(Rgba),
+    /// Texels of a format, of a DDS file.
+    Texture(Dds),
+}
+
 /// Why an image was not read.
 #[derive(Debug, Error)]
 pub enum ImageError {
@@ -66,11 +76,13 @@ pub enum ImageError {
         /// Why.
         source: io::Error,
     },
-    /// Neither PNG nor TGA.
-    #[error("image `{}` is neither a PNG nor a TGA file", path.display())]
+    /// None of the kinds that are read.
+    #[error("image `{}` is {known}", path.display())]
     Format {
         /// The file.
         path: PathBuf,
+        /// What it is not.
+        known: &'static str,
     },
     /// More bytes than allowed.
     #[error("image `{}` is larger than {limit} bytes", path.display())]
@@ -110,6 +122,22 @@ pub enum ImageError {
         /// What the reader said.
         reason: String,
     },
+    /// A DDS file of what no texture unit of the model reads.
+    #[error("image `{}` holds {what}, which this program does not read", path.display())]
+    Unsupported {
+        /// The file.
+        path: PathBuf,
+        /// What it holds.
+        what: String,
+    },
+    /// A cube map of less than six faces.
+    #[error("image `{}` is a cube map without {}", path.display(), missing.join(", "))]
+    MissingFaces {
+        /// The file.
+        path: PathBuf,
+        /// The faces that it lacks.
+        missing: Vec<&'static str>,
+    },
     /// Sixteen bits a channel.
     #[error("image `{}` has {bits} bits a channel; 8 are the most", path.display())]
     Depth {
@@ -133,6 +161,8 @@ impl ImageError {
             ImageError::DecodedBytes { .. } => "NB0516",
             ImageError::Damaged { .. } => "NB0517",
             ImageError::Depth { .. } => "NB0518",
+            ImageError::Unsupported { .. } => "NB0519",
+            ImageError::MissingFaces { .. } => "NB0520",
         }
     }
 
@@ -149,6 +179,10 @@ impl ImageError {
             ImageError::Side { .. } | ImageError::DecodedBytes { .. } => {
                 "scale the image down; `ninebit limits` prints what is allowed"
             }
+            ImageError::Unsupported { .. } => {
+                "save it as DXT1, DXT3, DXT5, A8R8G8B8, X8R8G8B8, R5G6B5, A1R5G5B5, A4R4G4B4 or L8, with 2D levels or six faces"
+            }
+            ImageError::MissingFaces { .. } => "save it with all six faces",
             ImageError::Damaged { .. } => "open the file in an image editor and save it again",
             ImageError::Depth { .. } => {
                 "save it with 8 bits a channel: which of the 16 bits are to be kept is yours to decide"
@@ -178,6 +212,21 @@ pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
     decode(&bytes, path, limits)
 }
 
+/// Reads the PNG, TGA or DDS file at `path`. A DDS is known by its first four bytes, whatever its name.
+///
+/// # Errors
+/// See [`ImageError`]. No input makes this panic.
+pub fn open(path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
+    let bytes = read(path, limits.maximum_file_bytes)?;
+    if bytes.starts_with(&dds::SIGNATURE) {
+        return dds::decode(&bytes, path, limits).map(Contents::Texture);
+    }
+    decode(&bytes, path, limits).map(Contents::Picture).map_err(|error| match error {
+        ImageError::Format { path, .. } => ImageError::Format { path, known: "neither a PNG, a TGA nor a DDS file" },
+        error => error,
+    })
+}
+
 /// Decodes the contents of an image file; `path` gives the extension and names the file in errors.
 ///
 /// # Errors
@@ -192,7 +241,7 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, I
         let header = tga_header(bytes).ok_or_else(|| damaged("the header is cut off".to_owned()))?;
         (ImageFormat::Tga, header, std::borrow::Cow::Borrowed(bytes))
     } else {
-        return Err(ImageError::Format { path: named() });
+        return Err(ImageError::Format { path: named(), known: "neither a PNG nor a TGA file" });
     };
     check_header(header, path, limits)?;
 
@@ -262,7 +311,7 @@ fn to_rgba(decoded: DynamicImage, path: &Path) -> Result<Rgba, ImageError> {
 }
 
 /// Reads a regular file of at most `limit` bytes.
-fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
+pub(super) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
     let classify = |source: io::Error| match source.kind() {
         io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ImageError::Missing { path: path.to_path_buf() },
         _ => ImageError::Unreadable { path: path.to_path_buf(), source },

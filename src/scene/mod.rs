@@ -4,6 +4,7 @@
 //! [`Diagnostic`]s that point into the text, all of them at once. The format is described in `docs/scene-format.md`.
 
 pub mod code;
+pub mod dds;
 mod diagnostic;
 pub mod image;
 mod lower;
@@ -14,6 +15,7 @@ mod reader;
 mod render;
 mod source;
 mod split;
+pub mod texels;
 mod wording;
 
 use std::fs::File;

@@ -103,6 +103,10 @@ pub(super) struct BlendSource;
 pub(super) struct ImageSource;
 /// The state of a unit, or just the name of its texture.
 pub(super) struct Unit;
+/// A stage of the texture shader: its fields, or just its operation.
+pub(super) struct ShaderStage;
+/// What a stage of the texture shader does.
+pub(super) struct ShaderOperation;
 /// What of a mesh goes into a vertex.
 pub(super) struct Attribute;
 /// An input of a combiner portion.
@@ -122,6 +126,7 @@ source! {
         names: Names<'a>,
         targets: List<'a, Target<'a>>,
         textures: Entries<'a, Texture<'a>>,
+        palettes: Entries<'a, List<'a, String>>,
         draws: List<'a, Draw<'a>>,
         truth: Reserved,
     }
@@ -147,9 +152,19 @@ source! {
         kind: Word,
         format: Name<state::TextureFormat>,
         source: ImageSource,
-        levels: Reserved,
-        palette: Reserved,
-        border: Reserved,
+        levels: Word,
+        mips: List<'a, ImageSource>,
+        palette: String,
+        border: bool,
+    }
+    struct RawFile { file: String, width: u32, height: u32 }
+    struct Faces {
+        positive_x: ImageSource,
+        negative_x: ImageSource,
+        positive_y: ImageSource,
+        negative_y: ImageSource,
+        positive_z: ImageSource,
+        negative_z: ImageSource,
     }
     struct TexelRows { width: u32, height: u32, rows: List<'a, String> }
     struct SolidImage { width: u32, height: u32, color: Color }
@@ -178,7 +193,7 @@ source! {
         dither: bool,
         stencil_test: Reserved,
         logic_op: Reserved,
-        texture_shader: Reserved,
+        texture_shader: List<'a, ShaderStage>,
         texgen: Reserved,
         texture_matrices: Reserved,
         truth: Reserved,
@@ -225,21 +240,32 @@ source! {
     }
     struct UnitState {
         texture: String,
+        palette: String,
         coordinates: u32,
         address: Name<state::AddressMode>,
         address_s: Name<state::AddressMode>,
         address_t: Name<state::AddressMode>,
         min_filter: Name<state::Filter>,
         mag_filter: Name<state::Filter>,
-        mip_filter: Word,
+        mip_filter: Name<state::MipFilter>,
         border_color: Color,
         signed: Tuple<'a, bool>,
-        lod_bias: Reserved,
-        min_lod: Reserved,
-        max_lod: Reserved,
-        anisotropy: Reserved,
+        lod_bias: f32,
+        min_lod: f32,
+        max_lod: f32,
+        anisotropy: u32,
+        cylindrical_wrap: bool,
         color_key: Reserved,
     }
+    struct StageState {
+        operation: ShaderOperation,
+        previous: u32,
+        mapping: Name<state::DotMapping>,
+        coordinates: u32,
+    }
+    struct CullFragment { s: Word, t: Word, r: Word, q: Word }
+    struct BumpEnvironment { matrix: Numbers, luminance: Numbers }
+    struct ConstantEye { eye: Numbers }
     struct AlphaTest { function: Name<state::CompareFunction>, reference: u32 }
     struct DepthTest { function: Name<state::CompareFunction>, write: bool }
     struct Blend {

@@ -1,19 +1,26 @@
 //! TEX-7, TEX-8: texel indices outside the image.
 
-use crate::state::AddressMode;
+use crate::state::{AddressMode, BORDER_TEXELS};
 
-/// The index inside 0..n of texel `i`, or `None` for the border colour. `n` is a power of two.
+/// The index of texel `i` inside 0..n, or `None` for the border colour. With border texels [`AddressMode::ClampToBorder`] reaches them:
+/// -4..n+4; the other modes stay inside.
 #[inline(always)]
-pub fn address(mode: AddressMode, i: i64, n: u32) -> Option<u32> {
-    let last = i64::from(n) - 1;
+pub fn address(mode: AddressMode, i: i64, n: u32, border_texels: bool) -> Option<i64> {
+    let size = i64::from(n);
     match mode {
-        AddressMode::Wrap => Some((i & last) as u32),
+        AddressMode::Wrap if n.is_power_of_two() => Some(i & (size - 1)),
+        AddressMode::Wrap => Some(i.rem_euclid(size)),
         AddressMode::Mirror => {
-            let folded = i & (2 * last + 1);
-            Some(folded.min(2 * last + 1 - folded) as u32)
+            let last = 2 * size - 1;
+            let folded = if n.is_power_of_two() { i & last } else { i.rem_euclid(2 * size) };
+            Some(folded.min(last - folded))
         }
-        AddressMode::ClampToEdge | AddressMode::Clamp => Some(i.clamp(0, last) as u32),
-        AddressMode::ClampToBorder => u32::try_from(i).ok().filter(|i| *i < n),
+        AddressMode::ClampToEdge | AddressMode::Clamp => Some(i.clamp(0, size - 1)),
+        AddressMode::ClampToBorder if border_texels => {
+            let beyond = i64::from(BORDER_TEXELS);
+            Some(i.clamp(-beyond, size - 1 + beyond))
+        }
+        AddressMode::ClampToBorder => (0..size).contains(&i).then_some(i),
     }
 }
 
@@ -21,18 +28,20 @@ pub fn address(mode: AddressMode, i: i64, n: u32) -> Option<u32> {
 mod tests {
     use super::*;
 
-    /// Every mode for power-of-two sizes up to 64, against its statement.
+    /// Every mode for all sizes up to 64, against its statement.
     #[test]
     fn modes_by_their_statement() {
-        for n in [1_i64, 2, 4, 8, 16, 32, 64] {
+        for n in 1..=64_i64 {
             for i in -4096..=4096_i64 {
-                let got = |mode| address(mode, i, n as u32).map(i64::from);
+                let got = |mode| address(mode, i, n as u32, false);
                 assert_eq!(got(AddressMode::Wrap), Some(i.rem_euclid(n)));
                 let period = i.rem_euclid(2 * n);
                 assert_eq!(got(AddressMode::Mirror), Some(if period < n { period } else { 2 * n - 1 - period }));
                 assert_eq!(got(AddressMode::ClampToEdge), Some(i.max(0).min(n - 1)));
                 assert_eq!(got(AddressMode::Clamp), got(AddressMode::ClampToEdge));
                 assert_eq!(got(AddressMode::ClampToBorder), (0..n).contains(&i).then_some(i));
+                let bordered = address(AddressMode::ClampToBorder, i, n as u32, true);
+                assert_eq!(bordered, Some(i.max(-4).min(n + 3)));
             }
         }
     }

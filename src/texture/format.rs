@@ -15,109 +15,168 @@ pub fn replicate6(v: u32) -> u8 {
     (v << 2 | v >> 4) as u8
 }
 
-/// R, G, B, A bytes of a raw texel.
+/// R, G, B, A bytes of a raw texel. Texels of P8 are looked up first, and those of compressed formats
+/// [decoded](super::compressed::decode): here they are zero.
 #[inline(always)]
 pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
     let byte = |shift: u32| (word >> shift) as u8;
+    let five = |shift: u32| replicate5(word >> shift & 31);
+    let six = |shift: u32| replicate6(word >> shift & 63);
     match format {
-        TextureFormat::A8R8G8B8 => [byte(16), byte(8), byte(0), byte(24)],
+        TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => [byte(16), byte(8), byte(0), byte(24)],
         TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), 255],
-        TextureFormat::R5G6B5 => [replicate5(word >> 11 & 31), replicate6(word >> 5 & 63), replicate5(word & 31), 255],
-        TextureFormat::X1R5G5B5 => {
-            [replicate5(word >> 10 & 31), replicate5(word >> 5 & 31), replicate5(word & 31), 255]
-        }
-        TextureFormat::A1R5G5B5 => {
-            let a = if word >> 15 & 1 == 0 { 0 } else { 255 };
-            [replicate5(word >> 10 & 31), replicate5(word >> 5 & 31), replicate5(word & 31), a]
-        }
         TextureFormat::A8B8G8R8 => [byte(0), byte(8), byte(16), byte(24)],
         TextureFormat::B8G8R8A8 => [byte(8), byte(16), byte(24), byte(0)],
         TextureFormat::R8G8B8A8 => [byte(24), byte(16), byte(8), byte(0)],
-        TextureFormat::R6G5B5 => [replicate6(word >> 10 & 63), replicate5(word >> 5 & 31), replicate5(word & 31), 255],
+        TextureFormat::R5G6B5 => [five(11), six(5), five(0), 255],
+        TextureFormat::R6G5B5 => [six(10), five(5), five(0), 255],
+        TextureFormat::X1R5G5B5 => [five(10), five(5), five(0), 255],
+        TextureFormat::A1R5G5B5 => [five(10), five(5), five(0), if word >> 15 & 1 == 0 { 0 } else { 255 }],
         TextureFormat::A4R4G4B4 => [8, 4, 0, 12].map(|shift| (word >> shift & 15) as u8 * 17),
+        TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
         TextureFormat::I8 => [byte(0); 4],
+        TextureFormat::A8 => [255, 255, 255, byte(0)],
         TextureFormat::A8L8 => [byte(0), byte(0), byte(0), byte(8)],
+        TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
         TextureFormat::R8B8 => [byte(8), byte(0), byte(0), byte(8)],
-        TextureFormat::R16B16 => [byte(16), byte(8), byte(0), byte(24)],
         TextureFormat::Y16 => [255, byte(8), byte(0), 255],
         TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => [0; 4],
-        TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
-        TextureFormat::A8 => [255, 255, 255, byte(0)],
-        TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
     }
 }
 
-/// Whether channels of the format have less than 8 bits, so that widening them is off.
+/// Whether channels of the format have 5 or 6 bits, whose widening is off; 1 and 4 bits widen exactly.
 pub fn is_narrow(format: TextureFormat) -> bool {
-    matches!(
-        format,
-        TextureFormat::R5G6B5
-            | TextureFormat::R6G5B5
-            | TextureFormat::X1R5G5B5
-            | TextureFormat::A1R5G5B5
-            | TextureFormat::A4R4G4B4
-    )
+    fields(format).is_some()
 }
 
-/// [`expand`] in a lane, whose ideal takes 5-bit channels as v/31. Signed channels (TEX-18) come as their two's complement value,
-/// s/128 in the ideal.
+/// Shift and largest value of red, green and blue where the format gives them 5 or 6 bits.
+#[inline(always)]
+fn fields(format: TextureFormat) -> Option<[(u32, u32); 3]> {
+    match format {
+        TextureFormat::R5G6B5 => Some([(11, 31), (5, 63), (0, 31)]),
+        TextureFormat::R6G5B5 => Some([(10, 63), (5, 31), (0, 31)]),
+        TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5 => Some([(10, 31), (5, 31), (0, 31)]),
+        _ => None,
+    }
+}
+
+/// [`expand`] in a lane, whose ideal takes 5-bit channels as v/31 and 6-bit ones as v/63. Signed channels (TEX-18) come as their two's
+/// complement value, s/128 in the ideal.
 #[inline(always)]
 pub fn lanes<L: Lane>(format: TextureFormat, word: u32, signed: &[bool; 4]) -> [L; 4] {
-    let [r, g, b, a] = expand(format, word).map(i32::from);
-    let whole = |byte: i32| L::texel(byte, byte, 255);
-    let field = |byte: i32, shift: u32, most: u32| L::texel(byte, (word >> shift & most) as i32, most as i32);
-    let plain = match format {
-        TextureFormat::R5G6B5 => [field(r, 11, 31), field(g, 5, 63), field(b, 0, 31), whole(a)],
-        TextureFormat::X1R5G5B5 | TextureFormat::A1R5G5B5 => {
-            [field(r, 10, 31), field(g, 5, 31), field(b, 0, 31), whole(a)]
+    let bytes = expand(format, word).map(i32::from);
+    let mut plain = bytes.map(|byte| L::texel(byte, byte, 255));
+    if let Some(fields) = fields(format) {
+        for (n, (shift, most)) in fields.into_iter().enumerate() {
+            plain[n] = L::texel(bytes[n], (word >> shift & most) as i32, most as i32);
         }
-        TextureFormat::R6G5B5 => [field(r, 10, 63), field(g, 5, 31), field(b, 0, 31), whole(a)],
-        _ => [whole(r), whole(g), whole(b), whole(a)],
-    };
+    }
     if *signed == [false; 4] {
         return plain;
     }
-    let s = [r, g, b, a].map(|byte| i32::from(byte as u8 as i8));
+    let s = bytes.map(|byte| i32::from(byte as u8 as i8));
     std::array::from_fn(|n| if signed[n] { L::texel(s[n], s[n], 128) } else { plain[n] })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::Named;
 
-    /// Every 16-bit texel: replication is the nearest that keeps both ends, and channels agree with bytes.
+    /// Where R, G, B, A of a format come from.
+    #[derive(Clone, Copy)]
+    enum Channel {
+        /// Bits of the word: the lowest, and how many.
+        Bits(u32, u32),
+        /// The same value whatever the word.
+        Fixed(u8),
+    }
+    use Channel::{Bits, Fixed};
+
+    /// Every format whose texels are expanded, channel by channel.
+    fn channels(format: TextureFormat) -> Option<[Channel; 4]> {
+        let byte = |shift| Bits(shift, 8);
+        Some(match format {
+            TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => [byte(16), byte(8), byte(0), byte(24)],
+            TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), Fixed(255)],
+            TextureFormat::A8B8G8R8 => [byte(0), byte(8), byte(16), byte(24)],
+            TextureFormat::B8G8R8A8 => [byte(8), byte(16), byte(24), byte(0)],
+            TextureFormat::R8G8B8A8 => [byte(24), byte(16), byte(8), byte(0)],
+            TextureFormat::R5G6B5 => [Bits(11, 5), Bits(5, 6), Bits(0, 5), Fixed(255)],
+            TextureFormat::R6G5B5 => [Bits(10, 6), Bits(5, 5), Bits(0, 5), Fixed(255)],
+            TextureFormat::X1R5G5B5 => [Bits(10, 5), Bits(5, 5), Bits(0, 5), Fixed(255)],
+            TextureFormat::A1R5G5B5 => [Bits(10, 5), Bits(5, 5), Bits(0, 5), Bits(15, 1)],
+            TextureFormat::A4R4G4B4 => [Bits(8, 4), Bits(4, 4), Bits(0, 4), Bits(12, 4)],
+            TextureFormat::L8 => [byte(0), byte(0), byte(0), Fixed(255)],
+            TextureFormat::I8 => [byte(0); 4],
+            TextureFormat::A8 => [Fixed(255), Fixed(255), Fixed(255), byte(0)],
+            TextureFormat::A8L8 => [byte(0), byte(0), byte(0), byte(8)],
+            TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
+            TextureFormat::R8B8 => [byte(8), byte(0), byte(0), byte(8)],
+            TextureFormat::Y16 => [Fixed(255), byte(8), byte(0), Fixed(255)],
+            TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => return None,
+        })
+    }
+
+    /// Bits repeated until they fill a byte, one by one.
+    fn repeated(value: u32, bits: u32) -> u8 {
+        (0..8).fold(0, |byte, n| byte << 1 | (value >> (bits - 1 - n % bits) & 1) as u8)
+    }
+
+    /// Bytes, the i32 lane and the ideal of one word.
+    #[allow(clippy::float_arithmetic, reason = "the ideal against its formula")]
+    fn check(format: TextureFormat, word: u32) {
+        let Some(channels) = channels(format) else { return };
+        let bytes = expand(format, word);
+        let (fixed, ideal) = (lanes::<i32>(format, word, &[false; 4]), lanes::<f64>(format, word, &[false; 4]));
+        for (n, from) in channels.into_iter().enumerate() {
+            let (byte, real) = match from {
+                Fixed(byte) => (byte, f64::from(byte)),
+                Bits(shift, bits) => {
+                    let (value, most) = (word >> shift & ((1 << bits) - 1), (1 << bits) - 1);
+                    (repeated(value, bits), 255.0 * f64::from(value) / f64::from(most))
+                }
+            };
+            assert_eq!(bytes[n], byte, "{format:?} {word:#x} channel {n}");
+            assert_eq!(fixed[n], i32::from(byte));
+            let off = (ideal[n] - real).abs();
+            assert!(off < 1e-9, "{format:?} {word:#x} channel {n}: {} is not {real}", ideal[n]);
+            let exact = f64::from(byte) == ideal[n];
+            assert!(exact || is_narrow(format), "{format:?} {word:#x} channel {n}");
+        }
+    }
+
+    /// Every texel of 16 bits or less of every format.
     #[test]
-    fn sixteen_bit_formats() {
-        for word in 0..=0xffff_u32 {
-            let [r, g, b, a] = expand(TextureFormat::R5G6B5, word);
-            assert_eq!(
-                (r >> 3, g >> 2, b >> 3, a),
-                ((word >> 11) as u8, (word >> 5 & 63) as u8, (word & 31) as u8, 255)
-            );
-            assert_eq!((r & 7, g & 3, b & 7), (r >> 5, g >> 6, b >> 5));
-            let [r, g, b, a] = expand(TextureFormat::X1R5G5B5, word);
-            assert_eq!(
-                (r >> 3, g >> 3, b >> 3, a),
-                ((word >> 10 & 31) as u8, (word >> 5 & 31) as u8, (word & 31) as u8, 255)
-            );
-            assert_eq!(
-                expand(TextureFormat::G8B8, word),
-                [word as u8, (word >> 8) as u8, word as u8, (word >> 8) as u8]
-            );
-            let a = if word & 0x8000 == 0 { 0 } else { 255 };
-            assert_eq!(expand(TextureFormat::A1R5G5B5, word), [r, g, b, a]);
-            for format in [TextureFormat::R5G6B5, TextureFormat::X1R5G5B5, TextureFormat::A1R5G5B5, TextureFormat::G8B8]
-            {
-                assert_eq!(lanes::<i32>(format, word, &[false; 4]), expand(format, word).map(i32::from));
+    fn every_small_texel() {
+        for format in TextureFormat::ALL.iter().filter(|format| format.bytes() <= 2) {
+            for word in 0..1 << (8 * format.bytes()) {
+                check(*format, word);
             }
         }
     }
 
+    /// Each byte of each 32-bit format takes every value while the others hold something else.
     #[test]
-    fn bytes_and_fixed_channels() {
+    fn every_byte_of_large_texels() {
+        for format in TextureFormat::ALL.iter().filter(|format| format.bytes() == 4) {
+            for byte in 0..=255_u32 {
+                for shift in [0, 8, 16, 24] {
+                    let others = 0x1234_5678 & !(255 << shift);
+                    check(*format, byte << shift | others);
+                }
+            }
+        }
         assert_eq!(expand(TextureFormat::A8R8G8B8, 0x1122_3344), [0x22, 0x33, 0x44, 0x11]);
-        assert_eq!(expand(TextureFormat::X8R8G8B8, 0x1122_3344), [0x22, 0x33, 0x44, 255]);
-        assert_eq!(expand(TextureFormat::L8, 0x7f), [0x7f, 0x7f, 0x7f, 255]);
-        assert_eq!(expand(TextureFormat::A8, 0x7f), [255, 255, 255, 0x7f]);
+    }
+
+    #[test]
+    fn signed_channels() {
+        for byte in 0..=255_u32 {
+            let s = i32::from(byte as u8 as i8);
+            let word = byte << 24 | byte << 16 | byte << 8 | byte;
+            let [r, g, b, a] = lanes::<i32>(TextureFormat::A8R8G8B8, word, &[true, false, true, false]);
+            assert_eq!([r, g, b, a], [s, byte as i32, s, byte as i32]);
+        }
     }
 }

@@ -17,8 +17,28 @@ named! {
         Int4 = "INT-4",
         /// The same of projective coordinates.
         Tex15 = "TEX-15",
-        /// Texels of few bits.
+        /// The same of cube maps.
+        Tex12 = "TEX-12",
+        /// Dependent coordinates of the dot unit, as the weights of the filter.
+        Tsh4 = "TSH-4",
+        /// The same of dependent reads by bytes.
+        Tsh6 = "TSH-6",
+        /// The same of bump environment maps.
+        Tsh7 = "TSH-7",
+        /// Luminance.
+        Tsh8 = "TSH-8",
+        /// Coordinates as colours.
+        Tsh9 = "TSH-9",
+        /// Texels of few bits, and bytes of 16-bit halves.
         Tex1 = "TEX-1",
+        /// Compressed texels.
+        Tex2 = "TEX-2",
+        /// DXT1, dithered.
+        Tex3 = "TEX-3",
+        /// DXT1 in few bits.
+        Tex4 = "TEX-4",
+        /// The weight of a level.
+        Tex9 = "TEX-9",
         /// One linear step of the filter.
         Tex6 = "TEX-6",
         /// Signed texels, filtered.
@@ -72,8 +92,13 @@ impl Rule {
     /// The part that the rule's error counts in.
     pub fn part(self) -> Part {
         match self {
-            Rule::Num4 | Rule::Num6 | Rule::Int5 | Rule::Int2 | Rule::Int4 | Rule::Tex15 => Part::Interpolation,
-            Rule::Tex1 | Rule::Tex6 | Rule::Tex18 => Part::Filtering,
+            Rule::Num4 | Rule::Num6 | Rule::Int5 | Rule::Int2 | Rule::Int4 | Rule::Tex12 | Rule::Tex15 => {
+                Part::Interpolation
+            }
+            Rule::Tsh4 | Rule::Tsh6 | Rule::Tsh7 | Rule::Tsh9 => Part::Interpolation,
+            Rule::Tex1 | Rule::Tex2 | Rule::Tex3 | Rule::Tex4 | Rule::Tex6 | Rule::Tex9 | Rule::Tex18 | Rule::Tsh8 => {
+                Part::Filtering
+            }
             Rule::Cmb2 | Rule::Cmb3 | Rule::Cmb4 | Rule::Cmb5 => Part::Expansion,
             Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 | Rule::Cmb9 | Rule::Num3 | Rule::Fin2 | Rule::Fin4 => Part::Product,
             Rule::Rop2 | Rule::Rop5 => Part::Store,
@@ -86,8 +111,16 @@ named! {
     pub enum Decision {
         /// Which pixels a triangle covers.
         Coverage = "coverage",
+        /// Which face of a cube map.
+        Face = "face",
+        /// Which filter and levels.
+        Level = "level",
         /// Which texels are read.
         Texel = "texel",
+        /// Which texel a dependent read is sent to.
+        Dependent = "dependent texel",
+        /// What the texture shader drops.
+        Kill = "texture shader",
         /// What a mux takes.
         Mux = "mux",
         /// The alpha test.

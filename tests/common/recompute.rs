@@ -2,6 +2,9 @@
 //!
 //! Written from `docs/trace-format.md`, against the JSON document alone; nothing of the model is used.
 
+#[path = "dxt.rs"]
+mod dxt;
+
 use serde_json::Value;
 use std::collections::BTreeMap;
 
@@ -24,7 +27,23 @@ fn number(v: &Value) -> Number {
 
 /// Operands that are given with the step itself.
 fn is_parameter(name: &str) -> bool {
-    let parameters = ["x", "y", "size", "lowered", "write_mask", "z_max", "alpha_test.reference", "r", "g", "b", "a"];
+    let parameters = [
+        "x",
+        "y",
+        "size",
+        "lowered",
+        "lod_bias",
+        "min_lod",
+        "max_lod",
+        "levels",
+        "write_mask",
+        "z_max",
+        "alpha_test.reference",
+        "r",
+        "g",
+        "b",
+        "a",
+    ];
     let formats = [
         "A8R8G8B8",
         "X8R8G8B8",
@@ -34,6 +53,14 @@ fn is_parameter(name: &str) -> bool {
         "L8",
         "A8",
         "G8B8",
+        "A8B8G8R8",
+        "B8G8R8A8",
+        "R8G8B8A8",
+        "R6G5B5",
+        "A4R4G4B4",
+        "I8",
+        "A8L8",
+        "R8B8",
         "X8R8G8B8Z",
         "X8R8G8B8O",
         "X1R5G5B5Z",
@@ -70,7 +97,7 @@ pub fn fragment(draw: &Value, policies: &Value) -> Result<BTreeMap<String, Numbe
             inputs.push((label.to_string(), given));
         }
         let shown = number(step);
-        let computed = if ["given", "fetch", "border_color"].contains(&operation) {
+        let computed = if ["given", "fetch", "palette", "border_color"].contains(&operation) {
             shown
         } else {
             apply(operation, &inputs, policies).ok_or_else(|| format!("{name}: unknown operation {operation}"))?
@@ -189,6 +216,37 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         }
         "factor_byte" => byte((v(0) - (v(0) >> 8)) >> 4),
         // Texture units.
+        "cube_face" => plain(cube_face(inputs)),
+        "floor_face_u" | "floor_face_v" => {
+            let [s, m] = on_face(inputs, operation.ends_with('u'));
+            if m == 0 {
+                return Some(Number { value: 0, per_one: 256 });
+            }
+            Number { value: (128 * v(13) * (s + m)).div_euclid(m) - v(14), per_one: 256 }
+        }
+        "quad_face_u" | "quad_face_v" => {
+            let [s, m] = on_face(inputs, operation.ends_with('u'));
+            Number { value: (32768 * v(13) * (s + m)).div_euclid(m), per_one: 65536 }
+        }
+        "quad_plane" => {
+            let sum = |a: usize| (0..3).map(|k| v(a + k) * v(3 + k)).sum::<i128>();
+            Number { value: (256 * sum(0)).div_euclid(sum(6)), per_one: 65536 }
+        }
+        "quad_ratio" => {
+            let sum = |a: usize| (0..3).map(|k| v(a + k) * v(6 + k)).sum::<i128>();
+            Number { value: (65536 * v(9) * sum(0)).div_euclid(sum(3)), per_one: 65536 }
+        }
+        "log2_ratio" => Number { value: log2_ratio([v(0), v(1), v(2), v(3), v(4), v(5)]), per_one: 256 },
+        "biased_lod" => Number { value: (v(0) + v(1)).max(v(2)).min(v(3)), per_one: 256 },
+        "level_0" => plain(0),
+        "nearest_level" => plain(((v(0) + 128) >> 8).min(v(1) - 1)),
+        "lower_level" => plain((v(0) >> 8).min(v(1) - 1)),
+        "upper_level" => plain(((v(0) >> 8) + 1).min(v(1) - 1)),
+        "lod_weight" => Number { value: v(0) & 255, per_one: 256 },
+        "decode_dxt1" | "decode_dxt1_dithered" | "decode_dxt3" | "decode_dxt5" => {
+            let words: Vec<i128> = inputs.iter().map(|input| input.1.value).collect();
+            plain(dxt::decode(operation, &words))
+        }
         "nearest_texel" => plain(v(0) >> 8),
         "linear_texel" => plain((v(0) - 128) >> 8),
         "linear_texel_next" => plain(((v(0) - 128) >> 8) + 1),
@@ -200,9 +258,17 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         }
         "clamp" | "clamp_to_edge" => plain(v(0).clamp(0, v(1) - 1)),
         "clamp_to_border" => plain(v(0)),
+        "clamp_to_border_texels" => plain(v(0).clamp(-4, v(1) + 3)),
         "expand_texel" => byte(texel(&inputs[1].0, v(0), &inputs[2].0)?),
         "expand_texel_signed" => byte(i128::from(texel(&inputs[1].0, v(0), &inputs[2].0)? as u8 as i8)),
-        "mix" => byte((v(0) * (256 - v(2)) + v(1) * v(2) + 128) >> 8),
+        "mix" => Number { value: (v(0) * (256 - v(2)) + v(1) * v(2) + 128) >> 8, per_one: n(0).per_one },
+        "high_half" => sixteen_bits(v(0) >> 16),
+        "low_half" => sixteen_bits(v(0) & 0xffff),
+        "high_half_signed" => sixteen_bits(i128::from((v(0) >> 16) as u16 as i16)),
+        "low_half_signed" => sixteen_bits(i128::from(v(0) as u16 as i16)),
+        "high_byte" => byte(v(0) >> 8),
+        "low_byte" => byte(v(0) & 255),
+        "high_byte_doubled" => byte(2 * (v(0) >> 8)),
         "double" => byte(2 * v(0)),
         "write" | "copy" => n(0),
         // Combiners.
@@ -343,6 +409,59 @@ fn power_of_two(m: i128, e: i128) -> Number {
     Number { value, per_one: 1 << 32 }
 }
 
+fn sixteen_bits(value: i128) -> Number {
+    Number { value, per_one: 65535 }
+}
+
+/// The three sums of a direction: planes 0 to 8, edges 9 to 11.
+fn direction(inputs: &[(String, Number)]) -> [i128; 3] {
+    let v = |k: usize| inputs[k].1.value;
+    [0, 3, 6].map(|first| (0..3).map(|k| v(first + k) * v(9 + k)).sum())
+}
+
+fn cube_face(inputs: &[(String, Number)]) -> i128 {
+    let d = direction(inputs);
+    let largest = d.iter().map(|c| c.abs()).max().unwrap();
+    let axis = d.iter().position(|c| c.abs() == largest).unwrap();
+    2 * axis as i128 + i128::from(d[axis] < 0)
+}
+
+/// s or t, and m, of a direction on a face (input 12).
+fn on_face(inputs: &[(String, Number)], s: bool) -> [i128; 2] {
+    let [x, y, z] = direction(inputs);
+    let (sc, tc, m) = match inputs[12].1.value {
+        0 => (-z, -y, x),
+        1 => (z, -y, -x),
+        2 => (x, z, y),
+        3 => (x, -z, -y),
+        4 => (x, -y, z),
+        _ => (-x, -y, -z),
+    };
+    [if s { sc } else { tc }, m]
+}
+
+/// floor(128 log2 n) - 4096 of the larger squared distance n.
+fn log2_ratio(uv: [i128; 6]) -> i128 {
+    let [u0, v0, u1, v1, u2, v2] = uv.map(|c| c.clamp(-(1 << 40), 1 << 40));
+    let n = ((u1 - u0).pow(2) + (v1 - v0).pow(2)).max((u2 - u0).pow(2) + (v2 - v0).pow(2)) as u128;
+    if n == 0 {
+        return -32768;
+    }
+    let exponent = n.ilog2();
+    // The mantissa, 1.0 to 2.0 with 60 fraction bits, squared seven times.
+    let mut mantissa = if exponent > 60 { n >> (exponent - 60) } else { n << (60 - exponent) };
+    let mut log = i128::from(exponent);
+    for _ in 0..7 {
+        mantissa = mantissa * mantissa >> 60;
+        log *= 2;
+        if mantissa >> 61 != 0 {
+            mantissa >>= 1;
+            log += 1;
+        }
+    }
+    log - 4096
+}
+
 fn channel(letter: &str) -> Option<usize> {
     ["r", "g", "b", "a"].iter().position(|l| *l == letter)
 }
@@ -355,6 +474,14 @@ fn texel(format: &str, word: i128, letter: &str) -> Option<i128> {
     Some(match format {
         "A8R8G8B8" => argb[c],
         "X8R8G8B8" => [argb[0], argb[1], argb[2], 255][c],
+        "A8B8G8R8" => [argb[2], argb[1], argb[0], argb[3]][c],
+        "B8G8R8A8" => [argb[1], argb[0], argb[3], argb[2]][c],
+        "R8G8B8A8" => [argb[3], argb[0], argb[1], argb[2]][c],
+        "R6G5B5" => [six(word >> 10 & 63), five(word >> 5 & 31), five(word & 31), 255][c],
+        "A4R4G4B4" => [word >> 8 & 15, word >> 4 & 15, word & 15, word >> 12][c] * 17,
+        "I8" => word,
+        "A8L8" => [word & 255, word & 255, word & 255, word >> 8][c],
+        "R8B8" => [word >> 8, word & 255, word & 255, word >> 8][c],
         "R5G6B5" => [five(word >> 11), six(word >> 5 & 63), five(word & 31), 255][c],
         "A1R5G5B5" => [five(word >> 10 & 31), five(word >> 5 & 31), five(word & 31), 255 * (word >> 15)][c],
         "X1R5G5B5" => [five(word >> 10 & 31), five(word >> 5 & 31), five(word & 31), 255][c],

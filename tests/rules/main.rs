@@ -13,4 +13,5 @@ mod interpolation;
 mod numbers;
 mod raster_operations;
 mod rasteriser;
+mod texture_levels;
 mod texture_units;

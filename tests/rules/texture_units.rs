@@ -50,9 +50,9 @@ fn examples_of_texture_units() {
     tex6.shows("the real number", 255.0 * mixed.step("texture0.r").ideal.unwrap(), 2, "47.85");
 
     let tex7 = example("TEX-7", "n = 8: wrap -1 is 7; mirror 8, 9, -1 are 7, 6, 0; clamp to edge 9 is 7.");
-    tex7.gives("wrap -1", address(AddressMode::Wrap, -1, 8), Some(7));
-    tex7.gives("mirror 8, 9, -1", [8, 9, -1].map(|i| address(AddressMode::Mirror, i, 8)), [7, 6, 0].map(Some));
-    tex7.gives("clamp to edge 9", address(AddressMode::ClampToEdge, 9, 8), Some(7));
+    tex7.gives("wrap -1", address(AddressMode::Wrap, -1, 8, false), Some(7));
+    tex7.gives("mirror 8, 9, -1", [8, 9, -1].map(|i| address(AddressMode::Mirror, i, 8, false)), [7, 6, 0].map(Some));
+    tex7.gives("clamp to edge 9", address(AddressMode::ClampToEdge, 9, 8, false), Some(7));
 
     let tex8 = example("TEX-8", "n = 8, texels 7 and 8: wrap mixes 7 and 0, clamp to edge 7 and 7.");
     let across = |mode: AddressMode| {

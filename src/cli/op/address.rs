@@ -3,7 +3,7 @@
 use clap::Args;
 use ninebit::state::{AddressMode, Named};
 use ninebit::texture::address::address;
-use ninebit::texture::unit::address_step;
+use ninebit::texture::report::address_step;
 use ninebit::trace::{Observer, plain};
 use serde_json::json;
 
@@ -78,10 +78,10 @@ impl Operation for Address {
     }
 
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
-        let texel = address(self.mode, values[0], self.size).map(i64::from);
+        let texel = address(self.mode, values[0], self.size, false);
         if O::ON {
             let inputs = vec![plain("index", values[0]), plain("size", i64::from(self.size))];
-            let mut step = address_step("address", "texel", self.mode, inputs, texel.unwrap_or(values[0]));
+            let mut step = address_step("address", "texel", self.mode, false, inputs, texel.unwrap_or(values[0]));
             if texel.is_none() {
                 step = step.note(Some("outside: the border colour".to_owned()));
             }

@@ -2,7 +2,8 @@
 
 use clap::Args;
 use ninebit::number::{Lane, Paired};
-use ninebit::state::{ShaderStage, TextureFormat, TextureUnit};
+use ninebit::state::{Level, ShaderStage, TextureFormat, TextureKind, TextureUnit};
+use ninebit::texture::report::Report;
 use ninebit::texture::unit::{self, PlannedUnit};
 use ninebit::trace::{Observer, Rule};
 use serde_json::json;
@@ -67,7 +68,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     // One channel stands for all: they do not touch each other.
     let state = TextureUnit { signed: [arguments.signed; 4], ..TextureUnit::new(0) };
     let stage = ShaderStage::conventional(0, true);
-    let unit = PlannedUnit { index: 0, state, stage, width: 1, height: 1, format: TextureFormat::A8R8G8B8, live: 1 };
+    let unit = PlannedUnit {
+        index: 0,
+        state,
+        stage,
+        kind: TextureKind::TwoDimensional,
+        format: TextureFormat::A8R8G8B8,
+        levels: vec![Level { offset: 0, width: 1, height: 1 }],
+        face_words: 1,
+        border: false,
+        dithered: false,
+        palette: None,
+        live: 1,
+    };
     drive(&Mix { unit, coordinates, columns }, &arguments.common)
 }
 
@@ -100,6 +113,7 @@ impl Operation for Mix {
     }
 
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
+        let report = Report { unit: &self.unit, prefix: "" };
         let exact = |value: i64| value as f64;
         let texel = |n: usize| {
             // As the unit expands texels: s/128 in the ideal of a signed channel.
@@ -109,12 +123,12 @@ impl Operation for Mix {
         let coordinates = [values[4], values[5]];
         let weights = if self.coordinates {
             let ideal = coordinates.map(exact);
-            unit::footprint_weights::<Paired, O>(&self.unit, coordinates, ideal, Rule::Int4, observer).1
+            unit::footprint_weights::<Paired, O>(&report, coordinates, ideal, Rule::Int4, observer).1
         } else {
             coordinates.map(|weight| Paired::weight(weight as i32, || exact(weight)))
         };
-        let mixed = unit::mix(&self.unit, [texel(0), texel(1), texel(2), texel(3)], weights, observer);
-        let register = unit::load(&self.unit, mixed, observer);
+        let mixed = unit::mix(&report, [texel(0), texel(1), texel(2), texel(3)], weights, observer);
+        let register = unit::load(&self.unit, mixed, "", observer);
         vec![("mix".to_owned(), json!(mixed[0].fixed)), ("register".to_owned(), json!(register[0].fixed))]
     }
 }

@@ -7,10 +7,16 @@ mod draw;
 mod input;
 mod matrix;
 mod names;
+mod palette;
 mod raster;
+mod shader;
 mod target;
 mod texture;
+mod texture_legal;
+mod texture_levels;
+mod texture_source;
 mod unit;
+mod unit_texture;
 mod vertex;
 
 use std::ops::Range;
@@ -85,7 +91,7 @@ pub(super) fn scene<'a>(
 
     let mut names = Names::read(reader, &file.names);
     let targets = target::targets(reader, &names, &file.targets);
-    let mut textures = texture::textures(reader, &names, &targets, &file.textures, folder);
+    let mut textures = texture::textures(reader, &names, &targets, &file, folder);
     let draws = draw::draws(reader, &mut names, &targets, &mut textures, &file.draws);
     names.warn_unused(reader);
     textures.warn_unused(reader);
@@ -93,8 +99,13 @@ pub(super) fn scene<'a>(
         return None;
     }
     let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().unzip();
-    let scene =
-        Scene { profile: reader.profile, targets: targets.list, textures: textures.list, palettes: Vec::new(), draws };
+    let scene = Scene {
+        profile: reader.profile,
+        targets: targets.list,
+        textures: textures.list,
+        palettes: textures.palettes.list,
+        draws,
+    };
     plan(reader, &scene, &spans).map(|plan| (scene, plan, spans))
 }
 

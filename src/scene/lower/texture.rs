@@ -1,21 +1,23 @@
-//! Textures: where their texels come from.
+//! Textures: kind, format, and how faces and levels are put together.
 
 use std::collections::HashMap;
 
 use super::names::Names;
+use super::palette::Palettes;
 use super::target::Targets;
+use super::texture_legal as legal;
+use super::texture_levels::{self, Wanted};
+use super::texture_source::{Given, Request, Sources, Variant, only};
 use super::*;
-use crate::scene::image::{self, ImageLimits};
-use crate::scene::path;
 use crate::scene::reader::Entry;
-use crate::state::Named;
-use crate::state::{Texels, Texture, TextureFormat, TextureImage, TextureKind};
-
-const SOURCES: &[&str] = &["File", "Texels", "Solid", "Checker", "Ramp", "Target"];
+use crate::state::{CUBE_FACES, Named, Texels, Texture, TextureFormat, TextureImage, TextureKind};
 
 /// The textures, and where they were named. A texture with errors keeps its name but has no index.
 pub(super) struct Textures {
     pub(super) list: Vec<Texture>,
+    /// Palette of each texture of the list, where it has one of its own.
+    pub(super) palette_of: Vec<Option<usize>>,
+    pub(super) palettes: Palettes,
     by_name: HashMap<String, Option<usize>>,
     names: Vec<(String, Range<usize>)>,
     used: Vec<bool>,
@@ -43,20 +45,28 @@ impl Textures {
                 reader.push(super::names::unused("texture", name, place.clone()));
             }
         }
+        self.palettes.warn_unused(reader);
     }
 }
 
-/// Reads every texture, files included.
+/// Reads every palette and texture, files included.
 pub(super) fn textures<'a>(
     reader: &mut Reader<'a>,
     names: &Names<'a>,
     targets: &Targets,
-    raw: &Option<Raw<'a, crate::scene::raw::Entries<'a, source::Texture<'a>>>>,
+    file: &source::Scene<'a>,
     folder: &Path,
 ) -> Textures {
-    let mut textures = Textures { list: Vec::new(), by_name: HashMap::new(), names: Vec::new(), used: Vec::new() };
-    let entries = reader.table("texture", raw);
-    if let Some(raw) = raw
+    let mut textures = Textures {
+        list: Vec::new(),
+        palette_of: Vec::new(),
+        palettes: Palettes::read(reader, &file.palettes),
+        by_name: HashMap::new(),
+        names: Vec::new(),
+        used: Vec::new(),
+    };
+    let entries = reader.table("texture", &file.textures);
+    if let Some(raw) = &file.textures
         && entries.len() > reader.limits.textures
     {
         let message = format!("{} textures are more than {}", entries.len(), reader.limits.textures);
@@ -68,12 +78,12 @@ pub(super) fn textures<'a>(
         );
         return textures;
     }
-    let mut left = reader.limits.texture_bytes;
+    let mut sources = Sources { names, folder, left: reader.limits.texture_bytes };
     for entry in entries {
-        let image = texture(reader, names, targets, &entry, folder, &mut left);
-        let index = image.map(|(format, image)| {
-            let kind = TextureKind::TwoDimensional;
-            textures.list.push(Texture { name: entry.name.clone(), kind, format, image });
+        let read = texture(reader, targets, &mut textures.palettes, &mut sources, &entry);
+        let index = read.map(|(texture, palette)| {
+            textures.list.push(texture);
+            textures.palette_of.push(palette);
             textures.list.len() - 1
         });
         textures.by_name.insert(entry.name.clone(), index);
@@ -83,338 +93,212 @@ pub(super) fn textures<'a>(
     textures
 }
 
-/// The colour at a column and row.
-type PixelAt = Box<dyn Fn(u32, u32) -> [u8; 4]>;
-
-/// Pixels before they are packed.
-struct Pixels {
-    width: u32,
-    height: u32,
-    pixels: Vec<[u8; 4]>,
-}
-
+/// One texture and its palette.
 fn texture<'a>(
     reader: &mut Reader<'a>,
-    names: &Names<'a>,
     targets: &Targets,
+    palettes: &mut Palettes,
+    sources: &mut Sources<'_, 'a>,
     entry: &Entry<'a, source::Texture<'a>>,
-    folder: &Path,
-    left: &mut u64,
-) -> Option<(TextureFormat, TextureImage)> {
+) -> Option<(Texture, Option<usize>)> {
     let opening = reader.range(entry.value.text.get(..1).unwrap_or(entry.value.text));
     let fields = reader.read(&entry.value)?;
-    if let Some(raw) = &fields.kind {
-        let (kind, _) =
-            reader.variant(raw, "texture kind", &["TwoDimensional", "Cube", "Rectangle", "ThreeDimensional"])?;
-        if kind > 0 {
-            reader.not_built(reader.span(raw), ["", "cube maps", "rectangle textures", "volume textures"][kind]);
-        }
-    }
-    reader.reserve(&fields.levels, "mipmap levels");
-    reader.reserve(&fields.palette, "palettes");
-    reader.reserve(&fields.border, "texture border texels");
-    let format = match &fields.format {
-        Some(raw) => {
-            let format = reader.name(raw)?;
-            if format.is_nv2a_only() && reader.profile == Profile::Nv10 {
-                let what = format!("texture format {}", format.name());
-                reader.push(target::only_nv2a("NB0320", reader.span(raw), &what, "TEX-1"));
-            }
-            if format == TextureFormat::P8 || format.is_compressed() {
-                reader.not_built(reader.span(raw), "palettes and compressed textures");
-            }
-            Some((format, reader.span(raw)))
-        }
+    let kind = match &fields.kind {
+        Some(raw) => Some(kind(reader, raw)?),
         None => None,
     };
-    let source = reader.required(&fields.source, "source", "texture", opening)?;
-    let (kind, rest) = reader.variant(&source, "texture source", SOURCES)?;
-    let words_as = format.as_ref().map_or(TextureFormat::A8R8G8B8, |(format, _)| *format);
-    let (width, height, words) = match SOURCES[kind] {
-        "Target" => return of_target(reader, targets, rest, format),
-        "Texels" => texels(reader, rest, words_as, left)?,
-        "File" => {
-            let Pixels { width, height, pixels } = file(reader, rest, folder, left)?;
-            check_sides(reader, reader.span(&source), width, height)?;
-            (width, height, pack(&pixels, words_as))
-        }
-        kind => {
-            let Pixels { width, height, pixels } = procedural(reader, names, rest, kind, left)?;
-            (width, height, pack(&pixels, words_as))
-        }
+    let format = match &fields.format {
+        Some(raw) => Some((format(reader, raw)?, reader.span(raw))),
+        None => None,
     };
-    let texels = Texels { width, height, levels: 1, border: false, words: words.into() };
-    Some((words_as, TextureImage::Texels(texels)))
+    let palette = fields.palette.as_ref().and_then(|raw| palettes.find(reader, raw));
+    let border = match &fields.border {
+        Some(raw) => reader.read(raw)?,
+        None => false,
+    };
+    let levels = match &fields.levels {
+        Some(raw) => texture_levels::wanted(reader, raw)?,
+        None => Wanted::Own,
+    };
+    let source = reader.required(&fields.source, "source", "texture", opening)?;
+    let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
+    let texture = if Variant::ALL[variant] == Variant::Target {
+        of_target(reader, targets, rest, kind, format, &fields, &entry.name)?
+    } else {
+        let request = Request {
+            format: format.as_ref().map(|(format, _)| *format),
+            faces: if kind == Some(TextureKind::Cube) { CUBE_FACES } else { 1 },
+            levels,
+            border,
+        };
+        let mut given = sources.read(reader, Variant::ALL[variant], &source, rest, &request)?;
+        if fields.mips.is_some() && levels != Wanted::Own {
+            let place = fields.levels.as_ref().map(|raw| reader.span(raw));
+            reader.push(
+                Diagnostic::error("NB0230", place, "levels are counted and listed at once")
+                    .label("counted here")
+                    .help("keep `levels`, or `mips`, whose sources are levels 1, 2 and so on"),
+            );
+            return None;
+        }
+        let made = given.palette.take().map(|entries| palettes.add(&entry.name, entries));
+        let place = given.place.clone();
+        let kind = settled_kind(reader, kind, &given)?;
+        let format_place = format.map_or_else(|| place.clone(), |(_, place)| place);
+        legal::format(reader, given.format, format_place)?;
+        if border {
+            let place = fields.border.as_ref().map_or(place.clone(), |raw| reader.span(raw));
+            legal::border(reader, kind, given.format, place)?;
+        }
+        let (width, height) = interior(reader, &given, border)?;
+        legal::sides(reader, kind, given.format, width, height, place)?;
+        match &fields.mips {
+            Some(raw) => texture_levels::listed(reader, sources, &mut given, raw, kind, &request)?,
+            None => texture_levels::counted(reader, sources, &mut given, levels, &request)?,
+        }
+        let levels = given.faces.first().map_or(1, |levels| levels.len() as u32);
+        legal::levels(reader, kind, levels, given.place.clone())?;
+        let format = given.format;
+        let words: Vec<u32> = given.faces.into_iter().flatten().flatten().collect();
+        let texels = Texels { width, height, levels, border, words: words.into() };
+        let texture = Texture { name: entry.name.clone(), kind, format, image: TextureImage::Texels(texels) };
+        return with_palette(reader, texture, palette.or(made), &fields);
+    };
+    with_palette(reader, texture, palette, &fields)
 }
 
-/// The only value in the parentheses of `Variant(value)`.
-fn only<'a, T>(reader: &mut Reader<'a>, text: &'a str, what: &str) -> Option<Raw<'a, T>> {
-    let raw = Raw::<crate::scene::raw::Tuple<'a, T>>::new(text);
-    let parts = reader.read(&raw)?.0;
-    if let [part] = parts[..] {
-        return Some(part);
+/// A palette goes with P8, and with nothing else. One that is wrong has been complained of.
+fn with_palette<'a>(
+    reader: &mut Reader<'a>,
+    texture: Texture,
+    palette: Option<usize>,
+    fields: &source::Texture<'a>,
+) -> Option<(Texture, Option<usize>)> {
+    if let Some(raw) = &fields.palette
+        && texture.format != TextureFormat::P8
+    {
+        let place = reader.span(raw);
+        reader.push(palette::not_read(place, texture.format));
+        return None;
     }
-    let place = reader.span(&raw);
-    reader.push(Diagnostic::error("NB0211", place, format!("expected {what} in these parentheses")).label("here"));
+    if fields.palette.is_some() && palette.is_none() {
+        return None;
+    }
+    Some((texture, palette))
+}
+
+fn kind<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<TextureKind> {
+    if raw.split() == ("ThreeDimensional", "") {
+        reader.not_built(reader.span(raw), "volume textures");
+        return None;
+    }
+    reader.name(&raw.as_other())
+}
+
+fn format<'a>(
+    reader: &mut Reader<'a>,
+    raw: &Raw<'a, crate::scene::reader::Name<TextureFormat>>,
+) -> Option<TextureFormat> {
+    if let (name @ ("YUY2" | "UYVY"), "") = raw.split() {
+        reader.push(
+            Diagnostic::error("NB0402", reader.span(raw), format!("how {name} texels are rounded is not known"))
+                .label("not modelled")
+                .rule("TEX-1")
+                .help("convert the picture to A8R8G8B8"),
+        );
+        return None;
+    }
+    reader.name(raw)
+}
+
+/// What the texture is sampled as: as written, or a cube map where there are six faces.
+fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &Given) -> Option<TextureKind> {
+    let cube = given.faces.len() == CUBE_FACES as usize;
+    let kind = written.unwrap_or(if cube { TextureKind::Cube } else { TextureKind::TwoDimensional });
+    if cube == (kind == TextureKind::Cube) {
+        return Some(kind);
+    }
+    let (message, help) = if cube {
+        (format!("six faces do not make a texture of kind {}", kind.name()), "write `kind: Cube`, or leave `kind` out")
+    } else {
+        (
+            "a cube map has six faces, and here is one picture".to_owned(),
+            "write `Faces(positive_x: ..., negative_x: ..., ...)`, or name a DDS file of a cube map",
+        )
+    };
+    reader.push(Diagnostic::error("NB0232", given.place.clone(), message).label("here").rule("TEX-12").help(help));
     None
+}
+
+/// Sides without border texels.
+fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32, u32)> {
+    let beyond = texture_levels::beyond(border);
+    let (width, height) = (given.width, given.height);
+    if width <= beyond || height <= beyond {
+        let message = format!("{width} x {height} texels leave nothing inside a border of 4 on each side");
+        reader.push(
+            Diagnostic::error("NB0231", given.place.clone(), message)
+                .label("too small")
+                .rule("TEX-7")
+                .help("with `border: true` a source has 8 columns and rows more than the texture"),
+        );
+        return None;
+    }
+    Some((width - beyond, height - beyond))
 }
 
 fn of_target<'a>(
     reader: &mut Reader<'a>,
     targets: &Targets,
     text: &'a str,
+    kind: Option<TextureKind>,
     format: Option<(TextureFormat, Range<usize>)>,
-) -> Option<(TextureFormat, TextureImage)> {
+    fields: &source::Texture<'a>,
+    name: &str,
+) -> Option<Texture> {
     let raw = only::<String>(reader, text, "the name of one target")?;
     let index = targets.find(reader, &raw)?;
     let target = &targets.list[index];
+    let place = reader.span(&raw);
+    let kind = kind.unwrap_or(TextureKind::TwoDimensional);
+    let extra = [
+        (kind == TextureKind::Cube).then(|| (place.clone(), "face of a cube map")),
+        fields.levels.as_ref().map(|raw| (reader.span(raw), "level of several")),
+        fields.mips.as_ref().map(|raw| (reader.span(raw), "level of several")),
+        fields.border.as_ref().map(|raw| (reader.span(raw), "texture with border texels")),
+    ];
+    if let Some((place, what)) = extra.into_iter().flatten().next() {
+        reader.push(
+            Diagnostic::error("NB0232", place, format!("a render target cannot be a {what}"))
+                .label("does not go with `Target`")
+                .help("a target is sampled as one picture: `TwoDimensional` or `Rectangle`, one level, no border"),
+        );
+        return None;
+    }
     let own = target.format.texture_format();
-    let format = match format {
+    let (format, format_place) = match format {
+        Some((format, place)) if format == TextureFormat::P8 => {
+            reader.push(
+                Diagnostic::error("NB0232", place, "a render target does not hold indices of a palette")
+                    .label("does not go with `Target`")
+                    .help(format!("leave `format` out, which means {own:?} here")),
+            );
+            return None;
+        }
         Some((format, place)) if format.bytes() != target.format.bytes() => {
             let (texel, pixel) = (format.bytes(), target.format.bytes());
+            let of = if format.is_compressed() { "a block" } else { "a texel" };
             reader.push(
-                Diagnostic::error("NB0218", place, format!("a texel of {texel} bytes cannot show a pixel of {pixel}"))
+                Diagnostic::error("NB0218", place, format!("{of} of {texel} bytes cannot show a pixel of {pixel}"))
                     .label("another size")
                     .help(format!("leave `format` out, which means {own:?} here, or take one of {pixel} bytes")),
             );
             return None;
         }
-        Some((format, _)) => format,
-        None => own,
+        Some((format, place)) => (format, place),
+        None => (own, place.clone()),
     };
-    check_sides(reader, reader.span(&raw), target.width, target.height)?;
-    Some((format, TextureImage::Target { target: index }))
-}
-
-/// Sides are powers of two, within what the chip and the limits allow.
-fn check_sides(reader: &mut Reader<'_>, place: Range<usize>, width: u32, height: u32) -> Option<()> {
-    let most = most_texels(reader);
-    if width.max(height) > most {
-        let on = if most < 4096 { "; profile Nv2a allows 4096" } else { "" };
-        reader.push(
-            Diagnostic::error("NB0321", place, format!("a texture of {width} x {height} is too large"))
-                .label(format!("a side has at most {most} texels on {:?}", reader.profile))
-                .help(format!("scale it down{on}")),
-        );
-        return None;
-    }
-    if !(width.is_power_of_two() && height.is_power_of_two()) {
-        let next = |side: u32| side.max(1).checked_next_power_of_two().unwrap_or(most).min(most);
-        reader.push(
-            Diagnostic::error("NB0219", place, format!("a texture cannot be {width} x {height}"))
-                .label("sides must be powers of two")
-                .rule("TEX-7")
-                .help(format!("make it {} x {}, for example", next(width), next(height))),
-        );
-        return None;
-    }
-    Some(())
-}
-
-fn most_texels(reader: &Reader<'_>) -> u32 {
-    let chip = if reader.profile == Profile::Nv10 { 2048 } else { 4096 };
-    reader.limits.texture_side.min(chip)
-}
-
-/// Takes the memory of a texture off what is left.
-fn afford(reader: &mut Reader<'_>, place: Range<usize>, width: u32, height: u32, left: &mut u64) -> Option<()> {
-    let bytes = 4 * u64::from(width) * u64::from(height);
-    let Some(rest) = left.checked_sub(bytes) else {
-        let message = format!("the textures take more than {} bytes together", reader.limits.texture_bytes);
-        reader.push(
-            Diagnostic::error("NB0607", place, message)
-                .label(format!("{bytes} more bytes here"))
-                .help("make the textures smaller, or fewer; `ninebit limits` prints what is allowed"),
-        );
-        return None;
-    };
-    *left = rest;
-    Some(())
-}
-
-fn file<'a>(reader: &mut Reader<'a>, text: &'a str, folder: &Path, left: &mut u64) -> Option<Pixels> {
-    let raw = only::<String>(reader, text, "the name of one file")?;
-    let name = reader.read(&raw)?;
-    let place = reader.span(&raw);
-    let path = match path::resolve(folder, &name) {
-        Ok(path) => path,
-        Err(error) => {
-            reader
-                .push(Diagnostic::error(error.code(), place, error.to_string()).label("this file").help(error.help()));
-            return None;
-        }
-    };
-    let limits = ImageLimits {
-        maximum_side: reader.limits.texture_side,
-        maximum_decoded_bytes: (*left).min(64 << 20),
-        maximum_file_bytes: reader.limits.image_file_bytes,
-    };
-    match image::load(&path, &limits) {
-        Ok(image) => {
-            afford(reader, place, image.width, image.height, left)?;
-            Some(Pixels { width: image.width, height: image.height, pixels: image.pixels })
-        }
-        Err(error) => {
-            // The name as the scene has it: where the folder lies does not matter here.
-            let message = error.to_string().replace(&path.display().to_string(), &name);
-            reader.push(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()));
-            None
-        }
-    }
-}
-
-fn sides<'a>(
-    reader: &mut Reader<'a>,
-    text: &'a str,
-    width: &Option<Raw<'a, u32>>,
-    height: &Option<Raw<'a, u32>>,
-    left: &mut u64,
-) -> Option<(u32, u32)> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let width = reader.required(width, "width", "texture", opening.clone());
-    let height = reader.required(height, "height", "texture", opening);
-    let (width, height) = (width?, height?);
-    let place = reader.span(&width).start..reader.span(&height).end.max(reader.span(&width).end);
-    let (width, height) = (reader.read(&width)?, reader.read(&height)?);
-    check_sides(reader, place.clone(), width, height)?;
-    afford(reader, place, width, height, left)?;
-    Some((width, height))
-}
-
-/// Raw words in hexadecimal, a text for each row.
-fn texels<'a>(
-    reader: &mut Reader<'a>,
-    text: &'a str,
-    format: TextureFormat,
-    left: &mut u64,
-) -> Option<(u32, u32, Vec<u32>)> {
-    let raw = Raw::<source::TexelRows<'a>>::new(text);
-    let fields = reader.read(&raw)?;
-    let (width, height) = sides(reader, text, &fields.width, &fields.height, left)?;
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let list = reader.required(&fields.rows, "rows", "texture", opening)?;
-    let rows = reader.read(&list)?;
-    let digits = 2 * format.bytes() as usize;
-    let help = format!("write {width} words of {digits} hexadecimal digits in each of {height} rows, for {format:?}");
-    if rows.len() != height as usize {
-        let message = format!("{} rows of texels for a height of {height}", rows.len());
-        let place = reader.span(&list);
-        reader.push(Diagnostic::error("NB0220", place, message).label("another number of rows").help(help));
-        return None;
-    }
-    let mut words = Vec::with_capacity(width as usize * height as usize);
-    for raw in &rows {
-        let row = reader.read(raw)?;
-        let mut count = 0;
-        for word in row.split_ascii_whitespace() {
-            let valid = word.len() == digits && word.bytes().all(|digit| digit.is_ascii_hexdigit());
-            let Some(value) = u32::from_str_radix(word, 16).ok().filter(|_| valid) else {
-                let place = reader.span(raw);
-                let message = format!("`{}` is not a texel", shorten(word));
-                reader.push(Diagnostic::error("NB0220", place, message).label("in this row").help(help));
-                return None;
-            };
-            // Bits that the format ignores are zero in the state.
-            words.push(match format {
-                TextureFormat::X8R8G8B8 => value & 0x00ff_ffff,
-                TextureFormat::X1R5G5B5 => value & 0x7fff,
-                _ => value,
-            });
-            count += 1;
-        }
-        if count != width as usize {
-            let place = reader.span(raw);
-            let message = format!("{count} texels in a row of {width}");
-            reader.push(Diagnostic::error("NB0220", place, message).label("in this row").help(help));
-            return None;
-        }
-    }
-    Some((width, height, words))
-}
-
-fn procedural<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    text: &'a str,
-    kind: &str,
-    left: &mut u64,
-) -> Option<Pixels> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let color = |reader: &mut Reader<'a>, field: &Option<Raw<'a, source::Color>>, name: &str| {
-        let raw = reader.required(field, name, "texture", opening.clone())?;
-        color::constant(reader, names, &raw)
-    };
-    let (width, height, pixel): (u32, u32, PixelAt) = match kind {
-        "Solid" => {
-            let fields = reader.read(&Raw::<source::SolidImage<'a>>::new(text))?;
-            let (width, height) = sides(reader, text, &fields.width, &fields.height, left)?;
-            let color = color(reader, &fields.color, "color")?;
-            (width, height, Box::new(move |_, _| color))
-        }
-        "Checker" => {
-            let fields = reader.read(&Raw::<source::CheckerImage<'a>>::new(text))?;
-            let (width, height) = sides(reader, text, &fields.width, &fields.height, left)?;
-            let cell = match &fields.cell {
-                Some(raw) => reader.whole(raw, "the side of a cell", 1..=4096)?,
-                None => 1,
-            };
-            let [first, second] = match &fields.colors {
-                Some(raw) => color::constants(reader, names, raw),
-                None => [[255; 4], [0, 0, 0, 255]],
-            };
-            (width, height, Box::new(move |x, y| if (x / cell + y / cell) % 2 == 0 { first } else { second }))
-        }
-        _ => {
-            let fields = reader.read(&Raw::<source::RampImage<'a>>::new(text))?;
-            let (width, height) = sides(reader, text, &fields.width, &fields.height, left)?;
-            let (from, to) = (color(reader, &fields.from, "from"), color(reader, &fields.to, "to"));
-            let vertical = match &fields.axis {
-                Some(raw) => reader.variant(raw, "axis", &["Horizontal", "Vertical"])?.0 == 1,
-                None => false,
-            };
-            let (from, to, last) = (from?, to?, if vertical { height - 1 } else { width - 1 });
-            let mix = move |a: u8, b: u8, at: u32| match last {
-                0 => a,
-                last => ((u32::from(a) * (last - at) + u32::from(b) * at + last / 2) / last) as u8,
-            };
-            let pixel = move |x: u32, y: u32| {
-                let at = if vertical { y } else { x };
-                [0, 1, 2, 3].map(|channel| mix(from[channel], to[channel], at))
-            };
-            (width, height, Box::new(pixel))
-        }
-    };
-    let mut pixels = Vec::with_capacity(width as usize * height as usize);
-    for y in 0..height {
-        pixels.extend((0..width).map(|x| pixel(x, y)));
-    }
-    Some(Pixels { width, height, pixels })
-}
-
-/// Eight bits a channel into words: low bits that do not fit are cut off, channels that the format lacks are dropped.
-fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
-    let word = |&[r, g, b, a]: &[u8; 4]| {
-        let [r, g, b, a] = [r, g, b, a].map(u32::from);
-        match format {
-            TextureFormat::A8R8G8B8 => a << 24 | r << 16 | g << 8 | b,
-            TextureFormat::X8R8G8B8 => r << 16 | g << 8 | b,
-            TextureFormat::R5G6B5 => (r >> 3) << 11 | (g >> 2) << 5 | b >> 3,
-            TextureFormat::X1R5G5B5 => (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
-            TextureFormat::A1R5G5B5 => (a >> 7) << 15 | (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
-            TextureFormat::A8B8G8R8 => a << 24 | b << 16 | g << 8 | r,
-            TextureFormat::B8G8R8A8 => b << 24 | g << 16 | r << 8 | a,
-            TextureFormat::R8G8B8A8 => r << 24 | g << 16 | b << 8 | a,
-            TextureFormat::R6G5B5 => (r >> 2) << 10 | (g >> 3) << 5 | b >> 3,
-            TextureFormat::A4R4G4B4 => (a >> 4) << 12 | (r >> 4) << 8 | (g >> 4) << 4 | b >> 4,
-            TextureFormat::L8 | TextureFormat::I8 => r,
-            TextureFormat::A8 => a,
-            TextureFormat::A8L8 => a << 8 | r,
-            TextureFormat::G8B8 | TextureFormat::Y16 => g << 8 | b,
-            TextureFormat::R8B8 => r << 8 | b,
-            TextureFormat::R16B16 => a << 24 | r << 16 | g << 8 | b,
-            // Refused before it comes to this.
-            TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => 0,
-        }
-    };
-    pixels.iter().map(word).collect()
+    legal::format(reader, format, format_place)?;
+    legal::sides(reader, kind, format, target.width, target.height, place)?;
+    Some(Texture { name: name.to_owned(), kind, format, image: TextureImage::Target { target: index } })
 }

@@ -3,13 +3,13 @@
 use super::names::Names;
 use super::texture::Textures;
 use super::*;
-use crate::state::{AddressMode, Filter, ShaderStage, TEXTURE_UNITS, TextureUnit};
+use crate::state::{AddressMode, Filter, MipFilter, ShaderStage, TEXTURE_UNITS, TextureUnit};
 
 /// The units of a draw.
 pub(super) struct Units {
     pub(super) bound: [Option<TextureUnit>; TEXTURE_UNITS],
     pub(super) shader: [ShaderStage; TEXTURE_UNITS],
-    /// Where the names of their textures stand.
+    /// Where the names of their textures stand; empty for unbound units.
     pub(super) places: [Range<usize>; TEXTURE_UNITS],
 }
 
@@ -44,6 +44,7 @@ pub(super) fn units<'a>(
         if index >= available {
             reader.push(target::only_nv2a("NB0319", place.clone(), &format!("texture unit {index}"), "CMB-12"));
         }
+        units.places[index] = place;
         if let Some((unit, coordinate_set, place)) = unit(reader, names, textures, raw, index) {
             units.bound[index] = Some(unit);
             units.shader[index] = ShaderStage { coordinate_set, ..ShaderStage::conventional(index, true) };
@@ -64,6 +65,7 @@ fn unit<'a>(
     let mut coordinate_set = index;
     if raw.is_text() {
         unit.texture = textures.find(reader, &raw.as_other())?;
+        unit_texture::check(reader, textures, None, &mut unit, reader.span(raw));
         return Some((unit, coordinate_set, reader.span(raw)));
     }
     let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
@@ -99,31 +101,80 @@ fn unit<'a>(
             reader.push(target::only_nv2a("NB0318", reader.span(raw), "a signed texture channel", "TEX-18"));
         }
     }
-    reader.reserve(&fields.lod_bias, "level of detail bias");
-    reader.reserve(&fields.min_lod, "level of detail limits");
-    reader.reserve(&fields.max_lod, "level of detail limits");
-    reader.reserve(&fields.anisotropy, "anisotropic filtering");
+    lod(reader, &fields, &mut unit);
+    unknown_rules(reader, &fields);
     reader.reserve(&fields.color_key, "colour keys");
     unit.texture = found?;
     let place = texture.map_or(0..0, |raw| reader.span(&raw));
+    unit_texture::check(reader, textures, Some(&fields), &mut unit, place.clone());
     Some((unit, coordinate_set, place))
 }
 
-/// Three fields; built is one filter for both directions, without mipmaps.
+/// The filters of the two sides of lod 0, and of levels.
 fn filters<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
     let min = fields.min_filter.as_ref().and_then(|raw| reader.name(raw));
     let mag = fields.mag_filter.as_ref().and_then(|raw| reader.name(raw));
     unit.mag_filter = mag.or(min).unwrap_or(Filter::Linear);
-    unit.min_filter = unit.mag_filter;
-    if let (Some(min), Some(mag), Some(raw)) = (min, mag, &fields.min_filter)
-        && min != mag
-    {
-        reader.not_built(reader.span(raw), "a minification filter that differs from the magnification filter");
+    unit.min_filter = min.or(mag).unwrap_or(Filter::Linear);
+    unit.mip_filter = reader.name_or(&fields.mip_filter, MipFilter::None);
+}
+
+/// NUM-0, TEX-9: bias and limits of the lod as the chip's fields: signed 5.8 and unsigned 4.8, cut off towards zero.
+fn lod<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
+    const MOST: f32 = 4095.0 / 256.0;
+    for (field, slot, what, least) in [
+        (&fields.lod_bias, &mut unit.lod_bias, "a lod bias", -16.0),
+        (&fields.min_lod, &mut unit.min_lod, "a least lod", 0.0),
+        (&fields.max_lod, &mut unit.max_lod, "a greatest lod", 0.0),
+    ] {
+        let Some(raw) = field else { continue };
+        let Some(value) = reader.finite(raw) else { continue };
+        if !(least..=MOST).contains(&value) {
+            reader.push(
+                Diagnostic::error("NB0206", reader.span(raw), format!("{what} cannot be {value}"))
+                    .label("out of range")
+                    .rule("TEX-9")
+                    .help(format!("write {least} to {MOST}")),
+            );
+            continue;
+        }
+        #[allow(clippy::float_arithmetic, reason = "a float of the scene becomes the register's integer")]
+        let register = (256.0 * value) as i32;
+        *slot = register;
     }
-    if let Some(raw) = &fields.mip_filter
-        && let Some((mip, _)) = reader.variant(raw, "mip filter", &["None", "Nearest", "Linear"])
-        && mip > 0
+    if let Some(raw) = fields.max_lod.as_ref().or(fields.min_lod.as_ref())
+        && unit.min_lod > unit.max_lod
     {
-        reader.not_built(reader.span(raw), "mipmapping");
+        reader.push(
+            Diagnostic::error("NB0206", reader.span(raw), "the least lod is greater than the greatest")
+                .label("nothing lies between them")
+                .rule("TEX-9")
+                .help("give a `min_lod` that is at most `max_lod`"),
+        );
+    }
+}
+
+/// What the chip does, nobody knows how.
+fn unknown_rules<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>) {
+    if let Some(raw) = &fields.anisotropy
+        && let Some(taps) = reader.whole(raw, "anisotropy", 1..=8)
+        && taps > 1
+    {
+        reader.push(
+            Diagnostic::error("NB0402", reader.span(raw), format!("it is not known how {taps}x anisotropy filters"))
+                .label("cannot be modelled")
+                .rule("TEX-17")
+                .help("write 1, or leave it out"),
+        );
+    }
+    if let Some(raw) = &fields.cylindrical_wrap
+        && reader.read(raw) == Some(true)
+    {
+        reader.push(
+            Diagnostic::error("NB0402", reader.span(raw), "it is not known how cylindrical wrap interpolates")
+                .label("cannot be modelled")
+                .rule("TEX-7")
+                .help("write `false`, or leave it out, and split triangles that cross the seam"),
+        );
     }
 }

@@ -1,0 +1,237 @@
+//! Reads DDS files: textures as they lie in memory, with their levels and faces.
+//!
+//! Nothing in the header is believed: sides, levels and faces are held against the limits first, then against the number of bytes
+//! that follow. Flags that say which fields count are not needed for that, and files set them as they like; pitches are read only
+//! where rows may be padded. Texels come out as they are stored.
+
+use std::path::Path;
+
+use super::image::{ImageError, ImageLimits};
+use super::texels;
+use crate::state::{CUBE_FACES, TextureFormat};
+
+mod pixel_format;
+
+/// The first bytes of every DDS file.
+pub const SIGNATURE: [u8; 4] = *b"DDS ";
+
+/// Bytes of signature and header.
+const HEADER: usize = 128;
+/// Bytes of the further header that the four characters `DX10` announce.
+const FURTHER: usize = 20;
+/// Whatever the limits: products of sides, levels and faces stay within 64 bits.
+const LARGEST_SIDE: u32 = 1 << 20;
+/// Bytes of a palette: 256 entries of R, G, B, A.
+const PALETTE: usize = 1024;
+
+const ALL_FACES: u32 = 0xfc00;
+const CUBE: u32 = 0x200;
+const VOLUME: u32 = 0x20_0000;
+
+/// Names of the faces, in the order of their bits and of the file.
+const FACES: [&str; CUBE_FACES as usize] = ["+X", "-X", "+Y", "-Y", "+Z", "-Z"];
+
+/// A texture as a DDS file holds it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Dds {
+    /// Six faces; one picture otherwise.
+    pub cube: bool,
+    /// Meaning of the words.
+    pub format: TextureFormat,
+    /// Columns of level 0.
+    pub width: u32,
+    /// Rows of level 0.
+    pub height: u32,
+    /// Levels, at least 1, at most as many as the sides can be halved.
+    pub levels: u32,
+    /// Face after face, in it level after level, as in [`Texels::words`](crate::state::Texels::words).
+    pub words: Vec<u32>,
+    /// 256 words A8R8G8B8 where the format is [`TextureFormat::P8`].
+    pub palette: Option<Vec<u32>>,
+}
+
+/// What a header says, once it can be true.
+struct Header {
+    cube: bool,
+    format: TextureFormat,
+    width: u32,
+    height: u32,
+    levels: u32,
+    /// Bytes that come before the texels.
+    before: usize,
+    /// Bytes from row to row of level 0, if the file says so.
+    pitch: u32,
+}
+
+/// Decodes the contents of a DDS file; `path` names it in errors.
+///
+/// # Errors
+/// The file is cut off or longer than its header says, its sides exceed the limits, a face is missing, or it holds what no texture unit
+/// of the model reads. No input makes this panic.
+pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, ImageError> {
+    let named = || path.to_path_buf();
+    let damaged = |reason: String| ImageError::Damaged { path: named(), reason };
+    let header = header(bytes, path)?;
+    let Header { cube, format, width, height, levels, before, .. } = header;
+    if width == 0 || height == 0 {
+        return Err(damaged(format!("it is {width} x {height}")));
+    }
+    let limit = limits.maximum_side.min(LARGEST_SIDE);
+    if width > limit || height > limit {
+        return Err(ImageError::Side { path: named(), width, height, limit });
+    }
+    if cube && width != height {
+        return Err(damaged(format!("faces of a cube map are square, and it is {width} x {height}")));
+    }
+    let most = most_levels(width, height);
+    if levels > most {
+        return Err(damaged(format!("it claims {levels} levels, and {width} x {height} texels have {most} at most")));
+    }
+    let faces = if cube { CUBE_FACES } else { 1 };
+    let decoded: u64 = u64::from(faces) * sides(&header).map(|(w, h)| 4 * words(format, w, h)).sum::<u64>();
+    if decoded > limits.maximum_decoded_bytes {
+        return Err(ImageError::DecodedBytes { path: named(), bytes: decoded, limit: limits.maximum_decoded_bytes });
+    }
+    let palette = match (format, bytes.get(HEADER..HEADER + PALETTE)) {
+        (TextureFormat::P8, None) => return Err(damaged("its palette is cut off".to_owned())),
+        (TextureFormat::P8, Some(palette)) => Some(entries(palette)),
+        _ => None,
+    };
+    let texels = bytes.get(before..).unwrap_or_default();
+    let Some(rows) = row_layout(&header, texels.len() as u64) else {
+        let (has, needs) = (texels.len(), faces as u64 * stored(&header, false));
+        let what = if (has as u64) < needs { "is cut off" } else { "is longer than its header says" };
+        return Err(damaged(format!("it {what}: {has} bytes of texels, {needs} are expected")));
+    };
+    let words = match rows {
+        Rows::Tight => texels::from_bytes(texels, format),
+        Rows::Padded => texels::from_bytes(&without_padding(&header, texels), format),
+    };
+    Ok(Dds { cube, format, width, height, levels, words, palette })
+}
+
+/// The most levels that a texture of these sides has: down to 1 x 1.
+pub fn most_levels(width: u32, height: u32) -> u32 {
+    width.max(height).max(1).ilog2() + 1
+}
+
+/// Reads the header, and refuses what the model lacks.
+fn header(bytes: &[u8], path: &Path) -> Result<Header, ImageError> {
+    let damaged = |reason: &str| ImageError::Damaged { path: path.to_path_buf(), reason: reason.to_owned() };
+    let unsupported = |what: String| ImageError::Unsupported { path: path.to_path_buf(), what };
+    let Some(fixed) = bytes.first_chunk::<HEADER>() else { return Err(damaged("the header is cut off")) };
+    let field = |at: usize| u32::from_le_bytes([fixed[at], fixed[at + 1], fixed[at + 2], fixed[at + 3]]);
+    if field(4) != 124 || field(76) != 32 {
+        return Err(damaged("the sizes in its header are not those of a DDS file"));
+    }
+    let (mut cube, caps, mut before) = (field(112) & CUBE != 0, field(112), HEADER);
+    if caps & VOLUME != 0 {
+        return Err(unsupported("a volume texture".to_owned()));
+    }
+    let four_characters = fixed[84..88].first_chunk::<4>().copied().unwrap_or_default();
+    let pixels = pixel_format::PixelFormat {
+        flags: field(80),
+        four_characters,
+        bits: field(88),
+        masks: [92, 96, 100, 104].map(field),
+    };
+    let format = if pixels.has_further_header() {
+        let Some(further) = bytes.get(HEADER..HEADER + FURTHER) else {
+            return Err(damaged("the header is cut off"));
+        };
+        let field =
+            |n: usize| u32::from_le_bytes([further[4 * n], further[4 * n + 1], further[4 * n + 2], further[4 * n + 3]]);
+        match field(1) {
+            3 => {}
+            4 => return Err(unsupported("a volume texture".to_owned())),
+            _ => return Err(unsupported("a texture of one dimension".to_owned())),
+        }
+        if field(3) > 1 {
+            return Err(unsupported(format!("an array of {} textures", field(3))));
+        }
+        cube |= field(2) & 4 != 0;
+        before += FURTHER;
+        pixel_format::of_number(field(0)).map_err(unsupported)?
+    } else {
+        if cube && caps & ALL_FACES != ALL_FACES {
+            let missing = (0..6).filter(|face| caps >> (10 + face) & 1 == 0).map(|face| FACES[face]).collect();
+            return Err(ImageError::MissingFaces { path: path.to_path_buf(), missing });
+        }
+        pixels.format().map_err(unsupported)?
+    };
+    if format == TextureFormat::P8 {
+        before += PALETTE;
+    }
+    Ok(Header { cube, format, width: field(16), height: field(12), levels: field(28).max(1), before, pitch: field(20) })
+}
+
+/// Sides of each level.
+fn sides(header: &Header) -> impl Iterator<Item = (u32, u32)> {
+    let (width, height) = (header.width, header.height);
+    (0..header.levels.min(32)).map(move |n| ((width >> n).max(1), (height >> n).max(1)))
+}
+
+/// Words of a level in memory here.
+fn words(format: TextureFormat, width: u32, height: u32) -> u64 {
+    if format.is_compressed() {
+        u64::from(format.bytes() / 4) * u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4))
+    } else {
+        u64::from(width) * u64::from(height)
+    }
+}
+
+/// Whether rows follow one another at once.
+enum Rows {
+    Tight,
+    /// Each row is filled up to a multiple of four bytes.
+    Padded,
+}
+
+/// How rows lie in so many bytes; `None` if no way fits. Padding exists only where the pitch of level 0 says so.
+fn row_layout(header: &Header, bytes: u64) -> Option<Rows> {
+    let faces = if header.cube { u64::from(CUBE_FACES) } else { 1 };
+    let row = u64::from(header.format.bytes()) * u64::from(header.width);
+    let may_be_padded = !header.format.is_compressed() && u64::from(header.pitch) == row.next_multiple_of(4);
+    if bytes == faces * stored(header, false) {
+        Some(Rows::Tight)
+    } else if may_be_padded && bytes == faces * stored(header, true) {
+        Some(Rows::Padded)
+    } else {
+        None
+    }
+}
+
+/// Bytes of all levels of a face in the file.
+fn stored(header: &Header, padded: bool) -> u64 {
+    let level = |(width, height): (u32, u32)| {
+        if header.format.is_compressed() {
+            return 4 * words(header.format, width, height);
+        }
+        let row = u64::from(header.format.bytes()) * u64::from(width);
+        u64::from(height) * if padded { row.next_multiple_of(4) } else { row }
+    };
+    sides(header).map(level).sum()
+}
+
+/// The texels of a file with padded rows, whose length has been checked.
+fn without_padding(header: &Header, texels: &[u8]) -> Vec<u8> {
+    let mut tight = Vec::with_capacity(texels.len());
+    let mut rest = texels;
+    while !rest.is_empty() {
+        for (width, height) in sides(header) {
+            let row = (header.format.bytes() * width) as usize;
+            for _ in 0..height {
+                let (padded, after) = rest.split_at(row.next_multiple_of(4).min(rest.len()));
+                tight.extend_from_slice(&padded[..row.min(padded.len())]);
+                rest = after;
+            }
+        }
+    }
+    tight
+}
+
+/// Entries R, G, B, A as words A8R8G8B8.
+fn entries(palette: &[u8]) -> Vec<u32> {
+    let word = |entry: &[u8; 4]| u32::from_be_bytes([entry[3], entry[0], entry[1], entry[2]]);
+    palette.as_chunks::<4>().0.iter().map(word).collect()
+}

@@ -1,0 +1,133 @@
+//! Which texture format the pixel format of a DDS file is: by its masks, bit by bit.
+
+use crate::state::TextureFormat;
+
+const ALPHA_BESIDE: u32 = 0x1;
+const ALPHA_ALONE: u32 = 0x2;
+const FOUR_CHARACTERS: u32 = 0x4;
+const PALETTE_OF_256: u32 = 0x20;
+const COLORS: u32 = 0x40;
+const LUMINANCE: u32 = 0x2_0000;
+
+/// As the header has it.
+pub(super) struct PixelFormat {
+    pub(super) flags: u32,
+    pub(super) four_characters: [u8; 4],
+    /// Bits of a texel.
+    pub(super) bits: u32,
+    /// Of red (or luminance), green, blue and alpha.
+    pub(super) masks: [u32; 4],
+}
+
+/// Formats by bits and the masks of red, green, blue and alpha.
+const BY_MASKS: &[(TextureFormat, u32, [u32; 4])] = &[
+    (TextureFormat::A8R8G8B8, 32, [0xff_0000, 0xff00, 0xff, 0xff00_0000]),
+    (TextureFormat::X8R8G8B8, 32, [0xff_0000, 0xff00, 0xff, 0]),
+    (TextureFormat::A8B8G8R8, 32, [0xff, 0xff00, 0xff_0000, 0xff00_0000]),
+    (TextureFormat::B8G8R8A8, 32, [0xff00, 0xff_0000, 0xff00_0000, 0xff]),
+    (TextureFormat::R8G8B8A8, 32, [0xff00_0000, 0xff_0000, 0xff00, 0xff]),
+    (TextureFormat::R5G6B5, 16, [0xf800, 0x7e0, 0x1f, 0]),
+    (TextureFormat::R6G5B5, 16, [0xfc00, 0x3e0, 0x1f, 0]),
+    (TextureFormat::X1R5G5B5, 16, [0x7c00, 0x3e0, 0x1f, 0]),
+    (TextureFormat::A1R5G5B5, 16, [0x7c00, 0x3e0, 0x1f, 0x8000]),
+    (TextureFormat::A4R4G4B4, 16, [0xf00, 0xf0, 0xf, 0xf000]),
+];
+
+/// Formats by bits and the masks of luminance and alpha.
+const BY_LUMINANCE: &[(TextureFormat, u32, [u32; 2])] = &[
+    (TextureFormat::L8, 8, [0xff, 0]),
+    (TextureFormat::A8L8, 16, [0xff, 0xff00]),
+    (TextureFormat::Y16, 16, [0xffff, 0]),
+];
+
+impl PixelFormat {
+    /// The format is a number of the header that follows.
+    pub(super) fn has_further_header(&self) -> bool {
+        self.flags & FOUR_CHARACTERS != 0 && self.four_characters == *b"DX10"
+    }
+
+    /// The texture format; what the file holds if there is none.
+    pub(super) fn format(&self) -> Result<TextureFormat, String> {
+        if self.flags & FOUR_CHARACTERS != 0 {
+            return of_four_characters(self.four_characters);
+        }
+        let [red, green, blue, mut alpha] = self.masks;
+        if self.flags & PALETTE_OF_256 != 0 && self.bits == 8 {
+            return Ok(TextureFormat::P8);
+        }
+        if self.flags & (COLORS | LUMINANCE) == 0 && self.flags & ALPHA_ALONE != 0 && (self.bits, alpha) == (8, 0xff) {
+            return Ok(TextureFormat::A8);
+        }
+        if self.flags & ALPHA_BESIDE == 0 {
+            alpha = 0;
+        }
+        let found = if self.flags & LUMINANCE != 0 {
+            let known = |(_, bits, masks): &&(_, u32, [u32; 2])| (*bits, *masks) == (self.bits, [red, alpha]);
+            BY_LUMINANCE.iter().find(known).map(|(format, ..)| *format)
+        } else if self.flags & COLORS != 0 {
+            let known =
+                |(_, bits, masks): &&(_, u32, [u32; 4])| (*bits, *masks) == (self.bits, [red, green, blue, alpha]);
+            BY_MASKS.iter().find(known).map(|(format, ..)| *format)
+        } else {
+            None
+        };
+        found.ok_or_else(|| {
+            let of = if self.flags & LUMINANCE != 0 {
+                format!("luminance {red:#x}")
+            } else {
+                format!("red {red:#x}, green {green:#x}, blue {blue:#x}")
+            };
+            format!("texels of {} bits ({of}, alpha {alpha:#x})", self.bits)
+        })
+    }
+}
+
+fn of_four_characters(text: [u8; 4]) -> Result<TextureFormat, String> {
+    match &text {
+        b"DXT1" => Ok(TextureFormat::Dxt1),
+        // The same blocks; colours were multiplied by alpha before, which is their user's business.
+        b"DXT2" | b"DXT3" => Ok(TextureFormat::Dxt3),
+        b"DXT4" | b"DXT5" => Ok(TextureFormat::Dxt5),
+        _ if text.iter().all(u8::is_ascii_graphic) => Err(format!("{} texels", text.escape_ascii())),
+        _ => Err(format!("texels of Direct3D format {}", u32::from_le_bytes(text))),
+    }
+}
+
+/// The texture format of a number of DXGI; what the file holds if there is none.
+pub(super) fn of_number(number: u32) -> Result<TextureFormat, String> {
+    Ok(match number {
+        28 => TextureFormat::A8B8G8R8,
+        65 => TextureFormat::A8,
+        71 => TextureFormat::Dxt1,
+        74 => TextureFormat::Dxt3,
+        77 => TextureFormat::Dxt5,
+        85 => TextureFormat::R5G6B5,
+        86 => TextureFormat::A1R5G5B5,
+        87 => TextureFormat::A8R8G8B8,
+        88 => TextureFormat::X8R8G8B8,
+        115 => TextureFormat::A4R4G4B4,
+        _ => {
+            let known = REFUSED.iter().find(|(known, _)| *known == number);
+            return Err(match known {
+                Some((_, name)) => format!("{name} texels"),
+                None => format!("texels of DXGI format {number}"),
+            });
+        }
+    })
+}
+
+/// Names of numbers that are often met.
+const REFUSED: [(u32, &str); 12] = [
+    (2, "R32G32B32A32_FLOAT"),
+    (10, "R16G16B16A16_FLOAT"),
+    (29, "R8G8B8A8_UNORM_SRGB"),
+    (72, "BC1_UNORM_SRGB"),
+    (75, "BC2_UNORM_SRGB"),
+    (78, "BC3_UNORM_SRGB"),
+    (80, "BC4_UNORM"),
+    (83, "BC5_UNORM"),
+    (91, "B8G8R8A8_UNORM_SRGB"),
+    (95, "BC6H_UF16"),
+    (98, "BC7_UNORM"),
+    (107, "YUY2"),
+];

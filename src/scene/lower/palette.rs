@@ -1,0 +1,107 @@
+//! Palettes: the colours that texels of P8 stand for.
+
+use std::collections::HashMap;
+
+use super::*;
+use crate::scene::raw::Entries;
+use crate::state::{Named, Palette, TextureFormat};
+
+/// The palettes, and where they were named. A palette with errors keeps its name but has no index.
+pub(super) struct Palettes {
+    pub(super) list: Vec<Palette>,
+    by_name: HashMap<String, Option<usize>>,
+    names: Vec<(String, Range<usize>)>,
+    used: Vec<bool>,
+}
+
+impl Palettes {
+    /// Reads every palette.
+    pub(super) fn read<'a>(
+        reader: &mut Reader<'a>,
+        raw: &Option<Raw<'a, Entries<'a, source::List<'a, String>>>>,
+    ) -> Palettes {
+        let mut palettes = Palettes { list: Vec::new(), by_name: HashMap::new(), names: Vec::new(), used: Vec::new() };
+        for entry in reader.table("palette", raw) {
+            let index = words(reader, &entry.value).map(|words| palettes.add(&entry.name, words));
+            palettes.by_name.insert(entry.name.clone(), index);
+            palettes.names.push((entry.name, entry.place));
+            palettes.used.push(false);
+        }
+        palettes
+    }
+
+    /// Adds one that is not found by name.
+    pub(super) fn add(&mut self, name: &str, words: Vec<u32>) -> usize {
+        self.list.push(Palette { name: name.to_owned(), entries: words.into() });
+        self.list.len() - 1
+    }
+
+    /// The palette of that name; `None` once the reason has been recorded.
+    pub(super) fn find<'a>(&mut self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
+        let name = reader.read(raw)?;
+        if let Some(index) = self.by_name.get(&name) {
+            if let Some(used) = self.names.iter().position(|(known, _)| *known == name) {
+                self.used[used] = true;
+            }
+            return *index;
+        }
+        let place = reader.span(raw);
+        let known = self.names.iter().map(|(name, _)| name.as_str());
+        unknown_name(
+            reader,
+            place,
+            "palette",
+            &name,
+            known,
+            "define it in `palettes: { \"...\": [\"ff000000 ...\"] }`",
+        );
+        None
+    }
+
+    pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
+        for ((name, place), used) in self.names.iter().zip(&self.used) {
+            if !used {
+                reader.push(super::names::unused("palette", name, place.clone()));
+            }
+        }
+    }
+}
+
+/// Words A8R8G8B8 in hexadecimal, any number in each text.
+fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -> Option<Vec<u32>> {
+    const HELP: &str = "write 32, 64, 128 or 256 words A8R8G8B8 of 8 hexadecimal digits";
+    let list = reader.read(raw)?;
+    let mut words = Vec::new();
+    for text in &list {
+        let row = reader.read(text)?;
+        for word in row.split_ascii_whitespace() {
+            let Some(value) = texture_source::hexadecimal(word, 8) else {
+                let place = reader.span(text);
+                let message = format!("`{}` is not an entry of a palette", shorten(word));
+                reader.push(Diagnostic::error("NB0233", place, message).label("in this text").help(HELP));
+                return None;
+            };
+            words.push(value);
+        }
+    }
+    let place = reader.span(raw);
+    if ![32, 64, 128, 256].contains(&words.len()) {
+        let message = format!("a palette cannot have {} entries", words.len());
+        reader.push(Diagnostic::error("NB0233", place, message).label("another number").rule("TEX-1").help(HELP));
+        return None;
+    }
+    if words.len() < 256 && reader.profile == Profile::Nv10 {
+        let what = format!("a palette of {} entries", words.len());
+        reader.push(target::only_nv2a("NB0332", place, &what, "TEX-1"));
+        return None;
+    }
+    Some(words)
+}
+
+/// The finding that a format needs no palette.
+pub(super) fn not_read(place: Range<usize>, format: TextureFormat) -> Diagnostic {
+    Diagnostic::error("NB0234", place, format!("a texture of format {} reads no palette", format.name()))
+        .label("never read")
+        .rule("TEX-1")
+        .help("leave `palette` out, or write `format: P8`")
+}

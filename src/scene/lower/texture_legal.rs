@@ -1,0 +1,170 @@
+//! What the chips take: formats, sides, levels and border texels by kind of texture.
+
+use super::*;
+use crate::state::{Named, TextureFormat, TextureKind};
+
+/// The largest side of a texture of any kind.
+pub(super) fn largest_side(reader: &Reader<'_>) -> u32 {
+    let chip = if reader.profile == Profile::Nv10 { 2048 } else { 4096 };
+    reader.limits.texture_side.min(chip)
+}
+
+/// The format exists on the chip.
+pub(super) fn format(reader: &mut Reader<'_>, format: TextureFormat, place: Range<usize>) -> Option<()> {
+    if format.is_nv2a_only() && reader.profile == Profile::Nv10 {
+        let what = format!("texture format {}", format.name());
+        reader.push(target::only_nv2a("NB0320", place, &what, "TEX-1"));
+        return None;
+    }
+    Some(())
+}
+
+/// Sides that the chip and the limits allow: powers of two, or any of a rectangle; of a cube map square.
+pub(super) fn sides(
+    reader: &mut Reader<'_>,
+    kind: TextureKind,
+    format: TextureFormat,
+    width: u32,
+    height: u32,
+    place: Range<usize>,
+) -> Option<()> {
+    let (most, what) = largest(reader, kind, format);
+    if width.max(height) > most {
+        reader.push(too_large(reader, what, width, height, most, place));
+        return None;
+    }
+    if kind == TextureKind::Rectangle {
+        return rectangle(reader, format, width, height, place);
+    }
+    if !(width.is_power_of_two() && height.is_power_of_two()) {
+        let next = |side: u32| side.max(1).checked_next_power_of_two().unwrap_or(most).min(most);
+        reader.push(
+            Diagnostic::error("NB0219", place, format!("{what} cannot be {width} x {height}"))
+                .label("sides must be powers of two")
+                .rule("TEX-7")
+                .help(format!("make it {} x {}, for example, or write `kind: Rectangle`", next(width), next(height))),
+        );
+        return None;
+    }
+    if kind == TextureKind::Cube && width != height {
+        reader.push(
+            Diagnostic::error("NB0231", place, format!("faces of a cube map cannot be {width} x {height}"))
+                .label("not square")
+                .rule("TEX-12")
+                .help("make every face as wide as high"),
+        );
+        return None;
+    }
+    Some(())
+}
+
+/// The largest side of a kind of texture, and what messages call it.
+fn largest(reader: &Reader<'_>, kind: TextureKind, format: TextureFormat) -> (u32, &'static str) {
+    let any = largest_side(reader);
+    let nv10 = reader.profile == Profile::Nv10;
+    match kind {
+        TextureKind::TwoDimensional => (any, "a texture"),
+        TextureKind::Rectangle => (if nv10 { any.min(2047) } else { any }, "a rectangle texture"),
+        TextureKind::Cube => {
+            let large = matches!(
+                format,
+                TextureFormat::A8R8G8B8
+                    | TextureFormat::X8R8G8B8
+                    | TextureFormat::P8
+                    | TextureFormat::Dxt3
+                    | TextureFormat::Dxt5
+            );
+            let chip = match (nv10, large) {
+                (true, true) => 512,
+                (true, false) => 1024,
+                (false, _) => any,
+            };
+            (any.min(chip), "a face of a cube map")
+        }
+    }
+}
+
+/// The finding that a side is too long.
+pub(super) fn too_large(
+    reader: &Reader<'_>,
+    what: &str,
+    width: u32,
+    height: u32,
+    most: u32,
+    place: Range<usize>,
+) -> Diagnostic {
+    let on = if reader.profile == Profile::Nv10 { "; profile Nv2a allows 4096" } else { "" };
+    Diagnostic::error("NB0321", place, format!("{what} of {width} x {height} is too large"))
+        .label(format!("a side has at most {most} texels on {:?}", reader.profile))
+        .help(format!("scale it down{on}"))
+}
+
+/// Linear layouts have neither blocks nor indices; nv10 has four of them, of even width.
+fn rectangle(
+    reader: &mut Reader<'_>,
+    format: TextureFormat,
+    width: u32,
+    height: u32,
+    place: Range<usize>,
+) -> Option<()> {
+    let nv10 = reader.profile == Profile::Nv10;
+    let known =
+        matches!(format, TextureFormat::A1R5G5B5 | TextureFormat::R5G6B5 | TextureFormat::A8R8G8B8 | TextureFormat::I8);
+    let refuse = |message: String, help: &str| {
+        Diagnostic::error("NB0330", place.clone(), message)
+            .label("not as a rectangle")
+            .rule("TEX-7")
+            .help(help.to_owned())
+    };
+    let finding = if format == TextureFormat::P8 || format.is_compressed() {
+        refuse(format!("a rectangle texture cannot be {}", format.name()), "use another format, or another kind")
+    } else if nv10 && !known {
+        let message = format!("a rectangle texture cannot be {} on Nv10", format.name());
+        refuse(message, "use A8R8G8B8, R5G6B5, A1R5G5B5 or I8, or write `profile: Nv2a`")
+    } else if nv10 && width % 2 == 1 {
+        let message = format!("a rectangle texture cannot be {width} x {height} on Nv10: its width is odd");
+        refuse(message, "make the width even, or write `profile: Nv2a`")
+    } else {
+        return Some(());
+    };
+    reader.push(finding);
+    None
+}
+
+/// A rectangle has one level.
+pub(super) fn levels(reader: &mut Reader<'_>, kind: TextureKind, levels: u32, place: Range<usize>) -> Option<()> {
+    if kind == TextureKind::Rectangle && levels > 1 {
+        reader.push(
+            Diagnostic::error("NB0230", place, format!("a rectangle texture cannot have {levels} levels"))
+                .label("one at most")
+                .rule("TEX-9")
+                .help("write `levels: 1`, or scale it to powers of two and leave `kind` out"),
+        );
+        return None;
+    }
+    Some(())
+}
+
+/// Border texels: of nv2a, two dimensions, no blocks.
+pub(super) fn border(
+    reader: &mut Reader<'_>,
+    kind: TextureKind,
+    format: TextureFormat,
+    place: Range<usize>,
+) -> Option<()> {
+    if reader.profile == Profile::Nv10 {
+        reader.push(target::only_nv2a("NB0331", place, "a texture with border texels", "TEX-7"));
+        return None;
+    }
+    if kind != TextureKind::TwoDimensional || format.is_compressed() {
+        let what = if format.is_compressed() { format.name() } else { kind.name() };
+        reader.push(
+            Diagnostic::error("NB0331", place, format!("a texture with border texels cannot be {what}"))
+                .label("does not go with it")
+                .rule("TEX-7")
+                .help("border texels are modelled for uncompressed textures of two dimensions: write `border: false`"),
+        );
+        return None;
+    }
+    Some(())
+}

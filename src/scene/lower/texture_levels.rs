@@ -1,0 +1,188 @@
+//! Levels of a texture: those of its file, listed ones, or made from level 0.
+
+use super::texture_source::{Given, Request, Sources};
+use super::*;
+use crate::scene::dds::most_levels;
+use crate::scene::texels;
+use crate::state::{BORDER_TEXELS, Named, TextureKind};
+
+/// `levels` of a texture.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Wanted {
+    /// Not written: as many as the source has.
+    Own,
+    /// So many.
+    Number(u32),
+    /// Down to 1 x 1.
+    All,
+}
+
+/// Texels by which a side of a source exceeds the texture's.
+pub(super) fn beyond(border: bool) -> u32 {
+    if border { 2 * BORDER_TEXELS } else { 0 }
+}
+
+/// Reads `levels: 4` or `levels: All`.
+pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Wanted> {
+    if raw.split() == ("All", "") {
+        return Some(Wanted::All);
+    }
+    let number: Raw<'a, u32> = raw.as_other();
+    if number.split().0.is_empty() {
+        return reader.whole(&number, "the number of levels", 1..=13).map(Wanted::Number);
+    }
+    reader.push(
+        Diagnostic::error("NB0205", reader.span(raw), "expected a number of levels, or `All`")
+            .label("wrong kind of value")
+            .help("write `levels: All` for levels down to 1 x 1"),
+    );
+    None
+}
+
+/// How many levels are wanted of a source that does not say so itself.
+pub(super) fn number(
+    reader: &mut Reader<'_>,
+    wanted: Wanted,
+    [width, height]: [u32; 2],
+    place: Range<usize>,
+) -> Option<u32> {
+    let most = most_levels(width, height);
+    match wanted {
+        Wanted::Own => Some(1),
+        Wanted::All => Some(most),
+        Wanted::Number(number) if number <= most => Some(number),
+        Wanted::Number(number) => {
+            reader.push(too_many(number, width, height, place));
+            None
+        }
+    }
+}
+
+fn too_many(number: u32, width: u32, height: u32, place: Range<usize>) -> Diagnostic {
+    let most = most_levels(width, height);
+    let has = if most == 1 { "1 level".to_owned() } else { format!("{most} levels") };
+    Diagnostic::error("NB0230", place, format!("a texture of {width} x {height} cannot have {number} levels"))
+        .label(format!("{has} at most"))
+        .rule("TEX-9")
+        .help("sides halve from level to level until both are 1; `levels: All` means all of them")
+}
+
+/// Brings the levels of a source to the number that is wanted: cuts, or makes smaller ones from level 0.
+pub(super) fn counted<'a>(
+    reader: &mut Reader<'a>,
+    sources: &mut Sources<'_, 'a>,
+    given: &mut Given,
+    wanted: Wanted,
+    request: &Request,
+) -> Option<()> {
+    let own = given.faces.first().map_or(1, |levels| levels.len() as u32);
+    let beyond = beyond(request.border);
+    let inside = [given.width - beyond, given.height - beyond];
+    if wanted == Wanted::Own {
+        return Some(());
+    }
+    let number = number(reader, wanted, inside, given.place.clone())?;
+    if number <= own {
+        for levels in &mut given.faces {
+            levels.truncate(number as usize);
+        }
+        return Some(());
+    }
+    let reason = if own > 1 {
+        Some(format!("the source has {own} levels"))
+    } else if !texels::can_pack(given.format) {
+        Some(format!("the format is {}", given.format.name()))
+    } else if request.border {
+        Some("a border has no texels to make the next one from".to_owned())
+    } else {
+        None
+    };
+    if let Some(reason) = reason {
+        reader.push(
+            Diagnostic::error("NB0230", given.place.clone(), format!("{number} levels cannot be made here: {reason}"))
+                .label("of this source")
+                .help("leave `levels` out, or give every level a source in `mips`, or use a file that has them"),
+        );
+        return None;
+    }
+    let (mut width, mut height) = (given.width, given.height);
+    for _ in 1..number {
+        let next = [(width / 2).max(1), (height / 2).max(1)];
+        sources.afford(
+            reader,
+            given.place.clone(),
+            given.faces.len() as u64 * u64::from(next[0]) * u64::from(next[1]),
+        )?;
+        for levels in &mut given.faces {
+            let smaller = levels.last().map(|words| texels::halve(words, width, height, given.format));
+            levels.extend(smaller);
+        }
+        [width, height] = next;
+    }
+    Some(())
+}
+
+/// Adds the levels that `mips` lists.
+pub(super) fn listed<'a>(
+    reader: &mut Reader<'a>,
+    sources: &mut Sources<'_, 'a>,
+    given: &mut Given,
+    raw: &Raw<'a, source::List<'a, source::ImageSource>>,
+    kind: TextureKind,
+    request: &Request,
+) -> Option<()> {
+    let list = reader.read(raw)?;
+    let beyond = beyond(request.border);
+    let inside = [given.width - beyond, given.height - beyond];
+    if given.faces.iter().any(|levels| levels.len() > 1) {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0230", place, "levels are listed, and the source of level 0 has several as well")
+                .label("listed here")
+                .help("leave `mips` out"),
+        );
+        return None;
+    }
+    let number = list.len() as u32 + 1;
+    if number > most_levels(inside[0], inside[1]) {
+        let place = reader.span(raw);
+        reader.push(too_many(number, inside[0], inside[1], place));
+        return None;
+    }
+    // Listed sources are of the format of level 0, whoever has chosen it.
+    let request = Request { format: Some(given.format), levels: Wanted::Own, ..*request };
+    let mut complete = true;
+    for (n, raw) in (1..).zip(&list) {
+        let Some(level) = sources.level(reader, raw, &request) else {
+            complete = false;
+            continue;
+        };
+        let sides = inside.map(|side| (side >> n).max(1) + beyond);
+        let (faces, most) = (level.faces.len(), level.faces.iter().map(Vec::len).max().unwrap_or(0));
+        let found = if most > 1 {
+            format!("{most} levels")
+        } else if faces != given.faces.len() {
+            (if faces == 1 { "one picture" } else { "six faces" }).to_owned()
+        } else if [level.width, level.height] != sides {
+            format!("{} x {}", level.width, level.height)
+        } else {
+            for (levels, face) in given.faces.iter_mut().zip(level.faces) {
+                levels.extend(face);
+            }
+            continue;
+        };
+        let of = if kind == TextureKind::Cube { "six faces of " } else { "" };
+        reader.push(
+            Diagnostic::error(
+                "NB0231",
+                level.place,
+                format!("level {n} is {of}{} x {}, not {found}", sides[0], sides[1]),
+            )
+            .label("does not fit")
+            .rule("TEX-9")
+            .help("sides halve from level to level, rounded down, and are at least 1"),
+        );
+        complete = false;
+    }
+    complete.then_some(())
+}

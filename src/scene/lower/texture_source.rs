@@ -1,0 +1,331 @@
+//! Where texels come from: files, raw memory, lists of words, made pictures.
+
+use super::names::Names;
+use super::texture_legal as legal;
+use super::texture_levels::{self, Wanted};
+use super::*;
+use crate::scene::raw::Tuple;
+use crate::scene::texels;
+use crate::state::{CUBE_FACES, Named, TextureFormat};
+
+mod made;
+mod stored;
+
+/// What a source gives.
+pub(super) struct Given {
+    pub(super) format: TextureFormat,
+    /// Columns of level 0, border texels included.
+    pub(super) width: u32,
+    /// Rows of level 0, border texels included.
+    pub(super) height: u32,
+    /// Of each face (one, or six), of each level: its words.
+    pub(super) faces: Vec<Vec<Vec<u32>>>,
+    /// Entries, where a file brings them along.
+    pub(super) palette: Option<Vec<u32>>,
+    /// Where messages about the texture point.
+    pub(super) place: Range<usize>,
+}
+
+/// What the texture wants of a source.
+#[derive(Clone, Copy)]
+pub(super) struct Request {
+    /// As written.
+    pub(super) format: Option<TextureFormat>,
+    /// Faces that raw memory holds.
+    pub(super) faces: u32,
+    /// Levels that raw memory holds.
+    pub(super) levels: Wanted,
+    /// Sources bring border texels.
+    pub(super) border: bool,
+}
+
+crate::state::named! {
+    /// A kind of source.
+    pub(super) enum Variant {
+        /// A PNG, TGA or DDS file.
+        File,
+        /// A file of texels as they lie in memory.
+        Raw,
+        /// Six sources.
+        Faces,
+        /// Words in hexadecimal.
+        Texels,
+        /// One colour.
+        Solid,
+        /// Two colours.
+        Checker,
+        /// From one colour to another.
+        Ramp,
+        /// A render target.
+        Target,
+    }
+}
+
+impl Variant {
+    pub(super) const ALL_NAMES: &'static [&'static str] = Variant::NAMES;
+    /// Sources of a face: no faces in it, no target.
+    const OF_FACE: [Variant; 6] =
+        [Variant::File, Variant::Raw, Variant::Texels, Variant::Solid, Variant::Checker, Variant::Ramp];
+    /// Sources of a level.
+    const OF_LEVEL: [Variant; 7] =
+        [Variant::File, Variant::Raw, Variant::Faces, Variant::Texels, Variant::Solid, Variant::Checker, Variant::Ramp];
+}
+
+/// Reads sources, and counts the memory that they take.
+pub(super) struct Sources<'c, 'a> {
+    pub(super) names: &'c Names<'a>,
+    pub(super) folder: &'c Path,
+    /// Bytes that textures may still take.
+    pub(super) left: u64,
+}
+
+impl<'a> Sources<'_, 'a> {
+    /// Reads a source; `text` is what follows the name of its variant. `None` once the reason has been recorded.
+    pub(super) fn read(
+        &mut self,
+        reader: &mut Reader<'a>,
+        variant: Variant,
+        raw: &Raw<'a, source::ImageSource>,
+        text: &'a str,
+        request: &Request,
+    ) -> Option<Given> {
+        let place = reader.span(raw);
+        match variant {
+            Variant::File => self.file(reader, text, request, place),
+            Variant::Raw => self.memory(reader, text, request),
+            Variant::Faces => self.faces(reader, text, request, place),
+            Variant::Texels => self.words(reader, text, request),
+            Variant::Solid | Variant::Checker | Variant::Ramp => {
+                let format = packable(reader, request, place)?;
+                let picture = made::picture(self, reader, variant, text, request)?;
+                let words = texels::pack(&picture.pixels, format);
+                Some(one(format, picture.width, picture.height, words, picture.place))
+            }
+            // Lowered with the targets at hand.
+            Variant::Target => None,
+        }
+    }
+
+    /// Reads the source of a level.
+    pub(super) fn level(
+        &mut self,
+        reader: &mut Reader<'a>,
+        raw: &Raw<'a, source::ImageSource>,
+        request: &Request,
+    ) -> Option<Given> {
+        self.nested(reader, raw, "source of a level", &Variant::OF_LEVEL, request)
+    }
+
+    fn nested(
+        &mut self,
+        reader: &mut Reader<'a>,
+        raw: &Raw<'a, source::ImageSource>,
+        what: &str,
+        variants: &[Variant],
+        request: &Request,
+    ) -> Option<Given> {
+        let names: Vec<&'static str> = variants.iter().map(|variant| variant.name()).collect();
+        let (variant, rest) = reader.variant(raw, what, &names)?;
+        self.read(reader, variants[variant], raw, rest, request)
+    }
+
+    /// Takes the memory of so many texels or words off what is left.
+    pub(super) fn afford(&mut self, reader: &mut Reader<'a>, place: Range<usize>, words: u64) -> Option<()> {
+        let bytes = words.saturating_mul(4);
+        let Some(rest) = self.left.checked_sub(bytes) else {
+            let message = format!("the textures take more than {} bytes together", reader.limits.texture_bytes);
+            reader.push(
+                Diagnostic::error("NB0607", place, message)
+                    .label(format!("{bytes} more bytes here"))
+                    .help("make the textures smaller, or fewer; `ninebit limits` prints what is allowed"),
+            );
+            return None;
+        };
+        self.left = rest;
+        Some(())
+    }
+
+    /// Six sources, a face each.
+    fn faces(
+        &mut self,
+        reader: &mut Reader<'a>,
+        text: &'a str,
+        request: &Request,
+        place: Range<usize>,
+    ) -> Option<Given> {
+        let fields = reader.read(&Raw::<source::Faces<'a>>::new(text))?;
+        let opening = reader.range(text.get(..1).unwrap_or(text));
+        let request = Request { faces: 1, ..*request };
+        let mut six: Vec<Given> = Vec::new();
+        for (name, field) in [
+            ("positive_x", &fields.positive_x),
+            ("negative_x", &fields.negative_x),
+            ("positive_y", &fields.positive_y),
+            ("negative_y", &fields.negative_y),
+            ("positive_z", &fields.positive_z),
+            ("negative_z", &fields.negative_z),
+        ] {
+            let Some(raw) = reader.required(field, name, "cube map", opening.clone()) else { continue };
+            if let Some(face) = self.nested(reader, &raw, "source of a face", &Variant::OF_FACE, &request)
+                && six.first().is_none_or(|first| alike(reader, first, &face, reader.span(&raw)))
+            {
+                six.push(face);
+            }
+        }
+        if six.len() < CUBE_FACES as usize {
+            return None;
+        }
+        let mut six = six.into_iter();
+        let mut first = six.next()?;
+        first.faces.extend(six.flat_map(|face| face.faces));
+        first.place = place;
+        Some(first)
+    }
+
+    /// Raw words in hexadecimal, a text for each row.
+    fn words(&mut self, reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
+        let raw = Raw::<source::TexelRows<'a>>::new(text);
+        let fields = reader.read(&raw)?;
+        let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
+        if format.is_compressed() {
+            reader.push(cannot_pack(format, reader.span(&raw)));
+            return None;
+        }
+        let (width, height, place) = self.sides(reader, text, &fields.width, &fields.height, request)?;
+        self.afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
+        let opening = reader.range(text.get(..1).unwrap_or(text));
+        let list = reader.required(&fields.rows, "rows", "texture", opening)?;
+        let rows = reader.read(&list)?;
+        let digits = 2 * format.bytes() as usize;
+        let help =
+            format!("write {width} words of {digits} hexadecimal digits in each of {height} rows, for {format:?}");
+        if rows.len() != height as usize {
+            let message = format!("{} rows of texels for a height of {height}", rows.len());
+            let place = reader.span(&list);
+            reader.push(Diagnostic::error("NB0220", place, message).label("another number of rows").help(help));
+            return None;
+        }
+        let mut words = Vec::with_capacity(width as usize * height as usize);
+        for raw in &rows {
+            let row = reader.read(raw)?;
+            let mut count = 0;
+            for word in row.split_ascii_whitespace() {
+                let Some(value) = hexadecimal(word, digits) else {
+                    let place = reader.span(raw);
+                    let message = format!("`{}` is not a texel", shorten(word));
+                    reader.push(Diagnostic::error("NB0220", place, message).label("in this row").help(help));
+                    return None;
+                };
+                // Bits that the format ignores are zero in the state.
+                words.push(value & texels::used_bits(format));
+                count += 1;
+            }
+            if count != width as usize {
+                let place = reader.span(raw);
+                let message = format!("{count} texels in a row of {width}");
+                reader.push(Diagnostic::error("NB0220", place, message).label("in this row").help(help));
+                return None;
+            }
+        }
+        Some(one(format, width, height, words, place))
+    }
+
+    /// Width and height as written, and their place. They are held against the largest that any texture may have: what else must
+    /// be true of them depends on the kind.
+    pub(super) fn sides(
+        &mut self,
+        reader: &mut Reader<'a>,
+        text: &'a str,
+        width: &Option<Raw<'a, u32>>,
+        height: &Option<Raw<'a, u32>>,
+        request: &Request,
+    ) -> Option<(u32, u32, Range<usize>)> {
+        let opening = reader.range(text.get(..1).unwrap_or(text));
+        let width = reader.required(width, "width", "texture", opening.clone());
+        let height = reader.required(height, "height", "texture", opening);
+        let (width, height) = (width?, height?);
+        let place = reader.span(&width).start..reader.span(&height).end.max(reader.span(&width).end);
+        let (width, height) = (reader.read(&width)?, reader.read(&height)?);
+        let most = legal::largest_side(reader);
+        if width.max(height) > most + texture_levels::beyond(request.border) {
+            reader.push(legal::too_large(reader, "a texture", width, height, most, place));
+            return None;
+        }
+        if width == 0 || height == 0 {
+            reader.push(
+                Diagnostic::error("NB0219", place, format!("a texture cannot be {width} x {height}"))
+                    .label("no texels")
+                    .rule("TEX-7")
+                    .help("write at least 1 for both"),
+            );
+            return None;
+        }
+        Some((width, height, place))
+    }
+}
+
+/// The only value in the parentheses of `Variant(value)`.
+pub(super) fn only<'a, T>(reader: &mut Reader<'a>, text: &'a str, what: &str) -> Option<Raw<'a, T>> {
+    let raw = Raw::<Tuple<'a, T>>::new(text);
+    let parts = reader.read(&raw)?.0;
+    if let [part] = parts[..] {
+        return Some(part);
+    }
+    let place = reader.span(&raw);
+    reader.push(Diagnostic::error("NB0211", place, format!("expected {what} in these parentheses")).label("here"));
+    None
+}
+
+/// A word of so many hexadecimal digits.
+pub(super) fn hexadecimal(word: &str, digits: usize) -> Option<u32> {
+    let valid = word.len() == digits && word.bytes().all(|digit| digit.is_ascii_hexdigit());
+    u32::from_str_radix(word, 16).ok().filter(|_| valid)
+}
+
+/// One face of one level.
+fn one(format: TextureFormat, width: u32, height: u32, words: Vec<u32>, place: Range<usize>) -> Given {
+    Given { format, width, height, faces: vec![vec![words]], palette: None, place }
+}
+
+/// Whether a face goes with the first one; says so if not.
+fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Range<usize>) -> bool {
+    let describe = |given: &Given| {
+        let levels = given.faces.first().map_or(1, Vec::len);
+        let levels = if levels == 1 { String::new() } else { format!(" in {levels} levels") };
+        format!("{} x {} texels {}{levels}", given.width, given.height, given.format.name())
+    };
+    let (expected, found) = (describe(first), describe(face));
+    if face.faces.len() == 1 && expected == found {
+        return true;
+    }
+    let found = if face.faces.len() == 1 { found } else { "a whole cube map".to_owned() };
+    reader.push(
+        Diagnostic::error("NB0231", place, format!("this face is {found}, the first one {expected}"))
+            .label("another picture than the first")
+            .related(first.place.clone(), "the first face")
+            .rule("TEX-12")
+            .help("give six faces of the same size, format and number of levels"),
+    );
+    false
+}
+
+/// The format that pixels are packed into.
+fn packable(reader: &mut Reader<'_>, request: &Request, place: Range<usize>) -> Option<TextureFormat> {
+    let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
+    if texels::can_pack(format) {
+        return Some(format);
+    }
+    reader.push(cannot_pack(format, place));
+    None
+}
+
+fn cannot_pack(format: TextureFormat, place: Range<usize>) -> Diagnostic {
+    let help = if format == TextureFormat::P8 {
+        "indices come from `Texels`, `Raw(...)` or a DDS file"
+    } else {
+        "blocks come from `Raw(...)` or a DDS file, made by a tool that compresses"
+    };
+    Diagnostic::error("NB0232", place, format!("this source cannot make texels of format {}", format.name()))
+        .label("does not go with the format")
+        .help(help)
+}

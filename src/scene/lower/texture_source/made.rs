@@ -1,0 +1,77 @@
+//! Pictures that a scene describes instead of naming a file.
+
+use super::*;
+
+/// The colour at a column and row.
+type PixelAt = Box<dyn Fn(u32, u32) -> [u8; 4]>;
+
+/// Pixels before they are packed.
+pub(super) struct Picture {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) pixels: Vec<[u8; 4]>,
+    /// Where its sides are written.
+    pub(super) place: Range<usize>,
+}
+
+/// `Solid(...)`, `Checker(...)` or `Ramp(...)`.
+pub(super) fn picture<'a>(
+    sources: &mut Sources<'_, 'a>,
+    reader: &mut Reader<'a>,
+    variant: Variant,
+    text: &'a str,
+    request: &Request,
+) -> Option<Picture> {
+    let names = sources.names;
+    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let color = |reader: &mut Reader<'a>, field: &Option<Raw<'a, source::Color>>, name: &str| {
+        let raw = reader.required(field, name, "texture", opening.clone())?;
+        color::constant(reader, names, &raw)
+    };
+    let ((width, height, place), pixel): ((u32, u32, Range<usize>), PixelAt) = match variant {
+        Variant::Solid => {
+            let fields = reader.read(&Raw::<source::SolidImage<'a>>::new(text))?;
+            let sides = sources.sides(reader, text, &fields.width, &fields.height, request)?;
+            let color = color(reader, &fields.color, "color")?;
+            (sides, Box::new(move |_, _| color))
+        }
+        Variant::Checker => {
+            let fields = reader.read(&Raw::<source::CheckerImage<'a>>::new(text))?;
+            let sides = sources.sides(reader, text, &fields.width, &fields.height, request)?;
+            let cell = match &fields.cell {
+                Some(raw) => reader.whole(raw, "the side of a cell", 1..=4096)?,
+                None => 1,
+            };
+            let [first, second] = match &fields.colors {
+                Some(raw) => color::constants(reader, names, raw),
+                None => [[255; 4], [0, 0, 0, 255]],
+            };
+            (sides, Box::new(move |x, y| if (x / cell + y / cell) % 2 == 0 { first } else { second }))
+        }
+        _ => {
+            let fields = reader.read(&Raw::<source::RampImage<'a>>::new(text))?;
+            let sides = sources.sides(reader, text, &fields.width, &fields.height, request)?;
+            let (from, to) = (color(reader, &fields.from, "from"), color(reader, &fields.to, "to"));
+            let vertical = match &fields.axis {
+                Some(raw) => reader.variant(raw, "axis", &["Horizontal", "Vertical"])?.0 == 1,
+                None => false,
+            };
+            let (from, to, last) = (from?, to?, if vertical { sides.1 - 1 } else { sides.0 - 1 });
+            let mix = move |a: u8, b: u8, at: u32| match last {
+                0 => a,
+                last => ((u32::from(a) * (last - at) + u32::from(b) * at + last / 2) / last) as u8,
+            };
+            let pixel = move |x: u32, y: u32| {
+                let at = if vertical { y } else { x };
+                [0, 1, 2, 3].map(|channel| mix(from[channel], to[channel], at))
+            };
+            (sides, Box::new(pixel))
+        }
+    };
+    sources.afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
+    let mut pixels = Vec::with_capacity(width as usize * height as usize);
+    for y in 0..height {
+        pixels.extend((0..width).map(|x| pixel(x, y)));
+    }
+    Some(Picture { width, height, pixels, place })
+}

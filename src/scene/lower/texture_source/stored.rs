@@ -1,0 +1,142 @@
+//! Texels out of files.
+
+use super::*;
+use crate::scene::image::{self, Contents, ImageError, ImageLimits};
+use crate::scene::path;
+use crate::state::Level;
+
+impl<'a> Sources<'_, 'a> {
+    /// A picture, or a DDS file with its levels and faces.
+    pub(super) fn file(
+        &mut self,
+        reader: &mut Reader<'a>,
+        text: &'a str,
+        request: &Request,
+        source: Range<usize>,
+    ) -> Option<Given> {
+        let raw = only::<String>(reader, text, "the name of one file")?;
+        let limits = ImageLimits {
+            maximum_side: reader.limits.texture_side + texture_levels::beyond(request.border),
+            maximum_decoded_bytes: self.left,
+            maximum_file_bytes: reader.limits.image_file_bytes,
+        };
+        let contents = self.from_file(reader, &raw, |path| image::open(path, &limits))?;
+        let place = reader.span(&raw);
+        let dds = match contents {
+            Contents::Picture(image) => {
+                self.afford(reader, place.clone(), image.pixels.len() as u64)?;
+                let format = packable(reader, request, place)?;
+                let words = texels::pack(&image.pixels, format);
+                return Some(one(format, image.width, image.height, words, source));
+            }
+            Contents::Texture(dds) => dds,
+        };
+        self.afford(reader, place.clone(), dds.words.len() as u64)?;
+        let format = request.format.unwrap_or(dds.format);
+        let same_bits = format.bytes() == dds.format.bytes() && !format.is_compressed() && !dds.format.is_compressed();
+        if format != dds.format && !same_bits {
+            let message = format!("the file holds {}, not {}", dds.format.name(), format.name());
+            reader.push(
+                Diagnostic::error("NB0232", place, message)
+                    .label("of another format")
+                    .help(format!("leave `format` out, which means {} here", dds.format.name())),
+            );
+            return None;
+        }
+        let faces = if dds.cube { CUBE_FACES } else { 1 };
+        let used = texels::used_bits(format);
+        let words = dds.words.iter().map(|word| word & used).collect();
+        let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
+        let palette = dds.palette.filter(|_| format == TextureFormat::P8);
+        Some(Given { format, width: dds.width, height: dds.height, faces, palette, place: source })
+    }
+
+    /// Texels as they lie in memory.
+    pub(super) fn memory(&mut self, reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
+        let fields = reader.read(&Raw::<source::RawFile<'a>>::new(text))?;
+        let opening = reader.range(text.get(..1).unwrap_or(text));
+        let file = reader.required(&fields.file, "file", "texture", opening)?;
+        let (width, height, place) = self.sides(reader, text, &fields.width, &fields.height, request)?;
+        let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
+        let beyond = texture_levels::beyond(request.border);
+        let inside = [width.saturating_sub(beyond).max(1), height.saturating_sub(beyond).max(1)];
+        let levels = texture_levels::number(reader, request.levels, inside, place.clone())?;
+        let (_, face) = Level::chain(format, inside[0], inside[1], levels, request.border);
+        let words = u64::from(request.faces) * face as u64;
+        self.afford(reader, place.clone(), words)?;
+        let limit = reader.limits.image_file_bytes;
+        let bytes = self.from_file(reader, &file, |path| image::read(path, limit))?;
+        let expected = words * u64::from(format.bytes().min(4));
+        if bytes.len() as u64 != expected {
+            let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
+            let counted = |n: u32, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
+            reader.push(
+                Diagnostic::error("NB0235", reader.span(&file), message)
+                    .label("another length")
+                    .note(format!(
+                        "{} of {} of {width} x {height} texels {}, one after another",
+                        counted(request.faces, "face"),
+                        counted(levels, "level"),
+                        format.name()
+                    ))
+                    .help("check `width`, `height`, `format`, `kind` and `levels`"),
+            );
+            return None;
+        }
+        let words = texels::from_bytes(&bytes, format);
+        let faces = divide(words, format, inside, request.faces, levels, request.border);
+        Some(Given { format, width, height, faces, palette: None, place })
+    }
+
+    /// Finds the file of that name and does something with it.
+    fn from_file<T>(
+        &mut self,
+        reader: &mut Reader<'a>,
+        raw: &Raw<'a, String>,
+        read: impl FnOnce(&Path) -> Result<T, ImageError>,
+    ) -> Option<T> {
+        let name = reader.read(raw)?;
+        let place = reader.span(raw);
+        let path = match path::resolve(self.folder, &name) {
+            Ok(path) => path,
+            Err(error) => {
+                reader.push(
+                    Diagnostic::error(error.code(), place, error.to_string()).label("this file").help(error.help()),
+                );
+                return None;
+            }
+        };
+        match read(&path) {
+            Ok(contents) => Some(contents),
+            Err(error) => {
+                // The name as the scene has it: where the folder lies does not matter here.
+                let message = error.to_string().replace(&path.display().to_string(), &name);
+                reader.push(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()));
+                None
+            }
+        }
+    }
+}
+
+/// Words of all faces and levels, taken apart.
+fn divide(
+    mut words: Vec<u32>,
+    format: TextureFormat,
+    [width, height]: [u32; 2],
+    faces: u32,
+    levels: u32,
+    border: bool,
+) -> Vec<Vec<Vec<u32>>> {
+    let (chain, face) = Level::chain(format, width, height, levels, border);
+    let mut divided: Vec<Vec<Vec<u32>>> = Vec::new();
+    for at in (0..faces as usize).rev().map(|n| n * face) {
+        let mut levels: Vec<Vec<u32>> = Vec::new();
+        for level in chain.iter().rev() {
+            levels.push(words.split_off((at + level.offset).min(words.len())));
+        }
+        levels.reverse();
+        divided.push(levels);
+    }
+    divided.reverse();
+    divided
+}

@@ -1,0 +1,48 @@
+//! What a unit may do depends on the texture that it samples.
+
+use super::texture::Textures;
+use super::*;
+use crate::state::{AddressMode, Named, TextureFormat, TextureKind, TextureUnit};
+
+/// Gives the unit its palette, and holds it against its texture. `fields` is `None` where only the texture's name is written, which
+/// stands at `place`.
+pub(super) fn check<'a>(
+    reader: &mut Reader<'a>,
+    textures: &mut Textures,
+    fields: Option<&source::UnitState<'a>>,
+    unit: &mut TextureUnit,
+    place: Range<usize>,
+) {
+    let texture = &textures.list[unit.texture];
+    let (kind, format) = (texture.kind, texture.format);
+    let raw = fields.and_then(|fields| fields.palette.as_ref());
+    if format == TextureFormat::P8 {
+        unit.palette = match raw {
+            Some(raw) => textures.palettes.find(reader, raw),
+            None => textures.palette_of[unit.texture],
+        };
+        if unit.palette.is_none() && raw.is_none() {
+            let message = format!("the texture `{}` is of format P8 and has no palette", shorten(&texture.name));
+            reader.push(
+                Diagnostic::error("NB0234", place.clone(), message)
+                    .label("which colours?")
+                    .rule("TEX-1")
+                    .help("write `palette: \"...\"` in the texture or in this unit"),
+            );
+        }
+    } else if let Some(raw) = raw {
+        reader.push(palette::not_read(reader.span(raw), format));
+    }
+    let modes = [unit.address_s, unit.address_t];
+    if kind == TextureKind::Rectangle && reader.profile == Profile::Nv10 && modes != [AddressMode::ClampToEdge; 2] {
+        let wrong = modes.into_iter().find(|mode| *mode != AddressMode::ClampToEdge).map_or("", Named::name);
+        let field = fields.and_then(|f| [&f.address_s, &f.address_t, &f.address].into_iter().flatten().next().copied());
+        let place = field.map_or(place, |raw| reader.span(&raw));
+        reader.push(
+            Diagnostic::error("NB0330", place, format!("a rectangle texture cannot be addressed with {wrong} on Nv10"))
+                .label("not as a rectangle")
+                .rule("TEX-7")
+                .help("write `address: ClampToEdge`, or `profile: Nv2a`"),
+        );
+    }
+}

@@ -1,0 +1,127 @@
+//! Texels on their way into the state: pixels packed into a format, bytes of memory as words, the next smaller level.
+
+use crate::state::TextureFormat;
+use crate::texture::format::expand;
+
+/// Bits of a word that mean something. The others are zero in the state.
+pub fn used_bits(format: TextureFormat) -> u32 {
+    match format {
+        TextureFormat::X8R8G8B8 => 0x00ff_ffff,
+        TextureFormat::X1R5G5B5 => 0x7fff,
+        format => u32::MAX >> (32 - 8 * format.bytes().min(4)),
+    }
+}
+
+/// Texels or blocks as they lie in memory, little-endian, as words of the state. Bytes that make no whole texel are left out.
+pub fn from_bytes(bytes: &[u8], format: TextureFormat) -> Vec<u32> {
+    let used = used_bits(format);
+    match format.bytes() {
+        1 => bytes.iter().map(|byte| u32::from(*byte)).collect(),
+        2 => bytes.as_chunks().0.iter().map(|pair| u32::from(u16::from_le_bytes(*pair)) & used).collect(),
+        _ => bytes.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four) & used).collect(),
+    }
+}
+
+/// Whether pixels can be [packed](pack) into the format: not into indices, nor into blocks.
+pub fn can_pack(format: TextureFormat) -> bool {
+    format != TextureFormat::P8 && !format.is_compressed()
+}
+
+/// Eight bits a channel into words: low bits that do not fit are cut off, channels that the format lacks are dropped.
+pub fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
+    pixels.iter().map(|pixel| word(*pixel, format)).collect()
+}
+
+fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
+    let [r, g, b, a] = pixel.map(u32::from);
+    match format {
+        TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => a << 24 | r << 16 | g << 8 | b,
+        TextureFormat::X8R8G8B8 => r << 16 | g << 8 | b,
+        TextureFormat::A8B8G8R8 => a << 24 | b << 16 | g << 8 | r,
+        TextureFormat::B8G8R8A8 => b << 24 | g << 16 | r << 8 | a,
+        TextureFormat::R8G8B8A8 => r << 24 | g << 16 | b << 8 | a,
+        TextureFormat::R5G6B5 => (r >> 3) << 11 | (g >> 2) << 5 | b >> 3,
+        TextureFormat::R6G5B5 => (r >> 2) << 10 | (g >> 3) << 5 | b >> 3,
+        TextureFormat::X1R5G5B5 => (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
+        TextureFormat::A1R5G5B5 => (a >> 7) << 15 | (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
+        TextureFormat::A4R4G4B4 => (a >> 4) << 12 | (r >> 4) << 8 | (g >> 4) << 4 | b >> 4,
+        TextureFormat::L8 | TextureFormat::I8 => r,
+        TextureFormat::A8 => a,
+        TextureFormat::A8L8 => a << 8 | r,
+        TextureFormat::G8B8 | TextureFormat::Y16 => g << 8 | b,
+        TextureFormat::R8B8 => r << 8 | b,
+        // Refused by whoever has asked `can_pack`.
+        TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => 0,
+    }
+}
+
+/// The next smaller level of one whose sides are powers of two, by a box filter: of each channel as it is read (TEX-1) the mean of
+/// 2 x 2 texels, or of two where one side is 1 already, halves rounded up; then [packed](pack). Formats of 16 bits a channel keep
+/// 16 bits. This prepares contents: no chip makes levels.
+pub fn halve(words: &[u32], width: u32, height: u32, format: TextureFormat) -> Vec<u32> {
+    let (right, down) = (usize::from(width > 1), if height > 1 { width as usize } else { 0 });
+    let mut smaller = Vec::with_capacity(words.len().div_ceil(4));
+    for y in 0..(height / 2).max(1) {
+        for x in 0..(width / 2).max(1) {
+            let at = 2 * (y as usize * width as usize + x as usize);
+            // Where a side is 1, texels count twice: the mean is the same.
+            smaller.push(mean([at, at + right, at + down, at + right + down].map(|at| words[at]), format));
+        }
+    }
+    smaller
+}
+
+fn mean(texels: [u32; 4], format: TextureFormat) -> u32 {
+    let of = |values: [u32; 4]| (values.iter().sum::<u32>() + 2) >> 2;
+    match format {
+        TextureFormat::Y16 => of(texels),
+        TextureFormat::R16B16 => of(texels.map(|t| t >> 16)) << 16 | of(texels.map(|t| t & 0xffff)),
+        format => {
+            let channels = texels.map(|texel| expand(format, texel));
+            word([0, 1, 2, 3].map(|n| of(channels.map(|channel| u32::from(channel[n]))) as u8), format)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Named;
+
+    /// What is read of a packed pixel packs into the same word.
+    #[test]
+    fn packing_undoes_expanding() {
+        for format in TextureFormat::ALL.iter().copied().filter(|format| can_pack(*format)) {
+            for n in 0..=0xffff_u32 {
+                let word = n.wrapping_mul(0x9e37_0001) & used_bits(format);
+                // Y16 shows two bytes of its value in two channels, all formats the rest in one each.
+                assert_eq!(super::word(expand(format, word), format), word, "{format:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn bytes_of_memory() {
+        let bytes = [1, 2, 3, 0x84];
+        assert_eq!(from_bytes(&bytes, TextureFormat::L8), [1, 2, 3, 0x84]);
+        assert_eq!(from_bytes(&bytes, TextureFormat::R5G6B5), [0x0201, 0x8403]);
+        assert_eq!(from_bytes(&bytes, TextureFormat::X1R5G5B5), [0x0201, 0x0403]);
+        assert_eq!(from_bytes(&bytes, TextureFormat::A8R8G8B8), [0x8403_0201]);
+        assert_eq!(from_bytes(&bytes, TextureFormat::X8R8G8B8), [0x0003_0201]);
+        assert_eq!(from_bytes(&[1, 2, 3, 4, 5, 6, 7, 8], TextureFormat::Dxt1), [0x0403_0201, 0x0807_0605]);
+    }
+
+    #[test]
+    fn halving() {
+        let l8 = |words: &[u32], width, height| halve(words, width, height, TextureFormat::L8);
+        assert_eq!(l8(&[0, 1, 10, 20, 0, 0, 30, 41], 4, 2), [0, 25]);
+        // A mean of 1/2 and one of 2/4.
+        assert_eq!(l8(&[0, 1], 2, 1), [1]);
+        assert_eq!(l8(&[0, 1, 4, 4], 1, 4), [1, 4]);
+        assert_eq!(l8(&[1, 1, 0, 0], 2, 2), [1]);
+        assert_eq!(halve(&[0x00ff_0000, 0x0100_ffff], 2, 1, TextureFormat::R16B16), [0x0100_8000]);
+        assert_eq!(halve(&[0x00ff, 0x0100], 2, 1, TextureFormat::Y16), [0x0100]);
+        // Red 31 and 30 are read as 255 and 247: 251, cut to 31.
+        assert_eq!(halve(&[31 << 11, 30 << 11], 2, 1, TextureFormat::R5G6B5), [31 << 11]);
+    }
+}

@@ -1,0 +1,234 @@
+//! TEX-1 to TEX-4, TEX-7, TEX-8: from texel indices to the channels of a texel.
+//!
+//! A texel has up to four *lanes*: R, G, B, A, or the 16-bit halves of the formats that are filtered at 16 bits.
+
+use super::address::address;
+use super::compressed;
+use super::cube::Face;
+use super::format;
+use super::unit::{Image, PlannedUnit};
+use crate::number::Lane;
+use crate::state::{AddressMode, BORDER_TEXELS, Level, Named, TextureFormat, TextureKind};
+use crate::trace::{Observer, Rule, Work};
+
+/// One texel of the footprint: where it is, `None` for the border colour, and its raw word; of a compressed format the place of its block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Texel {
+    /// Column and row, negative or past the end in border texels.
+    pub at: Option<[i64; 2]>,
+    /// Raw word, or index of the block's first word.
+    pub word: u32,
+}
+
+/// One image of a texture: a level of a face.
+#[derive(Clone, Copy, Debug)]
+pub struct Slice<'a> {
+    /// The unit.
+    pub unit: &'a PlannedUnit,
+    /// The level.
+    pub level: &'a Level,
+    /// The face.
+    pub face: Face,
+}
+
+impl PlannedUnit {
+    /// Which sides of a level coordinates are multiplied by: 1 for rectangles, whose coordinates are texels.
+    pub fn scale(&self, level: &Level) -> [u32; 2] {
+        if self.kind == TextureKind::Rectangle { [1, 1] } else { [level.width, level.height] }
+    }
+
+    /// Address modes along s and t: cube maps stay on the face (TEX-14).
+    pub fn modes(&self) -> [AddressMode; 2] {
+        match self.kind {
+            TextureKind::Cube => [AddressMode::ClampToEdge; 2],
+            TextureKind::TwoDimensional | TextureKind::Rectangle => [self.state.address_s, self.state.address_t],
+        }
+    }
+
+    /// Whether texels are filtered at 16 bits, as halves.
+    pub fn is_wide(&self) -> bool {
+        matches!(self.format, TextureFormat::R16B16 | TextureFormat::Y16)
+    }
+
+    /// Lanes that anybody reads, bit n lane n: channels R, G, B, A; of R16B16 the high and the low half, of Y16 the one there is.
+    pub fn live_lanes(&self) -> u8 {
+        let any = |channels: u8| u8::from(self.live & channels != 0);
+        match self.format {
+            TextureFormat::R16B16 => any(1 | 8) | any(2 | 4) << 1,
+            TextureFormat::Y16 => any(2 | 4),
+            _ => self.live,
+        }
+    }
+
+    /// Whether a lane is two's complement (TEX-18): of R16B16 by the flags of A (high) and G (low), of Y16 by that of G.
+    pub fn signed_lane(&self, lane: usize) -> bool {
+        match (self.format, lane) {
+            (TextureFormat::R16B16, 0) => self.state.signed[3],
+            (TextureFormat::R16B16 | TextureFormat::Y16, _) => self.state.signed[1],
+            (_, lane) => self.state.signed[lane],
+        }
+    }
+}
+
+impl Slice<'_> {
+    /// The texel at an index that may lie outside.
+    #[inline(always)]
+    pub fn texel(&self, words: &[u32], x: i64, y: i64) -> Texel {
+        let (x, y) = (self.column(x), self.row(y));
+        self.inside(words, x, y)
+    }
+
+    /// TEX-8: the 2x2 footprint whose upper left texel is (x, y), row by row; each index is wrapped on its own.
+    #[inline(always)]
+    pub fn footprint(&self, words: &[u32], x: i64, y: i64) -> [Texel; 4] {
+        let (x0, x1) = (self.column(x), self.column(x + 1));
+        let (y0, y1) = (self.row(y), self.row(y + 1));
+        [self.inside(words, x0, y0), self.inside(words, x1, y0), self.inside(words, x0, y1), self.inside(words, x1, y1)]
+    }
+
+    #[inline(always)]
+    fn column(&self, x: i64) -> Option<i64> {
+        address(self.unit.modes()[0], x, self.level.width, self.unit.border)
+    }
+
+    #[inline(always)]
+    fn row(&self, y: i64) -> Option<i64> {
+        address(self.unit.modes()[1], y, self.level.height, self.unit.border)
+    }
+
+    /// TEX-7: the texel inside, or the border colour, which is A8R8G8B8 whatever the format.
+    #[inline(always)]
+    fn inside(&self, words: &[u32], x: Option<i64>, y: Option<i64>) -> Texel {
+        let (Some(x), Some(y)) = (x, y) else {
+            let [r, g, b, a] = self.unit.state.border_color.map(u32::from);
+            return Texel { at: None, word: a << 24 | r << 16 | g << 8 | b };
+        };
+        let first = self.face as usize * self.unit.face_words + self.level.offset;
+        if self.unit.format.is_compressed() {
+            let pitch = self.level.width.div_ceil(4) as usize;
+            let block = (y as usize / 4) * pitch + x as usize / 4;
+            let words = self.unit.format.bytes() as usize / 4;
+            return Texel { at: Some([x, y]), word: (first + block * words) as u32 };
+        }
+        let beyond = if self.unit.border { i64::from(BORDER_TEXELS) } else { 0 };
+        let pitch = i64::from(self.level.width) + 2 * beyond;
+        let index = first + ((y + beyond) * pitch + x + beyond) as usize;
+        Texel { at: Some([x, y]), word: words[index] }
+    }
+}
+
+/// The colour that a texel of a palette format stands for, A8R8G8B8 (TEX-1).
+pub fn palette_entry(unit: &PlannedUnit, index: u32) -> u32 {
+    let entries = unit.palette.as_deref().unwrap_or(&[0]);
+    entries[index as usize & (entries.len() - 1)]
+}
+
+/// The words of a texel's block.
+pub fn block<'a>(unit: &PlannedUnit, words: &'a [u32], texel: &Texel) -> &'a [u32] {
+    let first = texel.word as usize;
+    &words[first..first + unit.format.bytes() as usize / 4]
+}
+
+/// The lanes of a texel.
+#[inline(always)]
+pub fn lanes<L: Lane, O: Observer>(
+    unit: &PlannedUnit,
+    image: &Image<'_, L>,
+    texel: &Texel,
+    observer: &mut O,
+) -> [L; 4] {
+    observer.count(Work::Texels, 1);
+    let Some(at) = texel.at else {
+        return if unit.is_wide() {
+            wide_lanes(unit, halves(unit.format, texel))
+        } else {
+            format::lanes::<L>(TextureFormat::A8R8G8B8, texel.word, &unit.state.signed)
+        };
+    };
+    let mut rule = Rule::Tex1;
+    let mut lanes = match unit.format {
+        TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {
+            let [x, y] = at.map(|i| i as u32);
+            let decoded = compressed::decode(unit.format, unit.dithered, block(unit, image.words, texel), x, y);
+            rule = compressed_rule(unit);
+            compressed_lanes(&decoded, &unit.state.signed)
+        }
+        TextureFormat::P8 => {
+            let word = palette_entry(unit, texel.word);
+            format::lanes::<L>(TextureFormat::A8R8G8B8, word, &unit.state.signed)
+        }
+        TextureFormat::R16B16 | TextureFormat::Y16 => wide_lanes(unit, halves(unit.format, texel)),
+        format => format::lanes::<L>(format, texel.word, &unit.state.signed),
+    };
+    if unit.levels.len() == 1 && !unit.border {
+        let place = at.map(|i| i as u32);
+        observer.fetched(unit.state.texture, (place[0], place[1]));
+        if let Some((memory, channels)) = image.memory {
+            let held = &memory[place[1] as usize * unit.levels[0].width as usize + place[0] as usize];
+            for n in (0..4).filter(|n| channels >> n & 1 != 0) {
+                lanes[n] = lanes[n].remember(held[n], unit.state.signed[n]);
+            }
+            rule = Rule::Rop5;
+        }
+    }
+    let off = image.memory.is_some() || format::is_narrow(unit.format) || unit.format.is_compressed();
+    if O::MEASURES && off && !unit.is_wide() {
+        for channel in (0..4).filter(|n| !unit.state.signed[*n] && unit.live >> n & 1 != 0) {
+            lanes[channel] = observer.settle(rule, lanes[channel]);
+        }
+    }
+    lanes
+}
+
+/// The rule that decodes a unit's compressed texels.
+pub fn compressed_rule(unit: &PlannedUnit) -> Rule {
+    match (unit.format, unit.dithered) {
+        (TextureFormat::Dxt1, true) => Rule::Tex3,
+        (TextureFormat::Dxt1, false) => Rule::Tex4,
+        _ => Rule::Tex2,
+    }
+}
+
+/// The halves of a texel of a format that is filtered at 16 bits; those of a border colour are its bytes, A and R, G and B.
+pub fn halves(format: TextureFormat, texel: &Texel) -> [u32; 2] {
+    let (high, low) = (texel.word >> 16, texel.word & 0xffff);
+    if format == TextureFormat::Y16 { [low, 0] } else { [high, low] }
+}
+
+fn compressed_lanes<L: Lane>(decoded: &compressed::Decoded, signed: &[bool; 4]) -> [L; 4] {
+    std::array::from_fn(|n| {
+        let byte = decoded.bytes[n];
+        if signed[n] {
+            let s = i32::from(byte as i8);
+            L::texel(s, s, 128)
+        } else {
+            let (numerator, denominator) = decoded.ideal[n];
+            L::texel(i32::from(byte), numerator, denominator)
+        }
+    })
+}
+
+/// High and low half as lanes 0 and 1.
+fn wide_lanes<L: Lane>(unit: &PlannedUnit, halves: [u32; 2]) -> [L; 4] {
+    let half = |lane: usize| {
+        if unit.signed_lane(lane) {
+            let s = i32::from(halves[lane] as u16 as i16);
+            L::texel(s, s, 32768)
+        } else {
+            let v = halves[lane] as i32;
+            L::texel(v, v, 65535)
+        }
+    };
+    [half(0), half(1), L::ZERO, L::ZERO]
+}
+
+/// What an operation on texels of this format is called in traces: the format that [`format::expand`] takes.
+pub fn expanded_as(unit: &PlannedUnit, texel: &Texel) -> &'static str {
+    match unit.format {
+        _ if texel.at.is_none() => TextureFormat::A8R8G8B8.name(),
+        TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {
+            TextureFormat::A8R8G8B8.name()
+        }
+        format => format.name(),
+    }
+}

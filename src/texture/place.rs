@@ -1,0 +1,362 @@
+//! Where a unit samples: coordinates of each kind of texture, on each of its levels, at a pixel and at its quad.
+
+use super::cube::{Face, Signed};
+use super::lod::Quad;
+use super::report::Report;
+use super::unit::PlannedUnit;
+use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
+use crate::raster::{ideal, setup::Triangle};
+use crate::state::{Level, Named, TextureKind};
+use crate::trace::{Observer, Operand, Rule, Step, plain};
+
+/// A unit's coordinates, set up for one triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Coordinates {
+    /// q is 1 at all three vertices: u and v of level 0 are linear functions over D (INT-4).
+    Plane([[i64; 3]; 2]),
+    /// s/q and t/q, a ratio of linear functions (TEX-15).
+    Ratio([[i64; 3]; 3]),
+    /// The direction s, t, r of a cube map (TEX-12); q is ignored.
+    Direction([[i64; 3]; 3]),
+}
+
+impl Coordinates {
+    /// Sets up the coordinates of a triangle. `vertices` holds s, t, r, q of its three vertices.
+    pub fn new(triangle: &Triangle, vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
+        let component = |n: usize| vertices.map(|v| v[n]);
+        if unit.kind == TextureKind::Cube {
+            return Coordinates::Direction(triangle.direction([component(0), component(1), component(2)]));
+        }
+        if component(3) == [1.0; 3] {
+            let [width, height] = unit.scale(&unit.levels[0]);
+            Coordinates::Plane([triangle.coordinate(component(0), width), triangle.coordinate(component(1), height)])
+        } else {
+            Coordinates::Ratio(triangle.direction([component(0), component(1), component(3)]))
+        }
+    }
+}
+
+/// The three linear functions of sc, tc and |ma| of a direction on a face.
+pub fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
+    face.components().map(
+        |Signed { axis, negative }| {
+            if negative { direction[axis].map(|g| -g) } else { direction[axis] }
+        },
+    )
+}
+
+/// Real coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Real {
+    /// The face that they lie on.
+    pub face: Face,
+    /// s and t, of which 1.0 is the whole image; texels of a rectangle.
+    pub st: [f64; 2],
+}
+
+/// Where a unit samples. Implementations differ in what the coordinates come from.
+pub trait Place {
+    /// The face of a cube map; [`Face::PositiveX`] of other kinds.
+    fn face(&self) -> Face;
+    /// u and v on a level, 1/256 texel.
+    fn on(&self, level: &Level) -> [Settled; 2];
+    /// TEX-11: u and v at the quad, on the face of its top-left pixel. `None`: some of it lies behind the viewer.
+    fn quad(&self) -> Option<Quad>;
+    /// The ideal's coordinates, on a given face or on its own.
+    fn real(&self, face: Option<Face>) -> Real;
+    /// The ideal's s and t at the quad, likewise.
+    fn real_quad(&self) -> Option<[[f64; 2]; 3]>;
+    /// The rule that yields u and v.
+    fn rule(&self) -> Rule;
+    /// Tells an observer where u and v on a level come from.
+    fn describe<O: Observer>(
+        &self,
+        report: &Report<'_>,
+        level: &Level,
+        settled: [Settled; 2],
+        ideal: [f64; 2],
+        observer: &mut O,
+    );
+    /// Tells an observer where the coordinates of the quad come from.
+    fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O);
+}
+
+/// Coordinates interpolated from the vertices.
+#[derive(Clone, Copy, Debug)]
+pub struct Interpolated<'a> {
+    /// The unit.
+    pub unit: &'a PlannedUnit,
+    /// Its coordinates.
+    pub coordinates: &'a Coordinates,
+    /// The sample.
+    pub at: &'a Sample<'a>,
+    /// Its column and row.
+    pub pixel: (i64, i64),
+    /// s, t, r, q of the vertices, for the ideal.
+    pub vertices: [[f32; 4]; 3],
+    /// w of the vertices; all 1 without perspective.
+    pub w: [f32; 3],
+}
+
+/// Samples at the top-left pixel of a pixel's quad, at its right and at its lower neighbour.
+pub fn quad_samples(triangle: &Triangle, (i, j): (i64, i64)) -> [Sample<'_>; 3] {
+    let (i, j) = (i & !1, j & !1);
+    [(i, j), (i + 1, j), (i, j + 1)].map(|(i, j)| Sample::new(triangle, triangle.edges(i, j)))
+}
+
+impl Interpolated<'_> {
+    fn face_at(direction: &[[i64; 3]; 3], at: &Sample<'_>) -> Face {
+        let sums = direction.map(|g| at.sum(&g));
+        Face::of(sums, sums.map(i128::abs), 0)
+    }
+
+    /// One pixel of the quad, on a face, in 1/65536 texel of level 0. `None`: behind the viewer.
+    fn at_quad(&self, at: &Sample<'_>, face: Face) -> Option<[i64; 2]> {
+        let [width, height] = self.unit.scale(&self.unit.levels[0]).map(i128::from);
+        let floor = |numerator: i128, denominator: i128| {
+            let limit = 1 << 62;
+            (denominator > 0).then(|| numerator.div_euclid(denominator).clamp(-limit, limit) as i64)
+        };
+        if at.d <= 0 {
+            return None;
+        }
+        match self.coordinates {
+            Coordinates::Plane(g) => {
+                let along = |n: usize| floor(at.sum(&g[n]) << 8, i128::from(at.d));
+                Some([along(0)?, along(1)?])
+            }
+            Coordinates::Ratio([s, t, q]) => {
+                let q = at.sum(q);
+                Some([floor((at.sum(s) * width) << 16, q)?, floor((at.sum(t) * height) << 16, q)?])
+            }
+            Coordinates::Direction(direction) => {
+                let [s, t, m] = on_face(direction, face).map(|g| at.sum(&g));
+                Some([floor(((s + m) * width) << 15, m)?, floor(((t + m) * height) << 15, m)?])
+            }
+        }
+    }
+
+    /// The ideal's weights of the vertices at edge functions that need not be covered.
+    fn weights(&self, e: [i64; 3]) -> [f64; 3] {
+        ideal::barycentrics(self.at.triangle, e, self.w, true)
+    }
+
+    fn real_at(&self, weights: [f64; 3], face: Option<Face>) -> Real {
+        let component = |n: usize| ideal::mix(weights, self.vertices.map(|v| f64::from(v[n])));
+        if let Coordinates::Direction(_) = self.coordinates {
+            return real_direction([component(0), component(1), component(2)], face);
+        }
+        let q = component(3);
+        Real { face: Face::PositiveX, st: [0, 1].map(|n| ideal::quotient(component(n), q)) }
+    }
+}
+
+/// TEX-12 of real numbers.
+pub fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
+    let face = face.unwrap_or_else(|| Face::of(direction, direction.map(f64::abs), 0.0));
+    let [s, t, m] = face.components().map(|c| {
+        let component = direction[c.axis];
+        if c.negative { -component } else { component }
+    });
+    #[allow(clippy::float_arithmetic, reason = "the ideal's coordinates")]
+    let st = [s, t].map(|c| if m == 0.0 { 0.0 } else { (c / m + 1.0) / 2.0 });
+    Real { face, st }
+}
+
+impl Place for Interpolated<'_> {
+    fn face(&self) -> Face {
+        match self.coordinates {
+            Coordinates::Direction(direction) => Self::face_at(direction, self.at),
+            Coordinates::Plane(_) | Coordinates::Ratio(_) => Face::PositiveX,
+        }
+    }
+
+    fn on(&self, level: &Level) -> [Settled; 2] {
+        let [width, height] = self.unit.scale(level);
+        match self.coordinates {
+            Coordinates::Plane(g) => {
+                // floor(floor(x) / 2^k) is floor(x / 2^k): the planes of a level, whose sides are powers of two.
+                let [whole_width, whole_height] = self.unit.scale(&self.unit.levels[0]);
+                let down = |g: &[i64; 3], whole: u32, side: u32| {
+                    let shift = side.leading_zeros() - whole.leading_zeros();
+                    self.at.coordinate(&g.map(|g| g >> shift))
+                };
+                [down(&g[0], whole_width, width), down(&g[1], whole_height, height)]
+            }
+            Coordinates::Ratio([s, t, q]) => [self.at.ratio(s, q, width), self.at.ratio(t, q, height)],
+            Coordinates::Direction(direction) => {
+                let [s, t, m] = on_face(direction, Self::face_at(direction, self.at));
+                [self.at.face_coordinate(&s, &m, width), self.at.face_coordinate(&t, &m, height)]
+            }
+        }
+    }
+
+    fn quad(&self) -> Option<Quad> {
+        let samples = quad_samples(self.at.triangle, self.pixel);
+        let face = match self.coordinates {
+            Coordinates::Direction(direction) => Self::face_at(direction, &samples[0]),
+            Coordinates::Plane(_) | Coordinates::Ratio(_) => Face::PositiveX,
+        };
+        let [origin, right, lower] = samples.map(|at| self.at_quad(&at, face));
+        Some([origin?, right?, lower?])
+    }
+
+    fn real(&self, face: Option<Face>) -> Real {
+        self.real_at(self.at.ideal.unwrap_or_else(|| self.weights(self.at.e)), face)
+    }
+
+    fn real_quad(&self) -> Option<[[f64; 2]; 3]> {
+        let samples = quad_samples(self.at.triangle, self.pixel);
+        if samples.iter().any(|at| at.d <= 0) {
+            return None;
+        }
+        let [origin, right, lower] = samples.map(|at| self.weights(at.e));
+        let origin = self.real_at(origin, None);
+        Some([origin.st, self.real_at(right, Some(origin.face)).st, self.real_at(lower, Some(origin.face)).st])
+    }
+
+    fn rule(&self) -> Rule {
+        match self.coordinates {
+            Coordinates::Plane(_) => Rule::Int4,
+            Coordinates::Ratio(_) => Rule::Tex15,
+            Coordinates::Direction(_) => Rule::Tex12,
+        }
+    }
+
+    fn describe<O: Observer>(
+        &self,
+        report: &Report<'_>,
+        level: &Level,
+        settled: [Settled; 2],
+        ideal: [f64; 2],
+        observer: &mut O,
+    ) {
+        let edges = (0..3).map(|k| plain(format!("E{k}"), self.at.e[k]));
+        let sides = self.unit.scale(level);
+        let [whole_width, whole_height] = self.unit.scale(&self.unit.levels[0]);
+        let direction = self.tell_direction(report, observer);
+        for (axis, letter) in ["u", "v"].into_iter().enumerate() {
+            let lowered = plain("lowered", i64::from(settled[axis].lowered));
+            let size = plain("size", i64::from(sides[axis]));
+            let (rule, operation, mut inputs) = match self.coordinates {
+                Coordinates::Plane(g) => {
+                    let shift = sides[axis].leading_zeros() - [whole_width, whole_height][axis].leading_zeros();
+                    let g = g[axis].map(|g| g >> shift);
+                    ("INT-4", "floor_plane", report.planes("INT-4", &format!("G_{letter}"), &g, observer))
+                }
+                Coordinates::Ratio(planes) => {
+                    let mut inputs = report.planes("INT-4", &format!("N_{letter}"), &planes[axis], observer);
+                    inputs.extend(report.planes("INT-4", "N_q", &planes[2], observer));
+                    ("TEX-15", "floor_ratio", inputs)
+                }
+                Coordinates::Direction(_) => ("TEX-12", ["floor_face_u", "floor_face_v"][axis], direction.clone()),
+            };
+            inputs.extend(edges.clone());
+            match self.coordinates {
+                Coordinates::Plane(_) => inputs.push(plain("D", self.at.d)),
+                Coordinates::Ratio(_) => inputs.push(size),
+                Coordinates::Direction(_) => {
+                    inputs.push(plain(report.name("face"), self.face() as i64));
+                    inputs.push(size);
+                }
+            }
+            inputs.push(lowered);
+            report.coordinate(rule, letter, settled[axis], ideal[axis], (operation, inputs), observer);
+        }
+    }
+
+    fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O) {
+        let Some(quad) = self.quad() else { return };
+        let triangle = self.at.triangle;
+        let (i, j) = (self.pixel.0 & !1, self.pixel.1 & !1);
+        let direction = self.tell_direction(report, observer);
+        let samples = quad_samples(triangle, self.pixel);
+        let sides = self.unit.scale(&self.unit.levels[0]);
+        for (n, (x, y)) in [(i, j), (i + 1, j), (i, j + 1)].into_iter().enumerate() {
+            let edge = |k: usize| report.name(&format!("quad{n}.E{k}"));
+            for k in 0..3 {
+                let inputs = vec![
+                    plain(format!("a{k}"), triangle.a[k]),
+                    plain(format!("b{k}"), triangle.b[k]),
+                    plain(format!("c{k}"), triangle.c[k]),
+                    plain("x", x),
+                    plain("y", y),
+                ];
+                let step = Step::given(&report.block(), "TEX-11", edge(k), samples[n].e[k]);
+                observer.step(step.by("edge_function", inputs));
+            }
+            if let Coordinates::Direction(_) = self.coordinates
+                && n == 0
+            {
+                let mut inputs = direction.clone();
+                inputs.extend((0..3).map(|k| plain(edge(k), samples[0].e[k])));
+                self.tell_face(report, "quad0.face", &samples[0], inputs, observer);
+            }
+            for (axis, letter) in ["u", "v"].into_iter().enumerate() {
+                let edges = (0..3).map(|k| plain(edge(k), samples[n].e[k]));
+                let size = plain("size", i64::from(sides[axis]));
+                let (operation, inputs) = match self.coordinates {
+                    Coordinates::Plane(g) => {
+                        let mut inputs = report.planes("INT-4", &format!("G_{letter}"), &g[axis], observer);
+                        inputs.extend(edges);
+                        inputs.extend((0..3).map(|k| plain(format!("P{k}"), triangle.p[k])));
+                        ("quad_plane", inputs)
+                    }
+                    Coordinates::Ratio(planes) => {
+                        let mut inputs = report.planes("INT-4", &format!("N_{letter}"), &planes[axis], observer);
+                        inputs.extend(report.planes("INT-4", "N_q", &planes[2], observer));
+                        inputs.extend(edges);
+                        inputs.push(size);
+                        ("quad_ratio", inputs)
+                    }
+                    Coordinates::Direction(planes) => {
+                        let mut inputs = direction.clone();
+                        inputs.extend(edges);
+                        let face = Self::face_at(planes, &samples[0]) as i64;
+                        inputs.push(plain(report.name("quad0.face"), face));
+                        inputs.push(size);
+                        (["quad_face_u", "quad_face_v"][axis], inputs)
+                    }
+                };
+                report.quad_coordinate((n, letter), quad[n][axis], (operation, inputs), observer);
+            }
+        }
+    }
+}
+
+impl Interpolated<'_> {
+    /// The direction's numbers at the vertices as operands, and the face of this pixel; nothing of other coordinates.
+    fn tell_direction<O: Observer>(&self, report: &Report<'_>, observer: &mut O) -> Vec<Operand> {
+        let Coordinates::Direction(direction) = self.coordinates else { return Vec::new() };
+        let mut planes = Vec::new();
+        for (letter, g) in ["N_x", "N_y", "N_z"].into_iter().zip(direction) {
+            planes.extend(report.planes("TEX-12", letter, g, observer));
+        }
+        let mut inputs = planes.clone();
+        inputs.extend((0..3).map(|k| plain(format!("E{k}"), self.at.e[k])));
+        self.tell_face(report, "face", self.at, inputs, observer);
+        planes
+    }
+
+    fn tell_face<O: Observer>(
+        &self,
+        report: &Report<'_>,
+        name: &str,
+        at: &Sample<'_>,
+        inputs: Vec<Operand>,
+        observer: &mut O,
+    ) {
+        let Coordinates::Direction(direction) = self.coordinates else { return };
+        let face = Self::face_at(direction, at);
+        let step = Step::given(&report.block(), "TEX-12", report.name(name), face as i64);
+        observer.step(step.by("cube_face", inputs).note(Some(Named::name(face).to_string())));
+    }
+}
+
+/// The ideal's coordinate on a level in 1/256 texel, limited as in TEX-15.
+#[allow(clippy::float_arithmetic, reason = "the ideal's coordinate")]
+pub fn real_coordinate(coordinate: f64, side: u32) -> f64 {
+    let limit = COORDINATE_LIMIT as f64;
+    let coordinate = coordinate * 256.0 * f64::from(side);
+    if coordinate.is_nan() { 0.0 } else { coordinate.clamp(-limit, limit) }
+}

@@ -1,0 +1,414 @@
+//! What a texture unit tells an observer. Nothing here computes a value that is used.
+
+use super::fetch::{self, Slice, Texel};
+use super::filter::lerp;
+use super::lod::{Choice, Quad};
+use super::unit::PlannedUnit;
+use crate::combiner::registers::channel_name;
+use crate::number::Lane;
+use crate::raster::interpolate::Settled;
+use crate::state::{AddressMode, Filter, MipFilter, TextureFormat};
+use crate::trace::{Observer, Operand, Step, part, plain, report};
+
+/// How many make one texel in the coordinates of a quad.
+const QUAD_PART: i64 = 65536;
+
+/// Names for the steps of one unit, or of its second level.
+#[derive(Clone, Copy, Debug)]
+pub struct Report<'a> {
+    /// The unit.
+    pub unit: &'a PlannedUnit,
+    /// Put before the names of what happens on the second of two levels: `"next."`.
+    pub prefix: &'a str,
+}
+
+impl Report<'_> {
+    /// The block of the chip.
+    pub fn block(&self) -> String {
+        format!("texture unit {}", self.unit.index)
+    }
+
+    /// The name of something of this unit.
+    pub fn name(&self, suffix: &str) -> String {
+        format!("unit{}.{}{suffix}", self.unit.index, self.prefix)
+    }
+
+    /// Numbers of a linear function at the vertices, told to the observer, as operands.
+    pub fn planes<O: Observer>(
+        &self,
+        rule: &'static str,
+        letter: &str,
+        g: &[i64; 3],
+        observer: &mut O,
+    ) -> Vec<Operand> {
+        let named = |k: usize| self.name(&format!("{letter}{k}"));
+        for (k, g) in g.iter().enumerate() {
+            observer.step(Step::given(&self.block(), rule, named(k), *g));
+        }
+        (0..3).map(|k| plain(named(k), g[k])).collect()
+    }
+
+    /// A coordinate on a level.
+    pub fn coordinate<O: Observer>(
+        &self,
+        rule: &'static str,
+        letter: &str,
+        settled: Settled,
+        ideal: f64,
+        (operation, inputs): (&'static str, Vec<Operand>),
+        observer: &mut O,
+    ) {
+        let note = settled.lowered.then(|| "exactly on a 1/256 texel: one step lower (INT-4t)".to_string());
+        observer.step(
+            Step::given(&self.block(), rule, self.name(letter), settled.value)
+                .per(256)
+                .by(operation, inputs)
+                .ideal(Some(ideal))
+                .note(note),
+        );
+    }
+
+    /// A coordinate of a pixel of the quad.
+    pub fn quad_coordinate<O: Observer>(
+        &self,
+        (pixel, letter): (usize, &str),
+        value: i64,
+        (operation, inputs): (&'static str, Vec<Operand>),
+        observer: &mut O,
+    ) {
+        let name = self.name(&format!("quad{pixel}.{letter}"));
+        observer.step(Step::given(&self.block(), "TEX-11", name, value).per(QUAD_PART).by(operation, inputs));
+    }
+
+    /// TEX-9 to TEX-11: the lod and what it chooses.
+    pub(super) fn lod<O: Observer>(
+        &self,
+        quad: Option<Quad>,
+        log2_ratio: i32,
+        lod: i32,
+        ideal: f64,
+        choice: &Choice,
+        observer: &mut O,
+    ) {
+        let (block, state) = (self.block(), &self.unit.state);
+        let mut ratio = Step::given(&block, "TEX-10", self.name("log2_ratio"), i64::from(log2_ratio)).per(256);
+        ratio = match quad {
+            Some(quad) => {
+                let coordinate = |pixel: usize, n: usize| Operand {
+                    name: self.name(&format!("quad{pixel}.{}", ["u", "v"][n])),
+                    value: quad[pixel][n],
+                    per_one: QUAD_PART,
+                };
+                ratio.by("log2_ratio", (0..6).map(|n| coordinate(n / 2, n % 2)).collect())
+            }
+            None => ratio.note(Some("some of the quad lies behind the viewer".to_string())),
+        };
+        observer.step(ratio);
+        let inputs = vec![
+            part(self.name("log2_ratio"), i64::from(log2_ratio)),
+            part("lod_bias", i64::from(state.lod_bias)),
+            part("min_lod", i64::from(state.min_lod)),
+            part("max_lod", i64::from(state.max_lod)),
+        ];
+        let note = if lod <= 0 { "magnified" } else { "minified" };
+        observer.step(
+            Step::given(&block, "TEX-9", self.name("lod"), i64::from(lod))
+                .per(256)
+                .by("biased_lod", inputs)
+                .ideal(Some(ideal))
+                .note(Some(format!("{note}: {} filter", crate::state::Named::name(choice.filter)))),
+        );
+        let operation = match state.mip_filter {
+            _ if lod <= 0 => "level_0",
+            MipFilter::None => "level_0",
+            MipFilter::Nearest => "nearest_level",
+            MipFilter::Linear => "lower_level",
+        };
+        let inputs = || vec![part(self.name("lod"), i64::from(lod)), plain("levels", self.unit.levels.len() as i64)];
+        let level = Step::given(&block, "TEX-9", self.name("level"), choice.level as i64);
+        observer.step(level.by(operation, inputs()));
+        if let Some((next, _)) = choice.next {
+            let step = Step::given(&block, "TEX-9", self.name("next_level"), next as i64);
+            observer.step(step.by("upper_level", inputs()));
+        }
+    }
+
+    /// TEX-9: the weight of the second level.
+    pub(super) fn lod_weight<L: Lane, O: Observer>(&self, lod: i32, weight: L::Weight, observer: &mut O) {
+        let (weight, ideal) = L::observe_weight(weight);
+        let inputs = vec![part(self.name("lod"), i64::from(lod))];
+        observer.step(
+            Step::given(&self.block(), "TEX-9", self.name("weight_lod"), weight)
+                .per(256)
+                .by("lod_weight", inputs)
+                .ideal(ideal),
+        );
+    }
+
+    pub(super) fn nearest<O: Observer>(&self, coordinate: [i64; 2], texel: [i64; 2], observer: &mut O) {
+        for (n, (letter, axis)) in [("u", "x"), ("v", "y")].into_iter().enumerate() {
+            observer.step(
+                Step::given(&self.block(), "TEX-5", self.name(axis), texel[n])
+                    .by("nearest_texel", vec![part(self.name(letter), coordinate[n])]),
+            );
+        }
+    }
+
+    pub(super) fn linear<L: Lane, O: Observer>(
+        &self,
+        coordinate: [i64; 2],
+        texel: [i64; 2],
+        weights: [L::Weight; 2],
+        observer: &mut O,
+    ) {
+        for (n, (letter, axis)) in [("u", "x"), ("v", "y")].into_iter().enumerate() {
+            let inputs = vec![part(self.name(letter), coordinate[n])];
+            for step in 0..2 {
+                let name = self.name(&format!("{axis}{step}"));
+                let operation = if step == 0 { "linear_texel" } else { "linear_texel_next" };
+                observer.step(Step::given(&self.block(), "TEX-6", name, texel[n] + step).by(operation, inputs.clone()));
+            }
+            let (weight, ideal) = L::observe_weight(weights[n]);
+            observer.step(
+                Step::given(&self.block(), "TEX-6", self.name(&format!("weight_{letter}")), weight)
+                    .per(256)
+                    .by("linear_weight", inputs)
+                    .ideal(ideal),
+            );
+        }
+    }
+
+    /// A texel: its place after addressing, its raw words, its lanes.
+    pub(super) fn texel<L: Lane, O: Observer>(
+        &self,
+        slice: &Slice<'_>,
+        words: &[u32],
+        texel: &Texel,
+        index: [(&str, i64); 2],
+        suffix: &str,
+        lanes: &[L; 4],
+        observer: &mut O,
+    ) {
+        let block = self.block();
+        let texel_name = |what: &str| self.name(&format!("texel{suffix}.{what}"));
+        let mut place = Vec::new();
+        if let Some(at) = texel.at {
+            let (sizes, modes) = ([slice.level.width, slice.level.height], self.unit.modes());
+            for (n, axis) in ["x", "y"].into_iter().enumerate() {
+                let inputs = vec![
+                    plain(self.name(&format!("{axis}{}", index[n].0)), index[n].1),
+                    plain("size", i64::from(sizes[n])),
+                ];
+                let step = address_step(&block, texel_name(axis), modes[n], self.unit.border, inputs, at[n]);
+                observer.step(step);
+                place.push(plain(texel_name(axis), at[n]));
+            }
+        }
+        let word = self.word(words, texel, place, &texel_name, observer);
+        for lane in (0..4).filter(|lane| self.unit.live_lanes() >> lane & 1 != 0) {
+            let signed = self.unit.signed_lane(lane);
+            let rule = if signed { "TEX-18" } else { "TEX-1" };
+            let letter = self.lane(lane);
+            let mut inputs = vec![plain(texel_name("word"), i64::from(word))];
+            let operation = if self.unit.is_wide() {
+                let low = lane == 1 || self.unit.format == TextureFormat::Y16;
+                match (low, signed) {
+                    (false, false) => "high_half",
+                    (false, true) => "high_half_signed",
+                    (true, false) => "low_half",
+                    (true, true) => "low_half_signed",
+                }
+            } else {
+                inputs.push(plain(fetch::expanded_as(self.unit, texel), 0));
+                inputs.push(plain(letter, lane as i64));
+                if signed { "expand_texel_signed" } else { "expand_texel" }
+            };
+            let step = self.lane_step(rule, texel_name(letter), lanes[lane]);
+            observer.step(step.by(operation, inputs));
+        }
+    }
+
+    /// The word that the lanes are taken from: the raw one, the palette's, the decoded one, or the border colour.
+    fn word<O: Observer>(
+        &self,
+        words: &[u32],
+        texel: &Texel,
+        place: Vec<Operand>,
+        name: &impl Fn(&str) -> String,
+        observer: &mut O,
+    ) -> u32 {
+        let block = self.block();
+        let mut tell = |rule: &'static str, what: &str, word: u32, operation: &'static str, inputs: Vec<Operand>| {
+            let note = Some(format!("{word:#010x}"));
+            observer.step(Step::given(&block, rule, name(what), i64::from(word)).by(operation, inputs).note(note));
+            word
+        };
+        let Some([x, y]) = texel.at else { return tell("TEX-7", "word", texel.word, "border_color", place) };
+        match self.unit.format {
+            TextureFormat::P8 => {
+                let entry = fetch::palette_entry(self.unit, texel.word);
+                tell("TEX-1", "index", texel.word, "fetch", place);
+                tell("TEX-1", "word", entry, "palette", vec![plain(name("index"), i64::from(texel.word))])
+            }
+            TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {
+                let raw = fetch::block(self.unit, words, texel);
+                let mut inputs = Vec::new();
+                for (n, word) in raw.iter().enumerate() {
+                    tell("", &format!("block{n}"), *word, "fetch", place.clone());
+                    inputs.push(plain(name(&format!("block{n}")), i64::from(*word)));
+                }
+                inputs.extend(place);
+                let decoded = super::compressed::decode(self.unit.format, self.unit.dithered, raw, x as u32, y as u32);
+                let [r, g, b, a] = decoded.bytes.map(u32::from);
+                let (rule, operation) = match (self.unit.format, self.unit.dithered) {
+                    (TextureFormat::Dxt1, true) => ("TEX-3", "decode_dxt1_dithered"),
+                    (TextureFormat::Dxt1, false) => ("TEX-4", "decode_dxt1"),
+                    (TextureFormat::Dxt3, _) => ("TEX-2", "decode_dxt3"),
+                    _ => ("TEX-2", "decode_dxt5"),
+                };
+                tell(rule, "word", a << 24 | r << 16 | g << 8 | b, operation, inputs)
+            }
+            _ => tell("TEX-1", "word", texel.word, "fetch", place),
+        }
+    }
+
+    pub(super) fn filter<L: Lane, O: Observer>(
+        &self,
+        lane: usize,
+        texels: [L; 4],
+        weights: [L::Weight; 2],
+        value: L,
+        observer: &mut O,
+    ) {
+        let suffix = self.lane(lane);
+        let rows = [lerp(texels[0], texels[1], weights[0]), lerp(texels[2], texels[3], weights[0])];
+        let weight = |n: usize| part(self.name(["weight_u", "weight_v"][n]), L::observe_weight(weights[n]).0);
+        let texel = |n: usize| self.lane_operand(self.name(&format!("texel{}{}.{suffix}", n & 1, n >> 1)), texels[n]);
+        let row_name = |row: usize| self.name(&format!("row{row}.{suffix}"));
+        for (row, mixed) in rows.into_iter().enumerate() {
+            let inputs = vec![texel(2 * row), texel(2 * row + 1), weight(0)];
+            observer.step(self.lane_step("TEX-6", row_name(row), mixed).by("mix", inputs));
+        }
+        let row = |n: usize| self.lane_operand(row_name(n), rows[n]);
+        let inputs = vec![row(0), row(1), weight(1)];
+        observer.step(self.lane_step("TEX-6", self.name(suffix), value).by("mix", inputs));
+    }
+
+    pub(super) fn trilinear<L: Lane, O: Observer>(
+        &self,
+        lane: usize,
+        filter: Filter,
+        levels: [L; 2],
+        weight: L::Weight,
+        value: L,
+        observer: &mut O,
+    ) {
+        let suffix = self.lane(lane);
+        let level = |n: usize| {
+            let prefix = ["", "next."][n];
+            self.lane_operand(self.name(&format!("{prefix}{}{suffix}", filtered(filter))), levels[n])
+        };
+        let weight = part(self.name("weight_lod"), L::observe_weight(weight).0);
+        let inputs = vec![level(0), level(1), weight];
+        observer.step(self.lane_step("TEX-9", self.name(&format!("levels.{suffix}")), value).by("mix", inputs));
+    }
+
+    /// A channel of the register, from the lane of the name `from`.
+    pub(super) fn register<L: Lane, O: Observer>(
+        &self,
+        from: &str,
+        channel: usize,
+        value: L,
+        register: L,
+        observer: &mut O,
+    ) {
+        let suffix = channel_name(channel);
+        let (rule, operation) = if self.unit.state.signed[channel] { ("TEX-18", "double") } else { ("NUM-1", "write") };
+        let inputs = vec![self.lane_operand(self.name(&format!("{from}{suffix}")), value)];
+        let name = format!("texture{}.{suffix}", self.unit.index);
+        observer.step(report::register_step(&self.block(), rule, name, register).by(operation, inputs));
+    }
+
+    /// A channel of the register that is a byte of a half.
+    pub(super) fn byte_of_half<L: Lane, O: Observer>(
+        &self,
+        from: &str,
+        (channel, lane, high): (usize, usize, bool),
+        half: L,
+        register: L,
+        observer: &mut O,
+    ) {
+        let (rule, operation) = match (high, self.unit.signed_lane(lane)) {
+            (true, true) => ("TEX-18", "high_byte_doubled"),
+            (true, false) => ("TEX-1", "high_byte"),
+            (false, _) => ("TEX-1", "low_byte"),
+        };
+        let inputs = vec![self.lane_operand(self.name(&format!("{from}{}", self.lane(lane))), half)];
+        let name = format!("texture{}.{}", self.unit.index, channel_name(channel));
+        observer.step(report::register_step(&self.block(), rule, name, register).by(operation, inputs));
+    }
+
+    /// A channel of the register that the format does not have.
+    pub(super) fn whole<L: Lane, O: Observer>(&self, channel: usize, register: L, observer: &mut O) {
+        let name = format!("texture{}.{}", self.unit.index, channel_name(channel));
+        observer.step(report::register_step(&self.block(), "TEX-1", name, register));
+    }
+
+    /// The name of a lane.
+    fn lane(&self, lane: usize) -> &'static str {
+        match self.unit.format {
+            TextureFormat::R16B16 => ["hi", "lo", "", ""][lane],
+            TextureFormat::Y16 => "y",
+            _ => channel_name(lane),
+        }
+    }
+
+    fn per_one(&self) -> i64 {
+        if self.unit.is_wide() { 65535 } else { 255 }
+    }
+
+    fn lane_operand<L: Lane>(&self, name: String, value: L) -> Operand {
+        Operand { per_one: self.per_one(), ..report::register(name, value) }
+    }
+
+    fn lane_step<L: Lane>(&self, rule: &'static str, name: String, value: L) -> Step {
+        // The ideal is counted in 255ths whatever the lane's own unit.
+        let mut step = report::register_step(&self.block(), rule, name, value);
+        step.per_one = self.per_one();
+        step
+    }
+}
+
+/// What the name of a level's result begins with.
+pub(super) fn filtered(filter: Filter) -> &'static str {
+    match filter {
+        Filter::Nearest => "texel.",
+        Filter::Linear => "",
+    }
+}
+
+/// TEX-7: the step from an index (the first of `inputs`; the second is the image's size) to a texel inside the image.
+pub fn address_step(
+    block: &str,
+    name: impl Into<String>,
+    mode: AddressMode,
+    border_texels: bool,
+    inputs: Vec<Operand>,
+    texel: i64,
+) -> Step {
+    let operation = address_operation(mode, border_texels);
+    let moved = inputs.first().is_some_and(|index| index.value != texel);
+    let note = moved.then(|| format!("{operation} from outside"));
+    Step::given(block, "TEX-7", name, texel).by(operation, inputs).note(note)
+}
+
+fn address_operation(mode: AddressMode, border_texels: bool) -> &'static str {
+    match mode {
+        AddressMode::Wrap => "wrap",
+        AddressMode::Mirror => "mirror",
+        AddressMode::ClampToEdge => "clamp_to_edge",
+        AddressMode::ClampToBorder if border_texels => "clamp_to_border_texels",
+        AddressMode::ClampToBorder => "clamp_to_border",
+        AddressMode::Clamp => "clamp",
+    }
+}
