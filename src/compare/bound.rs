@@ -25,6 +25,14 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         // A floor, one step lower on a tie, and what the weights are off.
         Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 => None,
+        // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
+        Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
+        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
+        Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
+        Rule::Tsh9 => {
+            let slack = number_slack(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
         // A byte of a half is off by what the other byte is worth.
         Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
         Rule::Tex1 => symmetric(0.715),
@@ -85,6 +93,17 @@ fn coordinate_slack(plan: &Plan) -> f64 {
         })
     });
     // The last bits of the ideal's own float64.
+    slack.fold(1e-6, f64::max)
+}
+
+/// The same for coordinates that become colours, in steps.
+fn number_slack(plan: &Plan) -> f64 {
+    let slack = triangles(plan).flat_map(|(draw, vertices)| {
+        let relative = relative(plan, draw, &vertices);
+        let sets = vertices.map(|v| v.texture_coordinates);
+        let spans = (0..16).map(move |n| range(sets.map(|set| f64::from(set[n / 4][n % 4]))));
+        spans.map(move |(low, high)| 2.0 * relative * (high - low) * 255.0)
+    });
     slack.fold(1e-6, f64::max)
 }
 

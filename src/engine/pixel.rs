@@ -10,6 +10,7 @@ use crate::raster::setup::Triangle;
 use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
 use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
+use crate::texture::chain::{Chain, ShaderSetup};
 use crate::texture::place::{Coordinates, Interpolated};
 use crate::texture::unit::{self, Image};
 use crate::trace::{Decision, Observer, Operand, Rule, Step, Work, plain, report};
@@ -27,6 +28,8 @@ pub(crate) struct TriangleContext<'a> {
     primary: [[u8; 4]; 3],
     secondary: [[u8; 4]; 3],
     coordinates: [Option<Coordinates>; 4],
+    /// Of the texture shader, where there is one; units have none of their own then.
+    shader: Option<ShaderSetup>,
     fog: [i64; 3],
     pub(crate) z: [i64; 3],
 }
@@ -76,7 +79,8 @@ impl<'a> TriangleContext<'a> {
             ShadeModel::Flat => [&all[provoking as usize]; 3],
         };
         let mut coordinates = [None; 4];
-        for unit in &draw.units {
+        let shader = draw.shader.as_ref().map(|shader| ShaderSetup::new(shader, &draw.units, &triangle, vertices));
+        for unit in draw.units.iter().filter(|_| shader.is_none()) {
             let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
             coordinates[unit.index] = Some(Coordinates::new(&triangle, sets, unit));
         }
@@ -93,10 +97,11 @@ impl<'a> TriangleContext<'a> {
             primary: colored.map(|v| color_bytes(&v.diffuse)),
             secondary: colored.map(|v| color_bytes(&v.specular)),
             coordinates,
+            shader,
         })
     }
 
-    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the alpha or the depth test.
+    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the texture shader, the alpha or the depth test.
     ///
     /// `destination` is the ideal's stored colour, where the lane has one; without it the stored word counts.
     #[inline]
@@ -114,7 +119,7 @@ impl<'a> TriangleContext<'a> {
         }
         let mut registers = Registers::<L>::new();
         self.interpolate_colors(&sample, &mut registers, observer);
-        self.sample_textures(&sample, fragment.pixel, &mut registers, textures, observer);
+        self.sample_textures(&sample, fragment.pixel, &mut registers, textures, observer)?;
         if O::ON {
             reports::stage_constants(0, draw, observer);
         }
@@ -240,7 +245,7 @@ impl<'a> TriangleContext<'a> {
         registers.load(Register::Fog, [r, g, b, factor]);
     }
 
-    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13).
+    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). `None`: the texture shader drops the fragment.
     #[inline]
     fn sample_textures<L: Lane, O: Observer>(
         &self,
@@ -249,7 +254,7 @@ impl<'a> TriangleContext<'a> {
         registers: &mut Registers<L>,
         textures: &[Image<'_, L>],
         observer: &mut O,
-    ) {
+    ) -> Option<()> {
         const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         for (n, register) in UNITS.into_iter().enumerate() {
             if self.draw.unbound[n] != 0 {
@@ -266,6 +271,15 @@ impl<'a> TriangleContext<'a> {
                 }
             }
         }
+        let w = self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 });
+        if let (Some(shader), Some(setup)) = (&self.draw.shader, &self.shader) {
+            let (units, vertices, scale) = (&self.draw.units, self.vertices, self.plan.policies.dependent_scale);
+            let chain = Chain { shader, units, setup, textures, vertices, w, scale };
+            let values = chain.run(sample, pixel, observer)?;
+            for (register, value) in UNITS.into_iter().zip(values) {
+                registers.load(register, value);
+            }
+        }
         for planned in &self.draw.units {
             let Some(coordinates) = &self.coordinates[planned.index] else { continue };
             let place = Interpolated {
@@ -274,7 +288,7 @@ impl<'a> TriangleContext<'a> {
                 at: sample,
                 pixel,
                 vertices: self.vertices.map(|v| v.texture_coordinates[planned.stage.coordinate_set]),
-                w: self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 }),
+                w,
             };
             let image = &textures[planned.state.texture];
             let value = unit::sample::<L, O>(planned, image, &place, observer);
@@ -284,7 +298,7 @@ impl<'a> TriangleContext<'a> {
             reports::undefined(self.draw.undefined, observer);
         }
         if !self.draw.spare0_alpha {
-            return;
+            return Some(());
         }
         let alpha = registers.read(Register::Texture0, 3);
         registers.values[Register::Spare0 as usize][3] = alpha;
@@ -292,6 +306,7 @@ impl<'a> TriangleContext<'a> {
             let inputs = vec![report::register("texture0.a", alpha)];
             observer.step(report::register_step("registers", "CMB-13", "spare0.a", alpha).by("write", inputs));
         }
+        Some(())
     }
 
     /// ROP-1 to ROP-6, DEP-1, DEP-2.

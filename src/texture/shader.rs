@@ -42,7 +42,7 @@ pub fn offset([along_blue, along_green]: [f32; 2], [blue, green]: [u8; 2], side:
 pub fn luminance(c: i32, red: u8, [scale, offset]: [f32; 2]) -> i64 {
     let (n, e) = sum_of_products([(i64::from(red), scale), (255, offset)]);
     let limit = 1 << 20;
-    let product = n * i128::from(c.max(0)) << 12;
+    let product = (n * i128::from(c.max(0))) << 12;
     let v = if e > 0 { product.signum() * limit } else { shift(product, e).div_euclid(255 * 255) };
     v.clamp(0, limit) as i64
 }
@@ -59,7 +59,7 @@ pub fn dependent(v: u8, side: u32, scale: DependentScale) -> i64 {
         DependentScale::Over255 => 255,
         DependentScale::Over256 => 256,
     };
-    (i64::from(v) * i64::from(side) << 8) / whole
+    ((i64::from(v) * i64::from(side)) << 8) / whole
 }
 
 /// A float coordinate in parts of a texel: floor(2^bits side f) within a limit. NaN is 0.
@@ -92,7 +92,7 @@ pub fn direction(vector: [f32; 3]) -> [i64; 3] {
         return [0; 3];
     }
     // `split` takes infinity apart as 2^128.
-    align(vector.map(split).map(|(mantissa, exponent)| (i128::from(mantissa), exponent)), 62)
+    align(vector.map(split).map(|(mantissa, exponent)| (i128::from(mantissa), exponent)), 62).0
 }
 
 /// TEX-12 of such a vector: floor(2^bits size (s + m) / 2m) with the minor component s and the major one m; the zero vector is 0.
@@ -100,7 +100,7 @@ pub fn face_coordinate(s: i64, m: i64, size: u32, bits: u32) -> i64 {
     if m <= 0 {
         return 0;
     }
-    let numerator = (i128::from(s) + i128::from(m)) * i128::from(size) << (bits - 1);
+    let numerator = ((i128::from(s) + i128::from(m)) * i128::from(size)) << (bits - 1);
     numerator.div_euclid(i128::from(m)) as i64
 }
 

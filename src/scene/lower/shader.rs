@@ -62,8 +62,9 @@ pub(super) fn shader<'a>(
     for (index, places) in places.iter().enumerate() {
         if let Some(places) = places {
             previous(reader, &mut units.shader, index, places);
-            order(reader, &units.shader, index, places);
-            texture(reader, textures, units, index, places);
+            if order(reader, &units.shader, index, places) {
+                texture(reader, textures, units, index, places);
+            }
         }
         let written = &units.places[index];
         if units.bound[index].is_some() && !units.shader[index].operation.samples() {
@@ -209,8 +210,8 @@ fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], 
     }
 }
 
-/// TSH-10: which operation may follow which.
-fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) {
+/// TSH-10: which operation may follow which. Says whether this one may stand where it does.
+fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) -> bool {
     use ShaderOperation as Op;
     let at = |n: usize| shader.get(n).map_or(Op::None, |stage| stage.operation);
     let before = |back: usize| index.checked_sub(back).map_or(Op::None, at);
@@ -261,6 +262,7 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
                 .help("write `(operation: ..., previous: 0)` or `previous: 1`"),
         );
     }
+    wanted.is_none()
 }
 
 /// Whether the texture that a stage samples is there, and of a kind that fits.
@@ -284,9 +286,9 @@ fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: u
                 Diagnostic::error(
                     "NB0343",
                     places.stage.clone(),
-                    format!("{name} samples, but unit {index} has no texture"),
+                    format!("stage {index} samples, but its unit has no texture"),
                 )
-                .label(format!("samples unit {index}"))
+                .label("nothing to sample")
                 .rule("TSH-10")
                 .help(format!("give the draw `textures: [...]` with an entry for unit {index}")),
             );

@@ -167,7 +167,7 @@ fn texture<'a>(
     with_palette(reader, texture, palette, &fields)
 }
 
-/// A palette goes with P8, and with nothing else.
+/// A palette goes with P8, and with nothing else. One that is wrong has been complained of.
 fn with_palette<'a>(
     reader: &mut Reader<'a>,
     texture: Texture,
@@ -179,6 +179,9 @@ fn with_palette<'a>(
     {
         let place = reader.span(raw);
         reader.push(palette::not_read(place, texture.format));
+        return None;
+    }
+    if fields.palette.is_some() && palette.is_none() {
         return None;
     }
     Some((texture, palette))
@@ -276,7 +279,7 @@ fn of_target<'a>(
     let (format, format_place) = match format {
         Some((format, place)) if format == TextureFormat::P8 => {
             reader.push(
-                Diagnostic::error("NB0232", place, "what is drawn into a target are no indices of a palette")
+                Diagnostic::error("NB0232", place, "a render target does not hold indices of a palette")
                     .label("does not go with `Target`")
                     .help(format!("leave `format` out, which means {own:?} here")),
             );

@@ -325,7 +325,7 @@ fn cannot_pack(format: TextureFormat, place: Range<usize>) -> Diagnostic {
     } else {
         "blocks come from `Raw(...)` or a DDS file, made by a tool that compresses"
     };
-    Diagnostic::error("NB0232", place, format!("this source does not make texels of format {}", format.name()))
+    Diagnostic::error("NB0232", place, format!("this source cannot make texels of format {}", format.name()))
         .label("does not go with the format")
         .help(help)
 }
