@@ -15,6 +15,8 @@
 
 mod cases;
 mod geometry;
+#[path = "../common/scene_files.rs"]
+mod scene_files;
 mod scenes;
 mod textures;
 
@@ -29,6 +31,7 @@ use ninebit::report::trace_text;
 use ninebit::scene;
 use ninebit::scene::image::{ImageLimits, load};
 use std::path::{Path, PathBuf};
+use textures::Picture;
 
 /// Differing pixels that are listed.
 const LISTED: usize = 20;
@@ -52,7 +55,7 @@ fn captures() -> Option<PathBuf> {
     set("NINEBIT_CAPTURES").then(|| PathBuf::from(std::env::var_os("NINEBIT_CAPTURES").unwrap()))
 }
 
-/// A scene as it was drawn, and the folder that it was drawn in.
+/// A scene as it was drawn.
 struct Drawn {
     plan: Plan,
     surface: Surface,
@@ -60,15 +63,14 @@ struct Drawn {
 
 /// Draws a scene; `None` if it needs images that are not here.
 fn draw(case: &Case) -> Option<Drawn> {
-    const ASSETS: &str = "captured/";
     let file = folder().join(case.name).with_extension("ron");
     let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     let place;
-    let file = if text.contains(&format!("\"{ASSETS}")) {
+    let file = if scene_files::needs_captured(&text) {
         place = tempfile::tempdir().unwrap();
         let assets = captures()?.join("assets");
         copy(&folder().join("textures"), &place.path().join("textures"));
-        copy(&assets, &place.path().join(ASSETS));
+        copy(&assets, &place.path().join(scene_files::CAPTURED));
         let copied = place.path().join("scene.ron");
         std::fs::write(&copied, text).unwrap();
         copied
@@ -157,40 +159,52 @@ fn check(case: &Case) -> Result<(), String> {
 
 #[test]
 fn every_scene_shows_what_was_captured() {
+    if bless() {
+        write_generated();
+    }
     let only = std::env::var("NINEBIT_CASE").unwrap_or_default();
     let wrong: Vec<String> =
         CASES.iter().filter(|case| case.name.contains(&only)).filter_map(|case| check(case).err()).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Writes everything that formulas give.
+fn write_generated() {
+    for case in CASES {
+        if let Some(scene) = case.scene {
+            write_file(&folder().join(case.name).with_extension("ron"), scene().as_bytes()).unwrap();
+        }
+    }
+    for (path, picture) in pictures() {
+        let png = encode_png(picture.width, picture.height, &picture.pixels, Compression::Small).unwrap();
+        write_file(&path, &png).unwrap();
+    }
+    write_file(&folder().join(INDICES), &textures::indices()).unwrap();
+}
+
+/// Texels of T3.
+const INDICES: &str = "textures/indices-64.bin";
+
+fn pictures() -> impl Iterator<Item = (PathBuf, Picture)> {
+    let path = |name: String| folder().join("textures").join(name).with_extension("png");
+    textures::pictures().into_iter().map(move |(name, picture)| (path(name), picture))
+}
+
 #[test]
 fn generated_scenes_are_what_their_formulas_give() {
     for case in CASES {
         let Some(scene) = case.scene else { continue };
-        let (path, text) = (folder().join(case.name).with_extension("ron"), scene());
-        if bless() {
-            write_file(&path, text.as_bytes()).unwrap();
-        }
-        assert!(std::fs::read_to_string(&path).unwrap_or_default() == text, "{}: BLESS=1 writes it", path.display());
+        let path = folder().join(case.name).with_extension("ron");
+        assert!(std::fs::read_to_string(&path).unwrap() == scene(), "{}: BLESS=1 writes it", path.display());
     }
 }
 
 #[test]
 fn stored_textures_are_what_their_formulas_give() {
-    let folder = folder().join("textures");
-    for (name, picture) in textures::pictures() {
-        let path = folder.join(name).with_extension("png");
-        if bless() {
-            let png = encode_png(picture.width, picture.height, &picture.pixels, Compression::Small).unwrap();
-            write_file(&path, &png).unwrap();
-        }
+    for (path, picture) in pictures() {
         let stored = load(&path, &ImageLimits::default()).unwrap_or_else(|error| panic!("{error}"));
         assert_eq!([stored.width, stored.height], [picture.width, picture.height], "{}", path.display());
         assert!(stored.pixels == picture.pixels, "{}: BLESS=1 writes it", path.display());
     }
-    let path = folder.join("indices-64.bin");
-    if bless() {
-        write_file(&path, &textures::indices()).unwrap();
-    }
-    assert!(std::fs::read(&path).unwrap() == textures::indices(), "{}: BLESS=1 writes it", path.display());
+    assert!(std::fs::read(folder().join(INDICES)).unwrap() == textures::indices(), "{INDICES}: BLESS=1 writes it");
 }

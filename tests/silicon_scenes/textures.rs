@@ -41,13 +41,13 @@ pub fn indices() -> Vec<u8> {
     (0..65536_u32).map(|k| if k < 32768 { k & 63 } else { k & !3 & 63 } as u8).collect()
 }
 
-/// Diagonal stripes two texels wide, opaque and translucent in turn.
+/// Diagonal stripes in steps of two texels, opaque and translucent in turn.
 pub fn stripes() -> Picture {
     const COLORS: [[u8; 3]; 4] = [[255, 0, 0], [0, 255, 0], [0x44, 0x44, 255], [255; 3]];
     Picture::of(32, 32, |x, y| {
         let n = (x / 2 + y / 2) as usize % 8;
-        let [r, g, b] = COLORS[n % 4];
-        [r, g, b, if n < 4 { 255 } else { 0x66 }]
+        let [r, g, b] = COLORS[n / 2];
+        [r, g, b, if n % 2 == 0 { 255 } else { 0x66 }]
     })
 }
 
