@@ -6,6 +6,7 @@
 
 pub mod assemble;
 pub mod attribute;
+pub mod fog;
 pub mod ideal;
 pub mod interpolate;
 pub mod project;

@@ -3,6 +3,7 @@
 use crate::engine::{DrawTrace, PixelTrace};
 use crate::plan::Plan;
 use crate::state::{Named, POLICIES, Policies};
+use crate::texture::cube::Face;
 use crate::trace::{Operand, Step};
 use std::fmt::Write;
 
@@ -123,6 +124,41 @@ fn expression(step: &Step) -> String {
             let axis = step.name.rsplit('.').next().unwrap_or_default();
             format!("floor(256 * {} * N_{axis} / N_q)", value(9))
         }
+        "cube_face" => {
+            let [x, y, z] = direction(&step.inputs);
+            format!("largest of ({x}, {y}, {z})")
+        }
+        "floor_face_u" | "floor_face_v" => {
+            let (s, m) = on_face(step);
+            format!("floor(128 * {} * ({s} + {m}) / {m})", value(13))
+        }
+        "quad_face_u" | "quad_face_v" => {
+            let (s, m) = on_face(step);
+            format!("floor(32768 * {} * ({s} + {m}) / {m})", value(13))
+        }
+        "quad_plane" => {
+            let axis = step.name.rsplit('.').next().unwrap_or_default();
+            format!("floor(256 (G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)")
+        }
+        "quad_ratio" => {
+            let axis = step.name.rsplit('.').next().unwrap_or_default();
+            format!("floor(65536 * {} * N_{axis} / N_q)", value(9))
+        }
+        "log2_ratio" => {
+            let moved = |pixel: usize, n: usize| {
+                let at = |k: usize| step.inputs.get(k).map_or(0, |o| o.value);
+                at(2 * pixel + n).saturating_sub(at(n))
+            };
+            format!("256 log2 |({}, {}) or ({}, {})|", moved(1, 0), moved(1, 1), moved(2, 0), moved(2, 1))
+        }
+        "biased_lod" => format!("{} + {}, limited to {}..{}", value(0), value(1), value(2), value(3)),
+        "nearest_level" => format!("({} + 128) >> 8, at most {} - 1", value(0), value(1)),
+        "lower_level" => format!("{} >> 8, at most {} - 1", value(0), value(1)),
+        "upper_level" => format!("({} >> 8) + 1, at most {} - 1", value(0), value(1)),
+        "lod_weight" => format!("{} & 255", value(0)),
+        "high_byte" => format!("{} >> 8", value(0)),
+        "high_byte_doubled" => format!("2 * ({} >> 8)", value(0)),
+        "low_byte" => format!("{} & 255", value(0)),
         "nearest_texel" => format!("{} >> 8", value(0)),
         "linear_texel" => format!("({} - 128) >> 8", value(0)),
         "linear_texel_next" => format!("(({} - 128) >> 8) + 1", value(0)),
@@ -155,4 +191,22 @@ fn expression(step: &Step) -> String {
             format!("{operation}({})", operands.join(", "))
         }
     }
+}
+
+/// The direction that twelve operands of a cube map make: three planes and the edge functions.
+fn direction(inputs: &[Operand]) -> [i128; 3] {
+    let at = |n: usize| inputs.get(n).map_or(0, |o| i128::from(o.value));
+    [0, 3, 6].map(|first| (0..3).map(|k| at(first + k) * at(9 + k)).sum())
+}
+
+/// The minor component of u or v and the magnitude of the major one, of a step on a face.
+fn on_face(step: &Step) -> (i128, i128) {
+    let direction = direction(&step.inputs);
+    let face = step.inputs.get(12).and_then(|face| Face::ALL.get(usize::try_from(face.value).ok()?));
+    let [s, t, m] = face
+        .copied()
+        .unwrap_or(Face::PositiveX)
+        .components()
+        .map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
+    (if step.operation.ends_with('u') { s } else { t }, m)
 }
