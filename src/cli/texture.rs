@@ -55,27 +55,23 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let message = format!("`{}` is of format P8, and no draw gives it a palette", opened.name);
         return Err(Failure::invalid("NB0234", message, "name one of the scene's palettes with `--palette`"));
     }
-    let levels = chosen(arguments.level, opened.texels.levels, "level")?;
-    let faces = chosen(arguments.face, opened.faces(), "face")?;
-    let picture = layout::picture(&opened, &faces, &levels);
-    Ok(destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Small)?)?)
-}
-
-/// One of so many, or all of them.
-fn chosen(one: Option<u32>, count: u32, what: &str) -> Result<Vec<u32>, Failure> {
-    match one {
-        None => Ok((0..count).collect()),
-        Some(one) if one < count => Ok(vec![one]),
-        Some(one) => {
-            let name = if what == "face" { FACES[one as usize % FACES.len()].to_owned() } else { one.to_string() };
-            let has = match (what, count) {
-                ("face", _) => "it is no cube map".to_owned(),
-                (_, 1) => "it has level 0 only".to_owned(),
-                (_, count) => format!("its levels are 0 to {}", count - 1),
-            };
-            Err(Failure::usage(format!("the texture has no {what} {name}"), has))
+    let texels = &opened.texels;
+    let levels = match arguments.level {
+        None => 0..texels.levels,
+        Some(level) if level < texels.levels => level..level + 1,
+        Some(level) => {
+            let last = texels.levels - 1;
+            let has = if last == 0 { "it has level 0 only".to_owned() } else { format!("its levels are 0 to {last}") };
+            return Err(Failure::usage(format!("the texture has no level {level}"), has));
         }
-    }
+    };
+    let faces = match arguments.face {
+        None => 0..opened.faces(),
+        Some(face) if opened.kind == TextureKind::Cube => face..face + 1,
+        Some(_) => return Err(Failure::usage("the texture has no faces: it is no cube map", "leave out `--face`")),
+    };
+    let picture = layout::picture(&opened, faces, levels);
+    Ok(destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Small)?)?)
 }
 
 /// What there is to know without looking at texels.

@@ -3,6 +3,8 @@
 //! Six faces make a cross: -X, +Z, +X, -Z in a row, +Y above and -Y below +Z. Level 0 stands on the left, the others below one another on
 //! its right. What no texel covers is transparent.
 
+use std::ops::Range;
+
 use ninebit::scene::image::Rgba;
 use ninebit::texture::show::{self, Shown};
 
@@ -12,8 +14,8 @@ use super::source::Opened;
 const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 1)];
 
 /// The picture of these faces of these levels.
-pub(super) fn picture(opened: &Opened, faces: &[u32], levels: &[u32]) -> Rgba {
-    let levels: Vec<Rgba> = levels.iter().map(|level| of_level(opened, faces, *level)).collect();
+pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) -> Rgba {
+    let levels: Vec<Rgba> = levels.map(|level| of_level(opened, &faces, level)).collect();
     let Some((first, rest)) = levels.split_first() else { return empty(1, 1) };
     let column = rest.iter().map(|level| level.width).max().unwrap_or(0);
     let below: u32 = rest.iter().map(|level| level.height).sum();
@@ -28,14 +30,14 @@ pub(super) fn picture(opened: &Opened, faces: &[u32], levels: &[u32]) -> Rgba {
 }
 
 /// One level: its face, or the cross of its faces.
-fn of_level(opened: &Opened, faces: &[u32], level: u32) -> Rgba {
+fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
     let show = |face: u32| {
         let shown = show::level(&opened.texels, opened.format, &opened.palette, opened.dithered, face, level);
         // Faces and levels were counted before.
         shown.map_or_else(|| empty(1, 1), |Shown { width, height, pixels }| Rgba { width, height, pixels })
     };
-    if let [face] = faces {
-        return show(*face);
+    if faces.len() == 1 {
+        return show(faces.start);
     }
     let mut picture: Option<Rgba> = None;
     for (face, (column, row)) in (0..).zip(CROSS) {
