@@ -14,7 +14,7 @@ use proptest::test_runner::TestRunner;
 
 /// Whether per-pixel fog functions and texture shaders occur.
 pub const FOG_FUNCTIONS: bool = false;
-pub const TEXTURE_SHADERS: bool = false;
+pub const TEXTURE_SHADERS: bool = true;
 
 /// Words of tape for what draws share, for each draw, for each vertex and for each stage.
 const SHARED: usize = 1024;

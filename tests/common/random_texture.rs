@@ -12,7 +12,7 @@ fn formats(profile: Profile, kind: TextureKind) -> Vec<TextureFormat> {
             matches!(f, A1R5G5B5 | R5G6B5 | A8R8G8B8 | I8)
         }
         (Profile::Nv10, _) => !f.is_nv2a_only(),
-        (Profile::Nv2a, TextureKind::Rectangle) => !f.is_compressed(),
+        (Profile::Nv2a, TextureKind::Rectangle) => !f.is_compressed() && f != TextureFormat::P8,
         (Profile::Nv2a, _) => true,
     };
     TextureFormat::ALL.iter().copied().filter(|f| legal(*f)).collect()
@@ -177,7 +177,7 @@ fn free(c: &mut Choices<'_>, first: bool) -> ShaderOperation {
 
 /// Units without a fitting texture sample nothing, and what rests on a unit that does not fit it goes too.
 fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit>; TEXTURE_UNITS]) {
-    use ShaderOperation::{BumpEnvironment, CullFragment, None, Sample};
+    use ShaderOperation::{BumpEnvironment, CullFragment, DotReflectDiffuse, None, Sample};
     let lacks = |k: usize, stages: &[ShaderStage; 4]| stages[k].operation.samples() && bound[k].is_none();
     if (0..4).any(|k| stages[k].operation.is_dot() && lacks(k, stages)) {
         for stage in stages.iter_mut().filter(|s| s.operation.is_dot()) {
@@ -188,6 +188,10 @@ fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit
         if lacks(k, stages) {
             stages[k].operation = None;
         }
+    }
+    // Unit 2 samples with the dot product of unit 3.
+    if stages[2].operation == DotReflectDiffuse {
+        stages[3].previous = stages[3].previous.min(1);
     }
     // At unit 1 nothing that fetches no colour may come before a bump environment.
     if matches!(stages[1].operation, BumpEnvironment { .. })

@@ -57,7 +57,7 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
     }
     for vertices in raster::triangles(draw) {
         let Some(setup) = Setup::new(draw, scene.profile, vertices) else { continue };
-        let units = Units::new(draw, &images, &setup);
+        let units = Units::new(draw, &images, &setup, policies);
         for j in top..bottom {
             for i in left..right {
                 let sample = setup.sample(i.into(), j.into());

@@ -6,7 +6,7 @@ use super::real::{factor_byte, floor_div, floor_sum, nearest_f32, shift, split};
 use super::tally::{count, count_named};
 use super::texel::{Color, signed};
 use super::texture::Image;
-use ninebit::state::{DotMapping, Draw, ShaderOperation};
+use ninebit::state::{DependentScale, DotMapping, Draw, Policies, ShaderOperation};
 use std::cell::RefCell;
 use std::collections::HashMap;
 
@@ -15,13 +15,19 @@ pub struct Units<'a> {
     draw: &'a Draw,
     images: &'a [Option<Image>],
     setup: &'a Setup,
+    policies: &'a Policies,
     /// One lod a unit and quad.
     lods: RefCell<HashMap<(usize, i128, i128), i128>>,
 }
 
 impl<'a> Units<'a> {
-    pub fn new(draw: &'a Draw, images: &'a [Option<Image>], setup: &'a Setup) -> Units<'a> {
-        Units { draw, images, setup, lods: RefCell::default() }
+    pub fn new(
+        draw: &'a Draw,
+        images: &'a [Option<Image>],
+        setup: &'a Setup,
+        policies: &'a Policies,
+    ) -> Units<'a> {
+        Units { draw, images, setup, policies, lods: RefCell::default() }
     }
 
     /// The four texture registers of a covered pixel; none where a unit drops it.
@@ -107,11 +113,11 @@ impl<'a> Units<'a> {
             }
             ShaderOperation::DependentAlphaRed => {
                 let [r, _, _, a] = self.previous(k, i, j, sample);
-                Place::Bytes([a, r], 255)
+                Place::Bytes([a, r], self.whole())
             }
             ShaderOperation::DependentGreenBlue => {
                 let [_, g, b, _] = self.previous(k, i, j, sample);
-                Place::Bytes([g, b], 255)
+                Place::Bytes([g, b], self.whole())
             }
             ShaderOperation::DotProduct2D => Place::Floats([dot(k - 1), dot(k)]),
             ShaderOperation::DotProductCube => Place::Vector([dot(k - 2), dot(k - 1), dot(k)]),
@@ -129,6 +135,14 @@ impl<'a> Units<'a> {
             _ if self.images[k].as_ref().is_some_and(Image::is_cube) => Place::Direction(set),
             _ => Place::Set(set),
         })
+    }
+
+    /// TSH-6: what a byte counts as 1.
+    fn whole(&self) -> i128 {
+        match self.policies.dependent_scale {
+            DependentScale::Over255 => 255,
+            DependentScale::Over256 => 256,
+        }
     }
 
     /// TSH-4: an interpolated coordinate, rounded to f32.
