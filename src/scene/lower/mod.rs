@@ -10,6 +10,7 @@ mod names;
 mod palette;
 mod program;
 mod raster;
+mod shader;
 mod target;
 mod texture;
 mod texture_legal;
