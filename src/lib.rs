@@ -89,6 +89,7 @@
 
 pub mod combiner;
 pub mod compare;
+pub mod diagnostic;
 pub mod diff;
 pub mod engine;
 pub mod expectation;
@@ -106,7 +107,6 @@ pub mod raster;
 pub mod report;
 pub mod rop;
 pub mod scene;
-mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;

@@ -59,6 +59,7 @@ fn meanings_and_exit_codes_are_those_of_the_program() {
             rule: None,
             notes: Vec::new(),
             help: None,
+            file: None,
         };
         let exit = if code.starts_with("NB09") { 0 } else { finding.kind().exit_code() };
         assert_eq!(page[code], (meaning.to_string(), exit), "{code}");

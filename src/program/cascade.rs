@@ -5,7 +5,8 @@
 
 use std::ops::Range;
 
-use super::Finding;
+use super::finding::finding;
+use crate::diagnostic::Diagnostic;
 use crate::state::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
     MuxSelect, Portion, Profile, Register, Scale, StageOrigin,
@@ -221,7 +222,7 @@ pub struct Cascade {
     constants: Vec<[u8; 4]>,
     current: Value,
     temporary: Option<Value>,
-    findings: Vec<Finding>,
+    findings: Vec<Diagnostic>,
 }
 
 /// A finished cascade.
@@ -385,14 +386,14 @@ impl Cascade {
                 ),
                 Profile::Nv2a => ("this stage needs 3 constant colours; it has 2", "make two of them equal"),
             };
-            let finding = Finding::new("NB0351", place.clone(), message, "the third is read here", help);
-            self.findings.push(finding.rule("CMB-12"));
+            let error = finding("NB0351", place.clone(), message, "the third is read here", help);
+            self.findings.push(error.rule("CMB-12"));
         }
         if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
     }
 
     /// The program; or everything that keeps it from being one. `what` is what users call it: "cascade".
-    pub fn finish(mut self, what: &str, end: End) -> Result<Lowered, Vec<Finding>> {
+    pub fn finish(mut self, what: &str, end: End) -> Result<Lowered, Vec<Diagnostic>> {
         if self.current.register != Register::Spare0 {
             // Nothing that was computed is seen.
             self.stages.clear();
@@ -413,14 +414,14 @@ impl Cascade {
                 _ => "use fewer stages, or draw in two passes with `blend`",
             };
             let chip = format!("{:?}", self.profile).to_lowercase();
-            let finding = Finding::new(
+            let error = finding(
                 "NB0350",
                 place.clone(),
                 format!("this {what} needs {needed} general stages; {chip} has {most}"),
                 "the first too many",
                 help,
             );
-            self.findings.push(finding.rule("CMB-12"));
+            self.findings.push(error.rule("CMB-12"));
         }
         if !self.findings.is_empty() {
             return Err(self.findings);

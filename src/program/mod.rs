@@ -1,12 +1,23 @@
-//! Pixel programs in the language of an API, and how they become register combiners.
+//! Pixel programs in the languages that people have them in; each becomes the same [`Combiners`](crate::state::Combiners).
 //!
-//! [`texture_stages`] is Direct3D's, [`texture_environment`] OpenGL's. Both write each of their stages as equations over
-//! [arguments](cascade::Argument); [`cascade`] turns equations into general stages. None of them knows scene files: they take
-//! plain values with their [places](At) and return state or [`Finding`]s.
+//! * [`text`]: general stages and final combiner as statements, read and printed (`docs/combiner-language.md`).
+//! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
+//! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
+//!   (`docs/programs.md`). Both write each of their stages as equations over [arguments](cascade::Argument), and [`cascade`]
+//!   turns equations into general stages.
+//! * [`legality`]: what the chip allows (CMB-12), the same for every language. A front end says where the parts of a program
+//!   stand ([`Places`]) and what its words are ([`Notation`](legality::Notation)).
+//!
+//! Nothing here knows scenes or files.
 
 pub mod cascade;
 mod finding;
+pub mod legality;
+mod place;
+pub mod registers;
+pub mod text;
 pub mod texture_environment;
 pub mod texture_stages;
 
-pub use finding::{At, Finding};
+pub use finding::At;
+pub use place::{Part, Place, Places};

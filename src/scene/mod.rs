@@ -5,14 +5,12 @@
 
 pub mod code;
 pub mod dds;
-mod diagnostic;
 pub mod image;
 mod lower;
 pub mod mesh;
 pub mod path;
 mod raw;
 mod reader;
-mod render;
 mod source;
 mod split;
 pub mod texels;
@@ -22,12 +20,12 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
+use crate::diagnostic;
+pub use crate::diagnostic::{Diagnostic, ErrorKind, SceneError, Severity, Source, render};
 use crate::limits::Limits;
 use crate::plan::Plan;
 use crate::state::Scene;
-pub use diagnostic::{Diagnostic, ErrorKind, SceneError, Severity, Source};
 pub use lower::{DrawSpans, VertexSpans};
-pub use render::render;
 
 /// A scene that was read and checked.
 #[derive(Clone, Debug)]
@@ -123,7 +121,7 @@ pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, Scene
     let folder = origin.parent().unwrap_or(Path::new(""));
     let found = lower::scene(&mut reader, text, folder);
     let mut diagnostics = reader.diagnostics;
-    diagnostics.sort_by_key(|finding| finding.span.as_ref().map_or(0, |span| span.start));
+    diagnostics.sort_by_key(Diagnostic::order);
     match found {
         Some((scene, plan, draw_spans)) => Ok(Loaded { scene, plan, warnings: diagnostics, source, draw_spans }),
         None => Err(SceneError { diagnostics, suppressed: reader.suppressed, source }),

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use super::diagnostic::Diagnostic;
+pub(super) use super::diagnostic::words::{closest, shorten};
 use super::raw::trim;
-pub(super) use crate::spelling::closest;
 
 /// The finding that a name is taken.
 pub(super) fn twice(what: &str, name: &str, place: Range<usize>, first: Range<usize>) -> Diagnostic {
@@ -76,10 +76,4 @@ pub(super) fn describe(text: &str) -> String {
         Some('\'') => format!("the character {}", shorten(text)),
         Some(_) => format!("`{}`", shorten(text)),
     }
-}
-
-/// At most forty characters of one line.
-pub(super) fn shorten(text: &str) -> String {
-    let line = text.lines().next().unwrap_or("");
-    if line.chars().count() <= 40 { line.to_owned() } else { line.chars().take(37).chain("...".chars()).collect() }
 }

@@ -64,6 +64,25 @@ named! {
         ETimesF,
     }
 }
+impl From<Register> for FinalRegister {
+    fn from(register: Register) -> Self {
+        match register {
+            Register::Zero => FinalRegister::Zero,
+            Register::ConstantColor0 => FinalRegister::ConstantColor0,
+            Register::ConstantColor1 => FinalRegister::ConstantColor1,
+            Register::Fog => FinalRegister::Fog,
+            Register::PrimaryColor => FinalRegister::PrimaryColor,
+            Register::SecondaryColor => FinalRegister::SecondaryColor,
+            Register::Texture0 => FinalRegister::Texture0,
+            Register::Texture1 => FinalRegister::Texture1,
+            Register::Texture2 => FinalRegister::Texture2,
+            Register::Texture3 => FinalRegister::Texture3,
+            Register::Spare0 => FinalRegister::Spare0,
+            Register::Spare1 => FinalRegister::Spare1,
+        }
+    }
+}
+
 named! {
     /// Which component of a register an input reads.
     pub enum Component {
@@ -241,6 +260,29 @@ pub struct FinalCombiner {
     pub invert_secondary: bool,
     /// Constant colours 0 and 1, R, G, B, A bytes. Equal to the stages' on nv10.
     pub constants: [[u8; 4]; 2],
+}
+
+impl FinalCombiner {
+    /// OpenGL's initial final combiner: fog over SPARE0 + SECONDARY, alpha of SPARE0.
+    pub fn initial(constants: [[u8; 4]; 2]) -> Self {
+        let input = |register, component| FinalInput { register, component, invert: false };
+        let zero = FinalInput::zero(Component::Rgb);
+        FinalCombiner {
+            inputs: [
+                input(FinalRegister::Fog, Component::Alpha),
+                input(FinalRegister::Spare0PlusSecondary, Component::Rgb),
+                input(FinalRegister::Fog, Component::Rgb),
+                zero,
+                zero,
+                zero,
+            ],
+            g: input(FinalRegister::Spare0, Component::Alpha),
+            color_sum_clamp: true,
+            invert_spare0: false,
+            invert_secondary: false,
+            constants,
+        }
+    }
 }
 
 /// What a general stage was written as, in the language of an API. For reports; nothing is computed from it.

@@ -2,8 +2,9 @@
 
 use super::lower::Own;
 use super::{BaseFormat, EnvironmentSource, Function, Half, Mode, Operand, Unit};
-use crate::program::Finding;
+use crate::diagnostic::Diagnostic;
 use crate::program::cascade::{Alpha, Argument, Cascade, Destination, Equation, Source};
+use crate::program::finding::finding;
 use crate::state::{Named, Scale, StageOrigin, TEXTURE_UNITS};
 
 impl Function {
@@ -37,7 +38,7 @@ pub(super) fn unit(
     index: usize,
     unit: &Unit,
     textures: &[Option<BaseFormat>; TEXTURE_UNITS],
-    findings: &mut Vec<Finding>,
+    findings: &mut Vec<Diagnostic>,
 ) {
     let function = unit.rgb.function.value;
     let halves: &[(&Half, bool)] = match function.writes_alpha() {
@@ -114,10 +115,10 @@ impl Combined {
 }
 
 /// Functions that a half cannot be.
-fn legal(mode: Mode, half: &Half, alpha: bool, findings: &mut Vec<Finding>) {
+fn legal(mode: Mode, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) {
     let function = half.function.value;
     let mut wrong = |message: String, help: &str| {
-        findings.push(Finding::new("NB0353", half.function.place.clone(), message, "not here", help));
+        findings.push(finding("NB0353", half.function.place.clone(), message, "not here", help));
     };
     if alpha && function.is_dot() {
         wrong(
@@ -134,11 +135,11 @@ fn legal(mode: Mode, half: &Half, alpha: bool, findings: &mut Vec<Finding>) {
         if alpha && color {
             let message = format!("the alpha of a unit has no {}", operand.value.name());
             let help = "write SourceAlpha or OneMinusSourceAlpha";
-            findings.push(Finding::new("NB0353", operand.place.clone(), message, "not here", help));
+            findings.push(finding("NB0353", operand.place.clone(), message, "not here", help));
         }
         if mode == Mode::Combine && source.value == EnvironmentSource::Zero {
             let help = "write `mode: Combine4`, or another source";
-            findings.push(Finding::new("NB0353", source.place.clone(), "Combine has no source Zero", "not here", help));
+            findings.push(finding("NB0353", source.place.clone(), "Combine has no source Zero", "not here", help));
         }
     }
 }

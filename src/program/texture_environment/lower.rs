@@ -2,8 +2,9 @@
 
 use super::combine;
 use super::{BaseFormat, Mode, TextureEnvironment, Unit};
-use crate::program::Finding;
+use crate::diagnostic::Diagnostic;
 use crate::program::cascade::{Alpha, Argument, Cascade, Channel, Destination, End, Equation, Lowered, Source};
+use crate::program::finding::finding;
 use crate::state::{Named, Profile, StageOrigin, TEXTURE_UNITS};
 
 /// What of the draw the lowering depends on.
@@ -23,7 +24,7 @@ pub struct Context {
 ///
 /// # Errors
 /// Everything that the chip has no form for.
-pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered, Vec<Finding>> {
+pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let mut cascade = Cascade::new(context.profile, context.signed);
     let initial = Unit::initial();
@@ -35,14 +36,14 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
     }
     if let Some(unit) = program.units.get(context.profile.texture_units()) {
         let (index, chip) = (context.profile.texture_units(), context.profile.name());
-        let finding = Finding::new(
+        let error = finding(
             "NB0319",
             unit.place.clone(),
             format!("{chip} has no texture unit {index}"),
             "one too many",
             format!("units 0 to {} are the entries of this list", index - 1),
         );
-        findings.push(finding.rule("CMB-12"));
+        findings.push(error.rule("CMB-12"));
     }
     for (index, texture) in textures.iter().enumerate() {
         // A unit without a texture is not enabled: the colour passes it.

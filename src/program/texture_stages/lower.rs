@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use super::operation::Surroundings;
 use super::{ArgumentSource, Half, Operation, ResultArgument, StageArgument, TextureStage, TextureStages};
+use crate::diagnostic::Diagnostic;
+use crate::program::At;
 use crate::program::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
-use crate::program::{At, Finding};
+use crate::program::finding::finding;
 use crate::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
 
 /// What of the draw the lowering depends on.
@@ -45,7 +47,7 @@ pub struct Lowered {
 ///
 /// # Errors
 /// Everything that the chip, or this version, has no form for.
-pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Finding>> {
+pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let active = program.stages.iter().take_while(|stage| stage.color.operation.value != Operation::Disable).count();
     let mut walk = Walk { program, context, active, findings: Vec::new(), units: Default::default() };
     let mut cascade = Cascade::new(context.profile, context.signed);
@@ -86,7 +88,7 @@ struct Walk<'p> {
     context: &'p Context,
     /// Stages before the first disabled one.
     active: usize,
-    findings: Vec<Finding>,
+    findings: Vec<Diagnostic>,
     units: [UnitChange; TEXTURE_UNITS],
 }
 
@@ -95,7 +97,7 @@ impl Walk<'_> {
     fn half(&mut self, index: usize, half: &Half, alpha: bool) -> crate::program::cascade::Equation {
         let operation = half.operation.value;
         if alpha && operation.is_color_only() {
-            self.findings.push(Finding::new(
+            self.findings.push(finding(
                 "NB0353",
                 half.operation.place.clone(),
                 format!("AlphaOp cannot be {}", operation.name()),
@@ -139,14 +141,14 @@ impl Walk<'_> {
             ArgumentSource::Constant => Argument::new(Source::Constant(self.program.stages[index].constant)),
         };
         if source == ArgumentSource::Specular && (alpha || alpha_replicate) && self.context.profile == Profile::Nv10 {
-            let finding = Finding::new(
+            let error = finding(
                 "NB0309",
                 at.place.clone(),
                 "the alpha of Specular is not defined on Nv10",
                 "undefined",
                 "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of Diffuse",
             );
-            self.findings.push(finding.rule("CMB-13"));
+            self.findings.push(error.rule("CMB-13"));
         }
         if alpha_replicate {
             argument = argument.alpha();
@@ -159,7 +161,7 @@ impl Walk<'_> {
         let units = self.context.profile.texture_units();
         if unit >= units {
             let chip = self.context.profile.name();
-            let finding = Finding::new(
+            let error = finding(
                 "NB0319",
                 place,
                 format!("stage {unit} reads texture {unit}; {chip} has textures 0 to {}", units - 1),
@@ -169,7 +171,7 @@ impl Walk<'_> {
                     Profile::Nv2a => "draw in two passes with `blend`",
                 },
             );
-            self.findings.push(finding.rule("CMB-12"));
+            self.findings.push(error.rule("CMB-12"));
             return Argument::ONE;
         }
         if self.context.bound[unit] { Argument::new(Source::Texture(unit)) } else { Argument::ONE }
@@ -179,7 +181,7 @@ impl Walk<'_> {
     fn coordinates(&mut self, index: usize, stage: &TextureStage) {
         if let Some(at) = &stage.coordinate_index {
             if at.value.generation != 0 {
-                self.findings.push(Finding::new(
+                self.findings.push(finding(
                     "NB0401",
                     at.place.clone(),
                     "not built yet: camera-space texture coordinates in texture stages",
@@ -187,7 +189,7 @@ impl Walk<'_> {
                     "write the draw's `texgen: [...]` for this unit, and its coordinate set here",
                 ));
             } else if at.value.set >= 4 {
-                self.findings.push(Finding::new(
+                self.findings.push(finding(
                     "NB0206",
                     at.place.clone(),
                     format!("a set of texture coordinates cannot be {}", at.value.set),
@@ -199,7 +201,7 @@ impl Walk<'_> {
             }
         }
         if stage.transform_flags.value != 0 {
-            self.findings.push(Finding::new(
+            self.findings.push(finding(
                 "NB0401",
                 stage.transform_flags.place.clone(),
                 "not built yet: texture coordinate transforms in texture stages",
@@ -213,14 +215,14 @@ impl Walk<'_> {
     fn bump(&mut self, index: usize, stage: &TextureStage) {
         let operation = &stage.color.operation;
         if self.context.profile == Profile::Nv10 {
-            let finding = Finding::new(
+            let error = finding(
                 "NB0352",
                 operation.place.clone(),
                 format!("Nv10 has no {}", operation.value.name()),
                 "not on this chip",
                 "it needs the texture shader, which a texture unit of Nv10 does not have: write `profile: Nv2a`",
             );
-            self.findings.push(finding.rule("TSH-7"));
+            self.findings.push(error.rule("TSH-7"));
             return;
         }
         self.texture(index, operation.place.clone());

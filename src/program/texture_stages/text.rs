@@ -9,8 +9,10 @@ mod value;
 use std::ops::Range;
 
 use super::{CoordinateIndex, STAGES, TextureStages};
-use crate::program::{At, Finding};
-use crate::spelling::closest;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::words::closest;
+use crate::program::At;
+use crate::program::finding::finding;
 use token::{Token, TokenKind, tokens};
 use value::Value;
 
@@ -21,7 +23,7 @@ const MOST_FINDINGS: usize = 32;
 ///
 /// # Errors
 /// Everything that is not a statement, or sets something that is not known.
-pub fn parse(text: &str) -> Result<TextureStages, Vec<Finding>> {
+pub fn parse(text: &str) -> Result<TextureStages, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let tokens = tokens(text, &mut findings);
     let mut parser = Parser { text, tokens, at: 0, findings, program: TextureStages::default() };
@@ -75,7 +77,7 @@ struct Parser<'t> {
     text: &'t str,
     tokens: Vec<Token>,
     at: usize,
-    findings: Vec<Finding>,
+    findings: Vec<Diagnostic>,
     program: TextureStages,
 }
 
@@ -109,7 +111,7 @@ impl<'t> Parser<'t> {
             "" => "the end of the text".to_owned(),
             word => format!("`{word}`"),
         };
-        self.findings.push(Finding::new(
+        self.findings.push(finding(
             "NB0103",
             place,
             format!("expected {what}, found {found}"),
@@ -215,7 +217,7 @@ impl<'t> Parser<'t> {
                 Some(known) => format!("did you mean `{known}`?"),
                 None => "this reads SetTextureStageState and SetRenderState, and passes over SetTexture".to_owned(),
             };
-            self.findings.push(Finding::new(
+            self.findings.push(finding(
                 "NB0204",
                 name.clone(),
                 format!("`{function}` is no call that is read here"),
@@ -240,7 +242,7 @@ impl<'t> Parser<'t> {
             _ => {
                 let message = format!("{function} has {count} arguments, not {}", arguments.len());
                 let help = "write the stage, the state and its value";
-                self.findings.push(Finding::new("NB0211", name.clone(), message, "this call", help));
+                self.findings.push(finding("NB0211", name.clone(), message, "this call", help));
                 return Some(());
             }
         };
@@ -301,7 +303,7 @@ impl<'t> Parser<'t> {
             }
         };
         let message = format!("there is no state `{word}` of a pixel program");
-        self.findings.push(Finding::new("NB0204", place.clone(), message, "not known", help));
+        self.findings.push(finding("NB0204", place.clone(), message, "not known", help));
         None
     }
 
@@ -313,7 +315,7 @@ impl<'t> Parser<'t> {
         if let Some((name, _, field)) = sampler {
             let message = format!("{name} is no part of the pixel program");
             let help = format!("write it in the draw: `textures: [(texture: ..., {field}: ...)]`");
-            self.findings.push(Finding::new("NB0354", state.clone(), message, "a state of the sampler", help));
+            self.findings.push(finding("NB0354", state.clone(), message, "a state of the sampler", help));
             return;
         }
         let Some(name) = self.state(state, prefixes, STATES, call) else { return };
@@ -321,7 +323,7 @@ impl<'t> Parser<'t> {
         let Some(target) = self.program.stage_mut(index as usize) else {
             let message = format!("there is no texture stage {index}");
             let help = format!("write 0 to {}", STAGES - 1);
-            self.findings.push(Finding::new("NB0206", stage.place.clone(), message, "out of range", help));
+            self.findings.push(finding("NB0206", stage.place.clone(), message, "out of range", help));
             return;
         };
         let findings = &mut self.findings;

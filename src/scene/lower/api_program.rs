@@ -3,9 +3,9 @@
 use super::texture::Textures;
 use super::unit::Units;
 use super::*;
+use crate::program::At;
 use crate::program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};
 use crate::program::texture_stages::{self as stages, TextureStages};
-use crate::program::{At, Finding};
 use crate::state::{Combiners, ShaderStage, StageOrigin, TEXTURE_UNITS};
 
 /// A program of an API.
@@ -60,13 +60,10 @@ impl ApiProgram {
 }
 
 /// Records findings, each once: several draws may share a program.
-fn report(reader: &mut Reader<'_>, findings: Vec<Finding>) {
+fn report(reader: &mut Reader<'_>, findings: Vec<Diagnostic>) {
     for finding in findings {
-        let mut diagnostic =
-            Diagnostic::error(finding.code, finding.place, finding.message).label(finding.label).help(finding.help);
-        diagnostic.rule = finding.rule;
-        if !reader.diagnostics.contains(&diagnostic) {
-            reader.push(diagnostic);
+        if !reader.diagnostics.contains(&finding) {
+            reader.push(finding);
         }
     }
 }

@@ -3,14 +3,14 @@
 use std::collections::HashMap;
 
 use super::attribute::{Outputs, Source};
-use super::combiner::ProgramData;
 use super::names::Names;
+use super::program::Program;
 use super::target::Targets;
 use super::texture::Textures;
 use super::*;
 use crate::state::{
-    Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, Texture, TextureImage, Topology, VertexColor,
-    Viewport,
+    Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
+    Topology, VertexColor, Viewport,
 };
 
 /// Reads the draws, with their places.
@@ -104,21 +104,21 @@ fn draw<'a>(
         Some(raw) => targets.find(reader, raw),
         None => Some(0),
     };
-    reader.reserve(&fields.texture_shader, "texture shaders");
     reader.reserve(&fields.texgen, "texture coordinate generation");
     reader.reserve(&fields.texture_matrices, "texture matrices");
     reader.reserve(&fields.truth, "the draw's truth (light, viewer, material)");
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
-    let units = unit::units(reader, names, textures, &fields.textures);
+    let mut units = unit::units(reader, names, textures, &fields.textures);
+    shader::shader(reader, textures, &mut units, &fields.texture_shader);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
     let topology = reader.name_or(&fields.topology, Topology::Triangles);
     let fog = raster::fog(reader, names, &fields.fog);
     let mut program_origin = Vec::new();
     let mut texture_shader = units.shader;
     let (combiners, reads) = match program.flatten().as_deref() {
-        Some(ProgramData::Combiners(combiners, reads)) => (combiners.clone(), reads.clone()),
-        Some(ProgramData::Api(program)) => {
+        Some(Program::Combiners(program)) => (program.combiners.clone(), program.reads.clone()),
+        Some(Program::Api(program)) => {
             let lowered = program.lower(reader, &units, textures, fog.enabled);
             (program_origin, texture_shader) = (lowered.origins, lowered.shader);
             (lowered.combiners, [None, None, None, None])
@@ -151,7 +151,8 @@ fn draw<'a>(
     };
     raster::operations(reader, names, targets, fields, &mut draw);
     for (unit, read) in reads.iter().enumerate() {
-        if let (Some(place), None) = (read, &units.bound[unit]) {
+        let nothing = matches!(units.shader[unit].operation, ShaderOperation::None);
+        if let (Some(place), true) = (read, nothing) {
             reader.push(
                 Diagnostic::warning("NB0902", place.clone(), format!("texture unit {unit} is read but has no texture"))
                     .label("gives black, opaque")

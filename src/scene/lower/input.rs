@@ -1,16 +1,9 @@
-//! Inputs of the combiners: register, component, mapping, and which of them go together (CMB-12).
+//! Inputs of the combiners: register, component, mapping.
 
-use super::combiner::Walk;
 use super::*;
+use crate::program::legality::only_final;
 use crate::scene::raw::Tuple;
 use crate::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Register};
-
-/// NV10 has two texture registers.
-pub(super) fn on_chip(reader: &mut Reader<'_>, register: &str, place: Range<usize>) {
-    if matches!(register, "Texture2" | "Texture3") && reader.profile == Profile::Nv10 {
-        reader.push(target::only_nv2a("NB0302", place, &format!("register {register}"), "CMB-12"));
-    }
-}
 
 /// An input taken apart: index of the mapping (`None`: none written), the register, the component if written.
 struct Parts<'a, R> {
@@ -38,12 +31,8 @@ fn parts<'a, R: Named>(
                     .help(format!("for a component write `({head}, Alpha)`")),
             );
         } else if FinalRegister::from_name(head).is_some() {
-            reader.push(
-                Diagnostic::error("NB0313", reader.span(&raw), format!("{head} exists only in the final combiner"))
-                    .label("not in a general stage")
-                    .rule("CMB-12")
-                    .help("use it as input A, B, C or D of `final_combiner`"),
-            );
+            let help = "use it as input A, B, C or D of `final_combiner`";
+            reader.push(only_final(reader.span(&raw), head, help));
         } else {
             let known: Vec<&'static str> = R::NAMES.iter().chain(mappings).copied().collect();
             reader.unknown_variant(&raw, "input", &known);
@@ -76,67 +65,25 @@ fn parts<'a, R: Named>(
     Some(Parts { mapping, register: reader.name(&register.as_other())?, component })
 }
 
+/// An input of a general portion, and where its component stands if it is written.
 pub(super) fn general_input<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::Input>,
     alpha: bool,
-) -> Option<CombinerInput> {
+) -> Option<(CombinerInput, Option<Range<usize>>)> {
     let Parts { mapping, register, component } = parts::<Register>(reader, raw.as_other(), InputMapping::NAMES)?;
-    let place = reader.span(raw);
-    let wrong = if alpha { Component::Rgb } else { Component::Blue };
-    if let Some((written, raw)) = &component
-        && *written == wrong
-    {
-        let message =
-            if alpha { "an alpha portion has no RGB to read" } else { "an RGB portion cannot read just blue" };
-        let help = if alpha { "take Alpha (the default here) or Blue" } else { "take Rgb (the default here) or Alpha" };
-        reader.push(Diagnostic::error("NB0311", reader.span(raw), message).label("not here").rule("CMB-12").help(help));
-    }
+    let place = component.as_ref().map(|(_, raw)| reader.span(raw));
     let component = component.map_or(if alpha { Component::Alpha } else { Component::Rgb }, |(written, _)| written);
-    on_chip(reader, register.name(), place.clone());
-    secondary_alpha(reader, register == Register::SecondaryColor && component == Component::Alpha, place.clone());
-    if register == Register::Fog && component == Component::Alpha {
-        let help = if alpha { "write `(Fog, Blue)` for the fog colour's blue" } else { "read Rgb here" };
-        reader.push(
-            Diagnostic::error("NB0308", place, "the fog factor is readable in the final combiner only")
-                .label("Fog's alpha")
-                .rule("CMB-12")
-                .help(help),
-        );
-    }
     let mapping = mapping.map_or(InputMapping::UnsignedIdentity, |index| InputMapping::ALL[index]);
-    Some(CombinerInput { register, component, mapping })
+    Some((CombinerInput { register, component, mapping }, place))
 }
 
-fn secondary_alpha(reader: &mut Reader<'_>, read: bool, place: Range<usize>) {
-    if read && reader.profile == Profile::Nv10 {
-        reader.push(
-            Diagnostic::error("NB0309", place, "the alpha of SecondaryColor is not defined on Nv10")
-                .label("undefined")
-                .rule("CMB-13")
-                .help("profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of PrimaryColor"),
-        );
-    }
-}
-
-/// Which of the final combiner's inputs.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Place {
-    /// A to D.
-    Sum,
-    /// E and F.
-    Product,
-    /// G.
-    Alpha,
-}
-
+/// An input of the final combiner, and where its component stands if it is written. `alpha`: it is G.
 pub(super) fn final_input<'a>(
     reader: &mut Reader<'a>,
     raw: &Raw<'a, source::FinalInput>,
-    place: Place,
-    walk: &mut Walk,
-) -> Option<FinalInput> {
-    let span = reader.span(raw);
+    alpha: bool,
+) -> Option<(FinalInput, Option<Range<usize>>)> {
     let (head, _) = raw.split();
     let mapping = InputMapping::from_name(head);
     if mapping.is_some_and(|m| !matches!(m, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert)) {
@@ -152,31 +99,7 @@ pub(super) fn final_input<'a>(
     }
     let words = ["UnsignedIdentity", "Invert", "UnsignedInvert"];
     let Parts { mapping, register, component } = parts::<FinalRegister>(reader, raw.as_other(), &words)?;
-    let default = if place == Place::Alpha { Component::Alpha } else { Component::Rgb };
-    let wrong = if place == Place::Alpha { Component::Rgb } else { Component::Blue };
-    if let Some((written, raw)) = &component
-        && *written == wrong
-    {
-        let help = match place {
-            Place::Alpha => "G reads Alpha (the default) or Blue",
-            _ => "inputs A to F read Rgb (the default) or Alpha",
-        };
-        let message = format!("this input cannot read {wrong:?}");
-        reader.push(Diagnostic::error("NB0311", reader.span(raw), message).label("not here").rule("CMB-12").help(help));
-    }
-    let component = component.map_or(default, |(written, _)| written);
-    on_chip(reader, register.name(), span.clone());
-    let special = matches!(register, FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF);
-    if special && (place != Place::Sum || component == Component::Alpha) {
-        reader.push(
-            Diagnostic::error("NB0313", span.clone(), format!("{} cannot be read here", register.name()))
-                .label("only as the RGB of input A, B, C or D")
-                .rule("FIN-1")
-                .help("read Spare0 or another register"),
-        );
-    }
-    let alpha = component == Component::Alpha;
-    secondary_alpha(reader, register == FinalRegister::SecondaryColor && alpha, span.clone());
-    walk.read(reader, register, alpha, span);
-    Some(FinalInput { register, component, invert: mapping.is_some_and(|index| index > 0) })
+    let place = component.as_ref().map(|(_, raw)| reader.span(raw));
+    let component = component.map_or(if alpha { Component::Alpha } else { Component::Rgb }, |(written, _)| written);
+    Some((FinalInput { register, component, invert: mapping.is_some_and(|index| index > 0) }, place))
 }

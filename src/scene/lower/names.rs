@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
 
-use super::combiner::ProgramData;
+use super::program::Program;
 use super::vertex::VertexData;
 use super::*;
 use crate::scene::mesh::Mesh;
@@ -135,7 +135,7 @@ pub(super) struct Names<'a> {
     matrices: Table<'a, source::Matrix, Rows>,
     vertices: Table<'a, source::VertexList, Rc<VertexData>>,
     meshes: Table<'a, source::MeshSource, Rc<Mesh>>,
-    programs: Table<'a, source::Program, Rc<ProgramData>>,
+    programs: Table<'a, source::Program, Rc<Program>>,
     blends: Table<'a, source::BlendSource, Blend>,
 }
 
@@ -172,7 +172,7 @@ impl<'a> Names<'a> {
         });
         names.programs.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
-            combiner::program(reader, &names, raw).map(Rc::new)
+            program::program(reader, &names, raw).map(Rc::new)
         });
         names.blends.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
@@ -209,11 +209,11 @@ impl<'a> Names<'a> {
         }
     }
 
-    pub(super) fn program(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Program>) -> Option<Rc<ProgramData>> {
+    pub(super) fn program(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Program>) -> Option<Rc<Program>> {
         if raw.is_text() {
             self.programs.get(reader, raw, &|_, _, _, _| None, 0)
         } else {
-            combiner::program(reader, self, raw).map(Rc::new)
+            program::program(reader, self, raw).map(Rc::new)
         }
     }
 

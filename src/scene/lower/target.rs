@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use super::names::Names;
 use super::*;
+pub(super) use crate::diagnostic::only_nv2a;
 use crate::state::{DepthBuffer, DepthFormat, SurfaceFormat, Target};
 
 /// The targets, and where they were named.
@@ -191,12 +192,4 @@ fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Targe
 
 fn all_ones(format: DepthFormat) -> u32 {
     (1 << format.bits()) - 1
-}
-
-/// The finding that something needs the larger chip.
-pub(super) fn only_nv2a(code: &'static str, place: Range<usize>, what: &str, rule: &'static str) -> Diagnostic {
-    Diagnostic::error(code, place, format!("{what} does not exist on Nv10"))
-        .label("not on this chip")
-        .rule(rule)
-        .help("profile Nv2a has it: write `profile: Nv2a`, or use what Nv10 has")
 }

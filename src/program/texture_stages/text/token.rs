@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use crate::program::Finding;
+use crate::diagnostic::Diagnostic;
+use crate::program::finding::finding;
 
 /// What a token is; its text is in its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ pub(super) struct Token {
 }
 
 /// Splits the text; comments and spaces are left out.
-pub(super) fn tokens(text: &str, findings: &mut Vec<Finding>) -> Vec<Token> {
+pub(super) fn tokens(text: &str, findings: &mut Vec<Diagnostic>) -> Vec<Token> {
     let mut tokens = Vec::new();
     let (mut at, mut first) = (0, true);
     while let Some(sign) = text[at..].chars().next() {
@@ -41,7 +42,7 @@ pub(super) fn tokens(text: &str, findings: &mut Vec<Finding>) -> Vec<Token> {
         } else if rest.starts_with("/*") {
             rest.find("*/").map_or_else(
                 || {
-                    findings.push(Finding::new(
+                    findings.push(finding(
                         "NB0103",
                         at..at + 2,
                         "this comment does not end",

@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use super::Parser;
 use super::token::TokenKind;
-use crate::program::Finding;
+use crate::diagnostic::Diagnostic;
+use crate::diagnostic::words::closest;
+use crate::program::finding::finding;
 use crate::program::texture_stages::{ArgumentSource, Operation, ResultArgument, StageArgument};
-use crate::spelling::closest;
 use crate::state::Named;
 
 /// Brackets and casts around one value.
@@ -130,13 +131,7 @@ impl<'t> Parser<'t> {
             }
             _ => {
                 let help = "write a whole number, a hexadecimal one such as 0xff8040, or a fraction such as 0.5f";
-                self.findings.push(Finding::new(
-                    "NB0205",
-                    place,
-                    format!("`{text}` is not a number"),
-                    "not a number",
-                    help,
-                ));
+                self.findings.push(finding("NB0205", place, format!("`{text}` is not a number"), "not a number", help));
                 None
             }
         }
@@ -180,7 +175,7 @@ fn known<T: Copy>(
     prefix: &str,
     call: bool,
     known: &[(&str, T)],
-    findings: &mut Vec<Finding>,
+    findings: &mut Vec<Diagnostic>,
 ) -> Option<T> {
     let (_, bare) = without_prefix(part.text, &[prefix]);
     let word = folded(bare);
@@ -199,30 +194,30 @@ fn known<T: Copy>(
         None => format!("known: {}", known.iter().map(|(name, _)| spelled(name)).collect::<Vec<_>>().join(", ")),
     };
     let message = format!("there is no {what} `{}`", part.text.chars().take(40).collect::<String>());
-    findings.push(Finding::new("NB0204", part.place.clone(), message, "not known", help));
+    findings.push(finding("NB0204", part.place.clone(), message, "not known", help));
     None
 }
 
-fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<Finding>) -> Option<&'v Part<'t>> {
+fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&'v Part<'t>> {
     if let [part] = &value.parts[..] {
         return Some(part);
     }
     let message = format!("expected one {what}, found several joined by `|`");
-    findings.push(Finding::new("NB0205", value.place.clone(), message, "not one value", "write one of them"));
+    findings.push(finding("NB0205", value.place.clone(), message, "not one value", "write one of them"));
     None
 }
 
-fn out_of_range(place: &Range<usize>, what: &str, value: u32, help: &str, findings: &mut Vec<Finding>) {
+fn out_of_range(place: &Range<usize>, what: &str, value: u32, help: &str, findings: &mut Vec<Diagnostic>) {
     let message = format!("there is no {what} {value}");
-    findings.push(Finding::new("NB0206", place.clone(), message, "out of range", help));
+    findings.push(finding("NB0206", place.clone(), message, "out of range", help));
 }
 
-fn wrong_kind(place: &Range<usize>, what: &str, help: &str, findings: &mut Vec<Finding>) {
-    findings.push(Finding::new("NB0205", place.clone(), format!("expected {what}"), "wrong kind of value", help));
+fn wrong_kind(place: &Range<usize>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) {
+    findings.push(finding("NB0205", place.clone(), format!("expected {what}"), "wrong kind of value", help));
 }
 
 /// A plain number.
-pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<u32> {
+pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     match one(value, "number", findings)?.kind {
         PartKind::Integer(number) => Some(number),
         _ => {
@@ -233,7 +228,7 @@ pub(super) fn number(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<u
 }
 
 /// D3DTOP.
-pub(super) fn operation(value: &Value<'_>, call: bool, findings: &mut Vec<Finding>) -> Option<Operation> {
+pub(super) fn operation(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<Operation> {
     let part = one(value, "operation", findings)?;
     if let PartKind::Integer(number) = part.kind {
         let operation = Operation::from_value(number);
@@ -254,7 +249,7 @@ enum ArgumentWord {
 }
 
 /// D3DTA, with modifiers.
-pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Finding>) -> Option<StageArgument> {
+pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<StageArgument> {
     const WORDS: &[(&str, ArgumentWord)] = &[
         ("Diffuse", ArgumentWord::Source(ArgumentSource::Diffuse)),
         ("Current", ArgumentWord::Source(ArgumentSource::Current)),
@@ -296,7 +291,7 @@ pub(super) fn argument(value: &Value<'_>, call: bool, findings: &mut Vec<Finding
 }
 
 /// D3DTSS_RESULTARG.
-pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Finding>) -> Option<ResultArgument> {
+pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Diagnostic>) -> Option<ResultArgument> {
     let part = one(value, "result", findings)?;
     if let PartKind::Integer(number) = part.kind {
         return match number {
@@ -314,7 +309,7 @@ pub(super) fn result(value: &Value<'_>, call: bool, findings: &mut Vec<Finding>)
 }
 
 /// D3DTSS_TEXCOORDINDEX: the words D3DTSS_TCI and a number.
-pub(super) fn coordinate_index(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<u32> {
+pub(super) fn coordinate_index(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     let words = [
         ("PassThru", 0),
         ("CameraSpaceNormal", 1 << 16),
@@ -326,7 +321,7 @@ pub(super) fn coordinate_index(value: &Value<'_>, findings: &mut Vec<Finding>) -
 }
 
 /// D3DTSS_TEXTURETRANSFORMFLAGS.
-pub(super) fn transform_flags(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<u32> {
+pub(super) fn transform_flags(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     let words = [("Disable", 0), ("Count1", 1), ("Count2", 2), ("Count3", 3), ("Count4", 4), ("Projected", 256)];
     flags(value, "transform flag", "D3DTTFF_", &words, findings)
 }
@@ -336,7 +331,7 @@ fn flags(
     what: &str,
     prefix: &str,
     words: &[(&str, u32)],
-    findings: &mut Vec<Finding>,
+    findings: &mut Vec<Diagnostic>,
 ) -> Option<u32> {
     let mut bits = 0;
     for part in &value.parts {
@@ -349,7 +344,7 @@ fn flags(
 }
 
 /// TRUE, FALSE or a number.
-pub(super) fn flag(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<bool> {
+pub(super) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<bool> {
     let part = one(value, "truth value", findings)?;
     match part.kind {
         PartKind::Integer(number) => Some(number != 0),
@@ -358,7 +353,7 @@ pub(super) fn flag(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<boo
 }
 
 /// A D3DCOLOR, 0xAARRGGBB, as R, G, B, A bytes; or one of its macros.
-pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<[u8; 4]> {
+pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<[u8; 4]> {
     const HELP: &str = "write 0xAARRGGBB, or D3DCOLOR_ARGB(a, r, g, b) with bytes";
     let part = one(value, "colour", findings)?;
     match &part.kind {
@@ -390,7 +385,7 @@ pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<[u
 }
 
 /// A float: written as one, in a wrapper such as `F2DW(0.5f)`, or as the bits of one, as the API takes it.
-pub(super) fn float(value: &Value<'_>, findings: &mut Vec<Finding>) -> Option<f32> {
+pub(super) fn float(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<f32> {
     let part = one(value, "number", findings)?;
     let found = match &part.kind {
         PartKind::Float(number) => Some(*number),

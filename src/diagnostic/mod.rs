@@ -1,7 +1,13 @@
-//! What is wrong with a scene, where, and what to do about it.
+//! Findings: what is wrong with a scene or a program, where, and what to do about it.
+
+mod render;
+pub(crate) mod words;
 
 use std::fmt;
 use std::ops::Range;
+use std::sync::Arc;
+
+pub use render::render;
 
 /// How bad it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,7 +43,7 @@ impl ErrorKind {
 /// One finding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Stable code, for example "NB0201"; [`code::CODES`](super::code::CODES) lists them.
+    /// Stable code, for example "NB0201"; [`CODES`](crate::scene::code::CODES) lists them.
     pub code: &'static str,
     /// Error or warning.
     pub severity: Severity,
@@ -55,11 +61,22 @@ pub struct Diagnostic {
     pub notes: Vec<String>,
     /// What to do.
     pub help: Option<String>,
+    /// The other text that the places point into; `None`: the one that was given.
+    pub file: Option<Arc<File>>,
+}
+
+/// A text that a scene names: a program in a file of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct File {
+    /// The text and its name.
+    pub source: Source,
+    /// Where the scene names it.
+    pub named: Range<usize>,
 }
 
 impl Diagnostic {
     /// An error about `span`.
-    pub(super) fn error(code: &'static str, span: impl Into<Option<Range<usize>>>, message: impl Into<String>) -> Self {
+    pub(crate) fn error(code: &'static str, span: impl Into<Option<Range<usize>>>, message: impl Into<String>) -> Self {
         Diagnostic {
             code,
             severity: Severity::Error,
@@ -70,37 +87,53 @@ impl Diagnostic {
             rule: None,
             notes: Vec::new(),
             help: None,
+            file: None,
         }
     }
 
     /// A warning about `span`.
-    pub(super) fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
+    pub(crate) fn warning(code: &'static str, span: Range<usize>, message: impl Into<String>) -> Self {
         Diagnostic { severity: Severity::Warning, ..Diagnostic::error(code, span, message) }
     }
 
-    pub(super) fn label(mut self, label: impl Into<String>) -> Self {
+    pub(crate) fn label(mut self, label: impl Into<String>) -> Self {
         self.label = label.into();
         self
     }
 
-    pub(super) fn help(mut self, help: impl Into<String>) -> Self {
+    pub(crate) fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    pub(super) fn rule(mut self, rule: &'static str) -> Self {
+    pub(crate) fn rule(mut self, rule: &'static str) -> Self {
         self.rule = Some(rule);
         self
     }
 
-    pub(super) fn note(mut self, note: impl Into<String>) -> Self {
+    pub(crate) fn note(mut self, note: impl Into<String>) -> Self {
         self.notes.push(note.into());
         self
     }
 
-    pub(super) fn related(mut self, span: Range<usize>, label: impl Into<String>) -> Self {
+    pub(crate) fn related(mut self, span: Range<usize>, label: impl Into<String>) -> Self {
         self.related.push((span, label.into()));
         self
+    }
+
+    /// The same about places of another text.
+    pub(crate) fn inside(mut self, file: &Arc<File>) -> Self {
+        self.file = Some(Arc::clone(file));
+        self
+    }
+
+    /// Where it is mentioned in the text that was given: findings are sorted by this.
+    pub(crate) fn order(&self) -> (usize, usize) {
+        let start = self.span.as_ref().map_or(0, |span| span.start);
+        match &self.file {
+            Some(file) => (file.named.start, start),
+            None => (start, 0),
+        }
     }
 
     /// What a caller does about it.
@@ -114,7 +147,20 @@ impl Diagnostic {
     }
 }
 
-/// The text of a scene and its name in messages.
+/// The finding that something needs the larger chip.
+pub(crate) fn only_nv2a(
+    code: &'static str,
+    place: impl Into<Option<Range<usize>>>,
+    what: &str,
+    rule: &'static str,
+) -> Diagnostic {
+    Diagnostic::error(code, place, format!("{what} does not exist on Nv10"))
+        .label("not on this chip")
+        .rule(rule)
+        .help("profile Nv2a has it: write `profile: Nv2a`, or use what Nv10 has")
+}
+
+/// A text and its name in messages.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Source {
     /// Shown before line and column.
@@ -134,7 +180,7 @@ impl Source {
 }
 
 /// The largest character boundary at or below `offset`.
-pub(super) fn floor_boundary(text: &str, offset: usize) -> usize {
+pub(crate) fn floor_boundary(text: &str, offset: usize) -> usize {
     let mut offset = offset.min(text.len());
     while !text.is_char_boundary(offset) {
         offset -= 1;
@@ -156,7 +202,7 @@ pub struct SceneError {
 impl SceneError {
     /// The findings as text for a terminal.
     pub fn render(&self, color: bool) -> String {
-        let mut text = super::render::render(&self.diagnostics, &self.source, color);
+        let mut text = render(&self.diagnostics, &self.source, color);
         if self.suppressed > 0 {
             text.push_str(&format!("\n... and {} more\n", self.suppressed));
         }

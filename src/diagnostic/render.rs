@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
-use super::diagnostic::{Diagnostic, Severity, Source, floor_boundary};
+use super::{Diagnostic, Severity, Source, floor_boundary};
 
 /// Longest excerpt of a line on either side of a mark, in bytes: scenes of one endless line stay readable.
 const MARGIN: usize = 200;
@@ -26,6 +26,7 @@ pub fn render(diagnostics: &[Diagnostic], source: &Source, color: bool) -> Strin
 }
 
 fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
+    let source = diagnostic.file.as_ref().map_or(source, |file| &file.source);
     let level = match diagnostic.severity {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,

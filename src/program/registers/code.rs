@@ -1,0 +1,234 @@
+//! Fields of single words: codes of registers, mappings and operations, and what a chip takes.
+
+use super::{Refusal, Word};
+use crate::state::{
+    Bias, CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Portion, Profile, Register, Scale,
+};
+
+/// Codes of the registers, in the order of the codes. 6 and 7 are none.
+const REGISTERS: [(u32, FinalRegister); 14] = [
+    (0, FinalRegister::Zero),
+    (1, FinalRegister::ConstantColor0),
+    (2, FinalRegister::ConstantColor1),
+    (3, FinalRegister::Fog),
+    (4, FinalRegister::PrimaryColor),
+    (5, FinalRegister::SecondaryColor),
+    (8, FinalRegister::Texture0),
+    (9, FinalRegister::Texture1),
+    (10, FinalRegister::Texture2),
+    (11, FinalRegister::Texture3),
+    (12, FinalRegister::Spare0),
+    (13, FinalRegister::Spare1),
+    (14, FinalRegister::Spare0PlusSecondary),
+    (15, FinalRegister::ETimesF),
+];
+
+/// The code of a register.
+pub(super) fn register_code(register: impl Into<FinalRegister>) -> u32 {
+    let register = register.into();
+    REGISTERS.iter().find(|(_, known)| *known == register).map_or(0, |(code, _)| *code)
+}
+
+/// The register of a code.
+pub(super) fn final_register(code: u32) -> FinalRegister {
+    REGISTERS.iter().find(|(known, _)| *known == code & 15).map_or(FinalRegister::Zero, |(_, register)| *register)
+}
+
+fn general_register(code: u32) -> Register {
+    crate::combiner::final_combiner::general(final_register(code))
+}
+
+/// A byte of an input word: mapping, component, register.
+pub(super) fn input_byte(input: &CombinerInput) -> u32 {
+    let mapping = InputMapping::ALL.iter().position(|mapping| *mapping == input.mapping).unwrap_or(0) as u32;
+    mapping << 5 | u32::from(input.component == Component::Alpha) << 4 | register_code(input.register)
+}
+
+/// What such a byte says in an RGB or alpha portion.
+pub(super) fn input_of(byte: u32, alpha: bool) -> CombinerInput {
+    CombinerInput {
+        register: general_register(byte),
+        component: component(byte, if alpha { Component::Blue } else { Component::Rgb }),
+        mapping: InputMapping::ALL[(byte >> 5 & 7) as usize],
+    }
+}
+
+fn component(byte: u32, otherwise: Component) -> Component {
+    if byte >> 4 & 1 == 1 { Component::Alpha } else { otherwise }
+}
+
+/// A byte of a final word: invert, component, register.
+pub(super) fn final_byte(input: &FinalInput) -> u32 {
+    u32::from(input.invert) << 5 | u32::from(input.component == Component::Alpha) << 4 | register_code(input.register)
+}
+
+/// What such a byte says. `alpha`: it is G.
+pub(super) fn final_of(byte: u32, alpha: bool) -> FinalInput {
+    FinalInput {
+        register: final_register(byte),
+        component: component(byte, if alpha { Component::Blue } else { Component::Rgb }),
+        invert: byte >> 5 & 1 == 1,
+    }
+}
+
+/// Codes of scale and bias together: 5 and 7 would be a bias with x4 and x1/2.
+const OPERATIONS: [(u32, Bias, Scale); 6] = [
+    (0, Bias::None, Scale::One),
+    (1, Bias::NegativeHalf, Scale::One),
+    (2, Bias::None, Scale::Two),
+    (3, Bias::NegativeHalf, Scale::Two),
+    (4, Bias::None, Scale::Four),
+    (6, Bias::None, Scale::Half),
+];
+
+/// The output word of a portion, without what nv10 keeps beside it.
+pub(super) fn output_word(portion: &Portion) -> u32 {
+    let operation = OPERATIONS.iter().find(|(_, bias, scale)| (*bias, *scale) == (portion.bias, portion.scale));
+    register_code(portion.cd_output)
+        | register_code(portion.ab_output) << 4
+        | register_code(portion.sum_output) << 8
+        | u32::from(portion.cd_dot_product) << 12
+        | u32::from(portion.ab_dot_product) << 13
+        | u32::from(portion.mux) << 14
+        | operation.map_or(0, |(code, _, _)| *code) << 15
+        | u32::from(portion.cd_blue_to_alpha) << 18
+        | u32::from(portion.ab_blue_to_alpha) << 19
+}
+
+/// A portion of an input and an output word that the chip takes.
+pub(super) fn portion_of(inputs: u32, output: u32, alpha: bool) -> Portion {
+    let bit = |n: u32| output >> n & 1 == 1;
+    let operation = OPERATIONS.iter().find(|(code, _, _)| *code == output >> 15 & 7);
+    let (_, bias, scale) = operation.copied().unwrap_or(OPERATIONS[0]);
+    Portion {
+        inputs: [24, 16, 8, 0].map(|shift| input_of(inputs >> shift, alpha)),
+        cd_output: general_register(output),
+        ab_output: general_register(output >> 4),
+        sum_output: general_register(output >> 8),
+        cd_dot_product: bit(12),
+        ab_dot_product: bit(13),
+        mux: bit(14),
+        scale,
+        bias,
+        cd_blue_to_alpha: bit(18),
+        ab_blue_to_alpha: bit(19),
+    }
+}
+
+/// The bits of a word that the chip keeps.
+pub fn stored(word: Word, index: usize, value: u32, chip: Profile) -> u32 {
+    value & taken(word, index, chip)
+}
+
+fn taken(word: Word, index: usize, chip: Profile) -> u32 {
+    match (word, chip) {
+        (Word::RcInAlpha | Word::RcInRgb | Word::RcColor | Word::RcConstantColor0 | Word::RcConstantColor1, _) => !0,
+        (Word::RcOutAlpha, _) => 0x3_cfff,
+        (Word::RcOutRgb, Profile::Nv10) => {
+            if index == 0 {
+                0x3_ffff
+            } else {
+                0x3803_ffff
+            }
+        }
+        (Word::RcOutRgb, Profile::Nv2a) => 0xf_ffff,
+        (Word::RcFinal0, _) => 0x3f3f_3f3f,
+        (Word::RcFinal1, _) => 0x3f3f_3fe0,
+        (Word::RcConfig, _) => 0x1_110f,
+    }
+}
+
+/// Why the chip does not take a word; `None` if it does.
+pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Refusal> {
+    let name = word.label(chip, index);
+    let refuse = |code, message: String, help: String| Some(Refusal { word, index, code, message, help });
+    if let Some(code) = operation(word, value)
+        && !OPERATIONS.iter().any(|(known, _, _)| *known == code)
+    {
+        let message = format!("{name} is {value:08x}: operation code {code} (bits 15 to 17) is a bias with x4 or x1/2");
+        return refuse("NB0362", message, "the codes are 0 none, 1 bias, 2 x2, 3 bias and x2, 4 x4, 6 x1/2".to_owned());
+    }
+    for (field, shift, kind) in registers(word) {
+        let code = value >> shift & 15;
+        if !kind.takes(code, chip) {
+            let message =
+                format!("{name} is {value:08x}: {field} is register code {code:x}, which {} there", kind.why(code));
+            return refuse("NB0360", message, format!("codes there: {}", kind.list(chip)));
+        }
+    }
+    let extra = value & !taken(word, index, chip);
+    if extra != 0 {
+        let message = format!("{name} is {value:08x}: {chip:?} does not take the bits {extra:08x}");
+        let mut help = format!("{:08x} is what it would keep", value & taken(word, index, chip));
+        if word == Word::RcOutAlpha && extra & 0x3000 != 0 {
+            help.push_str("; the alpha portion has no dot product (bits 12 and 13)");
+        }
+        return refuse("NB0361", message, help);
+    }
+    let stages = match (word, chip) {
+        (Word::RcOutRgb, Profile::Nv10) if index == 1 => Some((value >> 28 & 3, "bits 28 and 29")),
+        (Word::RcConfig, _) => Some((value & 15, "bits 0 to 3")),
+        _ => None,
+    };
+    let most = chip.general_stages() as u32;
+    if let Some((count, bits)) = stages
+        && !(1..=most).contains(&count)
+    {
+        let message = format!("{name} is {value:08x}: {chip:?} does not take {count} general stages ({bits})");
+        return refuse("NB0363", message, format!("write 1 to {most} there"));
+    }
+    None
+}
+
+fn operation(word: Word, value: u32) -> Option<u32> {
+    matches!(word, Word::RcOutAlpha | Word::RcOutRgb).then_some(value >> 15 & 7)
+}
+
+/// What a register field is for: which codes it takes.
+#[derive(Clone, Copy)]
+enum Field {
+    Input,
+    Output,
+    Sum,
+    Product,
+}
+
+impl Field {
+    fn takes(self, code: u32, chip: Profile) -> bool {
+        let exists = match code {
+            6 | 7 => false,
+            10 | 11 => chip == Profile::Nv2a,
+            14 | 15 => matches!(self, Field::Sum),
+            _ => true,
+        };
+        exists && !(matches!(self, Field::Output) && matches!(code, 1..=3))
+    }
+
+    fn why(self, code: u32) -> &'static str {
+        match (self, code) {
+            (_, 6 | 7) => "is no register",
+            (Field::Output, 1..=3) => "cannot be written",
+            (_, 14 | 15) => "cannot be named",
+            _ => "the chip lacks",
+        }
+    }
+
+    fn list(self, chip: Profile) -> String {
+        let codes = (0..16).filter(|code| self.takes(*code, chip)).map(|code| format!("{code:x}"));
+        codes.collect::<Vec<_>>().join(", ")
+    }
+}
+
+/// The register fields of a word: name, first bit, kind.
+fn registers(word: Word) -> Vec<(&'static str, u32, Field)> {
+    let four = |kind| vec![("A", 24, kind), ("B", 16, kind), ("C", 8, kind), ("D", 0, kind)];
+    match word {
+        Word::RcInAlpha | Word::RcInRgb => four(Field::Input),
+        Word::RcFinal0 => four(Field::Sum),
+        Word::RcFinal1 => vec![("E", 24, Field::Product), ("F", 16, Field::Product), ("G", 8, Field::Product)],
+        Word::RcOutAlpha | Word::RcOutRgb => {
+            vec![("the result of CD", 0, Field::Output), ("of AB", 4, Field::Output), ("of the sum", 8, Field::Output)]
+        }
+        Word::RcColor | Word::RcConstantColor0 | Word::RcConstantColor1 | Word::RcConfig => Vec::new(),
+    }
+}

@@ -1,0 +1,128 @@
+//! The combiners as words of the chips' registers: NV10 (Celsius) and NV20 (Kelvin, which the NV2A is).
+//!
+//! Layouts and codes are in `docs/registers.md`. A word is checked as the chip checks it when it is written: [`refusal`]. What a
+//! program means, and whether this model takes it, is decided afterwards ([`legality`](super::legality)).
+
+mod code;
+mod describe;
+mod program;
+
+use crate::state::{Named, Profile, named};
+
+pub use code::{refusal, stored};
+pub use describe::{Description, describe};
+pub use program::{decode, encode, word_of};
+
+named! {
+    /// A register of the combiners, or an array of them.
+    pub enum Word {
+        /// Inputs of the alpha portions.
+        RcInAlpha = "rc_in_alpha",
+        /// Inputs of the RGB portions.
+        RcInRgb = "rc_in_rgb",
+        /// Constant colours 0 and 1: of the whole program (nv10), of the final combiner (nv20).
+        RcColor = "rc_color",
+        /// Constant colour 0 of each stage (nv20).
+        RcConstantColor0 = "rc_constant_color0",
+        /// Constant colour 1 of each stage (nv20).
+        RcConstantColor1 = "rc_constant_color1",
+        /// Outputs of the alpha portions.
+        RcOutAlpha = "rc_out_alpha",
+        /// Outputs of the RGB portions; on nv10 the second also has the number of stages and the mux bit.
+        RcOutRgb = "rc_out_rgb",
+        /// Inputs A to D of the final combiner.
+        RcFinal0 = "rc_final0",
+        /// Inputs E to G of the final combiner, and its flags.
+        RcFinal1 = "rc_final1",
+        /// Number of stages, mux bit, and whether stages have own constants (nv20).
+        RcConfig = "rc_config",
+    }
+}
+
+impl Word {
+    /// How many of them a chip has; 0: none.
+    pub fn count(self, chip: Profile) -> usize {
+        let stages = chip.general_stages();
+        match (self, chip) {
+            (Word::RcInAlpha | Word::RcInRgb | Word::RcOutAlpha | Word::RcOutRgb, _) => stages,
+            (Word::RcColor, _) => 2,
+            (Word::RcFinal0 | Word::RcFinal1, _) => 1,
+            (Word::RcConstantColor0 | Word::RcConstantColor1, Profile::Nv2a) => stages,
+            (Word::RcConfig, Profile::Nv2a) => 1,
+            (Word::RcConstantColor0 | Word::RcConstantColor1 | Word::RcConfig, Profile::Nv10) => 0,
+        }
+    }
+
+    /// Method of the chip's 3D class that sets the first of them; the others follow at four bytes each.
+    pub fn method(self, chip: Profile) -> u32 {
+        match (self, chip) {
+            (Word::RcInAlpha, _) => 0x260,
+            (Word::RcInRgb, Profile::Nv10) => 0x268,
+            (Word::RcInRgb, Profile::Nv2a) => 0xac0,
+            (Word::RcColor, Profile::Nv10) => 0x270,
+            (Word::RcColor, Profile::Nv2a) => 0x1e20,
+            (Word::RcConstantColor0, _) => 0xa60,
+            (Word::RcConstantColor1, _) => 0xa80,
+            (Word::RcOutAlpha, Profile::Nv10) => 0x278,
+            (Word::RcOutAlpha, Profile::Nv2a) => 0xaa0,
+            (Word::RcOutRgb, Profile::Nv10) => 0x280,
+            (Word::RcOutRgb, Profile::Nv2a) => 0x1e40,
+            (Word::RcFinal0, _) => 0x288,
+            (Word::RcFinal1, _) => 0x28c,
+            (Word::RcConfig, _) => 0x1e60,
+        }
+    }
+
+    /// How it is written: `RC_IN_RGB[1]`, or `RC_FINAL0` if there is only one.
+    pub fn label(self, chip: Profile, index: usize) -> String {
+        let name = self.name().to_uppercase();
+        if self.count(chip) > 1 { format!("{name}[{index}]") } else { name }
+    }
+}
+
+/// All words of a chip's combiners. Those that are not set are 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RegisterWords {
+    /// Whose layout it is.
+    pub chip: Profile,
+    values: [[u32; 8]; Word::ALL.len()],
+}
+
+impl RegisterWords {
+    /// All words 0.
+    pub fn new(chip: Profile) -> Self {
+        RegisterWords { chip, values: [[0; 8]; Word::ALL.len()] }
+    }
+
+    /// A word; 0 if the chip has none there.
+    pub fn get(&self, word: Word, index: usize) -> u32 {
+        self.values[word as usize].get(index).copied().unwrap_or(0)
+    }
+
+    /// Sets a word that the chip has.
+    pub fn set(&mut self, word: Word, index: usize, value: u32) {
+        if index < word.count(self.chip) {
+            self.values[word as usize][index] = value;
+        }
+    }
+
+    /// The words that the chip has, in the order of its methods' names.
+    pub fn all(&self) -> impl Iterator<Item = (Word, usize, u32)> + '_ {
+        Word::ALL.iter().flat_map(|word| (0..word.count(self.chip)).map(|n| (*word, n, self.get(*word, n))))
+    }
+}
+
+/// Why a chip does not take a word.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refusal {
+    /// Which word.
+    pub word: Word,
+    /// Which of them.
+    pub index: usize,
+    /// Stable code.
+    pub code: &'static str,
+    /// What is wrong, in one line.
+    pub message: String,
+    /// What to do about it.
+    pub help: String,
+}

@@ -1,0 +1,60 @@
+//! The combiner language: general stages and final combiner as statements.
+//!
+//! ```
+//! use ninebit::program::text::{parse, print};
+//! use ninebit::state::Profile;
+//!
+//! let text = "{ rgb { spare0 = expand(tex0) . expand(col0); } } out.rgb = unsigned(spare0); out.a = tex0.a;";
+//! let program = parse(text, Profile::Nv10).expect("a sound program");
+//! assert!(program.combiners.stages[0].rgb.ab_dot_product);
+//! let normal = print(&program.combiners);
+//! assert_eq!(parse(&normal, Profile::Nv10).expect("what is printed can be read").combiners, program.combiners);
+//! ```
+//!
+//! The grammar is in `docs/combiner-language.md`.
+
+mod final_part;
+mod lexer;
+mod parser;
+mod print;
+pub mod words;
+
+use super::Places;
+use super::legality::check;
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::state::{Combiners, Profile};
+use words::Words;
+
+pub use print::print;
+
+/// A program that was read and checked.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Program {
+    /// What it says.
+    pub combiners: Combiners,
+    /// Where its parts stand.
+    pub places: Places,
+    /// What is probably not meant.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Reads a program and holds it against a chip.
+///
+/// # Errors
+/// Everything that is wrong with it, with places in `text`.
+pub fn parse(text: &str, profile: Profile) -> Result<Program, Vec<Diagnostic>> {
+    let (combiners, places) = read(text)?;
+    let findings = check(&combiners, profile, &places, &Words).findings;
+    if findings.iter().any(|finding| finding.severity == Severity::Error) {
+        return Err(findings);
+    }
+    Ok(Program { combiners, places, warnings: findings })
+}
+
+/// Reads a program without asking whether a chip allows it.
+///
+/// # Errors
+/// Everything that is wrong with its notation, with places in `text`; at most 64 findings.
+pub fn read(text: &str) -> Result<(Combiners, Places), Vec<Diagnostic>> {
+    parser::Parser::new(text).program()
+}

@@ -1,0 +1,119 @@
+//! The words of the language: registers, components, mappings.
+
+use crate::program::legality::{Help, Notation};
+use crate::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Scale};
+
+/// Registers by name. The last two exist in the final combiner only.
+pub const REGISTERS: &[(&str, FinalRegister)] = &[
+    ("zero", FinalRegister::Zero),
+    ("const0", FinalRegister::ConstantColor0),
+    ("const1", FinalRegister::ConstantColor1),
+    ("fog", FinalRegister::Fog),
+    ("col0", FinalRegister::PrimaryColor),
+    ("col1", FinalRegister::SecondaryColor),
+    ("tex0", FinalRegister::Texture0),
+    ("tex1", FinalRegister::Texture1),
+    ("tex2", FinalRegister::Texture2),
+    ("tex3", FinalRegister::Texture3),
+    ("spare0", FinalRegister::Spare0),
+    ("spare1", FinalRegister::Spare1),
+    ("color_sum", FinalRegister::Spare0PlusSecondary),
+    ("final_product", FinalRegister::ETimesF),
+];
+
+/// Functions of general inputs that stand without a minus, and what they are with one.
+pub(super) const MAPPINGS: &[(&str, InputMapping, Option<InputMapping>)] = &[
+    ("unsigned", InputMapping::UnsignedIdentity, None),
+    ("unsigned_invert", InputMapping::UnsignedInvert, None),
+    ("expand", InputMapping::ExpandNormal, Some(InputMapping::ExpandNegate)),
+    ("half_bias", InputMapping::HalfBiasNormal, Some(InputMapping::HalfBiasNegate)),
+];
+
+/// The register of that name.
+pub(super) fn find(name: &str) -> Option<FinalRegister> {
+    REGISTERS.iter().find(|(known, _)| *known == name).map(|(_, register)| *register)
+}
+
+/// The name of a register.
+pub fn register(register: impl Into<FinalRegister>) -> &'static str {
+    let register = register.into();
+    REGISTERS.iter().find(|(_, known)| *known == register).map_or("", |(name, _)| *name)
+}
+
+/// A register and its component. `alpha`: in an alpha portion, where the component is always written, but for zero.
+pub(crate) fn source(of: impl Into<FinalRegister>, component: Component, alpha: bool) -> String {
+    let of = of.into();
+    let plain = if alpha { Component::Alpha } else { Component::Rgb };
+    let name = register(of);
+    match component {
+        Component::Rgb if component != plain => format!("{name}.rgb"),
+        Component::Blue => format!("{name}.b"),
+        Component::Alpha if component != plain || of != FinalRegister::Zero => format!("{name}.a"),
+        Component::Rgb | Component::Alpha => name.to_owned(),
+    }
+}
+
+/// An input of a general stage.
+pub(crate) fn operand(input: &CombinerInput, alpha: bool) -> String {
+    let source = source(input.register, input.component, alpha);
+    match input.mapping {
+        InputMapping::UnsignedIdentity => format!("unsigned({source})"),
+        InputMapping::UnsignedInvert => format!("unsigned_invert({source})"),
+        InputMapping::ExpandNormal => format!("expand({source})"),
+        InputMapping::ExpandNegate => format!("-expand({source})"),
+        InputMapping::HalfBiasNormal => format!("half_bias({source})"),
+        InputMapping::HalfBiasNegate => format!("-half_bias({source})"),
+        InputMapping::SignedIdentity => source,
+        InputMapping::SignedNegate => format!("-{source}"),
+    }
+}
+
+/// An input of the final combiner. `alpha`: it is G.
+pub(crate) fn final_operand(input: &FinalInput, alpha: bool) -> String {
+    let source = source(input.register, input.component, alpha);
+    if input.invert { format!("unsigned_invert({source})") } else { source }
+}
+
+/// The statement that sets a scale; `None` for one.
+pub(super) fn scale(scale: Scale) -> Option<&'static str> {
+    match scale {
+        Scale::One => None,
+        Scale::Two => Some("scale_by_two"),
+        Scale::Four => Some("scale_by_four"),
+        Scale::Half => Some("scale_by_one_half"),
+    }
+}
+
+/// The language's words in findings about legality.
+#[derive(Clone, Copy, Debug)]
+pub struct Words;
+
+impl Notation for Words {
+    fn register(&self, of: FinalRegister) -> &'static str {
+        register(of)
+    }
+
+    fn scale(&self, scale: Scale) -> &'static str {
+        scale.name()
+    }
+
+    fn help(&self, help: Help) -> &'static str {
+        match help {
+            Help::EmptyStage => "write `{}` for a stage that changes nothing",
+            Help::SharedConstants => {
+                "give all stages and the final combiner the same constants, outside the stages; profile Nv2a allows own ones"
+            }
+            Help::OtherRegister => "send one of them to another register, or to `discard`",
+            Help::BiasScale => "with a bias the scale is one or two",
+            Help::FogColor => "read `fog` without a component here",
+            Help::FogBlue => "write `fog.b` for the fog colour's blue",
+            Help::SecondaryAlpha => "profile Nv2a defines it: write `profile: Nv2a`, or read `col0.a`",
+            Help::RgbComponents => "read the register as it is, or its `.a`",
+            Help::AlphaComponents => "read its `.a` (also without a component) or `.b`",
+            Help::FinalComponents => "read the register as it is, or its `.a`",
+            Help::FinalAlphaComponents => "`out.a` reads `.a` (also without a component) or `.b`",
+            Help::Writable => "write to spare0, spare1, col0, col1 or a texture register",
+            Help::OtherInput => "read spare0 or another register",
+        }
+    }
+}
