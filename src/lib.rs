@@ -107,6 +107,7 @@ pub mod raster;
 pub mod report;
 pub mod rop;
 pub mod scene;
+mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;

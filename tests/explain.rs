@@ -155,10 +155,10 @@ fn equations_are_in_the_extensions_terms() {
     let explanation = &explain(&scene, &plan)[0];
     let text = explanation.equations.join("\n");
     for line in [
-        "stage 0: spare0.rgb = 4 * (expand(tex0) . expand(primary))",
-        "stage 0: spare0.a = tex0.a * primary.a",
-        "stage 1: spare1.rgb = spare0 * const0 + (1 - secondary) * spare0.a - 1/2",
-        "fragment.rgb = primary.a * spare1 + secondary",
+        "stage 0: spare0.rgb = 4 * (expand(tex0) . expand(col0))",
+        "stage 0: spare0.a = unsigned(tex0.a) * unsigned(col0.a)",
+        "stage 1: spare1.rgb = unsigned(spare0) * unsigned(const0) + unsigned_invert(col1) * unsigned(spare0.a) - 1/2",
+        "fragment.rgb = col0.a * spare1 + col1",
         "fragment.a = spare1.b",
         "store rgba to `frame`, A8R8G8B8",
     ] {

@@ -8,8 +8,10 @@ mod exit;
 mod explain;
 mod generate;
 mod limits;
+mod lower;
 mod op;
 mod policies;
+mod registers;
 mod render;
 mod scene;
 mod terminal;
@@ -49,6 +51,10 @@ enum Command {
     Compare(compare::Arguments),
     /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
     Explain(explain::Arguments),
+    /// Print the pixel programs of a scene in another form
+    Lower(lower::Arguments),
+    /// Print the pixel programs of a scene as register words, each with its meaning
+    Registers(registers::Arguments),
     /// Compare two pictures: where they differ, by how much, and how those pixels came to be
     ///
     /// The comparison is exact. Differing pixels that touch, corners included, are one region. With a scene, it is also said which of
@@ -112,6 +118,8 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Trace(arguments) => trace::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
         Command::Explain(arguments) => explain::run(&arguments, context),
+        Command::Lower(arguments) => lower::run(&arguments, context),
+        Command::Registers(arguments) => registers::run(&arguments, context),
         Command::Diff(arguments) => diff::run(&arguments, context),
         Command::Op(command) => op::run(&command, context),
         Command::Texture(arguments) => texture::run(&arguments, context),

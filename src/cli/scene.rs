@@ -7,7 +7,7 @@ use ninebit::limits::Limits;
 use ninebit::output::Destination;
 use ninebit::plan::Plan;
 use ninebit::scene::{self, ErrorKind, SceneError};
-use ninebit::state::{Policies, Scene};
+use ninebit::state::{Draw, Policies, Scene};
 
 use super::Context;
 use super::exit::{Exit, Failure, Report};
@@ -82,6 +82,18 @@ pub(crate) fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, 
         let names: Vec<_> = scene.targets.iter().map(|target| format!("`{}`", target.name)).collect();
         Failure::usage(format!("the scene has no target `{name}`"), format!("its targets: {}", names.join(", ")))
     })
+}
+
+/// The draws that are meant, with their numbers: one, or all.
+pub(crate) fn chosen_draws(scene: &Scene, number: Option<usize>) -> Result<Vec<(usize, &Draw)>, Failure> {
+    let all = scene.draws.iter().enumerate();
+    let Some(number) = number else { return Ok(all.collect()) };
+    if number >= scene.draws.len() {
+        let names: Vec<String> = all.take(16).map(|(n, draw)| format!("{n} `{}`", draw.name)).collect();
+        let message = format!("the scene has no draw {number}");
+        return Err(Failure::usage(message, format!("its draws: {}", names.join(", "))));
+    }
+    Ok(all.skip(number).take(1).collect())
 }
 
 /// Refuses to write over what is read.

@@ -1,7 +1,6 @@
 //! Findings: what is wrong with a scene or a program, where, and what to do about it.
 
 mod render;
-pub(crate) mod words;
 
 use std::fmt;
 use std::ops::Range;
@@ -229,3 +228,9 @@ impl fmt::Display for SceneError {
 }
 
 impl std::error::Error for SceneError {}
+
+/// At most forty characters of one line.
+pub(crate) fn shorten(text: &str) -> String {
+    let line = text.lines().next().unwrap_or("");
+    if line.chars().count() <= 40 { line.to_owned() } else { line.chars().take(37).chain("...".chars()).collect() }
+}

@@ -1,31 +1,14 @@
-//! Stages, final combiner and blend as equations.
+//! Stages, final combiner and blend as equations, of what is left in the plan. Inputs are written as in the combiner language.
 
 use crate::combiner::final_combiner::PlannedFinal;
 use crate::combiner::general::{PlannedPortion, PlannedStage};
 use crate::plan::PlannedDraw;
+use crate::program::text::words::{final_operand, operand, register};
 use crate::rop::blend::{is_signed, uses_factors};
 use crate::state::{
     Bias, BlendEquation, BlendFactor, CombinerInput, Component, FinalInput, FinalRegister, InputMapping, MuxSelect,
     Named, Portion, Register, Scale,
 };
-
-/// The register's short name.
-pub(super) fn register(register: Register) -> &'static str {
-    match register {
-        Register::Zero => "0",
-        Register::ConstantColor0 => "const0",
-        Register::ConstantColor1 => "const1",
-        Register::Fog => "fog",
-        Register::PrimaryColor => "primary",
-        Register::SecondaryColor => "secondary",
-        Register::Texture0 => "tex0",
-        Register::Texture1 => "tex1",
-        Register::Texture2 => "tex2",
-        Register::Texture3 => "tex3",
-        Register::Spare0 => "spare0",
-        Register::Spare1 => "spare1",
-    }
-}
 
 /// A term; products bind closer than sums.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -76,37 +59,14 @@ impl Term {
     }
 }
 
-fn source(name: &str, component: Component, plain: Component) -> String {
-    match component {
-        c if c == plain => name.to_string(),
-        Component::Rgb => format!("{name}.rgb"),
-        Component::Blue => format!("{name}.b"),
-        Component::Alpha => format!("{name}.a"),
-    }
-}
-
 fn input(input: &CombinerInput, alpha: bool) -> Term {
-    // In an alpha portion a component always stands beside its register.
-    let name = source(register(input.register), input.component, Component::Rgb);
-    let name = if alpha && input.register == Register::Zero { "0".to_string() } else { name };
-    if input.register == Register::Zero {
-        match input.mapping {
-            InputMapping::UnsignedIdentity | InputMapping::SignedIdentity | InputMapping::SignedNegate => {
-                return Term::Zero;
-            }
-            InputMapping::UnsignedInvert => return Term::One,
-            _ => {}
-        }
-    }
-    match input.mapping {
-        InputMapping::UnsignedIdentity => Term::Plain(name),
-        InputMapping::UnsignedInvert => Term::Sum(format!("1 - {name}")),
-        InputMapping::ExpandNormal => Term::Plain(format!("expand({name})")),
-        InputMapping::ExpandNegate => Term::Plain(format!("-expand({name})")),
-        InputMapping::HalfBiasNormal => Term::Sum(format!("{name} - 1/2")),
-        InputMapping::HalfBiasNegate => Term::Sum(format!("1/2 - {name}")),
-        InputMapping::SignedIdentity => Term::Plain(format!("signed({name})")),
-        InputMapping::SignedNegate => Term::Plain(format!("-signed({name})")),
+    match (input.register, input.mapping) {
+        (
+            Register::Zero,
+            InputMapping::UnsignedIdentity | InputMapping::SignedIdentity | InputMapping::SignedNegate,
+        ) => Term::Zero,
+        (Register::Zero, InputMapping::UnsignedInvert) => Term::One,
+        _ => Term::Plain(operand(input, alpha)),
     }
 }
 
@@ -201,17 +161,17 @@ pub(super) fn final_combiner(planned: &PlannedFinal) -> Vec<String> {
         }
     }
     if planned.live & 7 != 0 {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|n| final_input(planned, &state.inputs[n], Component::Rgb));
+        let [a, b, c, d] = [0, 1, 2, 3].map(|n| final_input(planned, &state.inputs[n], false));
         let lerp = a.clone().times(b).plus(a.complement().times(c));
         lines.push(format!("fragment.{} = {}", live(planned.live & 7), lerp.plus(d).sum()));
     }
     if planned.live & 8 != 0 {
-        lines.push(format!("fragment.a = {}", final_input(planned, &state.g, Component::Rgb).sum()));
+        lines.push(format!("fragment.a = {}", final_input(planned, &state.g, true).sum()));
     }
     lines
 }
 
-fn final_input(planned: &PlannedFinal, input: &FinalInput, plain: Component) -> Term {
+fn final_input(planned: &PlannedFinal, input: &FinalInput, alpha: bool) -> Term {
     let state = &planned.state;
     let term = match input.register {
         FinalRegister::Zero => Term::Zero,
@@ -220,16 +180,19 @@ fn final_input(planned: &PlannedFinal, input: &FinalInput, plain: Component) -> 
             Term::Zero
         }
         FinalRegister::Spare0PlusSecondary => {
-            let side = |name: &str, invert: bool| if invert { format!("(1 - {name})") } else { name.to_string() };
-            let sum =
-                format!("{} + {}", side("spare0", state.invert_spare0), side("secondary", state.invert_secondary));
+            let side = |of: Register, invert: bool| {
+                let name = register(of);
+                if invert { format!("unsigned_invert({name})") } else { name.to_string() }
+            };
+            let spare0 = side(Register::Spare0, state.invert_spare0);
+            let sum = format!("{spare0} + {}", side(Register::SecondaryColor, state.invert_secondary));
             if state.color_sum_clamp { Term::Plain(format!("min(1, {sum})")) } else { Term::Sum(sum) }
         }
         FinalRegister::ETimesF => {
-            let [e, f] = [4, 5].map(|n| final_input(planned, &state.inputs[n], Component::Rgb));
+            let [e, f] = [4, 5].map(|n| final_input(planned, &state.inputs[n], false));
             e.times(f)
         }
-        other => Term::Plain(source(register(crate::combiner::final_combiner::general(other)), input.component, plain)),
+        _ => return Term::Plain(final_operand(input, alpha)),
     };
     if input.invert { term.complement() } else { term }
 }

@@ -1,6 +1,7 @@
 //! A plan in words: what each draw computes, what was left out and why, and what it will cost.
 //!
-//! Equations are in the vendor extension's terms: `spare0.rgb = expand(tex0) . expand(primary)`. Costs are predicted from the plan; a
+//! The program is shown whole, in the combiner language, and then as equations of what is left of it:
+//! `spare0.rgb = expand(tex0) . expand(col0)`. Costs are predicted from the plan; a
 //! run counts the same ([`engine::count`]).
 
 mod cost;
@@ -13,6 +14,8 @@ pub use report::{explanation_json, explanation_text};
 
 use crate::engine;
 use crate::plan::{Plan, PlannedDraw};
+use crate::program::text::print;
+use crate::program::text::words::register;
 use crate::rop::surface;
 use crate::state::{Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, TEXTURE_UNITS, TextureKind};
 use crate::texture::unit::PlannedUnit;
@@ -24,7 +27,9 @@ pub struct DrawExplanation {
     pub name: String,
     /// Name of its target.
     pub target: String,
-    /// What it computes, in order.
+    /// Its pixel program in the combiner language, whole.
+    pub program: String,
+    /// What it computes, in order: what the plan has kept.
     pub equations: Vec<String>,
     /// What nothing can see, and why.
     pub dropped: Vec<String>,
@@ -39,6 +44,7 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
         .map(|(draw, planned)| DrawExplanation {
             name: planned.name.clone(),
             target: plan.targets[planned.target].name.clone(),
+            program: print(&draw.combiners),
             equations: equations(scene, plan, planned),
             dropped: dropped(scene, draw, planned),
             cost: Cost::of(planned, &plan.policies, engine::fragments(plan, planned)),
@@ -66,10 +72,10 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
             lines.extend(shader::after(shader, index));
         }
     }
-    for (register, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
+    for (of, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
         if live != 0 {
             let how = planned.shade_model.name().to_lowercase();
-            lines.push(format!("{}.{} = {how}(vertices)", equation::register(register), channels(live)));
+            lines.push(format!("{}.{} = {how}(vertices)", register(of), channels(live)));
         }
     }
     for stage in &planned.stages {
@@ -162,9 +168,9 @@ fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw) -> Vec<String> {
             Some(_) => {}
         }
     }
-    for (register, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
+    for (of, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
         if live != 15 {
-            let name = equation::register(register);
+            let name = register(of);
             lines.push(format!("{name}.{}: nothing that is needed reads it", channels(15 & !live)));
         }
     }
@@ -179,7 +185,7 @@ fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw) -> Vec<String> {
                 }
                 let live = kept.map_or(0, |portion| portion.live[n]);
                 if live != all {
-                    let (name, dead) = (equation::register(destination), channels(all & !live));
+                    let (name, dead) = (register(destination), channels(all & !live));
                     lines.push(format!("stage {index} {what} {output}: {name}.{dead} is not read afterwards"));
                 }
             }

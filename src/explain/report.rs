@@ -21,8 +21,15 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
     writeln!(out, "profile {}, {} draw{plural}", plan.profile.name(), draws.len())?;
     for (number, draw) in draws.iter().enumerate() {
         writeln!(out, "\ndraw {number} `{}` to `{}`", draw.name, draw.target)?;
+        writeln!(out, "  program:")?;
+        for line in draw.program.lines() {
+            writeln!(out, "    {line}")?;
+        }
+        if !draw.equations.is_empty() {
+            writeln!(out, "  computed:")?;
+        }
         for line in &draw.equations {
-            writeln!(out, "  {line}")?;
+            writeln!(out, "    {line}")?;
         }
         if !draw.dropped.is_empty() {
             writeln!(out, "  left out:")?;
@@ -76,7 +83,7 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
         .enumerate()
         .map(|(number, draw)| {
             let mut value = json!({
-                "name": draw.name, "target": draw.target, "equations": draw.equations, "left_out": draw.dropped,
+                "name": draw.name, "target": draw.target, "program": draw.program, "equations": draw.equations, "left_out": draw.dropped,
                 "cost": cost(&draw.cost),
             });
             if let Some(counts) = counted.map(|all| &all[number]) {

@@ -15,6 +15,7 @@ mod source;
 mod split;
 pub mod texels;
 mod wording;
+mod written;
 
 use std::fs::File;
 use std::io::Read;
@@ -26,6 +27,7 @@ use crate::limits::Limits;
 use crate::plan::Plan;
 use crate::state::Scene;
 pub use lower::{DrawSpans, VertexSpans};
+pub use written::register_words;
 
 /// A scene that was read and checked.
 #[derive(Clone, Debug)]

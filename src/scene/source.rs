@@ -277,6 +277,29 @@ source! {
         source: Name<state::BlendFactor>,
         destination: Name<state::BlendFactor>,
     }
+    struct ProgramFile { file: String }
+    struct RegisterWords { nv10: Nv10Words<'a>, nv20: Nv20Words<'a> }
+    struct Nv10Words {
+        rc_in_alpha: List<'a, u32>,
+        rc_in_rgb: List<'a, u32>,
+        rc_color: List<'a, u32>,
+        rc_out_alpha: List<'a, u32>,
+        rc_out_rgb: List<'a, u32>,
+        rc_final0: u32,
+        rc_final1: u32,
+    }
+    struct Nv20Words {
+        rc_in_alpha: List<'a, u32>,
+        rc_in_rgb: List<'a, u32>,
+        rc_color: List<'a, u32>,
+        rc_constant_color0: List<'a, u32>,
+        rc_constant_color1: List<'a, u32>,
+        rc_out_alpha: List<'a, u32>,
+        rc_out_rgb: List<'a, u32>,
+        rc_final0: u32,
+        rc_final1: u32,
+        rc_config: u32,
+    }
     struct Combiners {
         constants: Tuple<'a, Color>,
         mux_select: Name<state::MuxSelect>,

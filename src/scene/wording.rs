@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::diagnostic::Diagnostic;
-pub(super) use super::diagnostic::words::{closest, shorten};
+pub(super) use super::diagnostic::shorten;
 use super::raw::trim;
+pub(super) use crate::spelling::closest;
 
 /// The finding that a name is taken.
 pub(super) fn twice(what: &str, name: &str, place: Range<usize>, first: Range<usize>) -> Diagnostic {

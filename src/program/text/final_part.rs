@@ -205,7 +205,7 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<(Range<usize>, Final
 fn side(parser: &mut Parser<'_>, wanted: FinalRegister) -> Result<bool, GivenUp> {
     let (span, input, _) = unplaced(parser, false)?;
     if input.register != wanted || input.component != Component::Rgb {
-        let finding = Diagnostic::error("NB0350", span, "the colour sum is that of spare0 and col1")
+        let finding = Diagnostic::error("NB0104", span, "the colour sum is that of spare0 and col1")
             .label("not this")
             .rule("FIN-3")
             .help("write `color_sum = spare0 + col1;`, each as it is or in `unsigned_invert(...)`");

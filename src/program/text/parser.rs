@@ -5,11 +5,11 @@ use std::ops::Range;
 use super::final_part::Final;
 use super::lexer::{Kind, Lexer, Token};
 use super::words::{MAPPINGS, REGISTERS, find};
-use crate::diagnostic::Diagnostic;
-use crate::diagnostic::words::{closest, shorten};
+use crate::diagnostic::{Diagnostic, shorten};
 use crate::number::convert::constant;
 use crate::program::legality::only_final;
 use crate::program::{Part, Place, Places};
+use crate::spelling::closest;
 use crate::state::{
     Bias, CombinerInput, Combiners, Component, FinalRegister, GeneralStage, InputMapping, MuxSelect, Portion, Register,
     Scale,
@@ -348,7 +348,7 @@ impl<'t> Parser<'t> {
             _ => self.here(),
         };
         self.give_up(
-            Diagnostic::error("NB0350", span, format!("expected {what}, found {found}")).label("not expected here"),
+            Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label("not expected here"),
         )
     }
 
@@ -371,7 +371,7 @@ impl<'t> Parser<'t> {
     pub(super) fn twice(&mut self, span: Range<usize>, first: Range<usize>, what: &str) -> GivenUp {
         let message = format!("{what} is given twice");
         self.give_up(
-            Diagnostic::error("NB0352", span, message)
+            Diagnostic::error("NB0364", span, message)
                 .label("again here")
                 .related(first, "first here")
                 .help("keep one of them"),
@@ -380,7 +380,7 @@ impl<'t> Parser<'t> {
 
     fn unclosed(&mut self, opening: Range<usize>) -> GivenUp {
         self.give_up(
-            Diagnostic::error("NB0350", opening, "this bracket is not closed")
+            Diagnostic::error("NB0104", opening, "this bracket is not closed")
                 .label("opened here")
                 .help("close it with `}`"),
         )
@@ -479,7 +479,7 @@ impl PortionReader {
         }
         let n = self.products.len();
         if n == 2 {
-            let finding = Diagnostic::error("NB0352", start..parser.end(), "a portion has two products")
+            let finding = Diagnostic::error("NB0364", start..parser.end(), "a portion has two products")
                 .label("the third")
                 .rule("CMB-12")
                 .help("use another stage; `sum()` and `mux()` give the two products together");

@@ -15,7 +15,7 @@ use crate::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXT
 pub struct Context {
     /// The chip.
     pub profile: Profile,
-    /// Units that have a texture.
+    /// Units that give a colour.
     pub bound: [bool; TEXTURE_UNITS],
     /// Units whose colours can be negative.
     pub signed: [bool; TEXTURE_UNITS],
@@ -24,12 +24,12 @@ pub struct Context {
 }
 
 /// What a program changes about a texture unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnitChange {
     /// Its coordinate set.
     pub coordinate_set: Option<usize>,
-    /// Its texture shader operation, and the earlier unit that it reads.
-    pub operation: Option<(ShaderOperation, usize)>,
+    /// Its texture shader operation, with the place of the stage operation that asks for it. It reads the unit before.
+    pub operation: Option<At<ShaderOperation>>,
 }
 
 /// Lowered texture stages.
@@ -216,13 +216,13 @@ impl Walk<'_> {
         let operation = &stage.color.operation;
         if self.context.profile == Profile::Nv10 {
             let error = finding(
-                "NB0352",
+                "NB0340",
                 operation.place.clone(),
                 format!("Nv10 has no {}", operation.value.name()),
                 "not on this chip",
                 "it needs the texture shader, which a texture unit of Nv10 does not have: write `profile: Nv2a`",
             );
-            self.findings.push(error.rule("TSH-7"));
+            self.findings.push(error.rule("TSH-10"));
             return;
         }
         self.texture(index, operation.place.clone());
@@ -234,8 +234,9 @@ impl Walk<'_> {
         // u' = u + M00 du + M10 dv, v' = v + M01 du + M11 dv: the registers' order is M00, M01, M11, M10.
         let [m00, m01, m10, m11] = stage.bump_matrix;
         let luminance = (operation.value == Operation::BumpEnvMapLuminance).then_some(stage.bump_luminance);
+        let place = stage.color.operation.place.clone();
         let operation = ShaderOperation::BumpEnvironment { matrix: [m00, m01, m11, m10], luminance };
-        self.units[next].operation = Some((operation, index));
+        self.units[next].operation = Some(At { value: operation, place });
     }
 }
 

@@ -10,9 +10,9 @@ use std::ops::Range;
 
 use super::{CoordinateIndex, STAGES, TextureStages};
 use crate::diagnostic::Diagnostic;
-use crate::diagnostic::words::closest;
 use crate::program::At;
 use crate::program::finding::finding;
+use crate::spelling::closest;
 use token::{Token, TokenKind, tokens};
 use value::Value;
 

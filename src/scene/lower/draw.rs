@@ -119,7 +119,8 @@ fn draw<'a>(
     let (combiners, reads) = match program.flatten().as_deref() {
         Some(Program::Combiners(program)) => (program.combiners.clone(), program.reads.clone()),
         Some(Program::Api(program)) => {
-            let lowered = program.lower(reader, &units, textures, fog.enabled);
+            let written = fields.texture_shader.as_ref().map(|raw| reader.span(raw));
+            let lowered = program.lower(reader, &units, textures, fog.enabled, written);
             (program_origin, texture_shader) = (lowered.origins, lowered.shader);
             (lowered.combiners, [None, None, None, None])
         }

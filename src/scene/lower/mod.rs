@@ -10,7 +10,9 @@ mod matrix;
 mod names;
 mod palette;
 mod program;
+mod program_text;
 mod raster;
+mod register_words;
 mod shader;
 mod target;
 mod texture;
@@ -93,7 +95,7 @@ pub(super) fn scene<'a>(
     reader.profile = profile.and_then(|raw| reader.name(&raw)).unwrap_or(Profile::Nv2a);
     reader.reserve(&file.truth, "the scene's truth (light, viewer, material)");
 
-    let mut names = Names::read(reader, &file.names);
+    let mut names = Names::read(reader, &file.names, folder);
     let targets = target::targets(reader, &names, &file.targets);
     let mut textures = texture::textures(reader, &names, &targets, &file, folder);
     let draws = draw::draws(reader, &mut names, &targets, &mut textures, &file.draws);

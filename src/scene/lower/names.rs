@@ -2,6 +2,7 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
+use std::path::PathBuf;
 use std::rc::Rc;
 
 use super::program::Program;
@@ -131,6 +132,8 @@ pub(super) type Rows = [[f32; 4]; 4];
 
 /// All tables.
 pub(super) struct Names<'a> {
+    /// Where the files lie that programs name.
+    pub(super) folder: PathBuf,
     colors: Table<'a, source::Color, VertexColor>,
     matrices: Table<'a, source::Matrix, Rows>,
     vertices: Table<'a, source::VertexList, Rc<VertexData>>,
@@ -141,7 +144,7 @@ pub(super) struct Names<'a> {
 
 impl<'a> Names<'a> {
     /// Reads every table and every definition.
-    pub(super) fn read(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Names<'a>>>) -> Self {
+    pub(super) fn read(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Names<'a>>>, folder: &Path) -> Self {
         let tables = raw.as_ref().and_then(|raw| reader.read(raw));
         macro_rules! table {
             ($field:ident, $what:literal) => {{
@@ -153,6 +156,7 @@ impl<'a> Names<'a> {
             }};
         }
         let names = Names {
+            folder: folder.to_path_buf(),
             colors: table!(colors, "colour"),
             matrices: table!(matrices, "matrix"),
             vertices: table!(vertices, "vertex list"),

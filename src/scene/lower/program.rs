@@ -2,9 +2,11 @@
 
 use super::api_program::ApiProgram;
 use super::names::Names;
+use super::program_text::ProgramText;
 use super::*;
 use crate::program::Places;
 use crate::program::legality::{Notation, check};
+use crate::program::text::{self, words::Words};
 use crate::state::Combiners;
 
 /// A program as a draw takes it.
@@ -33,23 +35,53 @@ pub(super) fn program<'a>(
 ) -> Option<Program> {
     let (kind, rest) = reader.variant(raw, "pixel program", KINDS)?;
     let errors = reader.errors;
-    let (combiners, places) = match kind {
-        0 => combiner::combiners(reader, names, rest)?,
+    let data = match kind {
+        0 => {
+            let (combiners, places) = combiner::combiners(reader, names, rest)?;
+            judge(reader, combiners, &places, &combiner::Fields, None)
+        }
         1 => return texture_stages::texture_stages(reader, names, rest).map(Program::Api),
         2 => return texture_environment::texture_environment(reader, names, rest).map(Program::Api),
+        3 => {
+            let program = ProgramText::read(reader, names, rest)?;
+            match text::read(&program.text) {
+                Ok((combiners, places)) => judge(reader, combiners, &places, &Words, Some(&program)),
+                Err(findings) => {
+                    findings.into_iter().for_each(|finding| reader.push(program.place(finding)));
+                    return None;
+                }
+            }
+        }
+        5 => {
+            let (combiners, places) = register_words::register_words(reader, rest)?;
+            judge(reader, combiners, &places, &Words, None)
+        }
         _ => {
-            let what = ["", "", "", "the combiner text language", "pixel shader text", "raw register words"][kind];
-            reader.not_built(reader.range(&raw.text[..KINDS[kind].len()]), what);
+            reader.not_built(reader.range(&raw.text[..KINDS[kind].len()]), "pixel shader text");
             return None;
         }
     };
-    let data = judge(reader, combiners, &places, &combiner::Fields);
     (reader.errors == errors).then_some(Program::Combiners(data))
 }
 
-/// Holds a program against the chip.
-fn judge(reader: &mut Reader<'_>, combiners: Combiners, places: &Places, notation: &dyn Notation) -> ProgramData {
+/// Holds a program against the chip. `inside`: the text that the places are of, if it is not the scene.
+fn judge(
+    reader: &mut Reader<'_>,
+    combiners: Combiners,
+    places: &Places,
+    notation: &dyn Notation,
+    inside: Option<&ProgramText>,
+) -> ProgramData {
     let checked = check(&combiners, reader.profile, places, notation);
-    checked.findings.into_iter().for_each(|finding| reader.push(finding));
-    ProgramData { combiners, reads: checked.reads }
+    for finding in checked.findings {
+        reader.push(match inside {
+            Some(text) => text.place(finding),
+            None => finding,
+        });
+    }
+    let reads = checked.reads.map(|read| match (read, inside) {
+        (Some(place), Some(text)) => Some(text.span(place)),
+        (read, _) => read,
+    });
+    ProgramData { combiners, reads }
 }

@@ -2,10 +2,11 @@
 
 use super::api_program::{ApiProgram, name_at};
 use super::names::Names;
+use super::program_text::ProgramText;
 use super::*;
 use crate::program::At;
 use crate::program::texture_stages::{
-    ArgumentSource, CoordinateIndex, Half, STAGES, StageArgument, TextureStage, TextureStages,
+    self, ArgumentSource, CoordinateIndex, Half, STAGES, StageArgument, TextureStage, TextureStages,
 };
 use crate::scene::raw::Tuple;
 use crate::state::Named;
@@ -13,7 +14,22 @@ use crate::state::Named;
 /// Reads the fields in the parentheses.
 pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
-    let mut program = TextureStages::default();
+    several(reader, &fields);
+    let written = match (&fields.text, &fields.file) {
+        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?),
+        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?),
+        (None, None) => None,
+    };
+    let mut program = match &written {
+        None => TextureStages::default(),
+        Some(written) => match texture_stages::parse(&written.text) {
+            Ok(program) => program,
+            Err(findings) => {
+                findings.into_iter().for_each(|finding| reader.push(written.place(finding)));
+                return None;
+            }
+        },
+    };
     if let Some(raw) = &fields.stages {
         let list = reader.read(raw)?;
         if let Some(extra) = list.get(STAGES) {
@@ -33,7 +49,25 @@ pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, tex
     }
     program.texture_factor = color::constant_or(reader, names, &fields.texture_factor, program.texture_factor);
     program.specular_enable = reader.or(&fields.specular_enable, program.specular_enable);
-    Some(ApiProgram::Stages(program))
+    Some(ApiProgram::Stages(program, written))
+}
+
+/// Stages come from one place.
+fn several<'a>(reader: &mut Reader<'a>, fields: &source::TextureStages<'a>) {
+    let given = [
+        fields.stages.as_ref().map(|raw| reader.span(raw)),
+        fields.text.as_ref().map(|raw| reader.span(raw)),
+        fields.file.as_ref().map(|raw| reader.span(raw)),
+    ];
+    let mut given = given.into_iter().flatten();
+    if let (Some(first), Some(second)) = (given.next(), given.next()) {
+        reader.push(
+            Diagnostic::error("NB0356", second, "texture stages are given twice")
+                .label("again here")
+                .related(first, "first here")
+                .help("keep one of `stages`, `text` and `file`"),
+        );
+    }
 }
 
 fn stage<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {

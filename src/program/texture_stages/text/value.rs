@@ -5,9 +5,9 @@ use std::ops::Range;
 use super::Parser;
 use super::token::TokenKind;
 use crate::diagnostic::Diagnostic;
-use crate::diagnostic::words::closest;
 use crate::program::finding::finding;
 use crate::program::texture_stages::{ArgumentSource, Operation, ResultArgument, StageArgument};
+use crate::spelling::closest;
 use crate::state::Named;
 
 /// Brackets and casts around one value.

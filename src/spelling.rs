@@ -1,10 +1,4 @@
-//! Words of messages: long texts cut short, and what was probably meant.
-
-/// At most forty characters of one line.
-pub(crate) fn shorten(text: &str) -> String {
-    let line = text.lines().next().unwrap_or("");
-    if line.chars().count() <= 40 { line.to_owned() } else { line.chars().take(37).chain("...".chars()).collect() }
-}
+//! What was probably meant by a word that nobody knows.
 
 /// The candidate most like `word`, if any is like it at all.
 pub(crate) fn closest<'n>(word: &str, candidates: impl IntoIterator<Item = &'n str>) -> Option<&'n str> {

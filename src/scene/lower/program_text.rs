@@ -1,0 +1,225 @@
+//! The text of a program: in the scene or in a file of its own, and where its bytes stand.
+
+use std::fs::File;
+use std::io::{Error, Read};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use super::names::Names;
+use super::*;
+use crate::diagnostic::{self, Source};
+use crate::scene::path;
+use crate::scene::raw::Tuple;
+
+/// A text and its places.
+pub(super) struct ProgramText {
+    pub(super) text: String,
+    origin: Origin,
+}
+
+enum Origin {
+    /// Bytes of the scene, one place for each byte of the text and one for its end.
+    Scene(Vec<usize>),
+    /// The text stands in the scene, but which byte is where is not known.
+    Somewhere(Range<usize>),
+    File(Arc<diagnostic::File>),
+}
+
+impl ProgramText {
+    /// Reads `("...")` or `(file: "...")`. `None` once the reason has been recorded.
+    pub(super) fn read<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Self> {
+        let inside = crate::scene::raw::trim(text.strip_prefix('(').unwrap_or(text));
+        let program =
+            if Raw::<String>::new(inside).is_text() { inline(reader, text)? } else { from_file(reader, names, text)? };
+        program.within_limit(reader)
+    }
+
+    /// A text that stands in the scene. `None` once the reason that it cannot be read has been recorded.
+    pub(super) fn inline<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Self> {
+        literal(reader, raw)?.within_limit(reader)
+    }
+
+    /// A text in a file. `None` once the reason that it cannot be read has been recorded.
+    pub(super) fn file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<Self> {
+        named(reader, names, raw)
+    }
+
+    fn within_limit(self, reader: &mut Reader<'_>) -> Option<Self> {
+        let most = reader.limits.program_bytes;
+        if self.text.len() as u64 > most {
+            let place = self.span(0..0);
+            reader.push(too_large(place, most));
+            return None;
+        }
+        Some(self)
+    }
+
+    /// The place in the scene of a part of the text; of a file, where the scene names it.
+    pub(super) fn span(&self, part: Range<usize>) -> Range<usize> {
+        match &self.origin {
+            Origin::Scene(places) => {
+                let place = |at: usize| places.get(at.min(self.text.len())).copied().unwrap_or_default();
+                place(part.start)..place(part.end)
+            }
+            Origin::Somewhere(span) => span.clone(),
+            Origin::File(file) => file.named.clone(),
+        }
+    }
+
+    /// A finding about the text as one about the scene or the file.
+    pub(super) fn place(&self, mut finding: Diagnostic) -> Diagnostic {
+        if let Origin::File(file) = &self.origin {
+            return finding.inside(file);
+        }
+        finding.span = finding.span.map(|span| self.span(span));
+        for (span, _) in &mut finding.related {
+            *span = self.span(span.clone());
+        }
+        finding
+    }
+}
+
+fn too_large(place: Range<usize>, most: u64) -> Diagnostic {
+    Diagnostic::error("NB0610", place, format!("this program has more than {most} bytes"))
+        .label("too large")
+        .help("`ninebit limits` prints what is allowed")
+}
+
+fn inline<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
+    let list = Raw::<Tuple<'a, String>>::new(text);
+    let parts = reader.read(&list)?.0;
+    let [raw] = parts[..] else {
+        reader.push(
+            Diagnostic::error("NB0211", reader.span(&list), "a program is one text")
+                .label("here")
+                .help("write `(\"...\")`, `(r#\"...\"#)` for a text of many lines, or `(file: \"name\")`"),
+        );
+        return None;
+    };
+    literal(reader, &raw)
+}
+
+fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<ProgramText> {
+    let text = reader.read(raw)?;
+    let span = reader.span(raw);
+    let origin = match places(raw.text, &text) {
+        Some(places) => Origin::Scene(places.into_iter().map(|place| span.start + place).collect()),
+        None => Origin::Somewhere(span),
+    };
+    Some(ProgramText { text, origin })
+}
+
+/// Where each byte of a text stands in its literal, and where its end does; `None` if the literal is of an unknown kind.
+fn places(literal: &str, text: &str) -> Option<Vec<usize>> {
+    let body = match literal.strip_prefix('r') {
+        Some(raw) => literal.len() - raw.trim_start_matches('#').len() + 1,
+        None => 1,
+    };
+    let rest = literal.get(body..)?;
+    if literal.starts_with('r') || rest.starts_with(text) && !text.contains('\\') {
+        return rest.starts_with(text).then(|| (body..=body + text.len()).collect());
+    }
+    let mut places = Vec::with_capacity(text.len() + 1);
+    let mut decoded = String::with_capacity(text.len());
+    let mut at = 0;
+    while decoded.len() < text.len() {
+        let (character, length) = character(rest.get(at..)?)?;
+        decoded.push(character);
+        places.extend(std::iter::repeat_n(body + at, character.len_utf8()));
+        at += length;
+    }
+    places.push(body + at);
+    (decoded == text).then_some(places)
+}
+
+/// The character that a literal goes on with, and its length there.
+fn character(literal: &str) -> Option<(char, usize)> {
+    let first = literal.chars().next()?;
+    if first != '\\' {
+        return Some((first, first.len_utf8()));
+    }
+    let kind = literal[1..].chars().next()?;
+    let hexadecimal = |digits: &str| u32::from_str_radix(digits, 16).ok().and_then(char::from_u32);
+    Some(match kind {
+        'n' => ('\n', 2),
+        'r' => ('\r', 2),
+        't' => ('\t', 2),
+        '0' => ('\0', 2),
+        '\\' | '"' | '\'' => (kind, 2),
+        'x' => (hexadecimal(literal.get(2..4)?)?, 4),
+        'u' => {
+            let end = literal.find('}')?;
+            (hexadecimal(literal.get(3..end)?)?, end + 1)
+        }
+        _ => return None,
+    })
+}
+
+fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ProgramText> {
+    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
+    let raw = reader.required(&fields.file, "file", "program", opening)?;
+    named(reader, names, &raw)
+}
+
+fn named<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<ProgramText> {
+    let name = reader.read(raw)?;
+    let named = reader.span(raw);
+    let refuse = |code, message: String, help: &str| {
+        Diagnostic::error(code, named.clone(), message).label("this file").help(help)
+    };
+    let path = match path::resolve(&names.folder, &name) {
+        Ok(path) => path,
+        Err(error) => {
+            reader.push(refuse(error.code(), error.to_string(), error.help()));
+            return None;
+        }
+    };
+    let most = reader.limits.program_bytes;
+    let bytes = match bytes(path, most) {
+        Ok(bytes) => bytes,
+        Err(error) => {
+            let message = format!("`{}` cannot be read: {error}", shorten(&name));
+            reader.push(refuse("NB0540", message, "name a regular file that may be read"));
+            return None;
+        }
+    };
+    if bytes.len() as u64 > most {
+        reader.push(too_large(named, most));
+        return None;
+    }
+    let Ok(text) = String::from_utf8(bytes) else {
+        let message = format!("`{}` is not UTF-8 text", shorten(&name));
+        reader.push(refuse("NB0541", message, "save the file as UTF-8"));
+        return None;
+    };
+    let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
+    let shown = names.folder.join(&name).display().to_string();
+    let source = Source { name: shown, text: text.clone() };
+    Some(ProgramText { text, origin: Origin::File(Arc::new(diagnostic::File { source, named })) })
+}
+
+/// One byte more than allowed tells a file at the limit from one beyond it.
+fn bytes(path: PathBuf, most: u64) -> std::io::Result<Vec<u8>> {
+    let file = File::open(path)?;
+    if !file.metadata()?.is_file() {
+        return Err(Error::other("it is not a regular file"));
+    }
+    let mut bytes = Vec::new();
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_of_a_text_stand_in_its_literal() {
+        assert_eq!(places("\"ab\"", "ab"), Some(vec![1, 2, 3]));
+        assert_eq!(places("r#\"a\"b\"#", "a\"b"), Some(vec![3, 4, 5, 6]));
+        assert_eq!(places(r#""a\nb\u{e4}c""#, "a\nb\u{e4}c"), Some(vec![1, 2, 4, 5, 5, 11, 12]));
+        assert_eq!(places(r#""\x41\\""#, "A\\"), Some(vec![1, 5, 7]));
+        assert_eq!(places(r#""\q""#, "q"), None);
+    }
+}
