@@ -5,7 +5,7 @@ use super::{cleared, cleared_colors, draw, images};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::TextureImage;
+use crate::state::{StageOrigin, TextureImage};
 use crate::texture::unit::Image;
 use crate::trace::{Recorder, Step};
 
@@ -43,6 +43,17 @@ pub struct DrawTrace {
     pub shown: [u8; 4],
     /// Every rule that was applied, in order.
     pub steps: Vec<Step>,
+    /// What each general stage was written as in the language of an API; empty if the program was written for the combiners.
+    pub program_origin: Vec<StageOrigin>,
+}
+
+impl DrawTrace {
+    /// What a block of the steps was written as: a portion of a general stage, of a program in the language of an API.
+    pub fn origin(&self, block: &str) -> Option<&str> {
+        let (stage, portion) = block.strip_prefix("general stage ")?.split_once(' ')?;
+        let origin = self.program_origin.get(stage.parse::<usize>().ok()?)?;
+        Some(if portion == "rgb" { &origin.rgb } else { &origin.alpha })
+    }
 }
 
 /// A pixel or draw that does not exist.
@@ -165,6 +176,7 @@ impl Pixel {
                 stored: stored.is_some(),
                 shown: surface::show(planned.surface, self.word),
                 steps: recorder.steps,
+                program_origin: planned.program_origin.clone(),
             });
         }
         traces

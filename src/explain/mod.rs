@@ -17,7 +17,9 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::program::text::print;
 use crate::program::text::words::register;
 use crate::rop::surface;
-use crate::state::{Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, TEXTURE_UNITS, TextureKind};
+use crate::state::{
+    Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, StageOrigin, TEXTURE_UNITS, TextureKind,
+};
 use crate::texture::unit::PlannedUnit;
 
 /// A draw in words.
@@ -29,6 +31,8 @@ pub struct DrawExplanation {
     pub target: String,
     /// Its pixel program in the combiner language, whole.
     pub program: String,
+    /// What each general stage of it was written as in the language of an API; empty if it was written for the combiners.
+    pub program_origin: Vec<StageOrigin>,
     /// What it computes, in order: what the plan has kept.
     pub equations: Vec<String>,
     /// What nothing can see, and why.
@@ -45,6 +49,7 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
             name: planned.name.clone(),
             target: plan.targets[planned.target].name.clone(),
             program: print(&draw.combiners),
+            program_origin: draw.program_origin.clone(),
             equations: equations(scene, plan, planned),
             dropped: dropped(scene, draw, planned),
             cost: Cost::of(planned, &plan.policies, engine::fragments(plan, planned)),

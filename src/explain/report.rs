@@ -25,6 +25,13 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
         for line in draw.program.lines() {
             writeln!(out, "    {line}")?;
         }
+        if !draw.program_origin.is_empty() {
+            writeln!(out, "  written as:")?;
+        }
+        for (stage, origin) in draw.program_origin.iter().enumerate() {
+            writeln!(out, "    general stage {stage} rgb: {}", origin.rgb)?;
+            writeln!(out, "    general stage {stage} alpha: {}", origin.alpha)?;
+        }
         if !draw.equations.is_empty() {
             writeln!(out, "  computed:")?;
         }
@@ -86,6 +93,9 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
                 "name": draw.name, "target": draw.target, "program": draw.program, "equations": draw.equations, "left_out": draw.dropped,
                 "cost": cost(&draw.cost),
             });
+            if !draw.program_origin.is_empty() {
+                value["program_origin"] = crate::report::origins(&draw.program_origin);
+            }
             if let Some(counts) = counted.map(|all| &all[number]) {
                 value["counted"] = json!({
                     "fragments": counts.fragments, "stored": counts.stored, "work": amounts(&counts.work),

@@ -15,8 +15,8 @@ use crate::rop::surface;
 use crate::state::named;
 use crate::state::{
     AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies,
-    Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texture,
-    TextureImage, TextureKind, TextureUnit,
+    Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, SurfaceFormat, TEXTURE_UNITS,
+    Target, Texture, TextureImage, TextureKind, TextureUnit,
 };
 use crate::texture::chain::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
@@ -108,6 +108,8 @@ pub struct PlannedDraw {
     pub undefined: u64,
     /// General stages that are needed.
     pub stages: Vec<PlannedStage>,
+    /// What each general stage of the state was written as; may be empty.
+    pub program_origin: Vec<StageOrigin>,
     /// Mux bit.
     pub mux_select: MuxSelect,
     /// Final combiner.
@@ -331,6 +333,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         spare0_alpha: liveness.spare0_alpha,
         undefined: liveness.undefined,
         stages: liveness.stages,
+        program_origin: draw.program_origin.clone(),
         mux_select: draw.combiners.mux_select,
         final_combiner: liveness.final_combiner,
         alpha_test,

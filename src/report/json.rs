@@ -2,7 +2,7 @@
 
 use crate::engine::{DrawTrace, PixelTrace};
 use crate::plan::Plan;
-use crate::state::{Named, POLICIES, Policies, Policy};
+use crate::state::{Named, POLICIES, Policies, Policy, StageOrigin};
 use crate::trace::{Operand, Step};
 use serde_json::{Value, json};
 
@@ -50,8 +50,14 @@ fn draw(draw: &DrawTrace) -> Value {
         "triangle": draw.triangle,
         "stored": draw.stored,
         "shown": draw.shown,
+        "program_origin": origins(&draw.program_origin),
         "steps": steps_value(&draw.steps),
     })
+}
+
+/// What each general stage was written as.
+pub(crate) fn origins(origins: &[StageOrigin]) -> Value {
+    origins.iter().map(|origin| json!({ "rgb": origin.rgb, "alpha": origin.alpha })).collect()
 }
 
 fn step(step: &Step) -> Value {

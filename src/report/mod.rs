@@ -3,5 +3,6 @@
 mod json;
 mod text;
 
+pub(crate) use json::origins;
 pub use json::{policies_value, steps_value, trace_json, trace_value};
 pub use text::{policies_text, steps_text, trace_text};

@@ -46,19 +46,19 @@ pub fn policies_text(policies: &Policies) -> String {
 /// Steps as a table: one line each, under the name of their hardware block.
 pub fn steps_text(steps: &[Step]) -> String {
     let mut out = String::new();
-    let _ = write_steps(&mut out, steps);
+    let _ = write_steps(&mut out, steps, |_| None);
     out
 }
 
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
     writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, draw.name, draw.triangle)?;
-    write_steps(out, &draw.steps)?;
+    write_steps(out, &draw.steps, |block| draw.origin(block))?;
     let [r, g, b, a] = draw.shown;
     let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
     writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
 }
 
-fn write_steps(out: &mut String, steps: &[Step]) -> std::fmt::Result {
+fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Option<&'o str>) -> std::fmt::Result {
     let mut block = "";
     let lines: Vec<(String, String)> = steps.iter().map(|s| (s.name.clone(), expression(s))).collect();
     // Long expressions do not push the columns of all others.
@@ -74,7 +74,10 @@ fn write_steps(out: &mut String, steps: &[Step]) -> std::fmt::Result {
     for (step, (name, expression)) in steps.iter().zip(&lines) {
         if step.block != block {
             block = &step.block;
-            writeln!(out, "  {block}")?;
+            match origin(block) {
+                Some(origin) => writeln!(out, "  {block}: {origin}")?,
+                None => writeln!(out, "  {block}")?,
+            }
         }
         let real = if step.per_one == 1 { String::new() } else { format!("{:.6}", step.real()) };
         let ideal = step.ideal.filter(|_| step.per_one != 1).map_or(String::new(), |i| format!("{i:.6}"));
