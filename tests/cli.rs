@@ -29,6 +29,8 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("op combiner --help").text(), file!["cli/help-op-combiner.txt"]);
     assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
     assert_data_eq!(bench.run("explain --help").text(), file!["cli/help-explain.txt"]);
+    assert_data_eq!(bench.run("lower --help").text(), file!["cli/help-lower.txt"]);
+    assert_data_eq!(bench.run("registers --help").text(), file!["cli/help-registers.txt"]);
     assert_data_eq!(bench.run("compare --help").text(), file!["cli/help-compare.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
@@ -68,6 +70,31 @@ fn a_wrong_command_line_is_status_2() {
     assert!(!bench.path("h.png").exists());
     bench.run("generate normal-map height.png -o ./height.png").failed(2, "is the input");
     assert_eq!(fs::read(bench.path("height.png")).unwrap(), PNG);
+}
+
+#[test]
+fn programs_are_printed_in_other_forms() {
+    let bench = Bench::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    for name in ["lit-combiners.ron", "lit-text-file.ron", "lit.rc", "hemisphere-normal.png"] {
+        fs::copy(folder.join(name), bench.path(name)).unwrap();
+    }
+    assert_data_eq!(bench.run("lower lit-combiners.ron --to combiners").text(), file!["cli/lower-combiners.txt"]);
+    assert_data_eq!(
+        bench.run("lower lit-text-file.ron --to registers --draw 0").text(),
+        file!["cli/lower-registers.txt"]
+    );
+    assert_data_eq!(bench.run("registers lit-text-file.ron").text(), file!["cli/registers.txt"]);
+    let json = bench.run("registers lit-combiners.ron --draw 0 --format json").text();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["format"], "ninebit-registers-1");
+    assert_eq!(json["draws"][0]["words"].as_array().unwrap().len(), 12);
+    bench.run("lower lit-combiners.ron").failed(2, "--to");
+    bench.run("lower lit-combiners.ron --to combiners --draw 1").failed(2, "the scene has no draw 1");
+    bench.write("lit.rc", "{ rgb { spare0 = texx0; } }");
+    bench.run("check lit-text-file.ron").failed(3, "lit.rc:1:18");
+    fs::remove_file(bench.path("lit.rc")).unwrap();
+    bench.run("check lit-text-file.ron").failed(4, "NB0502");
 }
 
 #[test]

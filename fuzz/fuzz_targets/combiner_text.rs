@@ -1,0 +1,28 @@
+//! Any text is a combiner program or a list of errors; what is read prints, reads back and survives its register words.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use ninebit::program::registers::{decode, encode};
+use ninebit::program::text::{parse, print, read};
+use ninebit::state::Profile;
+
+fuzz_target!(|text: &str| {
+    match read(text) {
+        Err(findings) => {
+            assert!(!findings.is_empty());
+            for finding in findings {
+                assert!(finding.span.is_none_or(|span| text.get(span).is_some()));
+            }
+        }
+        Ok((combiners, _)) => {
+            let normal = print(&combiners);
+            assert!(read(&normal).expect("what is printed can be read").0 == combiners);
+        }
+    }
+    for profile in [Profile::Nv10, Profile::Nv2a] {
+        if let Ok(program) = parse(text, profile) {
+            let words = encode(&program.combiners, profile);
+            assert!(decode(&words).expect("words of a legal program are taken") == program.combiners);
+        }
+    }
+});

@@ -1,0 +1,219 @@
+//! The combiner language: what is printed reads back, what is read prints in one form, garbage is refused.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
+
+#[path = "common/random_program.rs"]
+mod random_program;
+#[path = "common/random_scene.rs"]
+mod random_scene;
+
+use std::path::Path;
+
+use ninebit::diagnostic::Diagnostic;
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::program::text::{parse, print, read};
+use ninebit::scene;
+use ninebit::state::*;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+fn refused(text: &str) -> Vec<Diagnostic> {
+    read(text).map(|(combiners, _)| panic!("{text} is {combiners:?}")).unwrap_err()
+}
+
+fn codes(text: &str) -> Vec<&'static str> {
+    refused(text).iter().map(|finding| finding.code).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
+
+    #[test]
+    fn any_state_reads_back_from_what_is_printed(combiners in random_program::combiners()) {
+        let text = print(&combiners);
+        let found = read(&text).unwrap_or_else(|findings| panic!("{text}\n{findings:?}")).0;
+        prop_assert_eq!(&found, &combiners, "{}", text);
+        prop_assert_eq!(print(&found), text);
+    }
+
+    #[test]
+    fn garbage_is_read_or_refused(text in "\\PC{0,80}") {
+        if let Err(findings) = read(&text) {
+            prop_assert!(!findings.is_empty() && findings.len() <= 65);
+        }
+    }
+
+    #[test]
+    fn shuffled_words_are_read_or_refused(
+        words in prop::collection::vec(prop::sample::select(vec![
+            "{", "}", "rgb", "alpha", "(", ")", ";", "=", ".", "*", "+", "-", ",", "out", "rgb", "a", "tex0", "spare0", "expand",
+            "const0", "bytes", "1", "0.5", "sum", "mux", "lerp", "final_product", "color_sum", "discard", "zero", "blue_to_alpha",
+            "scale_by_two", "clamp_color_sum", "unsigned_invert", "/*", "//", "#", "\n", "!!RC1.0",
+        ]), 0..60),
+        space in prop::sample::select(vec![" ", ""]),
+    ) {
+        let text = words.join(space);
+        match read(&text) {
+            Ok((combiners, _)) => {
+                let normal = print(&combiners);
+                prop_assert_eq!(read(&normal).unwrap().0, combiners);
+            }
+            Err(findings) => {
+                for finding in findings {
+                    let span = finding.span.unwrap();
+                    prop_assert!(text.get(span.clone()).is_some(), "{:?} in {:?}", span, text);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn legal_programs_stay_legal() {
+    let mut runner = TestRunner::deterministic();
+    let mut stages = 0;
+    for _ in 0..300 {
+        let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
+        for draw in &scene.draws {
+            let text = print(&draw.combiners);
+            let program = parse(&text, scene.profile).unwrap_or_else(|findings| panic!("{text}\n{findings:?}"));
+            assert_eq!(program.combiners, draw.combiners, "{text}");
+            stages += draw.combiners.stages.len();
+        }
+    }
+    assert!(stages > 300, "{stages}");
+}
+
+/// As the well-known assembler has it: its header, real constants, short forms.
+#[test]
+fn a_program_in_the_common_style() {
+    let text = "!!RC1.0
+        // diffuse bump mapping
+        const1 = (0.2, 0.2, 0.2, 1.0);
+        {
+            rgb { spare0 = expand(tex0) . expand(tex1); scale_by_two(); }
+            alpha { spare0 = tex0; }
+        }
+        {
+            const0 = (1, 1, 0, 0.5);
+            rgb {
+                discard = unsigned(spare0) * tex1;
+                discard = const1;
+                spare0.rgb = sum();
+            }
+        }
+        final_product = spare0 * col1.a;
+        out.rgb = final_product + spare1;
+        out.a = unsigned_invert(zero);";
+    let program = parse(text, Profile::Nv2a).unwrap();
+    let combiners = &program.combiners;
+    assert_eq!(combiners.stages[0].constants, [[0; 4], [51, 51, 51, 255]]);
+    assert_eq!(combiners.stages[1].constants, [[255, 255, 0, 128], [51, 51, 51, 255]]);
+    let rgb = &combiners.stages[0].rgb;
+    assert!(rgb.ab_dot_product && rgb.scale == Scale::Two && rgb.ab_output == Register::Spare0);
+    let alpha = &combiners.stages[0].alpha;
+    assert_eq!(alpha.inputs[0].component, Component::Alpha);
+    assert_eq!(alpha.inputs[0].mapping, InputMapping::SignedIdentity);
+    assert_eq!(alpha.inputs[1].mapping, InputMapping::UnsignedInvert);
+    let last = &combiners.final_combiner;
+    assert_eq!(last.inputs[0].register, FinalRegister::ETimesF);
+    assert!(last.inputs[1].register == FinalRegister::Zero && last.inputs[1].invert);
+    assert_eq!(last.inputs[3].register, FinalRegister::Spare1);
+    assert!(!last.color_sum_clamp);
+    assert_eq!(program.warnings.len(), 1, "spare1 is read and not written");
+    assert_eq!(read(&print(combiners)).unwrap().0, *combiners);
+}
+
+#[test]
+fn a_point_is_a_component_or_a_dot_product() {
+    let stage =
+        |text: &str| read(&format!("{{ rgb {{ spare0 = {text}; }} }} out.rgb = zero;")).unwrap().0.stages[0].rgb;
+    for text in ["tex0 . col0", "tex0.col0", "tex0 .col0", "tex0. col0", "tex0.rgb.col0.rgb"] {
+        let rgb = stage(text);
+        assert!(rgb.ab_dot_product, "{text}");
+        assert_eq!([rgb.inputs[0].component, rgb.inputs[1].component], [Component::Rgb; 2]);
+    }
+    let rgb = stage("tex0.a.col0.a");
+    assert!(rgb.ab_dot_product && rgb.inputs.iter().take(2).all(|input| input.component == Component::Alpha));
+    assert!(!stage("tex0.a").ab_dot_product);
+}
+
+#[test]
+fn without_a_final_combiner_it_is_opengls_initial_one() {
+    let (combiners, _) = read("{ }").unwrap();
+    assert_eq!(combiners.final_combiner, FinalCombiner::initial([[0; 4]; 2]));
+    assert!(combiners.final_combiner.color_sum_clamp);
+}
+
+#[test]
+fn findings_have_codes_and_come_together() {
+    assert_eq!(codes("{"), ["NB0104"]);
+    assert_eq!(codes("}"), ["NB0104"]);
+    assert_eq!(codes("{ rgb { spare0 = tex0 * ; } } out.rgb = ;"), ["NB0104", "NB0104"]);
+    assert_eq!(codes("{ rgb { spare0 = texx0; spare9 = tex0; } rbg { } }"), ["NB0204", "NB0204", "NB0204"]);
+    assert_eq!(codes("{ rgb { spare0 = color_sum; } alpha { spare0.rgb = tex0; } }"), ["NB0313", "NB0311"]);
+    assert_eq!(codes("{ rgb { spare0 = -unsigned(tex0); } } out.rgb = expand(tex0);"), ["NB0311", "NB0311"]);
+    assert_eq!(
+        codes("const0 = (1, 2, 0, 0); const1 = bytes(256, 0, 0, 0); const0 = (1, 1);"),
+        ["NB0206", "NB0206", "NB0211"]
+    );
+    assert_eq!(codes("{ rgb { } rgb { } } out.a = zero; out.a = zero; out.rgb = zero;"), ["NB0364", "NB0364"]);
+    assert_eq!(
+        codes("{ rgb { discard = zero; discard = zero; discard = zero; discard = sum(); discard = mux(); } }"),
+        ["NB0364", "NB0364"]
+    );
+    assert_eq!(codes("{} out.a = zero;"), ["NB0202"]);
+    assert_eq!(codes("color_sum = spare1 + col1; out.rgb = color_sum;"), ["NB0104"]);
+    assert_eq!(codes("{ rgb { scale_by_two(); scale_by_four(); blue(); } }"), ["NB0364", "NB0204"]);
+    assert_eq!(refused(&"x; ".repeat(1000)).len(), 64);
+    assert_eq!(refused(&"{ ".repeat(1000)).len(), 2);
+    assert_eq!(
+        refused(&"{ rgb { ((((((((".repeat(1000)).len().min(64),
+        refused(&"{ rgb { ((((((((".repeat(1000)).len()
+    );
+}
+
+#[test]
+fn legality_is_that_of_every_language() {
+    let codes = |text: &str, profile| -> Vec<&str> {
+        let findings = parse(text, profile).map(|program| panic!("{program:?}")).unwrap_err();
+        let mut codes: Vec<_> = findings.iter().map(|finding| finding.code).collect();
+        assert!(findings.iter().all(|finding| finding.span.is_some()), "{findings:?}");
+        codes.sort_unstable();
+        codes
+    };
+    let nv2a = "{ const0 = (1, 0, 0, 1); rgb { spare0 = tex2 . tex3, blue_to_alpha; } alpha { spare1 = col1; } } out.rgb = spare0;";
+    assert!(parse(nv2a, Profile::Nv2a).unwrap().warnings.is_empty());
+    assert_eq!(codes(nv2a, Profile::Nv10), ["NB0302", "NB0302", "NB0303", "NB0304", "NB0309"]);
+    let wrong =
+        "{ rgb { const0 = tex0.b * fog.a; tex0 = tex0; tex0 = sum(); scale_by_four(); bias_by_negative_one_half(); }
+                   alpha { spare0 = tex0.rgb . tex0, blue_to_alpha; } } out.rgb = color_sum.a; out.a = final_product;";
+    assert_eq!(
+        codes(wrong, Profile::Nv2a),
+        ["NB0306", "NB0306", "NB0307", "NB0308", "NB0310", "NB0311", "NB0311", "NB0312", "NB0313", "NB0313"]
+    );
+    assert_eq!(codes("{} {} {}", Profile::Nv10), ["NB0301"]);
+    assert_eq!(codes("", Profile::Nv10), ["NB0323"]);
+    let both = "{ rgb { spare0 = tex0 . tex1, blue_to_alpha; } alpha { spare0 = tex0; } }";
+    assert_eq!(codes(both, Profile::Nv2a), ["NB0305"]);
+}
+
+#[test]
+fn the_same_program_in_every_language_draws_the_same_bytes() {
+    let frame = |name: &str| {
+        let path = Path::new("vectors/scenes/programs").join(name);
+        let loaded = scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(loaded.render_warnings(false), "");
+        (loaded.scene.draws[0].combiners.clone(), render(&loaded.plan, &RenderOptions::default()))
+    };
+    let (program, picture) = frame("lit-combiners.ron");
+    let (words, words_picture) = frame("lit-words.ron");
+    assert!(picture.surfaces[0].words.iter().any(|word| *word != picture.surfaces[0].words[0]));
+    assert_eq!(words_picture, picture);
+    for name in ["lit-text.ron", "lit-text-file.ron"] {
+        let (text, text_picture) = frame(name);
+        assert_eq!((&text, &text_picture), (&program, &picture), "{name}");
+    }
+    assert_eq!(words, program);
+}
