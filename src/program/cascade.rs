@@ -318,7 +318,8 @@ impl Cascade {
         portion
     }
 
-    /// C D = -x: -x times 1 where x is at least 0; otherwise max(0, x) or 1 - max(0, x) times -1.
+    /// C D = -x: -x times 1 where x is at least 0; otherwise max(0, x) or 1 - max(0, x) times ZERO expanded, which is -1 in real numbers and
+    /// -256 in integers (CMB-3).
     fn negative(&mut self, x: &Argument, alpha: bool, place: &Range<usize>) -> [CombinerInput; 2] {
         let plain = self.input(x, Use::Plain, alpha, place);
         if !x.complement && !self.may_be_negative(x.source) {

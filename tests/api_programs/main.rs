@@ -1,0 +1,48 @@
+//! Programs of APIs, against the formulas of the APIs: Direct3D texture stages and the OpenGL texture environment.
+//!
+//! The formulas stand here a second time, in float64 and from the APIs' own text, and know nothing of combiners.
+#![allow(
+    clippy::unwrap_used,
+    clippy::float_arithmetic,
+    reason = "a test fails by panicking; the reference is in real numbers"
+)]
+
+mod direct3d;
+mod opengl;
+mod pasted;
+mod run;
+mod scenes;
+
+/// Numbers that look random and are the same everywhere (SplitMix64).
+struct Choices(u64);
+
+impl Choices {
+    fn number(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+
+    fn below(&mut self, most: usize) -> usize {
+        (self.number() % most as u64) as usize
+    }
+
+    fn of<T: Copy>(&mut self, all: &[T]) -> T {
+        all[self.below(all.len())]
+    }
+
+    fn flag(&mut self) -> bool {
+        self.number() & 1 != 0
+    }
+
+    /// Bytes, the ends of the range more often.
+    fn color(&mut self) -> [u8; 4] {
+        std::array::from_fn(|_| match self.below(6) {
+            0 => 0,
+            1 => 255,
+            _ => self.number() as u8,
+        })
+    }
+}

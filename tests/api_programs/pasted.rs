@@ -1,0 +1,188 @@
+//! Texture stages as pasted text.
+
+use super::Choices;
+use super::direct3d::stages;
+use ninebit::program::texture_stages::{
+    ArgumentSource, Operation, ResultArgument, StageArgument, TextureStages, parse,
+};
+use ninebit::state::Named;
+use proptest::prelude::*;
+use std::fmt::Write;
+
+/// How a text is written.
+#[derive(Clone, Copy, PartialEq)]
+enum Form {
+    Calls,
+    Numbers,
+    Effect,
+}
+
+fn upper(name: &str) -> String {
+    let name = if name.starts_with("Modulate") { name.replace("Add", "_Add") } else { name.to_owned() };
+    name.to_uppercase()
+}
+
+fn argument(argument: &StageArgument, form: Form) -> String {
+    let number = ArgumentSource::ALL.iter().position(|source| *source == argument.source).unwrap()
+        + if argument.complement { 16 } else { 0 }
+        + if argument.alpha_replicate { 32 } else { 0 };
+    let name = if argument.source == ArgumentSource::TextureFactor { "TFactor" } else { argument.source.name() };
+    let mut words = vec![name];
+    words.extend(argument.complement.then_some("Complement"));
+    words.extend(argument.alpha_replicate.then_some("AlphaReplicate"));
+    match form {
+        Form::Numbers => format!("{number:#x}"),
+        Form::Calls => words.iter().map(|word| format!("D3DTA_{}", upper(word))).collect::<Vec<_>>().join(" | "),
+        Form::Effect => words.join("|"),
+    }
+}
+
+fn operation(operation: Operation, form: Form) -> String {
+    match form {
+        Form::Numbers => (1 + Operation::ALL.iter().position(|known| *known == operation).unwrap()).to_string(),
+        Form::Calls => format!("D3DTOP_{}", upper(operation.name())),
+        Form::Effect => operation.name().to_owned(),
+    }
+}
+
+fn text(program: &TextureStages, form: Form) -> String {
+    let mut text = String::from("/* pasted */\n");
+    let set = |text: &mut String, stage: usize, state: &str, value: String| {
+        let _ = match form {
+            Form::Effect => writeln!(text, "{state}[{stage}] = {value};"),
+            _ => writeln!(
+                text,
+                "  pDev->SetTextureStageState ({stage},D3DTSS_{}, {value} ) ; // set",
+                state.to_uppercase()
+            ),
+        };
+    };
+    for (index, stage) in program.stages.iter().enumerate() {
+        for (name, half) in [("Color", &stage.color), ("Alpha", &stage.alpha)] {
+            set(&mut text, index, &format!("{name}Op"), operation(half.operation.value, form));
+            for (slot, value) in half.arguments.iter().enumerate() {
+                set(&mut text, index, &format!("{name}Arg{slot}"), argument(&value.value, form));
+            }
+        }
+        let result = match (stage.result, form) {
+            (ResultArgument::Current, Form::Numbers) => "1",
+            (ResultArgument::Temp, Form::Numbers) => "5",
+            (ResultArgument::Current, Form::Calls) => "D3DTA_CURRENT",
+            (ResultArgument::Temp, Form::Calls) => "D3DTA_TEMP",
+            (result, Form::Effect) => result.name(),
+        };
+        set(&mut text, index, "ResultArg", result.to_owned());
+        let [r, g, b, a] = stage.constant;
+        set(&mut text, index, "Constant", format!("0x{a:02x}{r:02X}{g:02x}{b:02x}"));
+    }
+    let [r, g, b, a] = program.texture_factor;
+    let _ = match form {
+        Form::Effect => write!(
+            text,
+            "TextureFactor = 0x{a:02x}{r:02x}{g:02x}{b:02x}; SpecularEnable = {};",
+            program.specular_enable
+        ),
+        Form::Calls => write!(
+            text,
+            "hr = g_dev.SetRenderState(D3DRS_TEXTUREFACTOR, D3DCOLOR_ARGB({a}, {r}, {g}, {b}))\n;;\
+             IDirect3DDevice7_SetRenderState(dev, D3DRENDERSTATE_SPECULARENABLE, {})",
+            if program.specular_enable { "TRUE" } else { "FALSE" }
+        ),
+        Form::Numbers => write!(
+            text,
+            "d->SetRenderState(60, (DWORD)0x{a:02x}{r:02x}{g:02x}{b:02x}UL);d->SetRenderState(29,{})",
+            u32::from(program.specular_enable)
+        ),
+    };
+    text
+}
+
+/// The program without its places.
+fn bare(mut program: TextureStages) -> TextureStages {
+    for stage in &mut program.stages {
+        for half in [&mut stage.color, &mut stage.alpha] {
+            half.operation.place = 0..0;
+            half.arguments.iter_mut().for_each(|argument| argument.place = 0..0);
+        }
+    }
+    program
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 500, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_written_is_read(seed in any::<u64>()) {
+        let program = stages(&mut Choices(seed), 8);
+        for form in [Form::Calls, Form::Numbers, Form::Effect] {
+            let text = text(&program, form);
+            let read = parse(&text).map(bare);
+            prop_assert_eq!(read.as_ref(), Ok(&program), "{}", text);
+        }
+    }
+
+    /// Anything is read or refused, with places inside the text.
+    #[test]
+    fn nothing_makes_it_fail(text in "(?s)([A-Za-z_0-9x.,;()\\[\\]|= \n-]|SetTextureStageState|D3DTSS_COLOROP|ColorOp\\[0\\]|/\\*|//|->|\\PC){0,40}") {
+        if let Err(findings) = parse(&text) {
+            for finding in findings {
+                let span = finding.span.unwrap();
+                prop_assert!(span.end <= text.len() && text.is_char_boundary(span.start) && text.is_char_boundary(span.end));
+            }
+        }
+    }
+}
+
+/// Code, marked text and help of every finding.
+fn said(text: &str) -> Vec<(&'static str, String, String)> {
+    let findings = parse(text).unwrap_err();
+    findings
+        .into_iter()
+        .map(|finding| (finding.code, text[finding.span.unwrap()].to_owned(), finding.help.unwrap_or_default()))
+        .collect()
+}
+
+#[test]
+fn findings_point_at_words_and_say_what_was_meant() {
+    for (text, code, marked, help) in [
+        (
+            "p->SetTextureStageState(0, D3DTSS_COLOROP, D3DTOP_DOTPRODUCT);",
+            "NB0204",
+            "D3DTOP_DOTPRODUCT",
+            "`D3DTOP_DOTPRODUCT3`",
+        ),
+        ("SetTextureStageState(0, D3DTSS_COLOUROP, 4);", "NB0204", "D3DTSS_COLOUROP", "`D3DTSS_COLOROP`"),
+        ("SetTextureStageState(0, D3DTSS_COLORARG1, D3DTA_TEXTUR | 16);", "NB0204", "D3DTA_TEXTUR", "`D3DTA_TEXTURE`"),
+        ("SetTextureStageState(8, D3DTSS_COLOROP, 4);", "NB0206", "8", "0 to 7"),
+        ("SetTextureStageState(0, D3DTSS_COLOROP, 27);", "NB0206", "27", "1 to 26"),
+        ("SetTextureStageState(n, D3DTSS_COLOROP, 4);", "NB0205", "n", "number"),
+        ("SetTextureStageState(0, D3DTSS_MINFILTER, 2);", "NB0354", "D3DTSS_MINFILTER", "min_filter"),
+        ("ColorOp[0] = ModulateAlpha_AddColour;", "NB0204", "ModulateAlpha_AddColour", "`ModulateAlpha_AddColor`"),
+        ("ColorArg1[1] = Texture | Current;", "NB0205", "Texture | Current", "one"),
+        ("SetTexturStageState(0, 1, 2);", "NB0204", "SetTexturStageState", "`SetTextureStageState`"),
+        ("SetTextureStageState(0, D3DTSS_COLOROP);", "NB0211", "SetTextureStageState", "value"),
+        ("ColorOp[0] Modulate;", "NB0103", "Modulate", "ColorOp[0] = Modulate;"),
+        ("/* no end", "NB0103", "/*", "*/"),
+    ] {
+        let found = said(text);
+        assert_eq!(found.len(), 1, "{text}: {found:?}");
+        assert_eq!((found[0].0, found[0].1.as_str()), (code, marked), "{text}");
+        assert!(found[0].2.contains(help), "{text}: {}", found[0].2);
+    }
+}
+
+#[test]
+fn several_findings_come_together() {
+    let text = "ColorOp[0] = Modulat;\nColorOp[1] = = Add;\nAlphaOp[1] = Ad;";
+    assert_eq!(said(text).iter().map(|finding| finding.0).collect::<Vec<_>>(), ["NB0204", "NB0103", "NB0204"]);
+}
+
+#[test]
+fn bump_states_are_floats_or_their_bits() {
+    let text = "d->SetTextureStageState(0, D3DTSS_BUMPENVMAT00, F2DW(-0.5f)); d->SetTextureStageState(0, D3DTSS_BUMPENVMAT01, 0x3f800000);\n\
+                BumpEnvLScale[0] = 1.5; d->SetTextureStageState(0, D3DTSS_TEXCOORDINDEX, D3DTSS_TCI_PASSTHRU | 1);";
+    let program = parse(text).unwrap();
+    let stage = &program.stages[0];
+    assert_eq!((stage.bump_matrix, stage.bump_luminance), ([-0.5, 1.0, 0.0, 0.0], [1.5, 0.0]));
+    assert_eq!(stage.coordinate_index.as_ref().unwrap().value.set, 1);
+}

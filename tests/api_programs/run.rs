@@ -1,0 +1,142 @@
+//! Combiners run alone: in real numbers, in integers, and as a bound of the difference.
+
+use ninebit::combiner::final_combiner::{self, PlannedFinal};
+use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
+use ninebit::combiner::registers::Registers;
+use ninebit::number::Lane;
+use ninebit::state::{
+    Bias, CombinerInput, Combiners, Component, InputMapping, Policies, Portion, Profile, Register, Scale,
+};
+use ninebit::trace::Silent;
+
+/// What a pixel brings, as bytes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pixel {
+    pub(crate) diffuse: [u8; 4],
+    pub(crate) specular: [u8; 4],
+    pub(crate) textures: [[u8; 4]; 4],
+    /// R, G, B, factor.
+    pub(crate) fog: [u8; 4],
+}
+
+impl Pixel {
+    pub(crate) fn of(choices: &mut super::Choices) -> Pixel {
+        Pixel {
+            diffuse: choices.color(),
+            specular: choices.color(),
+            textures: std::array::from_fn(|_| choices.color()),
+            fog: choices.color(),
+        }
+    }
+
+    pub(crate) fn real(bytes: [u8; 4]) -> [f64; 4] {
+        bytes.map(|byte| f64::from(byte) / 255.0)
+    }
+}
+
+fn planned(portion: Portion, all: u8) -> PlannedPortion {
+    let outputs = [portion.ab_output, portion.cd_output, portion.sum_output];
+    PlannedPortion {
+        portion,
+        live: outputs.map(|output| if output == Register::Zero { 0 } else { all }),
+        blue_to_alpha: [portion.ab_blue_to_alpha, portion.cd_blue_to_alpha],
+    }
+}
+
+/// The fragment's colour in 255ths.
+pub(crate) fn run<L: Lane>(combiners: &Combiners, profile: Profile, pixel: &Pixel) -> [L; 4] {
+    let mut registers = Registers::<L>::new();
+    registers.load(Register::PrimaryColor, pixel.diffuse.map(L::byte));
+    registers.load(Register::SecondaryColor, pixel.specular.map(L::byte));
+    registers.load(Register::Fog, pixel.fog.map(L::byte));
+    let units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+    for (register, color) in units.into_iter().zip(pixel.textures) {
+        registers.load(register, color.map(L::byte));
+    }
+    let policies = Policies::default();
+    for (index, stage) in combiners.stages.iter().enumerate() {
+        let stage = PlannedStage {
+            index,
+            rgb: planned(stage.rgb, 7),
+            alpha: planned(stage.alpha, 8),
+            constants: stage.constants,
+            reads_constants: true,
+        };
+        general::run(&stage, combiners.mux_select, &policies, &mut registers, &mut Silent);
+    }
+    let state = combiners.final_combiner;
+    let state = PlannedFinal { state, live: 15, product: 7, sum: 7, reads_constants: true, lerps: true };
+    final_combiner::run(&state, profile, &policies, &mut registers, &mut Silent)
+}
+
+/// How far, in 255ths, the integers of the fragment can be from the real numbers: from what each rule rounds.
+pub(crate) fn bound(combiners: &Combiners) -> [f64; 2] {
+    // Of every register: colour, alpha. What the pixel brings is exact.
+    let mut errors = [[0.0_f64; 2]; 12];
+    for stage in &combiners.stages {
+        let [rgb, alpha] =
+            [(&stage.rgb, 0), (&stage.alpha, 1)].map(|(portion, half)| portion_bound(portion, half, &errors));
+        for (portion, half, bound) in [(&stage.rgb, 0, rgb), (&stage.alpha, 1, alpha)] {
+            for output in [portion.ab_output, portion.cd_output, portion.sum_output] {
+                errors[output as usize][half] = bound;
+            }
+        }
+        if stage.rgb.ab_blue_to_alpha {
+            errors[stage.rgb.ab_output as usize][1] = rgb;
+        }
+        errors[Register::Zero as usize] = [0.0; 2];
+    }
+    let spare0 = errors[Register::Spare0 as usize];
+    let alpha = spare0[usize::from(combiners.final_combiner.g.component == Component::Alpha)];
+    // The sum is exact; the blend with fog is rounded once.
+    [spare0[0] + 0.5, alpha]
+}
+
+fn portion_bound(portion: &Portion, half: usize, errors: &[[f64; 2]; 12]) -> f64 {
+    let input = |input: &CombinerInput| {
+        let channel = match (half, input.component) {
+            (0, Component::Rgb) | (1, Component::Blue) => 0,
+            _ => 1,
+        };
+        let error = errors[input.register as usize][channel];
+        match input.mapping {
+            // CMB-3: 2 (x - 128) against 2x - 255.
+            InputMapping::ExpandNormal | InputMapping::ExpandNegate => 2.0 * error + 1.0,
+            InputMapping::HalfBiasNormal | InputMapping::HalfBiasNegate => error + 0.5,
+            _ => error,
+        }
+    };
+    let product = |n: usize, dot: bool| {
+        let [a, b] = [input(&portion.inputs[2 * n]), input(&portion.inputs[2 * n + 1])];
+        (a + b + a * b / 255.0) * if dot { 3.0 } else { 1.0 }
+    };
+    let sum = product(0, portion.ab_dot_product) + product(1, portion.cd_dot_product);
+    let biased = sum + 0.5 + if portion.bias == Bias::None { 0.0 } else { 0.5 };
+    match portion.scale {
+        Scale::One => biased,
+        Scale::Two => 2.0 * biased,
+        Scale::Four => 4.0 * biased,
+        Scale::Half => biased,
+    }
+}
+
+/// Holds a lowered program against the API's own result, R, G, B, A in 0..1.
+pub(crate) fn agrees(combiners: &Combiners, profile: Profile, pixel: &Pixel, expected: [f64; 4]) -> Result<(), String> {
+    let ideal = run::<f64>(combiners, profile, pixel);
+    let fixed = run::<i32>(combiners, profile, pixel);
+    let [rgb, alpha] = bound(combiners);
+    for channel in 0..4 {
+        let off = (ideal[channel] / 255.0 - expected[channel]).abs();
+        if off > 1e-12 {
+            return Err(format!("channel {channel}: {} is not {}", ideal[channel] / 255.0, expected[channel]));
+        }
+        let bound = if channel < 3 { rgb } else { alpha };
+        if (f64::from(fixed[channel]) - ideal[channel]).abs() > bound + 1e-9 {
+            return Err(format!(
+                "channel {channel}: {} is further than {bound} from {}",
+                fixed[channel], ideal[channel]
+            ));
+        }
+    }
+    Ok(())
+}

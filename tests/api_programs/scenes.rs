@@ -1,0 +1,65 @@
+//! Scenes with programs of APIs.
+
+use ninebit::engine::{self, RenderOptions};
+use ninebit::explain::{explain, explanation_text};
+use ninebit::limits::Limits;
+use ninebit::report::{trace_json, trace_text};
+use ninebit::scene::{self, Loaded};
+use std::path::Path;
+
+fn load(name: &str) -> Loaded {
+    let path = format!("vectors/scenes/programs/{name}.ron");
+    scene::load(Path::new(&path), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
+}
+
+#[test]
+fn a_surface_in_every_notation_has_the_same_bytes() {
+    let words = |loaded: &Loaded| engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].words.clone();
+    let definition = words(&load("dot3-combiners"));
+    let stages = load("dot3-texture-stages");
+    for name in ["dot3-texture-stages-text", "dot3-texture-stages-effect"] {
+        assert_eq!(load(name).scene.draws[0].combiners, stages.scene.draws[0].combiners, "{name}");
+    }
+    assert_eq!(words(&stages), definition);
+    assert_eq!(words(&load("dot3-texture-environment")), definition);
+}
+
+#[test]
+fn traces_and_explanations_show_both_sides() {
+    let loaded = load("dot3-texture-stages");
+    let trace = engine::trace(&loaded.plan, 0, (64, 64), None).unwrap();
+    let text = trace_text(&loaded.plan, &trace);
+    let block = "general stage 0 rgb: texture stage 0: ColorOp DotProduct3(Texture, TextureFactor)";
+    assert!(text.contains(block), "{text}");
+    assert!(trace_json(&loaded.plan, &trace).contains("texture stage 1: ColorOp Modulate(Current, Diffuse)"));
+    let explanation = explanation_text(&loaded.plan, &explain(&loaded.scene, &loaded.plan), None);
+    assert!(explanation.contains(block), "{explanation}");
+    let environment = load("dot3-texture-environment");
+    let explanation = explanation_text(&environment.plan, &explain(&environment.scene, &environment.plan), None);
+    let part = "texture unit 0: Combine RGB Dot3RgbaArb(SourceColor of Texture, SourceColor of Constant)";
+    assert!(explanation.contains(part), "{explanation}");
+}
+
+#[test]
+fn a_bump_environment_map_in_a_scene() {
+    let text = |profile: &str, more: &str| {
+        format!(
+            "(version: 1, profile: {profile}, targets: [(name: \"f\", width: 2, height: 2)], textures: {{ \
+             \"offsets\": (source: Solid(width: 1, height: 1, color: (0, 0, 64, 255))), \
+             \"map\": (source: Ramp(width: 4, height: 1, from: (0, 0, 0), to: (255, 255, 255), axis: Horizontal)) }}, \
+             draws: [(vertices: Window([(position: (0, 0)), (position: (4, 0)), (position: (0, 4))]), \
+             textures: [\"offsets\", (texture: \"map\", min_filter: Nearest, mag_filter: Nearest)], {more} \
+             program: TextureStages(stages: [(color_op: BumpEnvMap, bump_matrix: (1, 0, 0, 1)), \
+             (color_op: SelectArg1, color_arg1: Texture)]))])"
+        )
+    };
+    let parse = |text: &str| scene::parse(text, Path::new("bump.ron"), &Limits::default());
+    let loaded = parse(&text("Nv2a", "")).unwrap_or_else(|error| panic!("{error}"));
+    let frames = engine::render(&loaded.plan, &RenderOptions::default());
+    // Blue 64 is half a texture to the right: the third of four texels.
+    let [r, ..] = frames.surfaces[0].rgba8()[0];
+    assert_eq!(r, 170);
+    assert_eq!(parse(&text("Nv10", "")).unwrap_err().diagnostics[0].code, "NB0340");
+    let shader = parse(&text("Nv2a", "texture_shader: [Sample, Sample],")).unwrap_err();
+    assert_eq!(shader.diagnostics[0].code, "NB0352");
+}

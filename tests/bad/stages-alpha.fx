@@ -1,0 +1,2 @@
+ColorOp[0] = Modulate;
+AlphaOp[0] = DotProduct3;
