@@ -88,7 +88,9 @@ fn followed_ideals_are_those_of_the_trace() {
     let mut compared = 0;
     random(250, |plan, scene| {
         // The trace starts anew where a draw reads a surface.
-        if scene.textures.iter().any(|t| matches!(t.image, TextureImage::Target { .. })) {
+        let reads_target =
+            |unit: &TextureUnit| matches!(scene.textures[unit.texture].image, TextureImage::Target { .. });
+        if scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten()).any(reads_target) {
             return;
         }
         let comparison = compare(plan, &options(Mode::Follow));
