@@ -231,6 +231,6 @@ fn the_page_lists_what_the_sources_have() {
         .flat_map(|names| names.split('"').step_by(2).map(str::to_string).collect::<Vec<_>>())
         .filter(|name| !name.is_empty())
         .collect();
-    known.extend(["given", "fetch", "border_color"].map(str::to_string));
+    known.extend(["given", "fetch", "palette", "border_color", "chain"].map(str::to_string));
     assert_eq!(page.operations, known);
 }

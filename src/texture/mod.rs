@@ -15,4 +15,5 @@ pub mod real;
 pub mod report;
 pub mod shader;
 mod shader_report;
+pub mod show;
 pub mod unit;

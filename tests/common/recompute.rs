@@ -4,6 +4,8 @@
 
 #[path = "dxt.rs"]
 mod dxt;
+#[path = "recompute_shader.rs"]
+mod shader;
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -17,6 +19,9 @@ pub struct Number {
 
 impl PartialEq for Number {
     fn eq(&self, other: &Self) -> bool {
+        if self.per_one == 0 || other.per_one == 0 {
+            return (self.value, self.per_one) == (other.value, other.per_one);
+        }
         self.value * other.per_one == other.value * self.per_one
     }
 }
@@ -32,6 +37,7 @@ fn is_parameter(name: &str) -> bool {
         "y",
         "size",
         "lowered",
+        "exponent",
         "lod_bias",
         "min_lod",
         "max_lod",
@@ -97,7 +103,7 @@ pub fn fragment(draw: &Value, policies: &Value) -> Result<BTreeMap<String, Numbe
             inputs.push((label.to_string(), given));
         }
         let shown = number(step);
-        let computed = if ["given", "fetch", "palette", "border_color"].contains(&operation) {
+        let computed = if ["given", "fetch", "palette", "border_color", "chain"].contains(&operation) {
             shown
         } else {
             apply(operation, &inputs, policies).ok_or_else(|| format!("{name}: unknown operation {operation}"))?
@@ -271,6 +277,33 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "high_byte_doubled" => byte(2 * (v(0) >> 8)),
         "double" => byte(2 * v(0)),
         "write" | "copy" => n(0),
+        // Texture shader.
+        "byte_of_register" => plain(v(0) & 255),
+        "byte_of_double" => plain(v(0) >> 1 & 255),
+        "nearest_float" => shader::nearest_float(inputs),
+        "floor_number" => Number { value: shader::floor_number(inputs, 4096).clamp(0, 4096), per_one: 4096 },
+        "is_negative" => plain(i128::from(shader::numerator(inputs) < 0)),
+        "is_not_negative" => plain(i128::from(shader::numerator(inputs) >= 0)),
+        "remap_zero_to_one" | "remap_d3d" | "remap_gl" | "remap_twos_complement" => shader::remap(operation, inputs),
+        "remap_half" | "remap_half_signed" | "third_of_unit" | "float_one" => shader::remap(operation, inputs),
+        "float_product" | "float_sum" | "float_dot" | "float_double_quotient" | "float_reflection" => {
+            shader::float(operation, inputs)
+        }
+        "floor_float" => Number { value: shader::floor_float(inputs), per_one: 256 },
+        "float_face" => plain(shader::face(inputs)),
+        "floor_float_face_u" | "floor_float_face_v" => {
+            Number { value: shader::face_coordinate(inputs, operation.ends_with('u')), per_one: 256 }
+        }
+        "dependent_255" => Number { value: 256 * v(1) * v(0) / 255, per_one: 256 },
+        "dependent_256" => Number { value: v(1) * v(0), per_one: 256 },
+        "bump_offset" => Number { value: shader::bump_offset(inputs), per_one: 1 << 32 },
+        "floor_plane_moved" => {
+            let sum = shader::numerator(inputs);
+            let value = ((sum << 24) + v(7) * v(6)).div_euclid(v(6) << 24).clamp(-(1 << 24), 1 << 24) - v(8);
+            Number { value, per_one: 256 }
+        }
+        "luminance" => Number { value: shader::luminance(inputs), per_one: 4096 },
+        "luminance_byte" => byte(((v(0) - (v(0) >> 8)) >> 4).min(255)),
         // Combiners.
         "unsigned_identity" => byte(max0(0)),
         "unsigned_invert" => byte(255 - max0(0)),

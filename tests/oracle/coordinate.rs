@@ -90,10 +90,10 @@ impl Setup {
         (0..3).map(|k| x[k] * sample.e[k]).sum()
     }
 
-    /// INT-4t: how a number lies beside its tie, in the direction of the weights that fall short. Where the pixel is not covered there
-    /// is no tie rule.
+    /// INT-4t: how a number lies beside its tie, in the direction of the weights that fall short. Earlier units at the pixels of a quad
+    /// that are not covered take the same formula.
     fn lean(&self, sample: &Sample, x: [i128; 3]) -> i128 {
-        if !sample.covered || self.exact {
+        if self.exact {
             return 0;
         }
         let (_, dominant) = self.weights(sample);

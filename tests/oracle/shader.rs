@@ -77,17 +77,18 @@ impl<'a> Units<'a> {
         self.unit(self.draw.texture_shader[k].previous, i, j, sample).bytes
     }
 
-    /// TSH-8: the luminance multiplies R, G and B.
+    /// TSH-8: the luminance multiplies R, G and B as the register holds them (a signed channel doubled); below 0 counts as 0.
     fn luminance(&self, color: Color, red: i128, [scale, offset]: [f32; 2]) -> Color {
         let ((ms, es), (mo, eo)) = (split(scale), split(offset));
         // 4096 (c / 255) (red / 255 scale + offset) = c (red scale + 255 offset) 4096 / 65025.
         let lit = |c: i128| {
+            let c = c.max(0);
             let fine = floor_sum(&[(c * red * ms, es + 12 + 30), (255 * c * mo, eo + 12 + 30)]);
             let v = floor_div(fine, 65025 << 30).0.max(0);
             factor_byte(v).min(255)
         };
-        let [r, g, b, a] = color.bytes;
-        let bytes = [lit(r), lit(g), lit(b), a];
+        let [r, g, b, _] = color.register;
+        let bytes = [lit(r), lit(g), lit(b), color.bytes[3]];
         Color { bytes, register: [bytes[0], bytes[1], bytes[2], color.register[3]] }
     }
 

@@ -13,5 +13,6 @@ mod interpolation;
 mod numbers;
 mod raster_operations;
 mod rasteriser;
+mod texture_formats;
 mod texture_levels;
 mod texture_units;

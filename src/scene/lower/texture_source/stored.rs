@@ -33,8 +33,7 @@ impl<'a> Sources<'_, 'a> {
         };
         self.afford(reader, place.clone(), dds.words.len() as u64)?;
         let format = request.format.unwrap_or(dds.format);
-        let same_bits = format.bytes() == dds.format.bytes() && !format.is_compressed() && !dds.format.is_compressed();
-        if format != dds.format && !same_bits {
+        let Some(words) = dds.words_as(format) else {
             let message = format!("the file holds {}, not {}", dds.format.name(), format.name());
             reader.push(
                 Diagnostic::error("NB0232", place, message)
@@ -42,10 +41,8 @@ impl<'a> Sources<'_, 'a> {
                     .help(format!("leave `format` out, which means {} here", dds.format.name())),
             );
             return None;
-        }
+        };
         let faces = if dds.cube { CUBE_FACES } else { 1 };
-        let used = texels::used_bits(format);
-        let words = dds.words.iter().map(|word| word & used).collect();
         let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
         let palette = dds.palette.filter(|_| format == TextureFormat::P8);
         Some(Given { format, width: dds.width, height: dds.height, faces, palette, place: source })
