@@ -88,9 +88,8 @@ fn followed_ideals_are_those_of_the_trace() {
     let mut compared = 0;
     random(250, |plan, scene| {
         // The trace starts anew where a draw reads a surface.
-        let reads_target =
-            |unit: &TextureUnit| matches!(scene.textures[unit.texture].image, TextureImage::Target { .. });
-        if scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten()).any(reads_target) {
+        let mut read = scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten());
+        if read.any(|unit| matches!(scene.textures[unit.texture].image, TextureImage::Target { .. })) {
             return;
         }
         let comparison = compare(plan, &options(Mode::Follow));
