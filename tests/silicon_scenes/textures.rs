@@ -51,6 +51,19 @@ pub fn stripes() -> Picture {
     })
 }
 
+/// The same with red and blue exchanged, within a checkered border of four texels on each side.
+pub fn bordered_stripes() -> Picture {
+    let inside = stripes();
+    Picture::of(40, 40, |x, y| match (x.checked_sub(4), y.checked_sub(4)) {
+        (Some(x), Some(y)) if x < 32 && y < 32 => {
+            let [r, g, b, a] = inside.pixels[(y * 32 + x) as usize];
+            [b, g, r, a]
+        }
+        _ if (x / 2 + y / 2) % 2 == 0 => [204, 204, 204, 255],
+        _ => [68, 68, 68, 255],
+    })
+}
+
 /// Green just below one half in two columns and just above it in the others.
 pub fn step() -> Picture {
     Picture::of(256, 256, |x, _| [0, if x < 2 { 0x7f } else { 0x80 }, 0x45, 255])
@@ -81,6 +94,7 @@ pub fn pictures() -> Vec<(String, Picture)> {
         ("gradient-256".to_string(), gradient(256, 256)),
         ("four-gradients".to_string(), four_gradients()),
         ("stripes".to_string(), stripes()),
+        ("bordered-stripes".to_string(), bordered_stripes()),
         ("step".to_string(), step()),
     ];
     for (name, mask) in RADIAL {
