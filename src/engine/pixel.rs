@@ -5,6 +5,7 @@ use crate::combiner::registers::{Registers, channel_name};
 use crate::combiner::{final_combiner, general};
 use crate::number::{Lane, convert};
 use crate::plan::{Plan, PlannedDraw};
+use crate::raster::fog::FogPlane;
 use crate::raster::interpolate::{self, Sample, Settled};
 use crate::raster::setup::Triangle;
 use crate::raster::{assemble::Assembled, ideal};
@@ -13,7 +14,7 @@ use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
 use crate::texture::chain::{Chain, ShaderSetup};
 use crate::texture::place::{Coordinates, Interpolated};
 use crate::texture::unit::{self, Image};
-use crate::trace::{Decision, Observer, Operand, Rule, Step, Work, plain, report};
+use crate::trace::{Decision, Observer, Rule, Step, Work, report};
 
 /// A triangle of a draw, set up.
 pub(crate) struct TriangleContext<'a> {
@@ -30,7 +31,8 @@ pub(crate) struct TriangleContext<'a> {
     coordinates: [Option<Coordinates>; 4],
     /// Of the texture shader, where there is one; units have none of their own then.
     shader: Option<ShaderSetup>,
-    fog: [i64; 3],
+    /// None where the fog register's alpha is not read, or fog is off.
+    fog: Option<FogPlane>,
     pub(crate) z: [i64; 3],
 }
 
@@ -89,7 +91,7 @@ impl<'a> TriangleContext<'a> {
             plan,
             draw,
             number,
-            fog: if uses_fog { triangle.factor(vertices.map(|v| v.fog.clamp(0.0, 1.0))) } else { [0; 3] },
+            fog: uses_fog.then(|| FogPlane::new(&triangle, draw.fog.function, vertices.map(|v| v.fog))),
             z: vertices.map(|v| convert::depth(v.position[2], draw.depth_bits)),
             triangle,
             vertices,
@@ -212,22 +214,13 @@ impl<'a> TriangleContext<'a> {
     fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
         let draw = self.draw;
         let [r, g, b] = draw.fog.color.map(L::byte);
-        let factor = if draw.fog.enabled && draw.fog_channels & 8 != 0 {
-            let v = sample.factor(&self.fog);
-            let ideal = || ideal::factor(self.barycentrics(sample), self.vertices.map(|v| v.fog));
-            let factor = observer.settle(Rule::Num6, L::value(i32::from(convert::factor_byte(v)), ideal));
+        let factor = if let Some(plane) = &self.fog {
+            let found = plane.at(sample);
+            let ideal = || ideal::fog(&draw.fog.function, self.barycentrics(sample), self.vertices.map(|v| v.fog));
+            let rule = if draw.fog.function.is_some() { Rule::Int5 } else { Rule::Num6 };
+            let factor = observer.settle(rule, L::value(i32::from(convert::factor_byte(found.value)), ideal));
             if O::ON {
-                for (k, g) in self.fog.iter().enumerate() {
-                    observer.step(Step::given("fog", "INT-5", format!("fog.G{k}"), *g));
-                }
-                let planes = (0..3).map(|k| plain(format!("fog.G{k}"), self.fog[k]));
-                let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
-                let inputs = planes.chain(edges).chain([plain("D", sample.d)]).collect();
-                let mut step = Step::given("fog", "INT-5", "fog.4096", v).by("floor_factor", inputs);
-                step.per_one = 4096;
-                observer.step(step);
-                let inputs = vec![Operand { per_one: 4096, ..plain("fog.4096", v) }];
-                observer.step(report::register_step("fog", "NUM-6", "fog.a", factor).by("factor_byte", inputs));
+                reports::fog(sample, plane, found, factor, observer);
             }
             factor
         } else {

@@ -13,7 +13,7 @@ use proptest::strategy::{NewTree, ValueTree};
 use proptest::test_runner::TestRunner;
 
 /// Whether per-pixel fog functions and texture shaders occur.
-pub const FOG_FUNCTIONS: bool = false;
+pub const FOG_FUNCTIONS: bool = true;
 pub const TEXTURE_SHADERS: bool = true;
 
 /// Words of tape for what draws share, for each draw, for each vertex and for each stage.

@@ -227,7 +227,7 @@ impl Setup {
         Sample { e, covered, d: (0..3).map(|k| self.p[k] * e[k]).sum() }
     }
 
-    /// The weights P E of a covered pixel, and INT-3's dominant one.
+    /// The weights P E, and INT-3's dominant one.
     pub fn weights(&self, sample: &Sample) -> ([i128; 3], usize) {
         let n = std::array::from_fn(|k| self.p[k] * sample.e[k]);
         (n, dominant(n, sample.d))
@@ -299,10 +299,11 @@ fn trunc24(n: i128, d: i128) -> i128 {
     ((n << e) / d) << (64 - e)
 }
 
-/// INT-3: the weight with the largest binary exponent, an exact power of two counting as just below itself.
+/// INT-3: the weight with the largest binary exponent, an exact power of two counting as just below itself. Outside the triangle a weight
+/// that is not positive never dominates.
 fn dominant(n: [i128; 3], d: i128) -> usize {
     let class = n.map(|n| {
-        if n == 0 {
+        if n <= 0 {
             return u32::MAX;
         }
         let mut c = 0;

@@ -21,12 +21,7 @@ pub struct Units<'a> {
 }
 
 impl<'a> Units<'a> {
-    pub fn new(
-        draw: &'a Draw,
-        images: &'a [Option<Image>],
-        setup: &'a Setup,
-        policies: &'a Policies,
-    ) -> Units<'a> {
+    pub fn new(draw: &'a Draw, images: &'a [Option<Image>], setup: &'a Setup, policies: &'a Policies) -> Units<'a> {
         Units { draw, images, setup, policies, lods: RefCell::default() }
     }
 
@@ -82,17 +77,18 @@ impl<'a> Units<'a> {
         self.unit(self.draw.texture_shader[k].previous, i, j, sample).bytes
     }
 
-    /// TSH-8: the luminance multiplies R, G and B.
+    /// TSH-8: the luminance multiplies R, G and B as the register holds them (a signed channel doubled); below 0 counts as 0.
     fn luminance(&self, color: Color, red: i128, [scale, offset]: [f32; 2]) -> Color {
         let ((ms, es), (mo, eo)) = (split(scale), split(offset));
         // 4096 (c / 255) (red / 255 scale + offset) = c (red scale + 255 offset) 4096 / 65025.
         let lit = |c: i128| {
+            let c = c.max(0);
             let fine = floor_sum(&[(c * red * ms, es + 12 + 30), (255 * c * mo, eo + 12 + 30)]);
             let v = floor_div(fine, 65025 << 30).0.max(0);
             factor_byte(v).min(255)
         };
-        let [r, g, b, a] = color.bytes;
-        let bytes = [lit(r), lit(g), lit(b), a];
+        let [r, g, b, _] = color.register;
+        let bytes = [lit(r), lit(g), lit(b), color.bytes[3]];
         Color { bytes, register: [bytes[0], bytes[1], bytes[2], color.register[3]] }
     }
 
@@ -106,10 +102,10 @@ impl<'a> Units<'a> {
         let dot = |unit: usize| self.dot(unit, i, j, sample);
         Some(match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, .. } => {
-                // TSH-7: both bytes are two's complement whatever the flags.
-                let [_, g, b, _] = self.previous(k, i, j, sample).map(|v| signed(true, v, 8));
-                let [m0, m1, m2, m3] = matrix.map(split);
-                Place::Moved(set, [[(m0.0 * b, m0.1), (m3.0 * g, m3.1)], [(m1.0 * b, m1.1), (m2.0 * g, m2.1)]])
+                // TSH-7: both bytes are two's complement whatever the flags; the sums are in single precision.
+                let [_, g, b, _] = self.previous(k, i, j, sample).map(|v| signed(true, v, 8) as f32);
+                let [m0, m1, m2, m3] = matrix;
+                Place::Moved(set, [m0 * b + m3 * g, m1 * b + m2 * g].map(split))
             }
             ShaderOperation::DependentAlphaRed => {
                 let [r, _, _, a] = self.previous(k, i, j, sample);
