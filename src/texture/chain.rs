@@ -23,6 +23,13 @@ pub struct PlannedShader {
     pub stages: [PlannedShaderStage; TEXTURE_UNITS],
 }
 
+impl PlannedShader {
+    /// Whether a stage can drop fragments.
+    pub fn kills(&self) -> bool {
+        self.stages.iter().any(|stage| matches!(stage.state.operation, ShaderOperation::CullFragment { .. }))
+    }
+}
+
 /// A stage of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedShaderStage {

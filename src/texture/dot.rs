@@ -1,4 +1,4 @@
-//! TSH-1 to TSH-5: the dot unit, which computes in single precision because the chip does. The one place of the fixed path with floats.
+//! TSH-1 to TSH-5, TSH-7: the dot unit, which computes in single precision because the chip does. The one place of the fixed path with floats.
 //!
 //! Only + - * / of IEEE single precision occur, each rounded on its own, in the order written here; nothing is fused. Every
 //! machine therefore gets the same bits (those of a NaN excepted, which counts as 0 wherever it arrives).
@@ -24,7 +24,7 @@ impl Number for f64 {
 /// Three numbers: coordinates, a remapped colour, a vector.
 pub type Vector<N> = [N; 3];
 
-/// TSH-1 to TSH-3: the bytes R, G, B, A of a colour as three fractions, numerator and denominator. All numerators and denominators have at most
+/// TSH-1, TSH-2 and TSH-3: the bytes R, G, B, A of a colour as three fractions, numerator and denominator. All numerators and denominators have at most
 /// 24 bits.
 pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
     let [r, g, b, a] = bytes;
@@ -69,6 +69,11 @@ pub fn sum<N: Number>([x, y, z]: Vector<N>) -> N {
 /// TSH-4: the dot product.
 pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
     sum(products(a, b))
+}
+
+/// TSH-7: blue and green times what they move a coordinate by; each operation is rounded.
+pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
+    entries[0] * blue_green[0] + entries[1] * blue_green[1]
 }
 
 /// TSH-5: a reflection, with what it is made of.
@@ -177,6 +182,7 @@ mod tests {
             let [x, y, z]: [f32; 3] = std::array::from_fn(|n| by_double(a[n], b[n], |x, y| x * y));
             let sum = by_double(by_double(x, y, |x, y| x + y), z, |x, y| x + y);
             prop_assert_eq!(dot(a, b), sum);
+            prop_assert_eq!(moved([a[0], a[1]], [b[0], b[1]]), by_double(x, y, |x, y| x + y));
         }
 
         /// The reflection keeps the length, and the normal halves the angle.

@@ -1,5 +1,6 @@
 //! TSH-6 to TSH-9, and what becomes of the dot unit's results: dependent coordinates and colours, in integers.
 
+use super::dot::moved;
 use crate::number::convert::{align, factor_byte, shift, split};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::state::DependentScale;
@@ -26,16 +27,11 @@ fn sum_of_products(terms: [(i64, f32); 2]) -> (i128, i32) {
     (terms.map(|(n, e)| shift(n, e - unit)).iter().sum(), unit)
 }
 
-/// floor(n 2^exponent) within a limit. A sum of products whose exponent is positive is beyond every limit, unless it is 0.
-fn limited(n: i128, exponent: i32, limit: i128) -> i128 {
-    if exponent > 0 { n.signum() * limit } else { shift(n, exponent).clamp(-limit, limit) }
-}
-
-/// TSH-7: by how much blue and green (two's complement) move one coordinate: floor(2^24 256 side (m_b B + m_g G) / 128), in 2^-24 of 1/256 texel.
-/// `side` is 1 where coordinates are texels.
-pub fn offset([along_blue, along_green]: [f32; 2], [blue, green]: [u8; 2], side: u32) -> i64 {
-    let (n, e) = sum_of_products([(i64::from(blue as i8), along_blue), (i64::from(green as i8), along_green)]);
-    limited(n * i128::from(side), e + OFFSET_BITS as i32 + 8 - 7, OFFSET_LIMIT) as i64
+/// TSH-7: by how much blue and green (two's complement) move one coordinate: floor(2^24 256 side f / 128) of f = m_b B + m_g G in single
+/// precision, in 2^-24 of 1/256 texel. `side` is 1 where coordinates are texels. NaN is 0.
+pub fn offset(entries: [f32; 2], blue_green: [u8; 2], side: u32) -> i64 {
+    let f = moved(entries, blue_green.map(|byte| f32::from(byte as i8)));
+    scaled(f, side, OFFSET_BITS as i32 + 8 - 7, OFFSET_LIMIT)
 }
 
 /// TSH-8: floor(4096 f) of f = c/255 (R/255 scale + offset), not negative and limited to 2^20. A negative c counts as 0.
@@ -118,9 +114,13 @@ mod tests {
         assert_eq!(offset([0.5, -0.25], [0, 128], 1), texel / 4);
         // A hair below zero is one step down, whatever its size.
         assert_eq!(offset([-1e-30, 0.0], [1, 0], 1), -1);
-        assert_eq!(offset([-1e-30, 1.0], [1, 1], 1), texel / 128 - 1);
+        // A sum in single precision: what is tiny beside the other is lost, and 0.3 * 10, which is a hair above 3, is 3.
+        assert_eq!(offset([-1e-30, 1.0], [1, 1], 1), texel / 128);
+        assert_eq!(offset([0.3, 1.0], [10, 125], 1), texel);
         assert_eq!(offset([1e30, 0.0], [1, 0], 1), OFFSET_LIMIT as i64);
         assert_eq!(offset([1e30, 1e30], [1, 255], 1), 0);
+        // Infinity less infinity.
+        assert_eq!(offset([f32::MAX, f32::MAX], [2, 254], 1), 0);
     }
 
     #[test]

@@ -475,7 +475,7 @@ fn on_face(inputs: &[(String, Number)], s: bool) -> [i128; 2] {
 
 /// floor(128 log2 n) - 4096 of the larger squared distance n.
 fn log2_ratio(uv: [i128; 6]) -> i128 {
-    let [u0, v0, u1, v1, u2, v2] = uv.map(|c| c.clamp(-(1 << 40), 1 << 40));
+    let [u0, v0, u1, v1, u2, v2] = uv.map(|c| c.clamp(-(1 << 60), 1 << 60));
     let n = ((u1 - u0).pow(2) + (v1 - v0).pow(2)).max((u2 - u0).pow(2) + (v2 - v0).pow(2)) as u128;
     if n == 0 {
         return -32768;

@@ -173,8 +173,12 @@ fn sum(terms: [(i128, f32); 2]) -> (i128, i32) {
 }
 
 pub fn bump_offset(inputs: &Inputs) -> i128 {
-    let signed = |n: usize| i128::from(value(inputs, n) as u8 as i8);
-    let (n, exponent) = sum([(signed(2), single(inputs, 0)), (signed(3), single(inputs, 1))]);
+    let signed = |n: usize| f32::from(value(inputs, n) as u8 as i8);
+    let sum = single(inputs, 0) * signed(2) + single(inputs, 1) * signed(3);
+    if sum.is_nan() {
+        return 0;
+    }
+    let (n, exponent) = apart(sum);
     let (n, exponent, limit) = (n * value(inputs, 4), exponent + 25, 1 << 50);
     let value = if exponent < 0 { n >> (-exponent).min(127) } else { n.saturating_mul(1 << exponent.min(90)) };
     value.clamp(-limit, limit)

@@ -16,8 +16,8 @@ pub enum Place {
     Set(usize),
     /// s, t, r of a coordinate set as a direction.
     Direction(usize),
-    /// s, t of a coordinate set, each moved by a sum (TSH-7).
-    Moved(usize, [[Exact; 2]; 2]),
+    /// s, t of a coordinate set, each moved by 1/128 of a number (TSH-7).
+    Moved(usize, [Exact; 2]),
     /// Two bytes and what they are divided by (TSH-6).
     Bytes([i128; 2], i128),
     /// s, t of the dot unit (TSH-4).
@@ -115,7 +115,7 @@ impl Place {
                 let [s, t, q] = setup.three(*set, [0, 1, 3]);
                 (0, [ratio(setup, sample, s, q, size[0]), ratio(setup, sample, t, q, size[1])])
             }
-            Place::Moved(set, by) => (0, [0, 1].map(|a| moved(setup, sample, *set, a, &by[a], size[a]))),
+            Place::Moved(set, by) => (0, [0, 1].map(|a| moved(setup, sample, *set, a, by[a], size[a]))),
             Place::Direction(set) => direction(setup, sample, setup.three(*set, [0, 1, 2]), size[0]),
             Place::Bytes(v, whole) => (0, [0, 1].map(|a| floor_div(256 * i128::from(size[a]) * v[a], *whole).0)),
             Place::Floats(f) => (0, [0, 1].map(|a| floor_float(f[a], 256 * i128::from(size[a])))),
@@ -158,7 +158,7 @@ impl Place {
             }
             Place::Moved(set, by) => both([0, 1].map(|a| {
                 let total = 256 * Setup::total(sample, setup.plane(setup.component(*set, a), size[a]));
-                moved_by(total, sample.d, 256 * offset(&by[a], size[a]))
+                moved_by(total, sample.d, 256 * offset(by[a], size[a]))
             })),
             Place::Direction(set) => {
                 let v = setup.three(*set, [0, 1, 2]).map(|x| Setup::total(sample, x));
@@ -201,8 +201,8 @@ fn ratio(setup: &Setup, sample: &Sample, s: [i128; 3], q: [i128; 3], size: u32) 
 }
 
 /// TSH-7's movement in 2^-24 of 1/256 texel.
-fn offset(by: &[Exact; 2], size: u32) -> i128 {
-    floor_sum(&by.map(|(m, e)| (m * i128::from(size), e + 25)))
+fn offset((m, e): Exact, size: u32) -> i128 {
+    floor_sum(&[(m * i128::from(size), e + 25)])
 }
 
 /// floor((total 2^24 + by D) / (D 2^24)), D > 0.
@@ -215,7 +215,7 @@ fn moved_by(total: i128, d: i128, by: i128) -> Option<i128> {
 }
 
 /// TSH-7: s or t of a set, moved; q is not divided by.
-fn moved(setup: &Setup, sample: &Sample, set: usize, axis: usize, by: &[Exact; 2], size: u32) -> i128 {
+fn moved(setup: &Setup, sample: &Sample, set: usize, axis: usize, by: Exact, size: u32) -> i128 {
     let g = setup.plane(setup.component(set, axis), size);
     let (total, by) = (Setup::total(sample, g), offset(by, size));
     let u = moved_by(total, sample.d, by).unwrap_or(0);

@@ -102,10 +102,10 @@ impl<'a> Units<'a> {
         let dot = |unit: usize| self.dot(unit, i, j, sample);
         Some(match stage.operation {
             ShaderOperation::BumpEnvironment { matrix, .. } => {
-                // TSH-7: both bytes are two's complement whatever the flags.
-                let [_, g, b, _] = self.previous(k, i, j, sample).map(|v| signed(true, v, 8));
-                let [m0, m1, m2, m3] = matrix.map(split);
-                Place::Moved(set, [[(m0.0 * b, m0.1), (m3.0 * g, m3.1)], [(m1.0 * b, m1.1), (m2.0 * g, m2.1)]])
+                // TSH-7: both bytes are two's complement whatever the flags; the sums are in single precision.
+                let [_, g, b, _] = self.previous(k, i, j, sample).map(|v| signed(true, v, 8) as f32);
+                let [m0, m1, m2, m3] = matrix;
+                Place::Moved(set, [m0 * b + m3 * g, m1 * b + m2 * g].map(split))
             }
             ShaderOperation::DependentAlphaRed => {
                 let [r, _, _, a] = self.previous(k, i, j, sample);

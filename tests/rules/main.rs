@@ -16,4 +16,5 @@ mod raster_operations;
 mod rasteriser;
 mod texture_formats;
 mod texture_levels;
+mod texture_shader;
 mod texture_units;
