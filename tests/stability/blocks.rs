@@ -39,9 +39,8 @@ fn colors(texels: &[[u8; 4]; 16]) -> [u8; 8] {
     }
     // With equal end points the block has three colours, and every index below 3 is the same one.
     let (a, b) = (from_565(c0), from_565(c1));
-    let third = |a: [u8; 4], b: [u8; 4]| {
-        std::array::from_fn(|n| ((2 * u32::from(a[n]) + u32::from(b[n]) + 1) / 3) as u8)
-    };
+    let third =
+        |a: [u8; 4], b: [u8; 4]| std::array::from_fn(|n| ((2 * u32::from(a[n]) + u32::from(b[n]) + 1) / 3) as u8);
     let palette = [a, b, third(a, b), third(b, a)];
     let known = if c0 == c1 { 1 } else { 4 };
     let mut indices = 0_u32;

@@ -6,6 +6,8 @@ use std::fmt::Write;
 pub struct Line<'a> {
     pub label: &'a str,
     pub color: &'a str,
+    /// Drawn broad and pale, so that a line on top of it can be told from it.
+    pub beneath: bool,
     pub points: Vec<[f64; 2]>,
 }
 
@@ -19,7 +21,7 @@ pub struct Axis<'a> {
 const WIDTH: f64 = 640.0;
 const HEIGHT: f64 = 300.0;
 /// Left, top, right, bottom of the plot.
-const PLOT: [f64; 4] = [62.0, 16.0, 624.0, 246.0];
+const PLOT: [f64; 4] = [62.0, 16.0, 612.0, 246.0];
 
 pub const BLUE: &str = "#2364aa";
 pub const RED: &str = "#c8402f";
@@ -69,12 +71,13 @@ pub fn chart(x: &Axis<'_>, y: &Axis<'_>, lines: &[Line<'_>], legend_right: bool)
     for (n, line) in lines.iter().enumerate() {
         let points: Vec<String> = line.points.iter().map(|[a, b]| format!("{:.1},{:.1}", across(*a), up(*b))).collect();
         let (color, label) = (line.color, line.label);
+        let style = if line.beneath { "stroke-width=\"7\" stroke-opacity=\"0.35\"" } else { "stroke-width=\"2\"" };
         let left = if legend_right { PLOT[2] - 230.0 } else { PLOT[0] + 12.0 };
         let top = PLOT[1] + 16.0 + 18.0 * n as f64;
         let _ = writeln!(
             out,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>\n\
-             <path d=\"M{left:.1} {top:.1}h22\" stroke=\"{color}\" stroke-width=\"2\"/>\n\
+            "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" {style}/>\n\
+             <path d=\"M{left:.1} {top:.1}h22\" stroke=\"{color}\" {style}/>\n\
              <text x=\"{:.1}\" y=\"{:.1}\">{label}</text>",
             points.join(" "),
             left + 28.0,

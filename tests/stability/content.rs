@@ -38,7 +38,7 @@ pub fn stone() -> Rgba {
 pub const BALL: u32 = 4;
 
 /// The middle of a ball, out to 0.7 of its radius along x and y.
-fn ball(side: u32) -> Rgba {
+pub fn ball(side: u32) -> Rgba {
     let normal = |n: u32| {
         let along = |index: u32| 0.7 * (f64::from(2 * index + 1) / f64::from(side) - 1.0);
         let (x, y) = (along(n % side), -along(n / side));

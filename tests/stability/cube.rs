@@ -11,10 +11,20 @@ use ninebit::texture::place::Coordinates;
 
 pub fn section() -> Section {
     let scene = scene("cube-edge.ron");
-    let mut rows = vec![cells(["texels a face", "largest jump inside a face, steps", "across an edge", "largest error of the direction"])];
+    let mut rows = vec![cells([
+        "texels a face",
+        "largest jump inside a face, steps",
+        "across an edge",
+        "largest error of the direction",
+    ])];
     for side in [4, 8, 16, 32, 64, 128] {
         let (inside, across, worst) = jumps(&scene, side);
-        rows.push(vec![format!("{side} x {side}"), inside.to_string(), across.to_string(), format!("{worst:.1} degrees")]);
+        rows.push(vec![
+            format!("{side} x {side}"),
+            inside.to_string(),
+            across.to_string(),
+            format!("{worst:.1} degrees"),
+        ]);
     }
     let plan_of_page = plan(&scene);
     let frame = draw(&plan_of_page);
@@ -43,7 +53,8 @@ fn faces(plan: &Plan) -> Vec<(Face, [f64; 3])> {
     let mut map = vec![(Face::PositiveX, [0.0; 3]); 256 * 256];
     visit(plan, |covered| {
         if covered.draw == 1 {
-            let Coordinates::Direction(g) = Coordinates::new(covered.triangle, covered.coordinates(), covered.unit) else {
+            let Coordinates::Direction(g) = Coordinates::new(covered.triangle, covered.coordinates(), covered.unit)
+            else {
                 panic!("a cube map is sampled with a direction");
             };
             let at = covered.sample();

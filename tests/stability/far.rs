@@ -21,7 +21,8 @@ pub fn section() -> Section {
         let most = &mut worst[covered.draw][strip];
         *most = Some(most.unwrap_or(0).max(error));
     });
-    let mut rows = vec![cells(["texels from the origin", "q = 1, equal w", "q = 1, in perspective", "through q, in perspective"])];
+    let mut rows =
+        vec![cells(["texels from the origin", "q = 1, equal w", "q = 1, in perspective", "through q, in perspective"])];
     let shown = |error: Option<i64>, k: usize| match error {
         None => "refused (RAS-0)".to_string(),
         Some(_) if k > 16 => "held at 65536".to_string(),
@@ -33,20 +34,24 @@ pub fn section() -> Section {
     }
     refused(&scene);
 
-    let exponent = |error: i64| if error == 0 { -0.5 } else { (error as f64).log2() };
+    let exponent = |error: i64| if error == 0 { -2.0 } else { (error as f64).log2() };
     let line = |draw: usize, label: &'static str, color: &'static str| {
         let points = (FIRST..=16).filter_map(|k| Some([k as f64, exponent(worst[draw][k - FIRST]?)])).collect();
-        Line { label, color, points }
+        Line { label, color, beneath: draw == 0, points }
     };
     let lines = [
         line(0, "q = 1, equal w", BLUE),
         line(1, "q = 1, in perspective", GREEN),
         line(2, "through q, in perspective", RED),
     ];
-    let x = Axis { label: "texels from the origin, texture of 16", range: [10.0, 16.0], ticks: ticks(10, 16, 1, |k| format!("2^{k}")) };
+    let x = Axis {
+        label: "texels from the origin, texture of 16",
+        range: [10.0, 16.0],
+        ticks: ticks(10, 16, 1, |k| format!("2^{k}")),
+    };
     let mut marks = ticks(0, 12, 2, |k| (1_i64 << k).to_string());
-    marks.insert(0, (-0.5, "0".to_string()));
-    let y = Axis { label: "largest error, 1/256 texel", range: [-0.5, 12.5], ticks: marks };
+    marks.insert(0, (-2.0, "0".to_string()));
+    let y = Axis { label: "largest error, 1/256 texel", range: [-2.0, 12.5], ticks: marks };
     Section {
         name: "far",
         tables: vec![rows],
@@ -57,7 +62,8 @@ pub fn section() -> Section {
 
 /// u as the model has it minus the floor of the exact rational number, 1/256 texel.
 fn error(covered: &Covered<'_>) -> i64 {
-    let (sample, coordinates) = (covered.sample(), Coordinates::new(covered.triangle, covered.coordinates(), covered.unit));
+    let (sample, coordinates) =
+        (covered.sample(), Coordinates::new(covered.triangle, covered.coordinates(), covered.unit));
     let place = Interpolated {
         unit: covered.unit,
         coordinates: &coordinates,

@@ -117,11 +117,25 @@ fn length_chart() -> String {
     let over = |length: &dyn Fn(usize) -> f64| (0..=240).map(|row| [pair_angle(row), length(row)]).collect::<Vec<_>>();
     let newton = |l: f64| l * (3.0 - l * l) / 2.0;
     let lines = [
-        Line { label: "half-way, float64", color: BLUE, points: over(&|row| exact_length(row, 128)) },
-        Line { label: "half-way, the chip", color: RED, points: over(&|row| fixed_length(mix(row, 128))) },
-        Line { label: "after one step of Newton's method", color: GREEN, points: over(&|row| newton(exact_length(row, 128))) },
+        Line { label: "half-way, float64", color: BLUE, beneath: true, points: over(&|row| exact_length(row, 128)) },
+        Line {
+            label: "half-way, the chip",
+            color: RED,
+            beneath: false,
+            points: over(&|row| fixed_length(mix(row, 128))),
+        },
+        Line {
+            label: "after one step of Newton's method",
+            color: GREEN,
+            beneath: false,
+            points: over(&|row| newton(exact_length(row, 128))),
+        },
     ];
-    let x = Axis { label: "angle between the two texels, degrees", range: [0.0, 180.0], ticks: ticks(0, 180, 30, |n| n.to_string()) };
+    let x = Axis {
+        label: "angle between the two texels, degrees",
+        range: [0.0, 180.0],
+        ticks: ticks(0, 180, 30, |n| n.to_string()),
+    };
     let y = Axis {
         label: "length",
         range: [0.0, 1.05],

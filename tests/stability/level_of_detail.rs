@@ -32,7 +32,12 @@ pub fn section() -> Section {
     });
     let mut rows = vec![cells(["exact lod of the pixel", "pixels", "lod of its quad off by, mean, 1/256", "largest"])];
     for (name, (count, sum, most)) in names.iter().zip(errors) {
-        rows.push(vec![name.to_string(), count.to_string(), format!("{:.1}", sum / f64::from(count)), format!("{most:.0}")]);
+        rows.push(vec![
+            name.to_string(),
+            count.to_string(),
+            format!("{:.1}", sum / f64::from(count)),
+            format!("{most:.0}"),
+        ]);
     }
     let steps = steps(&frame, &lods);
     let counted = vec![
@@ -47,9 +52,10 @@ pub fn section() -> Section {
     Section {
         name: "lod",
         tables: vec![rows, counted],
-        pictures: vec![
-            ("lod-plane.png", Picture::row(&[frame.part(0, 0, 256, 192), frame.part(256, 0, 256, 192), close])),
-        ],
+        pictures: vec![(
+            "lod-plane.png",
+            Picture::row(&[frame.part(0, 0, 256, 192), frame.part(256, 0, 256, 192), close]),
+        )],
         charts: vec![],
     }
 }

@@ -19,12 +19,18 @@ pub fn section() -> Section {
     let mut bands = vec![None; a.pixels.len()];
     visit(&still, |covered| {
         let (i, j) = covered.pixel;
-        bands[j as usize * a.width + i as usize] = Some((covered.lod().max(-1) / 256 + i32::from(covered.lod() > 0)) as usize);
+        bands[j as usize * a.width + i as usize] =
+            Some((covered.lod().max(-1) / 256 + i32::from(covered.lod() > 0)) as usize);
     });
     // The left half has no levels, and so no lod: it is that of the right half.
     let band = |x: usize, y: usize| bands[y * a.width + x % 256 + 256];
     let names = ["magnified", "1 to 2 texels a pixel", "2 to 4", "4 to 8", "more than 8"];
-    let mut rows = vec![cells(["rms difference of two frames half a pixel apart, steps", "pixels", "level 0 alone", "all levels"])];
+    let mut rows = vec![cells([
+        "rms difference of two frames half a pixel apart, steps",
+        "pixels",
+        "level 0 alone",
+        "all levels",
+    ])];
     for (n, name) in names.iter().enumerate() {
         let mut squares = [0.0; 2];
         let mut count = 0;
@@ -45,10 +51,7 @@ pub fn section() -> Section {
     Section {
         name: "minified",
         tables: vec![rows, levels(&scene)],
-        pictures: vec![
-            ("shimmer.png", halves(&a)),
-            ("shimmer-difference.png", halves(&difference)),
-        ],
+        pictures: vec![("shimmer.png", halves(&a)), ("shimmer-difference.png", halves(&difference))],
         charts: vec![],
     }
 }

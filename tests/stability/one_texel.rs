@@ -11,7 +11,8 @@ pub fn section() -> Section {
     let TextureImage::Texels(texels) = &texture.image else { panic!("texels expected") };
     let (levels, _) = Level::chain(texture.format, texels.width, texels.height, texels.levels, false);
     let mean = texels.words[..64].iter().map(|word| f64::from(*word)).sum::<f64>() / 64.0;
-    let mut rows = vec![cells(["level", "texels", "lowest and highest shown", "mean shown", "off the mean of level 0"])];
+    let mut rows =
+        vec![cells(["level", "texels", "lowest and highest shown", "mean shown", "off the mean of level 0"])];
     for (n, level) in levels.iter().enumerate() {
         let strip = frame.part(0, 16 * n, 256, 14);
         // One row: every row of the strip is the same, since the level is one texel high.

@@ -3,9 +3,9 @@
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::scene;
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
+use ninebit::scene;
 use ninebit::state::{Scene, Vertex};
 use ninebit::texture::lod;
 use ninebit::texture::place::{Coordinates, Interpolated, Place};
@@ -45,6 +45,14 @@ impl Picture {
     /// Each pixel as a square.
     pub fn enlarged(&self, times: usize) -> Picture {
         Picture::from(self.width * times, self.height * times, |x, y| self.at(x / times, y / times))
+    }
+
+    /// Two pictures of one width, one above the other.
+    pub fn above(&self, lower: &Picture) -> Picture {
+        const GAP: usize = 6;
+        let gap = vec![[255; 3]; GAP * self.width];
+        let pixels = [self.pixels.clone(), gap, lower.pixels.clone()].concat();
+        Picture { width: self.width, height: self.height + GAP + lower.height, pixels }
     }
 
     /// Pictures of one height side by side, a light gap between them.
