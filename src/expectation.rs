@@ -1,8 +1,8 @@
 //! What a scene is expected to show: `NAME.expect.ron` beside `NAME.ron`.
 //!
-//! Equality is the rule: an expectation is the digest of a picture. Where something else is known (a photograph of a screen, a
-//! capture with a region that nobody can vouch for) a mask leaves pixels out, and a named allowance says how many may differ
-//! and by how much; an allowance needs the picture itself.
+//! Equality is the rule: an expectation is the digest of a picture, our own or a captured one. Where something else is known (a
+//! photograph of a screen, a capture with a region that nobody can vouch for) a mask leaves pixels out, and a named allowance
+//! says how many may differ and by how much; an allowance needs the picture itself.
 
 use std::path::Path;
 
@@ -34,6 +34,13 @@ pub struct Expectation {
     pub height: u32,
     /// [`digest`] of the picture, pixels that the mask leaves out taken as 0, 0, 0, 0.
     pub sha256: String,
+    /// What picture that is, if it is not one of this program: the name of a capture. Such a digest is never written anew from
+    /// what this program draws.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub capture: Option<String>,
+    /// How many pixels are compared, which says what the mask is worth.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pixels: Option<u64>,
     /// An image in the same folder, of the same size: where its red is 0, the picture is not compared.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mask: Option<String>,
@@ -106,6 +113,14 @@ pub enum ExpectationError {
     /// An image it names is refused.
     #[error(transparent)]
     Image(#[from] ImageError),
+    /// The mask leaves another number of pixels.
+    #[error("{found} pixels are compared, not {expected}")]
+    Pixels {
+        /// As expected.
+        expected: u64,
+        /// As the mask has it.
+        found: u64,
+    },
     /// An image it names has another size.
     #[error("`{name}` is {width} x {height}, not of the size expected")]
     Size {
@@ -121,8 +136,17 @@ pub enum ExpectationError {
 impl Expectation {
     /// The strict expectation that `surface` meets.
     pub fn of(target: &str, surface: &Surface) -> Self {
-        let (width, height, sha256) = (surface.width, surface.height, surface.digest());
-        Expectation { version: VERSION, target: target.to_owned(), width, height, sha256, mask: None, allowance: None }
+        Expectation {
+            version: VERSION,
+            target: target.to_owned(),
+            width: surface.width,
+            height: surface.height,
+            sha256: surface.digest(),
+            capture: None,
+            pixels: None,
+            mask: None,
+            allowance: None,
+        }
     }
 
     /// Reads an expectation's text.
@@ -153,27 +177,21 @@ impl Expectation {
     /// Compares a surface with the expectation; images are looked for in `folder`. `None`: it is as expected.
     ///
     /// # Errors
-    /// The mask or the picture cannot be used.
+    /// The mask or the picture cannot be used, or the mask leaves another number of pixels than is stated.
     pub fn compare(&self, surface: &Surface, folder: &Path) -> Result<Option<Mismatch>, ExpectationError> {
         let (width, height) = (surface.width, surface.height);
         if [width, height] != [self.width, self.height] {
             return Ok(Some(Mismatch::Size { width, height }));
         }
         let mut pixels = surface.rgba8();
-        let mask = self.mask.as_ref().map(|name| self.image(folder, name)).transpose()?;
-        let left_out = |index: usize| mask.as_ref().is_some_and(|mask| mask[index][0] == 0);
-        for (index, pixel) in pixels.iter_mut().enumerate() {
-            if left_out(index) {
-                *pixel = [0; 4];
-            }
-        }
-        let sha256 = digest(width, height, &pixels);
+        let compared = self.compared(folder)?;
+        let sha256 = masked_digest(width, height, &mut pixels, &compared);
         if sha256 == self.sha256 {
             return Ok(None);
         }
         let Some(allowance) = &self.allowance else { return Ok(Some(Mismatch::Digest { sha256 })) };
         let expected = self.image(folder, &allowance.picture)?;
-        let differing = pixels.iter().zip(&expected).enumerate().filter(|(index, (a, b))| !left_out(*index) && a != b);
+        let differing = pixels.iter().zip(&expected).enumerate().filter(|(index, (a, b))| compared[*index] && a != b);
         let (mut count, mut difference, mut first) = (0, 0, None);
         for (index, (a, b)) in differing {
             count += 1;
@@ -186,6 +204,22 @@ impl Expectation {
         Ok((!accepted).then_some(mismatch))
     }
 
+    /// Whether each pixel is compared, row by row.
+    ///
+    /// # Errors
+    /// The mask cannot be used, or leaves another number of pixels than is stated.
+    pub fn compared(&self, folder: &Path) -> Result<Vec<bool>, ExpectationError> {
+        let compared = match &self.mask {
+            Some(name) => self.image(folder, name)?.iter().map(|pixel| pixel[0] != 0).collect(),
+            None => vec![true; self.width as usize * self.height as usize],
+        };
+        let found = compared.iter().filter(|compared| **compared).count() as u64;
+        match self.pixels {
+            Some(expected) if expected != found => Err(ExpectationError::Pixels { expected, found }),
+            _ => Ok(compared),
+        }
+    }
+
     /// Pixels of an image of the expected size.
     fn image(&self, folder: &Path, name: &str) -> Result<Vec<[u8; 4]>, ExpectationError> {
         let image = image::load(&resolve(folder, name)?, &ImageLimits::default())?;
@@ -195,6 +229,16 @@ impl Expectation {
         }
         Ok(image.pixels)
     }
+}
+
+/// Sets pixels that are not compared to 0, 0, 0, 0 and takes the [`digest`].
+pub fn masked_digest(width: u32, height: u32, pixels: &mut [[u8; 4]], compared: &[bool]) -> String {
+    for (pixel, compared) in pixels.iter_mut().zip(compared) {
+        if !compared {
+            *pixel = [0; 4];
+        }
+    }
+    digest(width, height, pixels)
 }
 
 #[cfg(test)]
@@ -212,6 +256,7 @@ mod tests {
         let mut expectation = Expectation::of("frame", &surface(&[1, 2]));
         assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
         expectation.mask = Some("mask.png".to_owned());
+        (expectation.capture, expectation.pixels) = (Some("Suite/Frame.png".to_owned()), Some(1));
         expectation.allowance =
             Some(Allowance { picture: "p.png".to_owned(), pixels: 3, difference: 1, reason: "a camera".to_owned() });
         assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
@@ -244,6 +289,10 @@ mod tests {
         let masked = Expectation { mask: Some("mask.png".to_owned()), ..Expectation::of("frame", &surface(&[1, 0])) };
         assert_eq!(masked.compare(&surface(&[1, 99]), folder.path()).expect("compares"), None);
         assert!(masked.compare(&surface(&[2, 0]), folder.path()).expect("compares").is_some());
+        let counted = |pixels| Expectation { pixels: Some(pixels), ..masked.clone() };
+        assert_eq!(counted(1).compare(&surface(&[1, 99]), folder.path()).expect("compares"), None);
+        let other = counted(2).compare(&surface(&[1, 99]), folder.path());
+        assert!(matches!(other, Err(ExpectationError::Pixels { expected: 2, found: 1 })), "{other:?}");
 
         let allowance = |pixels, difference| {
             Some(Allowance { picture: "picture.png".to_owned(), pixels, difference, reason: "a test".to_owned() })

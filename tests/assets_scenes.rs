@@ -1,7 +1,11 @@
 //! Every scene under `vectors/scenes` shows what is expected, and its generated textures are what the generators make.
 //!
-//! `BLESS=1 cargo test --test assets_scenes` rewrites the expectations; look at the pictures and at the difference before committing.
+//! `BLESS=1 cargo test --test assets_scenes` rewrites the expectations, but for those that come from a capture; look at the pictures
+//! and at the difference before committing.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+#[path = "common/scene_files.rs"]
+mod scene_files;
 
 use std::path::{Path, PathBuf};
 
@@ -18,22 +22,6 @@ fn scenes_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes")
 }
 
-/// Every scene file, sorted.
-fn scene_files(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap() {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if path.is_dir() {
-            files.extend(scene_files(&path));
-        } else if name.ends_with(".ron") && !name.ends_with(".expect.ron") {
-            files.push(path);
-        }
-    }
-    files.sort();
-    files
-}
-
 /// Renders a scene and compares its first target with the expectation; says what is wrong.
 fn check(file: &Path, bless: bool) -> Result<(), String> {
     let loaded = scene::load(file, &Limits::default()).map_err(|error| error.render(false))?;
@@ -43,13 +31,15 @@ fn check(file: &Path, bless: bool) -> Result<(), String> {
         return Err("the picture depends on the number of threads".to_owned());
     }
     let surface = &frames.surfaces[0];
-    let expectation = file.with_extension("expect.ron");
-    if bless {
+    let path = file.with_extension("expect.ron");
+    let text = std::fs::read_to_string(&path).map_err(|error| format!("no expectation ({error})"));
+    let expectation = text.and_then(|text| Expectation::parse(&text).map_err(|error| error.to_string()));
+    let captured = expectation.as_ref().is_ok_and(|expectation| expectation.capture.is_some());
+    if bless && !captured {
         let text = Expectation::of(&loaded.scene.targets[0].name, surface).to_text();
-        return write_file(&expectation, text.as_bytes()).map_err(|error| error.to_string());
+        return write_file(&path, text.as_bytes()).map_err(|error| error.to_string());
     }
-    let text = std::fs::read_to_string(&expectation).map_err(|error| format!("no expectation ({error})"))?;
-    let expectation = Expectation::parse(&text).map_err(|error| error.to_string())?;
+    let expectation = expectation?;
     match expectation.compare(surface, file.parent().unwrap()).map_err(|error| error.to_string())? {
         None => Ok(()),
         Some(mismatch) => Err(mismatch.to_string()),
@@ -61,7 +51,7 @@ fn every_scene_shows_what_is_expected() {
     let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty() && value != "0");
     let bless = set("BLESS");
     assert!(!(bless && set("CI")), "expectations are not rewritten in continuous integration");
-    let files = scene_files(&scenes_folder());
+    let files = scene_files::below(&scenes_folder());
     let complaints: Vec<String> = files
         .iter()
         .filter_map(|file| check(file, bless).err().map(|error| format!("{}: {error}", file.display())))

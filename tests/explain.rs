@@ -22,7 +22,7 @@ fn check(what: &str, scene: &Scene, plan: &Plan) -> (u64, u64) {
     for (draw, counts) in explain(scene, plan).iter().zip(&counted) {
         let cost = &draw.cost;
         assert_eq!(cost.fragments, counts.fragments, "{what}: fragments of {}", draw.name);
-        let at_most = |work: Work| cost.lod_decides && matches!(work, Work::Texels | Work::Lerps);
+        let at_most = |work: Work| cost.kills || cost.lod_decides && matches!(work, Work::Texels | Work::Lerps);
         let agree = |most: &[u64]| {
             Work::ALL
                 .iter()

@@ -161,6 +161,12 @@ fn tables() {
     bench.write("i.tsv", "index\n-1\n8\n");
     let table = bench.run("op address --mode clamp_to_border --size 8 --profile nv2a --inputs i.tsv").text();
     assert_eq!(table, "index\tresult.texel\n-1\tborder\n8\tborder\n");
+    bench.write("d.tsv", "x\ty\tz\n2\t-4\t1\n0\t0\t0\n-3\t3\t3\n");
+    let table = bench.run("op cube --size 64 --inputs d.tsv").text();
+    let lines: Vec<&str> = table.lines().skip(1).collect();
+    assert_eq!(lines[0], "2\t-4\t1\tNegativeY\t12288\t6144\t48\t24\t[47,48]\t[23,24]");
+    assert_eq!(lines[1], "0\t0\t0\tPositiveX\t0\t0\t0\t0\t[0,0]\t[0,0]");
+    assert!(lines[2].starts_with("-3\t3\t3\tNegativeX\t16384\t0\t63\t0"), "{table}");
 }
 
 #[test]
@@ -227,8 +233,8 @@ fn other_illegal_operations() {
     refused("blend --surface g8b8 --source 1 --destination 1", "error[NB0314]");
     refused("address --mode wrap --size 6 --index 1", "error[NB0219]");
     refused("address --mode clamp_to_border --size 8 --index 1", "error[NB0317]");
-    refused("cube --face 3 -x 1", "error[NB0401]: not built yet: cube maps");
-    refused("cube", "error[NB0401]");
+    refused("cube --size 100 --direction 1,0,0", "error[NB0219]");
+    refused("cube --size 2048 --direction 1,0,0", "error[NB0321]");
     let text = bench.run("op combiner --a tex2").stderr;
     assert!(text.contains("`--profile nv2a` chooses the other chip"), "{text}");
 }

@@ -10,7 +10,9 @@ use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::report::trace_text;
-use ninebit::state::{POLICIES, Policies, Scene};
+use ninebit::state::{
+    AddressMode, DotMapping, Filter, FogMode, Named, POLICIES, Policies, Scene, TextureFormat, TextureKind,
+};
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -86,9 +88,10 @@ fn random_scenes_agree() {
 }
 
 #[test]
-fn random_scenes_draw_something() {
+fn random_scenes_draw_something_of_everything() {
     let strategy = random_scene::scene();
     let mut runner = runner(400);
+    model::tally::take();
     let rich = (0..400)
         .filter(|_| {
             let scene = strategy.new_tree(&mut runner).unwrap().current();
@@ -107,5 +110,48 @@ fn random_scenes_draw_something() {
         })
         .count();
     println!("{rich} of 400 scenes are rich");
+    let tally = model::tally::take();
+    println!("{tally:#?}");
     assert!(rich >= 200, "{rich} of 400");
+    let mut missing = Vec::new();
+    let mut need = |group: &'static str, names: &[&'static str]| {
+        missing.extend(names.iter().filter(|n| tally.get(&(group, **n)).is_none_or(|n| *n < 500)).map(|n| (group, *n)));
+    };
+    need("TextureFormat", TextureFormat::NAMES);
+    need("TextureKind", TextureKind::NAMES);
+    need("outside", AddressMode::NAMES);
+    need("cube edge", &["Wrap"]);
+    need("border", &["color", "texels"]);
+    need("face", &["+X", "-X", "+Y", "-Y", "+Z", "-Z"]);
+    need("level", &["0", "1", "2", "3", "4"]);
+    for group in ["magnified", "minified without levels", "minified to the nearest level", "minified between levels"] {
+        need(group, Filter::NAMES);
+    }
+    need("lod", &["least", "measured"]);
+    if random_scene::FOG_FUNCTIONS {
+        need(FogMode::TYPE, FogMode::NAMES);
+    }
+    if random_scene::TEXTURE_SHADERS {
+        need(DotMapping::TYPE, DotMapping::NAMES);
+        need("fragment", &["culled", "kept"]);
+        need("operation", &OPERATIONS);
+    }
+    assert!(missing.is_empty(), "too seldom: {missing:?}");
 }
+
+/// Every operation of the texture shader.
+const OPERATIONS: [&str; 13] = [
+    "None",
+    "Sample",
+    "PassThrough",
+    "CullFragment",
+    "BumpEnvironment",
+    "DependentAlphaRed",
+    "DependentGreenBlue",
+    "DotProduct",
+    "DotProduct2D",
+    "DotProductCube",
+    "DotReflectDiffuse",
+    "DotReflectSpecular",
+    "DotReflectConstantEye",
+];

@@ -6,6 +6,8 @@
 mod random_scene;
 #[path = "common/recompute.rs"]
 mod recompute;
+#[path = "common/scene_files.rs"]
+mod scene_files;
 
 use ninebit::engine;
 use ninebit::limits::Limits;
@@ -177,10 +179,7 @@ fn traces_and_the_page_agree() {
             }
         }
     }
-    let mut files = Vec::new();
-    files_under(Path::new("vectors/scenes"), &mut files);
-    files.sort();
-    files.retain(|path| path.to_str().is_some_and(|name| name.ends_with(".ron") && !name.ends_with(".expect.ron")));
+    let files = scene_files::below(Path::new("vectors/scenes"));
     assert!(!files.is_empty());
     for path in files {
         let plan = plan_of(&path);
@@ -231,6 +230,6 @@ fn the_page_lists_what_the_sources_have() {
         .flat_map(|names| names.split('"').step_by(2).map(str::to_string).collect::<Vec<_>>())
         .filter(|name| !name.is_empty())
         .collect();
-    known.extend(["given", "fetch", "border_color"].map(str::to_string));
+    known.extend(["given", "fetch", "palette", "border_color", "chain"].map(str::to_string));
     assert_eq!(page.operations, known);
 }

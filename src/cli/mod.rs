@@ -13,6 +13,7 @@ mod policies;
 mod render;
 mod scene;
 mod terminal;
+mod texture;
 mod trace;
 
 use std::ffi::OsString;
@@ -58,6 +59,8 @@ enum Command {
     /// Run one operation of the chip on given integers, without a scene
     #[command(subcommand)]
     Op(op::Command),
+    /// Describe a texture, or write what a texture unit reads of it
+    Texture(texture::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -111,6 +114,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Explain(arguments) => explain::run(&arguments, context),
         Command::Diff(arguments) => diff::run(&arguments, context),
         Command::Op(command) => op::run(&command, context),
+        Command::Texture(arguments) => texture::run(&arguments, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Generate(command) => generate::run(&command),

@@ -23,7 +23,7 @@ pub(crate) struct SceneArguments {
 }
 
 /// The answers to what no capture decides.
-#[derive(Debug, Args)]
+#[derive(Debug, Default, Args)]
 pub(crate) struct PolicyArguments {
     /// Choose an alternative of a rule; `ninebit policies` lists them
     #[arg(long = "policy", value_name = "RULE=VALUE")]

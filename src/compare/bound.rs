@@ -2,7 +2,8 @@
 #![allow(clippy::float_arithmetic, reason = "bounds of errors")]
 
 use crate::plan::{Plan, PlannedDraw};
-use crate::state::{ExpandCentre, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, Vertex};
+use crate::raster::fog::LARGEST_POWER;
+use crate::state::{ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, Vertex};
 use crate::texture::unit::PlannedUnit;
 use crate::trace::Rule;
 
@@ -21,16 +22,29 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
             let slack = 2.0 * 255.0 * weights(plan) + 255.0 / 4096.0;
             Some((-1.0 - slack, slack))
         }
+        Rule::Int5 => {
+            let slack = fog_slack(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and what the weights are off.
         Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 => None,
+        // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
+        Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
+        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
+        Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
+        Rule::Tsh9 => {
+            let slack = number_slack(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
         // A byte of a half is off by what the other byte is worth.
         Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
         Rule::Tex1 => symmetric(0.715),
-        Rule::Tex2 => symmetric(1.0),
-        Rule::Tex3 => symmetric(5.0),
-        Rule::Tex4 => symmetric(9.0),
+        // A unit test of the decoder finds the extremes.
+        Rule::Tex2 => symmetric(1.016),
+        Rule::Tex3 => Some((-13.71, 5.484)),
+        Rule::Tex4 => Some((-3.42, 4.791)),
         Rule::Tex6 => symmetric(0.5),
         Rule::Tex18 => symmetric(3.0),
         Rule::Cmb2 => symmetric(0.0),
@@ -85,6 +99,44 @@ fn coordinate_slack(plan: &Plan) -> f64 {
         })
     });
     // The last bits of the ideal's own float64.
+    slack.fold(1e-6, f64::max)
+}
+
+/// How far weights that are off and the cut to 24 bits move a fog factor, in steps: what they move the coordinate, times the steepest
+/// slope of the function.
+fn fog_slack(plan: &Plan) -> f64 {
+    let slack = triangles(plan).map(|(draw, vertices)| {
+        let coordinates = vertices.map(|v| f64::from(v.fog));
+        let Some(function) = &draw.fog.function else { return 0.0 };
+        let (p0, p1) = (f64::from(function.p0), f64::from(function.p1));
+        if !(p0.is_finite() && p1.is_finite() && coordinates.iter().all(|d| d.is_finite())) {
+            return 0.0;
+        }
+        let ((low, high), largest) = (range(coordinates), coordinates.iter().fold(0.0, |n, d| d.abs().max(n)));
+        let moved = 2.0 * relative(plan, draw, &vertices) * (high - low) + 2.0_f64.powi(-23) * largest;
+        let slope = match function.mode {
+            FogMode::Linear | FogMode::LinearAbs => 1.0,
+            // 16 ln 2 times the largest power.
+            FogMode::Exp | FogMode::ExpAbs => {
+                11.1 * (16.0 * p1 * low).max(16.0 * p1 * high).min(f64::from(LARGEST_POWER)).exp2()
+            }
+            // The slope of 2^(-32 u^2) is steepest where u^2 is 1 / (64 ln 2).
+            FogMode::Exp2 | FogMode::Exp2Abs => 4.05,
+        };
+        // The last term: float64 where large terms cancel.
+        255.0 * (slope * p1.abs() * moved + 2.0_f64.powi(-48) * (p0.abs() + (p1 * largest).abs() + 1.0))
+    });
+    slack.fold(0.0, f64::max)
+}
+
+/// The same for coordinates that become colours, in steps.
+fn number_slack(plan: &Plan) -> f64 {
+    let slack = triangles(plan).flat_map(|(draw, vertices)| {
+        let relative = relative(plan, draw, &vertices);
+        let sets = vertices.map(|v| v.texture_coordinates);
+        let spans = (0..16).map(move |n| range(sets.map(|set| f64::from(set[n / 4][n % 4]))));
+        spans.map(move |(low, high)| 2.0 * relative * (high - low) * 255.0)
+    });
     slack.fold(1e-6, f64::max)
 }
 

@@ -5,14 +5,16 @@ use crate::combiner::registers::{Registers, channel_name};
 use crate::combiner::{final_combiner, general};
 use crate::number::{Lane, convert};
 use crate::plan::{Plan, PlannedDraw};
+use crate::raster::fog::FogPlane;
 use crate::raster::interpolate::{self, Sample, Settled};
 use crate::raster::setup::Triangle;
 use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
 use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
+use crate::texture::chain::{Chain, ShaderSetup};
 use crate::texture::place::{Coordinates, Interpolated};
 use crate::texture::unit::{self, Image};
-use crate::trace::{Decision, Observer, Operand, Rule, Step, Work, plain, report};
+use crate::trace::{Decision, Observer, Rule, Step, Work, report};
 
 /// A triangle of a draw, set up.
 pub(crate) struct TriangleContext<'a> {
@@ -27,7 +29,10 @@ pub(crate) struct TriangleContext<'a> {
     primary: [[u8; 4]; 3],
     secondary: [[u8; 4]; 3],
     coordinates: [Option<Coordinates>; 4],
-    fog: [i64; 3],
+    /// Of the texture shader, where there is one; units have none of their own then.
+    shader: Option<ShaderSetup>,
+    /// None where the fog register's alpha is not read, or fog is off.
+    fog: Option<FogPlane>,
     pub(crate) z: [i64; 3],
 }
 
@@ -76,7 +81,8 @@ impl<'a> TriangleContext<'a> {
             ShadeModel::Flat => [&all[provoking as usize]; 3],
         };
         let mut coordinates = [None; 4];
-        for unit in &draw.units {
+        let shader = draw.shader.as_ref().map(|shader| ShaderSetup::new(shader, &draw.units, &triangle, vertices));
+        for unit in draw.units.iter().filter(|_| shader.is_none()) {
             let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
             coordinates[unit.index] = Some(Coordinates::new(&triangle, sets, unit));
         }
@@ -85,7 +91,7 @@ impl<'a> TriangleContext<'a> {
             plan,
             draw,
             number,
-            fog: if uses_fog { triangle.factor(vertices.map(|v| v.fog.clamp(0.0, 1.0))) } else { [0; 3] },
+            fog: uses_fog.then(|| FogPlane::new(&triangle, draw.fog.function, vertices.map(|v| v.fog))),
             z: vertices.map(|v| convert::depth(v.position[2], draw.depth_bits)),
             triangle,
             vertices,
@@ -93,10 +99,11 @@ impl<'a> TriangleContext<'a> {
             primary: colored.map(|v| color_bytes(&v.diffuse)),
             secondary: colored.map(|v| color_bytes(&v.specular)),
             coordinates,
+            shader,
         })
     }
 
-    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the alpha or the depth test.
+    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the texture shader, the alpha or the depth test.
     ///
     /// `destination` is the ideal's stored colour, where the lane has one; without it the stored word counts.
     #[inline]
@@ -114,7 +121,7 @@ impl<'a> TriangleContext<'a> {
         }
         let mut registers = Registers::<L>::new();
         self.interpolate_colors(&sample, &mut registers, observer);
-        self.sample_textures(&sample, fragment.pixel, &mut registers, textures, observer);
+        self.sample_textures(&sample, fragment.pixel, &mut registers, textures, observer)?;
         if O::ON {
             reports::stage_constants(0, draw, observer);
         }
@@ -207,22 +214,13 @@ impl<'a> TriangleContext<'a> {
     fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
         let draw = self.draw;
         let [r, g, b] = draw.fog.color.map(L::byte);
-        let factor = if draw.fog.enabled && draw.fog_channels & 8 != 0 {
-            let v = sample.factor(&self.fog);
-            let ideal = || ideal::factor(self.barycentrics(sample), self.vertices.map(|v| v.fog));
-            let factor = observer.settle(Rule::Num6, L::value(i32::from(convert::factor_byte(v)), ideal));
+        let factor = if let Some(plane) = &self.fog {
+            let found = plane.at(sample);
+            let ideal = || ideal::fog(&draw.fog.function, self.barycentrics(sample), self.vertices.map(|v| v.fog));
+            let rule = if draw.fog.function.is_some() { Rule::Int5 } else { Rule::Num6 };
+            let factor = observer.settle(rule, L::value(i32::from(convert::factor_byte(found.value)), ideal));
             if O::ON {
-                for (k, g) in self.fog.iter().enumerate() {
-                    observer.step(Step::given("fog", "INT-5", format!("fog.G{k}"), *g));
-                }
-                let planes = (0..3).map(|k| plain(format!("fog.G{k}"), self.fog[k]));
-                let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
-                let inputs = planes.chain(edges).chain([plain("D", sample.d)]).collect();
-                let mut step = Step::given("fog", "INT-5", "fog.4096", v).by("floor_factor", inputs);
-                step.per_one = 4096;
-                observer.step(step);
-                let inputs = vec![Operand { per_one: 4096, ..plain("fog.4096", v) }];
-                observer.step(report::register_step("fog", "NUM-6", "fog.a", factor).by("factor_byte", inputs));
+                reports::fog(sample, plane, found, factor, observer);
             }
             factor
         } else {
@@ -240,7 +238,7 @@ impl<'a> TriangleContext<'a> {
         registers.load(Register::Fog, [r, g, b, factor]);
     }
 
-    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13).
+    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). `None`: the texture shader drops the fragment.
     #[inline]
     fn sample_textures<L: Lane, O: Observer>(
         &self,
@@ -249,7 +247,7 @@ impl<'a> TriangleContext<'a> {
         registers: &mut Registers<L>,
         textures: &[Image<'_, L>],
         observer: &mut O,
-    ) {
+    ) -> Option<()> {
         const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         for (n, register) in UNITS.into_iter().enumerate() {
             if self.draw.unbound[n] != 0 {
@@ -266,6 +264,15 @@ impl<'a> TriangleContext<'a> {
                 }
             }
         }
+        let w = self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 });
+        if let (Some(shader), Some(setup)) = (&self.draw.shader, &self.shader) {
+            let (units, vertices, scale) = (&self.draw.units, self.vertices, self.plan.policies.dependent_scale);
+            let chain = Chain { shader, units, setup, textures, vertices, w, scale };
+            let values = chain.run(sample, pixel, observer)?;
+            for (register, value) in UNITS.into_iter().zip(values) {
+                registers.load(register, value);
+            }
+        }
         for planned in &self.draw.units {
             let Some(coordinates) = &self.coordinates[planned.index] else { continue };
             let place = Interpolated {
@@ -274,7 +281,7 @@ impl<'a> TriangleContext<'a> {
                 at: sample,
                 pixel,
                 vertices: self.vertices.map(|v| v.texture_coordinates[planned.stage.coordinate_set]),
-                w: self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 }),
+                w,
             };
             let image = &textures[planned.state.texture];
             let value = unit::sample::<L, O>(planned, image, &place, observer);
@@ -284,7 +291,7 @@ impl<'a> TriangleContext<'a> {
             reports::undefined(self.draw.undefined, observer);
         }
         if !self.draw.spare0_alpha {
-            return;
+            return Some(());
         }
         let alpha = registers.read(Register::Texture0, 3);
         registers.values[Register::Spare0 as usize][3] = alpha;
@@ -292,6 +299,7 @@ impl<'a> TriangleContext<'a> {
             let inputs = vec![report::register("texture0.a", alpha)];
             observer.step(report::register_step("registers", "CMB-13", "spare0.a", alpha).by("write", inputs));
         }
+        Some(())
     }
 
     /// ROP-1 to ROP-6, DEP-1, DEP-2.

@@ -3,11 +3,13 @@
 use super::pixel::TriangleContext;
 use crate::combiner::registers::{self, channel_name};
 use crate::number::Lane;
+use crate::number::convert;
 use crate::plan::PlannedDraw;
+use crate::raster::fog::{FogFactor, FogPlane, POWER_BITS};
 use crate::raster::interpolate::{Sample, Settled};
 use crate::raster::setup;
 use crate::rop::{blend, surface};
-use crate::state::{Named, Register, VertexColor};
+use crate::state::{FogMode, Named, Register, VertexColor};
 use crate::trace::{Observer, Operand, Step, byte, part, plain, report};
 
 const RASTER: &str = "rasteriser";
@@ -113,6 +115,66 @@ pub(super) fn color<L: Lane, O: Observer>(
     let (w0, w2) = (weights[0].value, weights[1].value);
     inputs.extend([part("W0", w0), part("W1", 256 - w0 - w2), part("W2", w2)]);
     observer.step(report::register_step(INTERPOLATION, "INT-2", name, value).by("interpolate", inputs));
+}
+
+/// INT-5: the fog factor, from factors of the vertices or by a function of their coordinates.
+pub(super) fn fog<L: Lane, O: Observer>(
+    sample: &Sample<'_>,
+    plane: &FogPlane,
+    found: FogFactor,
+    factor: L,
+    observer: &mut O,
+) {
+    const BLOCK: &str = "fog";
+    let give = |observer: &mut O, name: &str, value: i64| {
+        observer.step(Step::given(BLOCK, "INT-5", name, value));
+        plain(name, value)
+    };
+    // What the interpolated quotient is made of.
+    let quotient = |observer: &mut O, g: [i64; 3]| -> Vec<Operand> {
+        let planes: Vec<Operand> = (0..3).map(|k| give(observer, &format!("fog.G{k}"), g[k])).collect();
+        let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
+        planes.into_iter().chain(edges).chain([plain("D", sample.d)]).collect()
+    };
+    let step = Step::given(BLOCK, "INT-5", "fog.4096", found.value);
+    let mut step = match plane {
+        FogPlane::Factor(g) => step.by("floor_factor", quotient(observer, *g)),
+        FogPlane::Infinite(_) => step.note(Some("a coordinate or parameter is not finite".to_string())),
+        FogPlane::Coordinate(function, attribute) => {
+            let (g, exponent) = attribute.numbers();
+            let mut inputs = quotient(observer, g);
+            let (m, e) = found.coordinate;
+            observer.step(Step::given(BLOCK, "INT-5", "fog.d", m).by("truncate_24", inputs.clone()));
+            inputs.push(give(observer, "fog.G.exponent", exponent.into()));
+            observer.step(Step::given(BLOCK, "INT-5", "fog.d.exponent", e.into()).by("truncate_24_exponent", inputs));
+            let coordinate = [plain("fog.d", m), plain("fog.d.exponent", e.into())];
+            let [p0, p1] = [("fog.p0", function.p0), ("fog.p1", function.p1)].map(|(name, p)| {
+                let (m, e) = convert::split(p);
+                [give(observer, name, m), give(observer, &format!("{name}.exponent"), e.into())]
+            });
+            let abs = matches!(function.mode, FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs);
+            match found.power {
+                None => {
+                    let operation = if abs { "fog_linear_abs" } else { "fog_linear" };
+                    step.by(operation, [&p0[..], &p1, &coordinate].concat())
+                }
+                Some(value) => {
+                    let scale = 1 << POWER_BITS;
+                    let squared = matches!(function.mode, FogMode::Exp2 | FogMode::Exp2Abs);
+                    let power = if squared { "fog_power_of_square" } else { "fog_power" };
+                    let sum = if abs { "fog_exponential_abs" } else { "fog_exponential" };
+                    let made = Step::given(BLOCK, "INT-5", "fog.power", value);
+                    observer.step(made.by(power, [&p1[..], &coordinate].concat()).per(scale));
+                    let operand = Operand { per_one: scale, ..plain("fog.power", value) };
+                    step.by(sum, [&p0[..], &[operand]].concat())
+                }
+            }
+        }
+    };
+    step.per_one = 4096;
+    observer.step(step);
+    let inputs = vec![Operand { per_one: 4096, ..plain("fog.4096", found.value) }];
+    observer.step(report::register_step(BLOCK, "NUM-6", "fog.a", factor).by("factor_byte", inputs));
 }
 
 fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O) {

@@ -3,6 +3,7 @@
 use crate::combiner::general::PlannedPortion;
 use crate::plan::PlannedDraw;
 use crate::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, SumRounding};
+use crate::texture::chain::PlannedShader;
 use crate::texture::unit::PlannedUnit;
 use crate::trace::Work;
 
@@ -25,6 +26,8 @@ pub struct Cost {
     pub fragments: u64,
     /// A test decides which of them are stored: [`total`](Self::total) is then the most that it can be.
     pub tested: bool,
+    /// The texture shader drops fragments before they are shaded (TSH-10): all of the work is then the most that it can be.
+    pub kills: bool,
     /// The lod decides how much texture units read (TEX-9): texels and filter steps are then the most that they can be.
     pub lod_decides: bool,
     /// Of one fragment.
@@ -36,7 +39,10 @@ impl Cost {
         let fragment = FragmentCost { shaded: shaded(planned, policies), stored: stored(planned) };
         Cost {
             fragments,
-            tested: planned.alpha_test.is_some() || planned.depth_test.is_some(),
+            tested: planned.alpha_test.is_some()
+                || planned.depth_test.is_some()
+                || planned.shader.as_ref().is_some_and(PlannedShader::kills),
+            kills: planned.shader.as_ref().is_some_and(PlannedShader::kills),
             lod_decides: planned.units.iter().any(PlannedUnit::needs_lod),
             fragment,
         }

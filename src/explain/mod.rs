@@ -6,6 +6,7 @@
 mod cost;
 mod equation;
 mod report;
+mod shader;
 
 pub use cost::{Cost, FragmentCost};
 pub use report::{explanation_json, explanation_text};
@@ -13,7 +14,7 @@ pub use report::{explanation_json, explanation_text};
 use crate::engine;
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::{Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, TextureKind};
+use crate::state::{Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, TEXTURE_UNITS, TextureKind};
 use crate::texture::unit::PlannedUnit;
 
 /// A draw in words.
@@ -54,24 +55,16 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
     if planned.folded.invisible.is_some() {
         return lines;
     }
-    for unit in &planned.units {
-        let texture = &scene.textures[unit.state.texture].name;
-        let modes = format!("{}/{}", unit.state.address_s.name(), unit.state.address_t.name());
-        lines.push(format!(
-            "tex{}.{} = {}(`{texture}`, {} x {} {}{}, {})",
-            unit.index,
-            channels(unit.live),
-            filters(unit),
-            unit.levels[0].width,
-            unit.levels[0].height,
-            unit.format.name(),
-            if unit.levels.len() > 1 { format!(", {} levels", unit.levels.len()) } else { String::new() },
-            match unit.kind {
-                TextureKind::Cube => "cube map".to_string(),
-                TextureKind::TwoDimensional => modes,
-                TextureKind::Rectangle => format!("{modes}, in texels"),
-            }
-        ));
+    for index in 0..TEXTURE_UNITS {
+        if let Some(shader) = &planned.shader {
+            lines.extend(shader::before(shader, index));
+        }
+        if let Some(unit) = planned.units.iter().find(|unit| unit.index == index) {
+            lines.push(sampled(scene, unit));
+        }
+        if let Some(shader) = &planned.shader {
+            lines.extend(shader::after(shader, index));
+        }
     }
     for (register, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
         if live != 0 {
@@ -96,6 +89,27 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
         lines.push(format!("store {} to `{}`, {}", channels(planned.written), target.name, target.format.name()));
     }
     lines
+}
+
+/// What a unit samples, and how.
+fn sampled(scene: &Scene, unit: &PlannedUnit) -> String {
+    let texture = &scene.textures[unit.state.texture].name;
+    let modes = format!("{}/{}", unit.state.address_s.name(), unit.state.address_t.name());
+    format!(
+        "tex{}.{} = {}(`{texture}`, {} x {} {}{}, {})",
+        unit.index,
+        channels(unit.live),
+        filters(unit),
+        unit.levels[0].width,
+        unit.levels[0].height,
+        unit.format.name(),
+        if unit.levels.len() > 1 { format!(", {} levels", unit.levels.len()) } else { String::new() },
+        match unit.kind {
+            TextureKind::Cube => "cube map".to_string(),
+            TextureKind::TwoDimensional => modes,
+            TextureKind::Rectangle => format!("{modes}, in texels"),
+        }
+    )
 }
 
 /// How a unit filters: one word, or one for each side of lod 0 and one for levels.
@@ -135,6 +149,12 @@ fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw) -> Vec<String> {
         let Some(unit) = unit else { continue };
         let name = &scene.textures[unit.texture].name;
         match planned.units.iter().find(|planned| planned.index == index) {
+            None if !draw.texture_shader[index].operation.samples() => {
+                let operation = draw.texture_shader[index].operation.name();
+                lines.push(format!(
+                    "texture unit {index}, `{name}`: the texture shader does not sample it ({operation})"
+                ));
+            }
             None => lines.push(format!("texture unit {index}, `{name}`: nothing that is needed reads tex{index}")),
             Some(planned) if planned.live != 15 => {
                 lines.push(format!("tex{index}.{}: nothing that is needed reads it", channels(15 & !planned.live)));

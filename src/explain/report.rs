@@ -64,6 +64,7 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
         json!({
             "fragments": cost.fragments,
             "tested": cost.tested,
+            "kills": cost.kills,
             "lod_decides": cost.lod_decides,
             "each_shaded": amounts(&cost.fragment.shaded),
             "each_stored": amounts(&cost.fragment.stored),

@@ -16,11 +16,11 @@ pub fn shift(n: i128, exponent: i32) -> i128 {
     if exponent >= 0 { n << exponent.min(126) } else { n >> (-exponent).min(127) }
 }
 
-/// Block floating point: the largest magnitude keeps exactly `keep` bits, the others share its exponent; floors.
-pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> [i64; N] {
+/// Block floating point: the largest magnitude keeps exactly `keep` bits, the others share its exponent, which is returned; floors.
+pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> ([i64; N], i32) {
     let bits = |n: i128| 128 - n.unsigned_abs().leading_zeros() as i32;
     let top = values.iter().filter(|v| v.0 != 0).map(|v| bits(v.0) + v.1).max().unwrap_or(0);
-    values.map(|(m, e)| shift(m, e + keep - top) as i64)
+    (values.map(|(m, e)| shift(m, e + keep - top) as i64), top - keep)
 }
 
 /// NUM-4: a float vertex colour as a byte: clamped to 0..1, truncated to 14 significant bits, floor(255 c + 1/2).
@@ -148,7 +148,7 @@ mod tests {
 
     #[test]
     fn align_keeps_the_bits_of_the_largest() {
-        assert_eq!(align([(1, 0), (3, 0), (-5, -1)], 4), [4, 12, -10]);
-        assert_eq!(align([(0, 0), (0, 5), (0, 9)], 28), [0, 0, 0]);
+        assert_eq!(align([(1, 0), (3, 0), (-5, -1)], 4), ([4, 12, -10], -2));
+        assert_eq!(align([(0, 0), (0, 5), (0, 9)], 28).0, [0, 0, 0]);
     }
 }

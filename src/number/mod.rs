@@ -103,6 +103,8 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     fn weight(fixed: i32, ideal: impl FnOnce() -> f64) -> Self::Weight;
     /// A value from the definition's integer and the ideal's real number of 255ths.
     fn value(fixed: i32, ideal: impl FnOnce() -> f64) -> Self;
+    /// A register times a real factor, limited to 0..255 (TSH-8): the definition's integer is `fixed`.
+    fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self;
     /// The factor half way between two registers, the half bit kept (CMB-4=127.5).
     fn halfway(a: Self, b: Self) -> Self::Mapped;
     /// The negation, saturated to a register (-256 becomes 255).

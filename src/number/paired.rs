@@ -124,6 +124,9 @@ impl<I: Ideal> Lane for Paired<I> {
     fn value(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
         Paired { fixed, ideal: I::of(ideal()) }
     }
+    fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self {
+        Paired { fixed, ideal: self.ideal.multiplied(fixed, factor) }
+    }
     fn halfway(a: Self, b: Self) -> PairedFactor<I> {
         PairedFactor { fixed: i32::halfway(a.fixed, b.fixed), ideal: I::halfway(a.ideal, b.ideal) }
     }

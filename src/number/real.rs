@@ -89,6 +89,10 @@ impl Lane for f64 {
         ideal()
     }
     #[inline(always)]
+    fn multiplied(self, _fixed: i32, factor: impl FnOnce() -> f64) -> f64 {
+        (self * factor()).clamp(0.0, 255.0)
+    }
+    #[inline(always)]
     fn halfway(a: f64, b: f64) -> f64 {
         (a + b) / 2.0
     }

@@ -116,6 +116,10 @@ impl Lane for i32 {
         fixed
     }
     #[inline(always)]
+    fn multiplied(self, fixed: i32, _factor: impl FnOnce() -> f64) -> i32 {
+        fixed
+    }
+    #[inline(always)]
     fn halfway(a: i32, b: i32) -> Halves {
         Halves(a + b)
     }

@@ -164,6 +164,11 @@ impl<const N: usize> Lane for Strands<N> {
         Self::of(ideal())
     }
     #[inline(always)]
+    fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self {
+        let factor = factor();
+        self.each(|strand| strand.multiplied(fixed, || factor))
+    }
+    #[inline(always)]
     fn halfway(a: Self, b: Self) -> Self {
         a.both(b, f64::halfway)
     }

@@ -5,7 +5,7 @@ use crate::combiner::general::source_channel;
 use crate::combiner::registers::{bit, bits, initially_undefined};
 use crate::state::{
     Bias, Blend, BlendEquation, BlendFactor, CombinerInput, Component, Draw, FinalInput, FinalRegister, GeneralStage,
-    InputMapping, Portion, Register, VertexColor,
+    InputMapping, Portion, Register, ShaderOperation, VertexColor,
 };
 
 /// The factor's byte, if it is the same for every pixel and every one of the channels.
@@ -101,10 +101,16 @@ fn initially_zero(draw: &Draw) -> u64 {
         if colors(|v| &v.specular, channel) {
             zero |= bit(Register::SecondaryColor, channel);
         }
-        // TEX-16.
+        // TEX-16, and what stages without a texture yield.
         let units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        for (register, unit) in units.into_iter().zip(&draw.textures) {
-            if unit.is_none() && channel < 3 {
+        for (register, (unit, stage)) in units.into_iter().zip(draw.textures.iter().zip(&draw.texture_shader)) {
+            let black = match stage.operation {
+                ShaderOperation::PassThrough => false,
+                ShaderOperation::None | ShaderOperation::CullFragment { .. } => channel < 3,
+                ShaderOperation::DotProduct => true,
+                _ => unit.is_none() && channel < 3,
+            };
+            if black {
                 zero |= bit(register, channel);
             }
         }

@@ -5,7 +5,8 @@ use crate::combiner::general::{PlannedPortion, PlannedStage, source_channel};
 use crate::combiner::registers::{bit, initially_undefined};
 use crate::rop::blend;
 use crate::state::{
-    Blend, BlendFactor, Combiners, Component, Draw, FinalInput, FinalRegister, Portion, Register, TEXTURE_UNITS,
+    Blend, BlendFactor, Combiners, Component, DotMapping, Draw, FinalInput, FinalRegister, Portion, Register,
+    ShaderOperation, ShaderStage, TEXTURE_UNITS,
 };
 
 /// Every channel of both constant colours.
@@ -22,6 +23,8 @@ pub(super) struct Liveness {
     pub(super) secondary: u8,
     pub(super) fog: u8,
     pub(super) units: [u8; TEXTURE_UNITS],
+    /// Units whose dot products are needed.
+    pub(super) dots: [bool; TEXTURE_UNITS],
     pub(super) spare0_alpha: bool,
     pub(super) undefined: u64,
 }
@@ -58,6 +61,7 @@ impl Liveness {
         // CMB-13: SPARE0's alpha starts as texture 0's.
         let spare0_alpha = channels(Register::Spare0) & ALPHA != 0;
         units[0] |= if spare0_alpha { ALPHA } else { 0 };
+        let dots = shader_liveness(&draw.texture_shader, &mut units);
         Liveness {
             stages,
             final_combiner,
@@ -65,10 +69,44 @@ impl Liveness {
             secondary: channels(Register::SecondaryColor),
             fog: channels(Register::Fog),
             units,
+            dots,
             spare0_alpha,
             undefined: live & initially_undefined(),
         }
     }
+}
+
+/// What the stages of a texture shader read of one another, backwards: adds the channels to `units`, and says whose dot products are needed.
+fn shader_liveness(shader: &[ShaderStage; TEXTURE_UNITS], units: &mut [u8; TEXTURE_UNITS]) -> [bool; TEXTURE_UNITS] {
+    let mut dots = [false; TEXTURE_UNITS];
+    for index in (0..TEXTURE_UNITS).rev() {
+        let stage = &shader[index];
+        if units[index] != 0 {
+            let channels = match stage.operation {
+                ShaderOperation::BumpEnvironment { luminance: Some(_), .. } if units[index] & RGB != 0 => RGB,
+                ShaderOperation::BumpEnvironment { .. } | ShaderOperation::DependentGreenBlue => 2 | 4,
+                ShaderOperation::DependentAlphaRed => 1 | ALPHA,
+                _ => 0,
+            };
+            units[stage.previous] |= channels;
+            match stage.operation {
+                ShaderOperation::DotProduct2D => dots[index.saturating_sub(1)..=index].fill(true),
+                ShaderOperation::DotProductCube
+                | ShaderOperation::DotReflectDiffuse
+                | ShaderOperation::DotReflectSpecular
+                | ShaderOperation::DotReflectConstantEye { .. } => dots[1..].fill(true),
+                _ => {}
+            }
+        }
+        // Stage 2 may need the dot product of stage 3, which then reads a unit before both.
+        for (dot, stage) in dots.iter().zip(shader).skip(index) {
+            if *dot {
+                let halves = matches!(stage.mapping, DotMapping::Hilo1 | DotMapping::HiloHemisphere);
+                units[stage.previous] |= if halves { RGB | ALPHA } else { RGB };
+            }
+        }
+    }
+    dots
 }
 
 /// Channels of the fragment that alpha test, blend and store read.

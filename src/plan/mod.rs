@@ -18,6 +18,7 @@ use crate::state::{
     Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texture,
     TextureImage, TextureKind, TextureUnit,
 };
+use crate::texture::chain::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
 use liveness::Liveness;
 
@@ -97,7 +98,9 @@ pub struct PlannedDraw {
     pub fog: Fog,
     /// Bound units that are read.
     pub units: Vec<PlannedUnit>,
-    /// Channels of each unbound unit that are read (TEX-16); 0 for bound ones.
+    /// The texture shader, where there is one: units then run as its stages.
+    pub shader: Option<PlannedShader>,
+    /// Channels of each unit that does nothing that are read (TEX-16).
     pub unbound: [u8; TEXTURE_UNITS],
     /// SPARE0's initial alpha is read (CMB-13).
     pub spare0_alpha: bool,
@@ -213,15 +216,18 @@ pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
 fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<PlanError>) {
     const MOST_ERRORS: usize = 8;
     let mut found = 0;
+    let moves = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::BumpEnvironment { .. });
     for (unit, stage) in draw.textures.iter().zip(&draw.texture_shader) {
         if stage.operation == ShaderOperation::None {
             continue;
         }
-        let sampled = unit.filter(|_| matches!(stage.operation, ShaderOperation::Sample));
+        let sampled = unit.filter(|_| matches!(stage.operation, ShaderOperation::Sample) || moves(stage));
         let texture = sampled.map(|unit| (&scene.textures[unit.texture], texture_size(scene, unit.texture)));
         for (vertex, v) in draw.vertices.iter().enumerate() {
             let set = v.texture_coordinates[stage.coordinate_set];
-            let far = |n: usize, side: u32| set[3] == 1.0 && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;
+            // TSH-7 has no use for q.
+            let plane = set[3] == 1.0 || moves(stage);
+            let far = |n: usize, side: u32| plane && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;
             let (outside, what) = match texture {
                 _ if set.iter().any(|c| !c.is_finite()) => (true, "is not a finite number".to_string()),
                 Some((Texture { kind: TextureKind::TwoDimensional, name, .. }, (width, height))) => (
@@ -290,15 +296,21 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
     let written = written_channels(target.format, write_mask);
     let blended = if options.prune { written } else { 15 };
     let liveness = Liveness::of(draw, alpha_test.is_some(), blend, written, options.prune);
-    let units = liveness
+    let sampled = |index: usize| draw.textures[index].filter(|_| draw.texture_shader[index].operation.samples());
+    let units: Vec<PlannedUnit> = liveness
         .units
         .iter()
         .enumerate()
         .filter_map(|(index, live)| {
-            let state = draw.textures[index].filter(|_| *live != 0)?;
+            let state = sampled(index).filter(|_| *live != 0)?;
             Some(plan_unit(scene, index, state, draw.texture_shader[index], *live))
         })
         .collect();
+    let idle = |index: usize| match draw.texture_shader[index].operation {
+        ShaderOperation::None => true,
+        operation => operation.samples() && draw.textures[index].is_none(),
+    };
+    let shader = plan_shader(draw, &units, &liveness);
     PlannedDraw {
         name: draw.name.clone(),
         target: draw.target,
@@ -314,7 +326,8 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         fog_channels: liveness.fog,
         fog: draw.fog,
         units,
-        unbound: std::array::from_fn(|n| if draw.textures[n].is_none() { liveness.units[n] } else { 0 }),
+        shader,
+        unbound: std::array::from_fn(|n| if idle(n) { liveness.units[n] } else { 0 }),
         spare0_alpha: liveness.spare0_alpha,
         undefined: liveness.undefined,
         stages: liveness.stages,
@@ -358,6 +371,21 @@ fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage
         palette: state.palette.map(|palette| scene.palettes[palette].entries.clone()),
         live,
     }
+}
+
+/// The texture shader of a draw, if its units do more than sample.
+fn plan_shader(draw: &Draw, units: &[PlannedUnit], liveness: &Liveness) -> Option<PlannedShader> {
+    let conventional = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::None | ShaderOperation::Sample);
+    if draw.texture_shader.iter().all(conventional) {
+        return None;
+    }
+    let stages = std::array::from_fn(|index| PlannedShaderStage {
+        state: draw.texture_shader[index],
+        unit: units.iter().position(|unit| unit.index == index),
+        live: liveness.units[index],
+        dots: liveness.dots[index],
+    });
+    Some(PlannedShader { stages })
 }
 
 /// Channels R, G, B, A of the fragment that the written bits keep.

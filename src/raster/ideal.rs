@@ -1,7 +1,9 @@
 //! Interpolation of the ideal: the same sample of the same snapped triangle, in float64 with nothing rounded.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
+use super::fog::LARGEST_POWER;
 use super::setup::Triangle;
+use crate::state::{FogFunction, FogMode};
 
 /// Barycentric weights of the three vertices at a sample, perspective-corrected by the vertices' w if asked for.
 pub fn barycentrics(triangle: &Triangle, e: [i64; 3], w: [f32; 3], perspective: bool) -> [f64; 3] {
@@ -42,9 +44,35 @@ pub fn quotient(coordinate: f64, q: f64) -> f64 {
     if quotient.is_nan() { 0.0 } else { quotient }
 }
 
-/// 255 times a factor 0..1.
-pub fn factor(weights: [f64; 3], factors: [f32; 3]) -> f64 {
-    255.0 * mix(weights, factors.map(|f| f64::from(f).clamp(0.0, 1.0)))
+/// 255 times the fog factor: interpolated from the vertices', or the function of their interpolated coordinate (INT-5).
+pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], vertices: [f32; 3]) -> f64 {
+    let Some(FogFunction { mode, p0, p1 }) = function else {
+        return 255.0 * mix(weights, vertices.map(|f| f64::from(f).clamp(0.0, 1.0)));
+    };
+    let (p0, p1, d) = (f64::from(*p0), f64::from(*p1), mix(weights, vertices.map(f64::from)));
+    if !(p0.is_finite() && p1.is_finite() && vertices.iter().all(|d| d.is_finite())) {
+        return if matches!(mode, FogMode::Linear | FogMode::LinearAbs | FogMode::Exp) { 255.0 } else { 0.0 };
+    }
+    let factor = match mode {
+        FogMode::Linear | FogMode::LinearAbs => p0 + d * p1 - 1.0,
+        FogMode::Exp | FogMode::ExpAbs => p0 + power_of_two(16.0 * d * p1) - 1.5,
+        FogMode::Exp2 | FogMode::Exp2Abs => p0 + power_of_two(-32.0 * (d * p1) * (d * p1)) - 1.5,
+    };
+    let factor = match mode {
+        FogMode::Linear | FogMode::Exp | FogMode::Exp2 => factor,
+        FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs => factor.abs(),
+    };
+    255.0 * factor.clamp(0.0, 1.0)
+}
+
+/// 2^x by a series, so that every machine has the same; x is limited to -64..=16 as INT-5 limits it. Relative error below 2^-51.
+fn power_of_two(x: f64) -> f64 {
+    let x = x.clamp(-64.0, f64::from(LARGEST_POWER));
+    let whole = (x + 0.5).floor();
+    let t = (x - whole) * std::f64::consts::LN_2;
+    // |t| < 0.35: the term after the last is below 2^-60.
+    let series = (1..=16).rev().fold(1.0, |sum, n| 1.0 + sum * t / f64::from(n));
+    series * f64::from_bits(((1023 + whole as i64) as u64) << 52)
 }
 
 /// Depth in units of the buffer's last bit.
@@ -131,5 +159,19 @@ impl Outline {
         let weighted: [f64; 3] = std::array::from_fn(|k| e[k] * self.reciprocals[k]);
         let sum = weighted[0] + weighted[1] + weighted[2];
         weighted.map(|e| e / sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::power_of_two;
+
+    #[test]
+    fn powers_are_those_of_the_library() {
+        for n in -64 * 1000..=16 * 1000 {
+            let x = f64::from(n) / 1000.0;
+            assert!((power_of_two(x) / x.exp2() - 1.0).abs() < 5e-16, "{x}");
+        }
+        assert_eq!((power_of_two(-1e300), power_of_two(1e300)), (0.5_f64.powi(64), 65536.0));
     }
 }

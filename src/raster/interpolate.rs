@@ -166,11 +166,11 @@ fn truncated_ratio(e: i64, whole: i64) -> (i128, u32) {
     (mantissa, exponent)
 }
 
-/// INT-3: the dominant one of three weights n_k / d.
+/// INT-3: the dominant one of three weights n_k / d. d is positive; outside the triangle some weights are not, and those are not dominant.
 fn dominant(n: [i64; 3], d: i64) -> usize {
     // Class c: the weight lies in (2^-(c+1), 2^-c].
     let class = n.map(|n| {
-        if n == 0 {
+        if n <= 0 {
             return u32::MAX;
         }
         (0..).find(|c| i128::from(n) << (c + 1) > i128::from(d)).unwrap_or(u32::MAX)
@@ -187,11 +187,14 @@ fn dominant(n: [i64; 3], d: i64) -> usize {
     }
 }
 
-/// floor(n / d) and whether nothing remains. 0 < d < 2^62, |n / d| < 2^26.
+/// floor(n / d) and whether nothing remains. 0 < d < 2^62; limited to 2^26, which only samples outside the triangle reach.
 ///
 /// The 128-bit division is avoided: the top 35 bits of d estimate the quotient within one step, and the exact remainder settles it.
 #[inline(always)]
 fn quotient(n: i128, d: i64) -> (i64, bool) {
+    if n.unsigned_abs() >> 26 >= u128::from(d.unsigned_abs()) {
+        return (n.signum() as i64 * (1 << 26), false);
+    }
     let excess = (64 - d.leading_zeros()).saturating_sub(35);
     let mut value = ((n >> excess) as i64).div_euclid(d >> excess);
     let mut remainder = n - i128::from(value) * i128::from(d);

@@ -129,7 +129,7 @@ impl Triangle {
             let (m, e) = split(x[axis][k]);
             (i128::from(m) * i128::from(self.p[k]), e)
         });
-        let g = align(scaled, PERSPECTIVE_BITS);
+        let (g, _) = align(scaled, PERSPECTIVE_BITS);
         std::array::from_fn(|axis| std::array::from_fn(|k| g[3 * axis + k]))
     }
 }
@@ -138,7 +138,7 @@ impl Triangle {
 fn perspective_weights(w: [f32; 3]) -> [i64; 3] {
     let m = w.map(split);
     let product = |i: usize, j: usize| (i128::from(m[i].0) * i128::from(m[j].0), m[i].1 + m[j].1);
-    align([product(1, 2), product(2, 0), product(0, 1)], PERSPECTIVE_BITS).map(|n| n.max(1))
+    align([product(1, 2), product(2, 0), product(0, 1)], PERSPECTIVE_BITS).0.map(|n| n.max(1))
 }
 
 #[cfg(test)]

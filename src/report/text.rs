@@ -3,7 +3,8 @@
 use crate::engine::{DrawTrace, PixelTrace};
 use crate::plan::Plan;
 use crate::state::{Named, POLICIES, Policies};
-use crate::trace::{Operand, Step};
+use crate::texture::cube::Face;
+use crate::trace::{Operand, SINGLE, Step};
 use std::fmt::Write;
 
 /// The trace of a pixel as text.
@@ -64,7 +65,7 @@ fn write_steps(out: &mut String, steps: &[Step]) -> std::fmt::Result {
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
     let (names, expressions) = (width(|l| l.0.chars().count(), 24), width(|l| l.1.chars().count(), 58));
-    let integers = steps.iter().map(|s| s.value.to_string().len()).max().unwrap_or(0).max(7);
+    let integers = steps.iter().map(|s| integer(s.value, s.per_one).len()).max().unwrap_or(0).max(7);
     writeln!(
         out,
         "    {:names$}  {:expressions$}  {:>integers$} {:>10} {:>10}  rule",
@@ -79,7 +80,8 @@ fn write_steps(out: &mut String, steps: &[Step]) -> std::fmt::Result {
         let ideal = step.ideal.filter(|_| step.per_one != 1).map_or(String::new(), |i| format!("{i:.6}"));
         let line = format!(
             "    {name:names$}  {expression:expressions$}  {:>integers$} {real:>10} {ideal:>10}  {}",
-            step.value, step.rule
+            integer(step.value, step.per_one),
+            step.rule
         );
         match &step.note {
             Some(note) => writeln!(out, "{line:<8}  {note}")?,
@@ -89,9 +91,19 @@ fn write_steps(out: &mut String, steps: &[Step]) -> std::fmt::Result {
     Ok(())
 }
 
+/// An integer; the bits of a single-precision number in hexadecimal.
+fn integer(value: i64, per_one: i64) -> String {
+    if per_one == SINGLE { format!("{value:#010x}") } else { value.to_string() }
+}
+
+/// An operand as formulas show it: its integer, or the single-precision number.
+fn shown(operand: &Operand) -> String {
+    if operand.per_one == SINGLE { f32::from_bits(operand.value as u32).to_string() } else { operand.value.to_string() }
+}
+
 /// How a value came about, with the operands' integers.
 fn expression(step: &Step) -> String {
-    let value = |n: usize| step.inputs.get(n).map_or(String::new(), |o| o.value.to_string());
+    let value = |n: usize| step.inputs.get(n).map_or(String::new(), shown);
     let pairs = |inputs: &[Operand]| {
         let products: Vec<String> =
             inputs.chunks(2).map(|p| format!("{} * {}", p[0].value, p[p.len() - 1].value)).collect();
@@ -123,6 +135,61 @@ fn expression(step: &Step) -> String {
             let axis = step.name.rsplit('.').next().unwrap_or_default();
             format!("floor(256 * {} * N_{axis} / N_q)", value(9))
         }
+        "cube_face" => {
+            let [x, y, z] = direction(&step.inputs);
+            format!("largest of ({x}, {y}, {z})")
+        }
+        "floor_face_u" | "floor_face_v" => {
+            let (s, m) = on_face(step);
+            format!("floor(128 * {} * ({s} + {m}) / {m})", value(13))
+        }
+        "quad_face_u" | "quad_face_v" => {
+            let (s, m) = on_face(step);
+            format!("floor(32768 * {} * ({s} + {m}) / {m})", value(13))
+        }
+        "quad_plane" => {
+            let axis = step.name.rsplit('.').next().unwrap_or_default();
+            format!("floor(256 (G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)")
+        }
+        "quad_ratio" => {
+            let axis = step.name.rsplit('.').next().unwrap_or_default();
+            format!("floor(65536 * {} * N_{axis} / N_q)", value(9))
+        }
+        "log2_ratio" => {
+            let moved = |pixel: usize, n: usize| {
+                let at = |k: usize| step.inputs.get(k).map_or(0, |o| o.value);
+                at(2 * pixel + n).saturating_sub(at(n))
+            };
+            format!("256 log2 |({}, {}) or ({}, {})|", moved(1, 0), moved(1, 1), moved(2, 0), moved(2, 1))
+        }
+        "biased_lod" => format!("{} + {}, limited to {}..{}", value(0), value(1), value(2), value(3)),
+        "nearest_level" => format!("({} + 128) >> 8, at most {} - 1", value(0), value(1)),
+        "lower_level" => format!("{} >> 8, at most {} - 1", value(0), value(1)),
+        "upper_level" => format!("({} >> 8) + 1, at most {} - 1", value(0), value(1)),
+        "lod_weight" => format!("{} & 255", value(0)),
+        "high_byte" => format!("{} >> 8", value(0)),
+        "high_byte_doubled" => format!("2 * ({} >> 8)", value(0)),
+        "low_byte" => format!("{} & 255", value(0)),
+        "nearest_float" | "floor_number" => {
+            let scale = if step.operation == "floor_number" { "4096 * " } else { "" };
+            let prefix = step.inputs[0].name.trim_end_matches('0').rsplit('.').next().unwrap_or_default();
+            format!("{scale}({prefix}0 E0 + {prefix}1 E1 + {prefix}2 E2) / D * 2^{}", value(7))
+        }
+        "is_negative" | "is_not_negative" => {
+            let prefix = step.inputs[0].name.trim_end_matches('0').rsplit('.').next().unwrap_or_default();
+            let sign = if step.operation == "is_negative" { "<" } else { ">=" };
+            format!("{prefix}0 E0 + {prefix}1 E1 + {prefix}2 E2 {sign} 0")
+        }
+        "floor_plane_moved" => {
+            let axis = step.name.rsplit('.').next().unwrap_or_default();
+            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D + {} / 2^24)", value(7))
+        }
+        "float_product" => format!("{} * {}", value(0), value(1)),
+        "float_sum" => format!("({} + {}) + {}", value(0), value(1), value(2)),
+        "float_double_quotient" => format!("2 * {} / {}", value(0), value(1)),
+        "float_reflection" => format!("{} * {} - {}", value(0), value(1), value(2)),
+        "luminance" => format!("4096 * {} / 255 * ({} / 255 * {} + {})", value(0), value(1), value(2), value(3)),
+        "bump_offset" => format!("{} * s8({}) + {} * s8({})", value(0), value(2), value(1), value(3)),
         "nearest_texel" => format!("{} >> 8", value(0)),
         "linear_texel" => format!("({} - 128) >> 8", value(0)),
         "linear_texel_next" => format!("(({} - 128) >> 8) + 1", value(0)),
@@ -151,8 +218,26 @@ fn expression(step: &Step) -> String {
             format!("{}({})", step.inputs[0].name, channels.join(", "))
         }
         operation => {
-            let operands: Vec<String> = step.inputs.iter().map(|o| format!("{} {}", o.name, o.value)).collect();
+            let operands: Vec<String> = step.inputs.iter().map(|o| format!("{} {}", o.name, shown(o))).collect();
             format!("{operation}({})", operands.join(", "))
         }
     }
+}
+
+/// The direction that twelve operands of a cube map make: three planes and the edge functions.
+fn direction(inputs: &[Operand]) -> [i128; 3] {
+    let at = |n: usize| inputs.get(n).map_or(0, |o| i128::from(o.value));
+    [0, 3, 6].map(|first| (0..3).map(|k| at(first + k) * at(9 + k)).sum())
+}
+
+/// The minor component of u or v and the magnitude of the major one, of a step on a face.
+fn on_face(step: &Step) -> (i128, i128) {
+    let direction = direction(&step.inputs);
+    let face = step.inputs.get(12).and_then(|face| Face::ALL.get(usize::try_from(face.value).ok()?));
+    let [s, t, m] = face
+        .copied()
+        .unwrap_or(Face::PositiveX)
+        .components()
+        .map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
+    (if step.operation.ends_with('u') { s } else { t }, m)
 }

@@ -60,6 +60,10 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0330", "a rectangle texture that the chip does not take"),
     ("NB0331", "border texels where there are none"),
     ("NB0332", "a length of palette that the chip lacks"),
+    ("NB0340", "a texture shader on a chip that has none"),
+    ("NB0341", "a texture shader operation where the chip does not allow it"),
+    ("NB0342", "an earlier unit, or a mapping, that a texture shader stage cannot have"),
+    ("NB0343", "a texture shader operation without the texture that it needs"),
     ("NB0401", "reserved by the format, not built yet"),
     ("NB0402", "not known well enough to be modelled"),
     ("NB0501", "a file name that is not plain and relative"),
@@ -98,6 +102,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0902", "warning: a texture unit is read but has no texture"),
     ("NB0903", "warning: a register is read before anything defines it"),
     ("NB0904", "warning: a target is sampled before anything is drawn into it"),
+    ("NB0905", "warning: a texture of a unit that the texture shader does not sample"),
 ];
 
 /// What a code means; `None` if there is no such code.

@@ -28,8 +28,8 @@ const ALL_FACES: u32 = 0xfc00;
 const CUBE: u32 = 0x200;
 const VOLUME: u32 = 0x20_0000;
 
-/// Names of the faces, in the order of their bits and of the file.
-const FACES: [&str; CUBE_FACES as usize] = ["+X", "-X", "+Y", "-Y", "+Z", "-Z"];
+/// Names of the faces, in their order in files and in the state.
+pub const FACES: [&str; CUBE_FACES as usize] = ["+X", "-X", "+Y", "-Y", "+Z", "-Z"];
 
 /// A texture as a DDS file holds it.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -48,6 +48,18 @@ pub struct Dds {
     pub words: Vec<u32>,
     /// 256 words A8R8G8B8 where the format is [`TextureFormat::P8`].
     pub palette: Option<Vec<u32>>,
+}
+
+impl Dds {
+    /// The words, read as another format of as many bits; `None` if there is no such reading, as of blocks.
+    pub fn words_as(&self, format: TextureFormat) -> Option<Vec<u32>> {
+        let blocks = format.is_compressed() || self.format.is_compressed();
+        if format != self.format && (blocks || format.bytes() != self.format.bytes()) {
+            return None;
+        }
+        let used = texels::used_bits(format);
+        Some(self.words.iter().map(|word| word & used).collect())
+    }
 }
 
 /// What a header says, once it can be true.

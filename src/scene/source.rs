@@ -103,6 +103,10 @@ pub(super) struct BlendSource;
 pub(super) struct ImageSource;
 /// The state of a unit, or just the name of its texture.
 pub(super) struct Unit;
+/// A stage of the texture shader: its fields, or just its operation.
+pub(super) struct ShaderStage;
+/// What a stage of the texture shader does.
+pub(super) struct ShaderOperation;
 /// What of a mesh goes into a vertex.
 pub(super) struct Attribute;
 /// An input of a combiner portion.
@@ -189,7 +193,7 @@ source! {
         dither: bool,
         stencil_test: Reserved,
         logic_op: Reserved,
-        texture_shader: Reserved,
+        texture_shader: List<'a, ShaderStage>,
         texgen: Reserved,
         texture_matrices: Reserved,
         truth: Reserved,
@@ -253,6 +257,15 @@ source! {
         cylindrical_wrap: bool,
         color_key: Reserved,
     }
+    struct StageState {
+        operation: ShaderOperation,
+        previous: u32,
+        mapping: Name<state::DotMapping>,
+        coordinates: u32,
+    }
+    struct CullFragment { s: Word, t: Word, r: Word, q: Word }
+    struct BumpEnvironment { matrix: Numbers, luminance: Numbers }
+    struct ConstantEye { eye: Numbers }
     struct AlphaTest { function: Name<state::CompareFunction>, reference: u32 }
     struct DepthTest { function: Name<state::CompareFunction>, write: bool }
     struct Blend {

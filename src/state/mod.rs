@@ -19,8 +19,8 @@ pub use combiner::{
 pub use named::Named;
 pub(crate) use named::named;
 pub use policy::{
-    DotRounding, ExpandCentre, HalfBiasConstant, LerpRounding, MuxNegative, OutputRounding, POLICIES, Policies, Policy,
-    PolicyError, RegisterFloor, SumRounding,
+    DependentScale, DotRounding, ExpandCentre, HalfBiasConstant, LerpRounding, MuxNegative, OutputRounding, POLICIES,
+    Policies, Policy, PolicyError, RegisterFloor, SumRounding,
 };
 pub use primitive::{
     Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology, Vertex,

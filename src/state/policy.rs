@@ -13,6 +13,15 @@ named! {
     }
 }
 named! {
+    /// TSH-6: what makes a byte a coordinate of a dependent read.
+    pub enum DependentScale {
+        /// v / 255.
+        Over255,
+        /// v / 256.
+        Over256,
+    }
+}
+named! {
     /// CMB-3: what the expand mappings take as their centre.
     pub enum ExpandCentre {
         /// 2 (x - 128).
@@ -83,6 +92,8 @@ named! {
 pub struct Policies {
     /// NUM-3.
     pub register_floor: RegisterFloor,
+    /// TSH-6.
+    pub dependent_scale: DependentScale,
     /// CMB-3.
     pub expand_centre: ExpandCentre,
     /// CMB-4.
@@ -103,6 +114,7 @@ impl Policies {
     /// What the model takes unless told otherwise.
     pub const DEFAULT: Policies = Policies {
         register_floor: RegisterFloor::Full,
+        dependent_scale: DependentScale::Over255,
         expand_centre: ExpandCentre::Centred,
         half_bias: HalfBiasConstant::Half128,
         sum_rounding: SumRounding::Once,
@@ -141,6 +153,7 @@ impl Policies {
         }
         match rule {
             "NUM-3" => pick(&mut self.register_floor, index),
+            "TSH-6" => pick(&mut self.dependent_scale, index),
             "CMB-3" => pick(&mut self.expand_centre, index),
             "CMB-4" => pick(&mut self.half_bias, index),
             "CMB-7" => pick(&mut self.sum_rounding, index),
@@ -159,6 +172,7 @@ impl Policies {
         }
         match rule {
             "NUM-3" => number(self.register_floor),
+            "TSH-6" => number(self.dependent_scale),
             "CMB-3" => number(self.expand_centre),
             "CMB-4" => number(self.half_bias),
             "CMB-7" => number(self.sum_rounding),
@@ -194,6 +208,11 @@ pub const POLICIES: &[Policy] = &[
         rule: "NUM-3",
         question: "lowest value of a register",
         values: &[("256", "saturates at -256"), ("255", "saturates at -255")],
+    },
+    Policy {
+        rule: "TSH-6",
+        question: "what makes a byte a coordinate of a dependent read",
+        values: &[("255", "v / 255: 255 is 1.0"), ("256", "v / 256: 255 is the last of 256 texels")],
     },
     Policy {
         rule: "CMB-3",

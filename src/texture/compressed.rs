@@ -332,4 +332,40 @@ mod tests {
         let clear = decode(TextureFormat::Dxt1, false, &[0, !0], 2, 1);
         assert_eq!((clear.bytes, clear.ideal), ([0; 4], [(0, 1); 4]));
     }
+    /// Every pair of end points with every index at every position: the extremes that the handbook states, in exact fractions.
+    #[test]
+    fn errors_are_as_stated() {
+        // Lowest and highest of (byte - ideal) as numerators over what every denominator divides; of red and green.
+        const WHOLE: i64 = 31 * 63 * 6;
+        let mut extremes = [[[0_i64; 2]; 2]; 3];
+        let mut note = |rule: usize, channel: usize, decoded: &Decoded| {
+            let (numerator, denominator) = decoded.ideal[channel];
+            let ideal = 255 * i64::from(numerator) * (WHOLE / i64::from(denominator));
+            let error = i64::from(decoded.bytes[channel]) * WHOLE - ideal;
+            let [low, high] = &mut extremes[rule][channel];
+            (*low, *high) = (error.min(*low), error.max(*high));
+        };
+        for first in 0..=63_u32 {
+            for second in 0..=63_u32 {
+                let ends = [first, second].map(|v| (v & 31) << 11 | v << 5);
+                let colors = ends[0] | ends[1] << 16;
+                for index in 0..4_u32 {
+                    let indices = index * 0x5555_5555;
+                    let transparent = index == 3 && ends[0] <= ends[1];
+                    for (channel, n) in [0, 1].into_iter().flat_map(|channel| (0..16).map(move |n| (channel, n))) {
+                        let block = [0, 0, colors, indices];
+                        note(0, channel, &decode(TextureFormat::Dxt3, true, &block, n & 3, n >> 2));
+                        if !transparent {
+                            note(1, channel, &decode(TextureFormat::Dxt1, true, &block[2..], n & 3, n >> 2));
+                            note(2, channel, &decode(TextureFormat::Dxt1, false, &block[2..], n & 3, n >> 2));
+                        }
+                    }
+                }
+            }
+        }
+        // In thousandths, away from zero.
+        let rounded = |error: i64| (1000 * error.abs() + WHOLE - 1) / WHOLE * error.signum();
+        let stated = [[[-936, 936], [-1016, 1016]], [[-13_710, 5484], [-6072, 2699]], [[-3420, 4791], [-2064, 2739]]];
+        assert_eq!(extremes.map(|rule| rule.map(|channel| channel.map(rounded))), stated);
+    }
 }

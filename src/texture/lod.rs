@@ -10,7 +10,7 @@ pub const LEAST: i32 = -32768;
 pub type Quad = [[i64; 2]; 3];
 
 /// Coordinates beyond this are as far away as any, 1/65536 texel.
-const FARTHEST: i64 = 1 << 40;
+const FARTHEST: i64 = 1 << 60;
 
 /// TEX-11, TEX-10: 256 log2 of the larger of the two lengths, in texels, by which the coordinates move from the top-left pixel to its right
 /// and its lower neighbour; floored. `None`: a pixel of the quad lies behind the viewer.
@@ -133,6 +133,6 @@ mod tests {
     #[test]
     fn no_extent_and_behind() {
         assert_eq!((log2_ratio(None), log2_ratio(Some([[5, 5]; 3]))), (LEAST, LEAST));
-        assert_eq!(log2_ratio(Some([[i64::MIN, 0], [i64::MAX, 0], [0, 0]])), 256 * 25);
+        assert_eq!(log2_ratio(Some([[i64::MIN, 0], [i64::MAX, 0], [0, 0]])), 256 * 45);
     }
 }

@@ -1,12 +1,19 @@
 //! Texture units: where they sample, which levels and texels, how texels become channels, how they are filtered.
 
 pub mod address;
+pub mod chain;
 pub mod compressed;
 pub mod cube;
+pub mod dependent;
+pub mod dot;
 pub mod fetch;
 pub mod filter;
 pub mod format;
 pub mod lod;
 pub mod place;
+pub mod real;
 pub mod report;
+pub mod shader;
+mod shader_report;
+pub mod show;
 pub mod unit;

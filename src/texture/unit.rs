@@ -342,7 +342,7 @@ fn real_on(unit: &PlannedUnit, level: &Level, st: [f64; 2]) -> [f64; 2] {
 
 /// The ideal's number as a whole one, for decisions.
 #[allow(clippy::float_arithmetic, reason = "the ideal's texel")]
-fn floored(coordinate: f64) -> i64 {
+pub(super) fn floored(coordinate: f64) -> i64 {
     let limit = COORDINATE_LIMIT as f64;
     if coordinate.is_nan() { 0 } else { coordinate.floor().clamp(-limit, limit) as i64 }
 }

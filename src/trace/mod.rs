@@ -63,6 +63,9 @@ impl Observer for Recorder {
     }
 }
 
+/// In place of how many make 1.0: the integer is the bit pattern of a single-precision number (TSH-4).
+pub const SINGLE: i64 = 0;
+
 /// A named operand of a step.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Operand {
@@ -70,7 +73,7 @@ pub struct Operand {
     pub name: String,
     /// Its integer.
     pub value: i64,
-    /// How many make 1.0: 255 for registers and bytes, 256 for weights and texel coordinates, 1 for plain integers.
+    /// How many make 1.0: 255 for registers and bytes, 256 for weights and texel coordinates, 1 for plain integers, [`SINGLE`] for floats.
     pub per_one: i64,
 }
 
@@ -89,7 +92,7 @@ pub struct Step {
     pub inputs: Vec<Operand>,
     /// The integer.
     pub value: i64,
-    /// How many make 1.0.
+    /// How many make 1.0; [`SINGLE`]: the integer is the bit pattern of a single-precision number.
     pub per_one: i64,
     /// The float64 ideal in the unit of the real value.
     pub ideal: Option<f64>,
@@ -146,8 +149,23 @@ impl Step {
     /// The real number that the integer stands for.
     #[allow(clippy::float_arithmetic, reason = "display of the real value")]
     pub fn real(&self) -> f64 {
+        if self.per_one == SINGLE {
+            return f64::from(f32::from_bits(self.value as u32));
+        }
         self.value as f64 / self.per_one as f64
     }
+}
+
+/// A step that yields a single-precision number.
+pub fn float_step(block: &str, rule: &'static str, name: impl Into<String>, value: f32, ideal: f64) -> Step {
+    let Operand { value, per_one, .. } = float("", value);
+    Step { per_one, ideal: Some(ideal), ..Step::given(block, rule, name, value) }
+}
+
+/// A single-precision operand. All NaN count as one.
+pub fn float(name: impl Into<String>, value: f32) -> Operand {
+    let value = if value.is_nan() { f32::NAN } else { value };
+    Operand { name: name.into(), value: i64::from(value.to_bits()), per_one: SINGLE }
 }
 
 /// A plain integer operand.

@@ -9,6 +9,8 @@ named! {
         Num4 = "NUM-4",
         /// Fog factors.
         Num6 = "NUM-6",
+        /// Fog functions of an interpolated coordinate, and the byte made of their factor.
+        Int5 = "INT-5",
         /// Interpolated colours.
         Int2 = "INT-2",
         /// Texture coordinates, as the weights of the filter.
@@ -17,6 +19,16 @@ named! {
         Tex15 = "TEX-15",
         /// The same of cube maps.
         Tex12 = "TEX-12",
+        /// Dependent coordinates of the dot unit, as the weights of the filter.
+        Tsh4 = "TSH-4",
+        /// The same of dependent reads by bytes.
+        Tsh6 = "TSH-6",
+        /// The same of bump environment maps.
+        Tsh7 = "TSH-7",
+        /// Luminance.
+        Tsh8 = "TSH-8",
+        /// Coordinates as colours.
+        Tsh9 = "TSH-9",
         /// Texels of few bits, and bytes of 16-bit halves.
         Tex1 = "TEX-1",
         /// Compressed texels.
@@ -80,8 +92,11 @@ impl Rule {
     /// The part that the rule's error counts in.
     pub fn part(self) -> Part {
         match self {
-            Rule::Num4 | Rule::Num6 | Rule::Int2 | Rule::Int4 | Rule::Tex12 | Rule::Tex15 => Part::Interpolation,
-            Rule::Tex1 | Rule::Tex2 | Rule::Tex3 | Rule::Tex4 | Rule::Tex6 | Rule::Tex9 | Rule::Tex18 => {
+            Rule::Num4 | Rule::Num6 | Rule::Int5 | Rule::Int2 | Rule::Int4 | Rule::Tex12 | Rule::Tex15 => {
+                Part::Interpolation
+            }
+            Rule::Tsh4 | Rule::Tsh6 | Rule::Tsh7 | Rule::Tsh9 => Part::Interpolation,
+            Rule::Tex1 | Rule::Tex2 | Rule::Tex3 | Rule::Tex4 | Rule::Tex6 | Rule::Tex9 | Rule::Tex18 | Rule::Tsh8 => {
                 Part::Filtering
             }
             Rule::Cmb2 | Rule::Cmb3 | Rule::Cmb4 | Rule::Cmb5 => Part::Expansion,
@@ -102,6 +117,10 @@ named! {
         Level = "level",
         /// Which texels are read.
         Texel = "texel",
+        /// Which texel a dependent read is sent to.
+        Dependent = "dependent texel",
+        /// What the texture shader drops.
+        Kill = "texture shader",
         /// What a mux takes.
         Mux = "mux",
         /// The alpha test.

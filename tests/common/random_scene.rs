@@ -3,18 +3,26 @@
 //! A scene is built from a tape of choices; 0 is always the plain choice. Shrinking blanks stretches of the tape, so a failing scene
 //! loses whatever its failure does not need.
 
+#[path = "random_texture.rs"]
+mod texture;
+
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 use proptest::prelude::*;
 use proptest::strategy::{NewTree, ValueTree};
 use proptest::test_runner::TestRunner;
 
+/// Whether per-pixel fog functions and texture shaders occur.
+pub const FOG_FUNCTIONS: bool = true;
+pub const TEXTURE_SHADERS: bool = true;
+
 /// Words of tape for what draws share, for each draw, for each vertex and for each stage.
 const SHARED: usize = 1024;
-const DRAW: usize = 1024;
+const DRAW: usize = 1280;
 const VERTICES: usize = 768;
 const VERTEX: usize = 48;
 const STAGE: usize = 64;
+const UNITS: usize = 160;
 
 /// Valid scenes within the limits of RAS-0.
 pub fn scene() -> impl Strategy<Value = Scene> {
@@ -142,31 +150,30 @@ pub fn build(tape: &[u32]) -> Scene {
     let profile = if c.once_in(3) { Profile::Nv10 } else { Profile::Nv2a };
     let large = c.once_in(100);
     let targets: Vec<Target> = (0..c.size(1, 3)).map(|n| target(&mut c, profile, n, large && n == 0)).collect();
-    let mut textures: Vec<Texture> = (0..c.size(1, 3)).map(|n| texels(&mut c, profile, n)).collect();
-    for (n, t) in targets.iter().enumerate() {
-        if t.width.is_power_of_two() && t.height.is_power_of_two() && t.width.max(t.height) <= 16 {
-            let fitting: Vec<TextureFormat> =
-                texture_formats(profile).into_iter().filter(|f| f.bytes() == t.format.bytes()).collect();
-            let (kind, format) = (TextureKind::TwoDimensional, c.pick(&fitting));
-            textures.push(Texture {
-                name: format!("view{n}"),
-                kind,
-                format,
-                image: TextureImage::Target { target: n },
-            });
-        }
-    }
+    let palettes: Vec<Palette> = (0..c.size(1, 2)).map(|n| texture::palette(&mut c, n)).collect();
+    let mut textures: Vec<Texture> = (0..c.size(2, 4)).map(|n| texture::texels(&mut c, profile, n)).collect();
+    textures.extend(targets.iter().enumerate().filter_map(|(n, t)| texture::view(&mut c, profile, n, t)));
     let count = [2, 3, 4, 1][c.below(4) as usize];
-    let draws = (0..count).map(|n| draw(&mut tape.part(DRAW), profile, &targets, &textures, n)).collect();
-    Scene { profile, targets, textures, palettes: vec![], draws }
+    let given = Given { profile, targets: &targets, textures: &textures, palettes: palettes.len() };
+    let draws = (0..count).map(|n| draw(&mut tape.part(DRAW), &given, n)).collect();
+    Scene { profile, targets, textures, palettes, draws }
+}
+
+/// What draws refer to.
+struct Given<'a> {
+    profile: Profile,
+    targets: &'a [Target],
+    textures: &'a [Texture],
+    palettes: usize,
 }
 
 fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target {
     let (width, height) = match c.below(4) {
         _ if large => (c.size(120, 150), c.size(140, 160)),
         0 => (16, 16),
-        1 => (1 << c.below(5), 1 << c.below(5)),
-        2 => (c.size(1, 48), c.size(1, 48)),
+        1 if c.once_in(3) => (1 << c.below(5), 1 << c.below(5)),
+        1 => (8 << c.below(3), 8 << c.below(3)),
+        2 => (c.size(4, 48), c.size(4, 48)),
         _ => (c.size(13, 48), c.size(11, 48)),
     };
     let formats: &[SurfaceFormat] = match profile {
@@ -189,55 +196,19 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
     Target { name: format!("target{n}"), width, height, format, clear_color: c.bytes(), depth }
 }
 
-fn texture_formats(profile: Profile) -> Vec<TextureFormat> {
-    let legal = |f: &TextureFormat| {
-        let whole = matches!(
-            f,
-            TextureFormat::A8R8G8B8
-                | TextureFormat::X8R8G8B8
-                | TextureFormat::R5G6B5
-                | TextureFormat::X1R5G5B5
-                | TextureFormat::A1R5G5B5
-                | TextureFormat::L8
-                | TextureFormat::A8
-                | TextureFormat::G8B8
-        );
-        (profile == Profile::Nv2a || !f.is_nv2a_only()) && whole
-    };
-    TextureFormat::ALL.iter().copied().filter(legal).collect()
-}
-
-fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
-    let format: TextureFormat = c.pick(&texture_formats(profile));
-    let (width, height) = (16 >> c.below(5), 16 >> c.below(5));
-    let mask = u32::MAX >> (32 - 8 * format.bytes());
-    // Few words of tape a texture: the rest follows from them.
-    let (seed, step) = (c.word(), c.word());
-    let words = (0..width * height).map(|k| seed.wrapping_add(step.wrapping_mul(k)) & mask).collect::<Vec<_>>().into();
-    let texels = Texels { width, height, levels: 1, border: false, words };
-    let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
-    Texture { name: format!("texture{n}"), kind, format, image }
-}
-
-fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[Texture], n: u32) -> Draw {
+fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
+    let Given { profile, targets, textures, .. } = *given;
     let mut vertex_tape = c.part(VERTICES);
     let target = c.below(targets.len() as u32) as usize;
     let surface = &targets[target];
     let usable: Vec<usize> = (0..textures.len())
         .filter(|t| !matches!(textures[*t].image, TextureImage::Target { target: other } if other == target))
         .collect();
-    let units = profile.texture_units();
-    let mut texture_shader = [0, 1, 2, 3].map(|k| ShaderStage::conventional(k, false));
-    let textures = std::array::from_fn(|k| {
-        (k < units && c.below(3) != 0).then(|| {
-            let unit = unit(c, profile, &usable);
-            let coordinate_set = c.below(profile.texture_units() as u32) as usize;
-            texture_shader[k] = ShaderStage { coordinate_set, ..ShaderStage::conventional(k, true) };
-            unit
-        })
-    });
+    let styles: CoordinateStyles = std::array::from_fn(|_| c.below(16));
+    let (textures, texture_shader) = texture::units(&mut c.part(UNITS), given, &usable, &styles);
     let topology: Topology = c.any();
-    let (vertices, positions) = vertices(&mut vertex_tape, topology, surface);
+    let (vertices, positions) = vertices(&mut vertex_tape, topology, surface, &styles);
+    let fog = fog(c, profile);
     let mut indices: Vec<u32> = (0..vertices.len() as u32).collect();
     if c.once_in(8) {
         for index in &mut indices {
@@ -259,18 +230,20 @@ fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[T
         cull: if c.once_in(6) { c.any() } else { Cull::None },
         front_face: c.any(),
         scissor: c.once_in(5).then(|| Rectangle {
-            x: c.below(surface.width),
-            y: c.below(surface.height),
+            x: c.below(surface.width.div_ceil(2)),
+            y: c.below(surface.height.div_ceil(2)),
             width: c.size(1, 40),
             height: c.size(1, 40),
         }),
-        fog: Fog { enabled: c.once_in(2), color: [c.byte(), c.byte(), c.byte()], function: None },
+        fog,
         textures,
         texture_shader,
         alpha_test: c.once_in(5).then(|| AlphaTest { function: c.any(), reference: c.byte() }),
-        depth_test: (surface.depth.is_some() && c.below(3) != 0)
-            .then(|| DepthTest { function: c.any(), write: c.below(4) != 0 }),
-        blend: (blend_allowed && c.once_in(2)).then(|| Blend {
+        depth_test: (surface.depth.is_some() && c.below(3) != 0).then(|| DepthTest {
+            function: if c.once_in(2) { c.any() } else { CompareFunction::LessOrEqual },
+            write: c.below(4) != 0,
+        }),
+        blend: (blend_allowed && c.once_in(3)).then(|| Blend {
             equation: c.pick(equations),
             source: c.any(),
             destination: c.any(),
@@ -281,27 +254,29 @@ fn draw(c: &mut Choices<'_>, profile: Profile, targets: &[Target], textures: &[T
     }
 }
 
-fn unit(c: &mut Choices<'_>, profile: Profile, usable: &[usize]) -> TextureUnit {
-    let nv2a = profile == Profile::Nv2a;
-    let modes: &[AddressMode] = match profile {
-        Profile::Nv2a => AddressMode::ALL,
-        Profile::Nv10 => &[AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge, AddressMode::Clamp],
-    };
-    let filter = c.any();
-    TextureUnit {
-        address_s: c.pick(modes),
-        address_t: c.pick(modes),
-        min_filter: filter,
-        mag_filter: filter,
-        border_color: c.bytes(),
-        signed: std::array::from_fn(|_| nv2a && c.once_in(5)),
-        ..TextureUnit::new(c.pick(usable))
-    }
+fn fog(c: &mut Choices<'_>, profile: Profile) -> Fog {
+    let mut c = c.part(16);
+    let (enabled, color) = (c.once_in(2), [c.byte(), c.byte(), c.byte()]);
+    let possible = FOG_FUNCTIONS && profile == Profile::Nv2a;
+    let function = (possible && c.below(3) != 0).then(|| FogFunction {
+        mode: c.any(),
+        p0: if c.once_in(2) { c.between(0.0, 3.0) } else { c.pick(&[1.5, 2.0, 1.0, 0.0, -1.0, 2.5]) },
+        p1: if c.once_in(2) { c.between(-1.0, 1.0) } else { c.pick(&[-0.125, -1.0, 0.25, 0.0, -0.090_168_44, 1e-9]) },
+    });
+    Fog { enabled, color, function }
 }
 
 // ---- geometry ----
 
-fn vertices(c: &mut Choices<'_>, topology: Topology, surface: &Target) -> (Vec<Vertex>, Positions) {
+/// How [`coordinates`] makes each coordinate set.
+type CoordinateStyles = [u32; 4];
+
+fn vertices(
+    c: &mut Choices<'_>,
+    topology: Topology,
+    surface: &Target,
+    styles: &CoordinateStyles,
+) -> (Vec<Vertex>, Positions) {
     let (width, height) = (surface.width as f32, surface.height as f32);
     let count = match topology {
         Topology::Triangles => 3 * c.size(1, 4),
@@ -309,8 +284,10 @@ fn vertices(c: &mut Choices<'_>, topology: Topology, surface: &Target) -> (Vec<V
         Topology::Quads => 4 * c.size(1, 3),
         Topology::QuadStrip => 2 * c.size(2, 5),
     } as usize;
-    let (style, w_style, z_style, colors, clip) = (c.below(8), c.below(6), c.below(4), c.below(4), c.once_in(4));
-    let coordinate_styles: [u32; 4] = std::array::from_fn(|_| c.below(8));
+    // What leaves the shape, or is far away, half as often.
+    let style = c.pick(&[0, 1, 2, 3, 4, 5, 6, 7, 0, 2, 3, 4, 1, 5]);
+    let (w_style, z_style, colors, clip) = (c.below(6), c.below(4), c.below(4), c.once_in(4));
+    let fog_scale = c.pick(&[1.0, 1.0, 8.0, 100.0]);
     let places = places(c, topology, style, count, [width, height]);
     let same_w = w(c, w_style);
     let near = c.once_in(2);
@@ -334,8 +311,8 @@ fn vertices(c: &mut Choices<'_>, topology: Topology, surface: &Target) -> (Vec<V
                 position,
                 diffuse: color(&mut c, colors),
                 specular: color(&mut c, colors),
-                fog: if c.once_in(2) { c.between(-0.2, 1.2) } else { c.below(17) as f32 / 16.0 },
-                texture_coordinates: std::array::from_fn(|set| coordinates(&mut c, coordinate_styles[set], [x, y])),
+                fog: fog_scale * if c.once_in(2) { c.between(-0.2, 1.2) } else { c.below(17) as f32 / 16.0 },
+                texture_coordinates: std::array::from_fn(|set| coordinates(&mut c, styles[set], [x, y])),
             }
         })
         .collect();
@@ -467,27 +444,54 @@ fn color(c: &mut Choices<'_>, style: u32) -> VertexColor {
 
 /// s, t, r, q.
 fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
-    let mut c = c.part(4);
+    let mut c = c.part(5);
     let (x, y) = (x.clamp(-256.0, 256.0), y.clamp(-256.0, 256.0));
     let one_to_one = [x / 16.0, y / 16.0, 0.0, 1.0];
     match style {
         0 => one_to_one,
         1 => [c.below(17) as f32 / 8.0, c.below(17) as f32 / 8.0, 0.0, 1.0],
         2 | 3 => [c.between(-3.0, 3.0), c.between(-3.0, 3.0), 0.5, 1.0],
-        4 => [c.between(-4095.0, 4095.0), c.pick(&[0.0, 4096.0, -4096.0, 1.0 / 512.0]), 0.0, 1.0],
+        4 => {
+            let far = c.pick(&[1023.0, 4095.0]);
+            [c.between(-far, far), c.pick(&[0.0, far + 1.0, -far - 1.0, 1.0 / 512.0]), 0.0, 1.0]
+        }
         5 => {
             // Projected, and the same place for every q: ties survive.
             let q = c.pick(&[1.0, 2.0, 4.0, 0.5]);
             [one_to_one[0] * q, one_to_one[1] * q, 0.0, q]
         }
         6 => [c.between(-2.0, 2.0), c.below(9) as f32 / 4.0, 0.0, c.pick(&[1.0, -1.0, 2.0, 0.0, 3.0, 0.5, -2.0])],
-        _ => [c.between(-2.0, 2.0), c.between(-2.0, 2.0), 0.0, c.between(-0.5, 3.0)],
+        7 => [c.between(-2.0, 2.0), c.between(-2.0, 2.0), 0.0, c.between(-0.5, 3.0)],
+        // Texels of rectangles; elsewhere many repeats.
+        8 => [x, y, 0.5, 1.0],
+        9 => [x / 4.0 + c.between(-0.5, 0.5), y * 0.75, 0.25, 1.0],
+        // Minified, evenly or in one direction.
+        10 => [x / 5.0, y / 16.0, 0.0, 1.0],
+        11 => [x / 3.0 + c.between(-0.2, 0.2), y / 7.0 + c.between(-0.2, 0.2), 0.0, c.pick(&[1.0, 1.0, 1.5])],
+        // Directions: any, on the edges and corners of the cube, and one face after the other across the target.
+        12 => [c.between(-1.0, 1.0), c.between(-1.0, 1.0), c.between(-1.0, 1.0), c.between(-1.0, 2.0)],
+        13 => {
+            let steps = [0.0, 1.0, -1.0, 0.5, -0.5];
+            [c.pick(&steps), c.pick(&steps), c.pick(&steps), c.pick(&[1.0, 0.0, -1.0])]
+        }
+        14 => [x / 8.0 - 1.0, 1.0 - y / 8.0, c.pick(&[1.0, 1.0, -1.0, 0.25]), 1.0],
+        // Rows of a matrix, nearly, with an eye in q.
+        _ => {
+            let row = c.below(3) as usize;
+            let mut out =
+                [c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-1.0, 1.0)];
+            out[row] = c.pick(&[1.0, -1.0, 0.5]);
+            out
+        }
     }
 }
 
 // ---- combiners ----
 
 fn combiners(c: &mut Choices<'_>, profile: Profile) -> Combiners {
+    if c.below(2) == 0 {
+        return showing(c, profile);
+    }
     let count = match profile {
         Profile::Nv10 => c.size(1, 2),
         Profile::Nv2a if c.once_in(3) => c.size(1, 8),
@@ -506,6 +510,48 @@ fn combiners(c: &mut Choices<'_>, profile: Profile) -> Combiners {
         })
         .collect();
     Combiners { stages, mux_select, final_combiner }
+}
+
+/// One stage that shows two units, or fog, nearly as they are.
+fn showing(c: &mut Choices<'_>, profile: Profile) -> Combiners {
+    let mut units = vec![Register::Texture0, Register::Texture1];
+    if profile == Profile::Nv2a {
+        units.extend([Register::Texture2, Register::Texture3]);
+    }
+    let (first, second) = (c.pick(&units), c.pick(&units));
+    let mapping = c.pick(&[InputMapping::UnsignedIdentity, InputMapping::SignedIdentity, InputMapping::SignedNegate]);
+    let halved = c.once_in(2);
+    let portion = |plain: Component, component: Component| {
+        let one = CombinerInput { mapping: InputMapping::UnsignedInvert, ..CombinerInput::zero(plain) };
+        let shown = |register| CombinerInput { register, component, mapping };
+        let other = if first == second { CombinerInput::zero(plain) } else { shown(second) };
+        let scale = if halved { Scale::Half } else { Scale::One };
+        Portion { inputs: [shown(first), one, other, one], sum_output: Register::Spare0, scale, ..Portion::idle(plain) }
+    };
+    let stage = GeneralStage {
+        rgb: portion(Component::Rgb, Component::Rgb),
+        alpha: portion(Component::Blue, Component::Alpha),
+        constants: [[0; 4]; 2],
+    };
+    let input = |register, component| FinalInput { register, component, invert: false };
+    let mut inputs = [input(FinalRegister::Zero, Component::Rgb); 6];
+    inputs[3] = input(FinalRegister::Spare0, Component::Rgb);
+    let g = match c.below(3) {
+        0 => input(FinalRegister::Fog, Component::Alpha),
+        _ => input(FinalRegister::Spare0, Component::Alpha),
+    };
+    Combiners {
+        stages: vec![stage],
+        mux_select: MuxSelect::Msb,
+        final_combiner: FinalCombiner {
+            inputs,
+            g,
+            color_sum_clamp: false,
+            invert_spare0: false,
+            invert_secondary: false,
+            constants: [[0; 4]; 2],
+        },
+    }
 }
 
 fn stage(c: &mut Choices<'_>, profile: Profile, constants: [[u8; 4]; 2]) -> GeneralStage {

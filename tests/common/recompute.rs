@@ -4,6 +4,8 @@
 
 #[path = "dxt.rs"]
 mod dxt;
+#[path = "recompute_shader.rs"]
+mod shader;
 
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -17,6 +19,9 @@ pub struct Number {
 
 impl PartialEq for Number {
     fn eq(&self, other: &Self) -> bool {
+        if self.per_one == 0 || other.per_one == 0 {
+            return (self.value, self.per_one) == (other.value, other.per_one);
+        }
         self.value * other.per_one == other.value * self.per_one
     }
 }
@@ -32,6 +37,7 @@ fn is_parameter(name: &str) -> bool {
         "y",
         "size",
         "lowered",
+        "exponent",
         "lod_bias",
         "min_lod",
         "max_lod",
@@ -97,7 +103,7 @@ pub fn fragment(draw: &Value, policies: &Value) -> Result<BTreeMap<String, Numbe
             inputs.push((label.to_string(), given));
         }
         let shown = number(step);
-        let computed = if ["given", "fetch", "palette", "border_color"].contains(&operation) {
+        let computed = if ["given", "fetch", "palette", "border_color", "chain"].contains(&operation) {
             shown
         } else {
             apply(operation, &inputs, policies).ok_or_else(|| format!("{name}: unknown operation {operation}"))?
@@ -200,6 +206,20 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
             let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
             Number { value: sum.div_euclid(v(6)).clamp(0, 4096), per_one: 4096 }
         }
+        "truncate_24" => plain(truncated_24(inputs).0),
+        "truncate_24_exponent" => plain(truncated_24(inputs).1 + v(7)),
+        "fog_linear" | "fog_linear_abs" => {
+            // p0 + d p1 - 1
+            let f = sum(&[(v(0), v(1)), (v(2) * v(4), v(3) + v(5)), (-1, 0)]);
+            factor(f, operation.ends_with("_abs"))
+        }
+        "fog_power" => power_of_two(v(0) * v(2), v(1) + v(3) + 4),
+        "fog_power_of_square" => power_of_two(-(v(0) * v(2)) * (v(0) * v(2)), 2 * (v(1) + v(3)) + 5),
+        "fog_exponential" | "fog_exponential_abs" => {
+            // p0 + y - 3/2
+            let f = sum(&[(v(0), v(1)), (v(2), -32), (-3, -1)]);
+            factor(f, operation.ends_with("_abs"))
+        }
         "factor_byte" => byte((v(0) - (v(0) >> 8)) >> 4),
         // Texture units.
         "cube_face" => plain(cube_face(inputs)),
@@ -257,6 +277,33 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "high_byte_doubled" => byte(2 * (v(0) >> 8)),
         "double" => byte(2 * v(0)),
         "write" | "copy" => n(0),
+        // Texture shader.
+        "byte_of_register" => plain(v(0) & 255),
+        "byte_of_double" => plain(v(0) >> 1 & 255),
+        "nearest_float" => shader::nearest_float(inputs),
+        "floor_number" => Number { value: shader::floor_number(inputs, 4096).clamp(0, 4096), per_one: 4096 },
+        "is_negative" => plain(i128::from(shader::numerator(inputs) < 0)),
+        "is_not_negative" => plain(i128::from(shader::numerator(inputs) >= 0)),
+        "remap_zero_to_one" | "remap_d3d" | "remap_gl" | "remap_twos_complement" => shader::remap(operation, inputs),
+        "remap_half" | "remap_half_signed" | "third_of_unit" | "float_one" => shader::remap(operation, inputs),
+        "float_product" | "float_sum" | "float_dot" | "float_double_quotient" | "float_reflection" => {
+            shader::float(operation, inputs)
+        }
+        "floor_float" => Number { value: shader::floor_float(inputs), per_one: 256 },
+        "float_face" => plain(shader::face(inputs)),
+        "floor_float_face_u" | "floor_float_face_v" => {
+            Number { value: shader::face_coordinate(inputs, operation.ends_with('u')), per_one: 256 }
+        }
+        "dependent_255" => Number { value: 256 * v(1) * v(0) / 255, per_one: 256 },
+        "dependent_256" => Number { value: v(1) * v(0), per_one: 256 },
+        "bump_offset" => Number { value: shader::bump_offset(inputs), per_one: 1 << 32 },
+        "floor_plane_moved" => {
+            let sum = shader::numerator(inputs);
+            let value = ((sum << 24) + v(7) * v(6)).div_euclid(v(6) << 24).clamp(-(1 << 24), 1 << 24) - v(8);
+            Number { value, per_one: 256 }
+        }
+        "luminance" => Number { value: shader::luminance(inputs), per_one: 4096 },
+        "luminance_byte" => byte(((v(0) - (v(0) >> 8)) >> 4).min(255)),
         // Combiners.
         "unsigned_identity" => byte(max0(0)),
         "unsigned_invert" => byte(255 - max0(0)),
@@ -328,6 +375,73 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
     })
 }
 
+/// The first 24 bits of a quotient, toward zero, and their exponent.
+fn truncated_24(inputs: &[(String, Number)]) -> (i128, i128) {
+    let v = |k: usize| inputs[k].1.value;
+    let sum: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
+    let (mut top, mut bottom, mut exponent) = (sum.abs(), v(6), 0);
+    if top == 0 {
+        // Zero has no exponent of its own: the rule's is 0 with that of the numerator's taken off.
+        return (0, inputs.get(7).map_or(0, |exponent| -exponent.1.value));
+    }
+    while top / bottom >= 1 << 24 {
+        (bottom, exponent) = (bottom * 2, exponent + 1);
+    }
+    while top / bottom < 1 << 23 {
+        (top, exponent) = (top * 2, exponent - 1);
+    }
+    (top / bottom * sum.signum(), exponent)
+}
+
+/// The sum of numbers m 2^e in 2^-60, floored term by term, and whether something was cut. A term beyond 2^60 decides alone.
+fn sum(terms: &[(i128, i128)]) -> (i128, bool) {
+    let (mut sum, mut cut) = (0_i128, false);
+    for (m, e) in terms.iter().filter(|term| term.0 != 0) {
+        let up = e + 60;
+        let bits = 128 - i128::from(m.unsigned_abs().leading_zeros());
+        if bits + up > 120 {
+            return (m.signum() << 120, false);
+        }
+        let part = if up >= 0 { m << up } else { m >> (-up).min(127) };
+        cut |= up < 0 && (up < -120 || part << -up != *m);
+        sum += part;
+    }
+    (sum, cut)
+}
+
+/// A sum in 2^-60, or its magnitude, in 4096ths, limited to 0..4096.
+fn factor((sum, cut): (i128, bool), magnitude: bool) -> Number {
+    let sum = if magnitude && sum < 0 { -sum - i128::from(cut) } else { sum };
+    Number { value: (sum >> 48).clamp(0, 4096), per_one: 4096 }
+}
+
+/// floor(2^(32 + m 2^e)) of an exponent limited to -64..16, per 2^32.
+fn power_of_two(m: i128, e: i128) -> Number {
+    let bits = 128 - i128::from(m.unsigned_abs().leading_zeros()) + e;
+    let x = match m.signum() {
+        0 => 0,
+        sign if bits > 6 => sign * 64 << 110,
+        _ if e + 110 >= 0 => m << (e + 110),
+        _ => m >> (-e - 110).min(127),
+    };
+    let x = x.clamp(-64 << 110, 16 << 110);
+    let (whole, fraction) = (x >> 110, (x & ((1 << 110) - 1)) as u128);
+    // e^(f ln 2) in 2^-110, term after term.
+    let times = |a: u128, b: u128| {
+        let (high, low) = (a >> 55, a & ((1 << 55) - 1));
+        let (b1, b0) = (b >> 55, b & ((1 << 55) - 1));
+        high * b1 + ((high * b0 + low * b1 + (low * b0 >> 55)) >> 55)
+    };
+    let t = times(fraction, 0x58b9_0bfb_e8e7_bcd5_e4f1_d9cc_01f9_7b57 >> 17);
+    let (mut term, mut sum, mut n) = (1_u128 << 110, 0_u128, 0);
+    while term > 0 {
+        (sum, n) = (sum + term, n + 1);
+        term = times(term, t) / n;
+    }
+    let value = if whole < -32 { 0 } else { (sum >> (78 - whole)) as i128 };
+    Number { value, per_one: 1 << 32 }
+}
+
 fn sixteen_bits(value: i128) -> Number {
     Number { value, per_one: 65535 }
 }
@@ -361,7 +475,7 @@ fn on_face(inputs: &[(String, Number)], s: bool) -> [i128; 2] {
 
 /// floor(128 log2 n) - 4096 of the larger squared distance n.
 fn log2_ratio(uv: [i128; 6]) -> i128 {
-    let [u0, v0, u1, v1, u2, v2] = uv.map(|c| c.clamp(-(1 << 40), 1 << 40));
+    let [u0, v0, u1, v1, u2, v2] = uv.map(|c| c.clamp(-(1 << 60), 1 << 60));
     let n = ((u1 - u0).pow(2) + (v1 - v0).pow(2)).max((u2 - u0).pow(2) + (v2 - v0).pow(2)) as u128;
     if n == 0 {
         return -32768;

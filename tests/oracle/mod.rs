@@ -3,16 +3,23 @@
 //! It shares no code with the crate but the scene it reads (`ninebit::state`) and the surfaces it returns, so that an error in one of
 //! the two shows as a difference.
 
+pub mod block;
 pub mod combiner;
+pub mod coordinate;
+pub mod fog;
 pub mod raster;
 pub mod real;
 pub mod rop;
+pub mod shader;
+pub mod tally;
+pub mod texel;
 pub mod texture;
 
 use combiner::Registers;
 use ninebit::frame::Surface;
 use ninebit::state::{Draw, Policies, Scene};
 use raster::{Sample, Setup};
+use shader::Units;
 use texture::Image;
 
 /// Every surface of the scene after its draws.
@@ -39,7 +46,7 @@ pub fn render(scene: &Scene, policies: &Policies) -> Vec<Surface> {
 
 fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [Surface]) {
     let images: Vec<Option<Image>> =
-        draw.textures.iter().map(|unit| unit.map(|unit| Image::new(&scene.textures[unit.texture], surfaces))).collect();
+        draw.textures.iter().map(|unit| unit.map(|unit| Image::new(scene, unit, surfaces))).collect();
     let target = &scene.targets[draw.target];
     let surface = &mut surfaces[draw.target];
     let (mut left, mut top, mut right, mut bottom) = (0, 0, u64::from(target.width), u64::from(target.height));
@@ -50,10 +57,16 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
     }
     for vertices in raster::triangles(draw) {
         let Some(setup) = Setup::new(draw, scene.profile, vertices) else { continue };
+        let units = Units::new(draw, &images, &setup, policies);
         for j in top..bottom {
             for i in left..right {
-                let Some(sample) = setup.sample(i.into(), j.into()) else { continue };
-                let color = shade(draw, &images, &setup, &sample, policies);
+                let sample = setup.sample(i.into(), j.into());
+                if !sample.covered {
+                    continue;
+                }
+                // TSH-10
+                let Some(textures) = units.registers(i.into(), j.into(), &sample) else { continue };
+                let color = shade(draw, textures, &setup, &sample, policies);
                 let at = (j * u64::from(target.width) + i) as usize;
                 // ROP-1, then DEP-2.
                 if let Some(test) = draw.alpha_test
@@ -77,23 +90,13 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
 }
 
 /// One fragment's colour, R, G, B, A bytes.
-fn shade(draw: &Draw, images: &[Option<Image>], setup: &Setup, sample: &Sample, policies: &Policies) -> [i128; 4] {
-    // TEX-16: an unbound unit.
-    let mut textures = [[0, 0, 0, 255]; 4];
-    for (k, unit) in draw.textures.iter().enumerate() {
-        if let (Some(unit), Some(image)) = (unit, &images[k]) {
-            textures[k] = texture::sample(
-                unit,
-                image,
-                setup.coordinates(sample, draw.texture_shader[k].coordinate_set, image.size),
-            );
-        }
-    }
+fn shade(draw: &Draw, textures: [[i128; 4]; 4], setup: &Setup, sample: &Sample, policies: &Policies) -> [i128; 4] {
     let [r, g, b] = draw.fog.color.map(i128::from);
+    let weights = setup.color_weights(sample);
     let registers = Registers {
-        fog: [r, g, b, if draw.fog.enabled { setup.fog(sample) } else { 255 }],
-        primary: setup.color(sample, |v| v.diffuse),
-        secondary: setup.color(sample, |v| v.specular),
+        fog: [r, g, b, if draw.fog.enabled { fog::factor(setup, sample, draw.fog.function) } else { 255 }],
+        primary: setup.color(weights, |v| v.diffuse),
+        secondary: setup.color(weights, |v| v.specular),
         textures,
         // CMB-13
         spare0: [0, 0, 0, textures[0][3]],

@@ -1,6 +1,6 @@
 //! Vertices to covered pixels, and everything that is interpolated.
 
-use super::real::{align, color_byte, factor_byte, floor_div, shift, split};
+use super::real::{align, color_byte, floor_div, shift, split};
 use ninebit::state::{
     Cull, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel, Topology, Vertex, VertexColor, Viewport,
 };
@@ -150,28 +150,27 @@ fn snap(x: f32) -> i128 {
 
 /// A triangle after set-up.
 pub struct Setup {
-    vertices: [Vertex; 3],
+    pub vertices: [Vertex; 3],
     snapped: [[i128; 2]; 3],
     /// Doubled area, positive.
     area: i128,
     /// 1 when the vertices run clockwise on screen (y down), else -1.
     turn: i128,
     /// Perspective weights.
-    p: [i128; 3],
+    pub p: [i128; 3],
     /// INT-3's exception.
-    exact: bool,
+    pub exact: bool,
 }
 
-/// One covered pixel.
+/// The sample point of one pixel.
+#[derive(Clone, Copy)]
 pub struct Sample {
-    /// Edge functions, none negative.
-    e: [i128; 3],
-    /// sum P E.
-    d: i128,
-    /// INT-3 on the interpolation weights.
-    dominant: usize,
-    /// Weights of the three colours in 256ths.
-    weights: [i128; 3],
+    /// Edge functions, none negative where the pixel is covered.
+    pub e: [i128; 3],
+    /// Whether the triangle covers it (RAS-3).
+    pub covered: bool,
+    /// sum P E; positive where the pixel is covered.
+    pub d: i128,
 }
 
 impl Setup {
@@ -209,10 +208,10 @@ impl Setup {
         Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact })
     }
 
-    /// RAS-2, RAS-3, INT-1 to INT-3.
-    pub fn sample(&self, i: i128, j: i128) -> Option<Sample> {
+    /// RAS-2, RAS-3, INT-1.
+    pub fn sample(&self, i: i128, j: i128) -> Sample {
         let (x, y) = (16 * i + 8, 16 * j + 8);
-        let mut e = [0; 3];
+        let (mut e, mut covered) = ([0; 3], true);
         for k in 0..3 {
             // Brought to the clockwise order (y down), in which the inside lies to the right of s -> t.
             let (mut s, mut t) = (self.snapped[(k + 1) % 3], self.snapped[(k + 2) % 3]);
@@ -223,93 +222,52 @@ impl Setup {
             // Going up, the inside is to the right of it: a left edge. Going right, it is below: a top edge.
             let left = t[1] < s[1];
             let top = t[1] == s[1] && t[0] > s[0];
-            if e[k] < 0 || (e[k] == 0 && !left && !top) {
-                return None;
-            }
+            covered &= e[k] > 0 || (e[k] == 0 && (left || top));
         }
-        let n: [i128; 3] = std::array::from_fn(|k| self.p[k] * e[k]);
-        let d = n[0] + n[1] + n[2];
-        let dominant = dominant(n, d);
+        Sample { e, covered, d: (0..3).map(|k| self.p[k] * e[k]).sum() }
+    }
+
+    /// The weights P E, and INT-3's dominant one.
+    pub fn weights(&self, sample: &Sample) -> ([i128; 3], usize) {
+        let n = std::array::from_fn(|k| self.p[k] * sample.e[k]);
+        (n, dominant(n, sample.d))
+    }
+
+    /// INT-2, INT-3: weights of the three colours in 256ths.
+    pub fn color_weights(&self, sample: &Sample) -> [i128; 3] {
+        let (n, dominant) = self.weights(sample);
         let weight = |k: usize| {
-            let (q, tie) = floor_div(256 * n[k], d);
+            let (q, tie) = floor_div(256 * n[k], sample.d);
             if tie && q > 0 && k != dominant && !self.exact { q - 1 } else { q }
         };
         let (w0, w2) = (weight(0), weight(2));
-        Some(Sample { e, d, dominant, weights: [w0, 256 - w0 - w2, w2] })
+        [w0, 256 - w0 - w2, w2]
     }
 
     /// INT-2 of one set of colours.
-    pub fn color(&self, sample: &Sample, which: impl Fn(&Vertex) -> VertexColor) -> [i128; 4] {
+    pub fn color(&self, weights: [i128; 3], which: impl Fn(&Vertex) -> VertexColor) -> [i128; 4] {
         let colors = [0, 1, 2].map(|k| match which(&self.vertices[k]) {
             VertexColor::Bytes(b) => b.map(i128::from),
             VertexColor::Floats(f) => f.map(color_byte),
         });
         std::array::from_fn(|c| {
-            let sum: i128 = (0..3).map(|k| colors[k][c] * sample.weights[k]).sum();
+            let sum: i128 = (0..3).map(|k| colors[k][c] * weights[k]).sum();
             (sum + 128) >> 8
         })
     }
 
-    /// Fog factor as a byte (NUM-6).
-    pub fn fog(&self, sample: &Sample) -> i128 {
-        let sum: i128 = (0..3)
-            .map(|k| {
-                let (m, e) = split(self.vertices[k].fog.clamp(0.0, 1.0));
-                shift(self.p[k] * 4096 * m, e) * sample.e[k]
-            })
-            .sum();
-        factor_byte(floor_div(sum, sample.d).0.clamp(0, 4096))
-    }
-
-    /// INT-4t: how a number lies beside its tie, in the direction of the weights that fall short.
-    fn lean(&self, sample: &Sample, x: [i128; 3]) -> i128 {
-        [0, 2]
-            .into_iter()
-            .filter(|i| *i != sample.dominant)
-            .map(|i| sample.e[i] * (x[i] * self.p[1] - self.p[i] * x[1]))
-            .sum()
-    }
-
-    /// INT-4, INT-4t, TEX-15: both coordinates in 1/256 texel.
-    pub fn coordinates(&self, sample: &Sample, set: usize, size: [u32; 2]) -> [i128; 2] {
-        let c = self.vertices.map(|v| v.texture_coordinates[set]);
-        let e = sample.e;
-        let total = |x: [i128; 3]| x[0] * e[0] + x[1] * e[1] + x[2] * e[2];
-        if c.iter().all(|c| c[3] == 1.0) {
-            return [0, 1].map(|axis| {
-                let g: [i128; 3] = std::array::from_fn(|k| {
-                    let (m, e) = split(c[k][axis]);
-                    shift(self.p[k] * 256 * i128::from(size[axis]) * m, e)
-                });
-                let (u, tie) = floor_div(total(g), sample.d);
-                if tie && !self.exact && self.lean(sample, g) > 0 { u - 1 } else { u }
-            });
-        }
-        let nine: [i128; 9] = align(
-            std::array::from_fn(|n| {
-                let (m, e) = split(c[n % 3][[0, 1, 3][n / 3]]);
-                (self.p[n % 3] * m, e)
-            }),
-            28,
-        );
-        let axis = |a: usize| [nine[3 * a], nine[3 * a + 1], nine[3 * a + 2]];
-        let limit = 1 << 24;
-        let nq = total(axis(2));
-        [0, 1].map(|a| {
-            let ns = total(axis(a));
-            if nq == 0 {
-                return ns.signum() * limit;
-            }
-            let scale = 256 * i128::from(size[a]);
-            let (value, tie) = floor_div(scale * ns, nq);
-            if tie && !self.exact && value > -limit && value <= limit {
-                let lean = self.lean(sample, axis(a)) * scale - value * self.lean(sample, axis(2));
-                if nq.signum() * lean > 0 {
-                    return value - 1;
-                }
-            }
-            value.clamp(-limit, limit)
-        })
+    /// A number of the vertices at a pixel, as numerator and exponent; the denominator is the sample's D. The products with P share
+    /// one exponent far below what matters.
+    pub fn attribute(&self, sample: &Sample, x: impl Fn(&Vertex) -> f32) -> (i128, i32) {
+        let parts: [(i128, i32); 3] = std::array::from_fn(|k| {
+            let (m, e) = split(x(&self.vertices[k]));
+            (self.p[k] * m, e)
+        });
+        let Some(top) = parts.iter().filter(|p| p.0 != 0).map(|p| p.1 + super::real::bits(p.0)).max() else {
+            return (0, 0);
+        };
+        let exponent = top - 88;
+        ((0..3).map(|k| shift(parts[k].0, parts[k].1 - exponent) * sample.e[k]).sum(), exponent)
     }
 
     /// DEP-1: depth in units of a buffer whose largest value is `full`.
@@ -341,10 +299,11 @@ fn trunc24(n: i128, d: i128) -> i128 {
     ((n << e) / d) << (64 - e)
 }
 
-/// INT-3: the weight with the largest binary exponent, an exact power of two counting as just below itself.
+/// INT-3: the weight with the largest binary exponent, an exact power of two counting as just below itself. Outside the triangle a weight
+/// that is not positive never dominates.
 fn dominant(n: [i128; 3], d: i128) -> usize {
     let class = n.map(|n| {
-        if n == 0 {
+        if n <= 0 {
             return u32::MAX;
         }
         let mut c = 0;

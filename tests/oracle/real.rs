@@ -9,19 +9,19 @@ pub fn split(f: f32) -> (i128, i32) {
     (if bits >> 31 == 1 { -m } else { m }, e)
 }
 
+/// Bits of a magnitude; 0 for 0.
+pub fn bits(n: i128) -> i32 {
+    128 - n.unsigned_abs().leading_zeros() as i32
+}
+
 /// floor(n * 2^e).
 pub fn shift(n: i128, e: i32) -> i128 {
-    if e >= 0 { n << e.min(60) } else { n >> (-e).min(127) }
+    if e >= 0 { n << e.min(126 - bits(n)).max(0) } else { n >> (-e).min(127) }
 }
 
 /// Block floating point: the largest magnitude gets exactly `keep` bits, the others share its exponent, floored.
 pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> [i128; N] {
-    let top = values
-        .iter()
-        .filter(|(m, _)| *m != 0)
-        .map(|(m, e)| 128 - m.unsigned_abs().leading_zeros() as i32 + e)
-        .max()
-        .unwrap_or(0);
+    let top = values.iter().filter(|(m, _)| *m != 0).map(|(m, e)| bits(*m) + e).max().unwrap_or(0);
     values.map(|(m, e)| shift(m, e + keep - top))
 }
 
@@ -59,4 +59,116 @@ pub fn color_byte(c: f32) -> i128 {
         return 0;
     }
     (510 * cut + (1 << half)) >> (half + 1)
+}
+
+/// floor of the sum of all m 2^e, exactly where at most one of them is tiny beside the others; limited to +-2^100.
+pub fn floor_sum(terms: &[(i128, i32)]) -> i128 {
+    let terms: Vec<_> = terms.iter().filter(|t| t.0 != 0).collect();
+    let top = terms.iter().map(|t| t.1 + bits(t.0)).max().unwrap_or(0);
+    if top > 100 {
+        let huge = terms.iter().max_by_key(|t| t.1 + bits(t.0)).unwrap();
+        return huge.0.signum() << 100;
+    }
+    let least = terms.iter().map(|t| t.1).min().unwrap_or(0);
+    // A finer term is floored to a step that all the others are multiples of: the sum's floor stays.
+    let base = least.max(top - 115).min(0);
+    shift(terms.iter().map(|t| shift(t.0, t.1 - base)).sum(), base)
+}
+
+/// The f32 nearest to n / d * 2^e, ties to even.
+pub fn nearest_f32(n: i128, d: i128, e: i32) -> f32 {
+    if n == 0 {
+        return 0.0;
+    }
+    let up = 126 - bits(n);
+    let numerator = n.abs() << up;
+    let (q, rest) = (numerator / d, numerator % d);
+    let e = e - up;
+    // Twenty-four bits, or the grid of the smallest numbers.
+    let drop = (bits(q) - 24).max(-149 - e);
+    let rounded = if drop > 126 {
+        0
+    } else {
+        let (kept, lost) = (q >> drop, q & ((1 << drop) - 1));
+        let half = 1 << (drop - 1);
+        let up = lost > half || (lost == half && (rest != 0 || kept & 1 == 1));
+        kept + i128::from(up)
+    };
+    // Both conversions are exact, but for what is too large for an f32.
+    let value = (rounded as f64 * 2.0_f64.powi(e + drop)) as f32;
+    if n < 0 { -value } else { value }
+}
+
+/// floor(128 log2 n), n > 0.
+pub fn log2_in_128ths(n: u128) -> i128 {
+    let whole = 127 - n.leading_zeros() as i32;
+    // The mantissa as an interval in units of 2^-62, squared seven times.
+    let (mut low, mut high) = if whole <= 62 {
+        (n << (62 - whole), n << (62 - whole))
+    } else {
+        let cut = n >> (whole - 62);
+        (cut, if cut << (whole - 62) == n { cut } else { cut + 1 })
+    };
+    let mut digits = i128::from(whole);
+    for _ in 0..7 {
+        let (l, h) = (low * low, high * high);
+        let carries = l >> 125 == 1;
+        if carries != (h >> 125 == 1) {
+            return log2_by_power(n);
+        }
+        digits = 2 * digits + i128::from(carries);
+        let down = 62 + u32::from(carries);
+        (low, high) = (l >> down, (h + (1 << down) - 1) >> down);
+    }
+    digits
+}
+
+/// The same by writing out n^128.
+fn log2_by_power(n: u128) -> i128 {
+    let mut power: Vec<u64> = (0..4).map(|k| (n >> (32 * k)) as u64 & 0xffff_ffff).collect();
+    for _ in 0..7 {
+        let mut square = vec![0_u64; 2 * power.len()];
+        for (i, a) in power.iter().enumerate() {
+            let mut carry = 0;
+            for (j, b) in power.iter().enumerate() {
+                let sum = square[i + j] + a * b + carry;
+                (square[i + j], carry) = (sum & 0xffff_ffff, sum >> 32);
+            }
+            square[i + power.len()] = carry;
+        }
+        power = square;
+    }
+    let top = power.iter().rposition(|d| *d != 0).unwrap_or(0);
+    32 * top as i128 + 63 - i128::from(power[top].leading_zeros())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logarithms() {
+        let cases = [1, 2, 3, 5, 255, 256, 257, u128::MAX >> 7, 1 << 100, (1 << 100) - 1, (1 << 100) + 1, 0xdead_beef];
+        for n in cases {
+            assert_eq!(log2_in_128ths(n), log2_by_power(n), "{n}");
+            let f = (n as f64).log2() * 128.0;
+            assert!((log2_by_power(n) as f64 - f).abs() < 1.001, "{n}");
+        }
+        for n in 1..100_000_u128 {
+            assert_eq!(log2_in_128ths(n), ((n as f64).log2() * 128.0 + 1e-9).floor() as i128, "{n}");
+        }
+    }
+
+    #[test]
+    fn nearest_f32_agrees_with_division() {
+        let mut seed = 1_u64;
+        for _ in 0..100_000 {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let (n, d) = ((seed >> 40) as i128 - (1 << 23), (seed >> 13 & 0xff_ffff) as i128 + 1);
+            assert_eq!(nearest_f32(n, d, 0), n as f32 / d as f32);
+        }
+        assert_eq!(nearest_f32(3, 1, -150), f32::from_bits(2));
+        assert_eq!(nearest_f32(1, 1, -150), 0.0);
+        assert_eq!(nearest_f32(1, 1, 128), f32::INFINITY);
+    }
 }

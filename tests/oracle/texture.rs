@@ -1,92 +1,209 @@
-//! Texture units: TEX-1, TEX-5 to TEX-8, TEX-16, TEX-18.
+//! Sampling at known coordinates: TEX-5 to TEX-9, TEX-14, TEX-18.
 
+use super::block;
+use super::coordinate::Place;
+use super::raster::{Sample, Setup};
+use super::tally::{count, count_named};
+use super::texel::{self, Color};
 use ninebit::frame::Surface;
-use ninebit::state::{AddressMode, Filter, Texture, TextureFormat, TextureImage, TextureUnit};
+use ninebit::state::{
+    AddressMode, Filter, MipFilter, Named, Profile, Scene, TextureFormat, TextureImage, TextureKind, TextureUnit,
+};
 
-/// A texture's words as they stand when a draw begins.
+/// A bound unit and its texture's words as they stand when a draw begins.
 pub struct Image {
-    pub size: [u32; 2],
+    unit: TextureUnit,
+    kind: TextureKind,
     format: TextureFormat,
+    size: [u32; 2],
+    levels: u32,
+    border: bool,
     words: Vec<u32>,
+    palette: Vec<u32>,
+    nv2a: bool,
 }
 
 impl Image {
-    pub fn new(texture: &Texture, surfaces: &[Surface]) -> Image {
-        match &texture.image {
-            TextureImage::Texels(texels) => {
-                Image { size: [texels.width, texels.height], format: texture.format, words: texels.words.to_vec() }
-            }
+    pub fn new(scene: &Scene, unit: TextureUnit, surfaces: &[Surface]) -> Image {
+        let texture = &scene.textures[unit.texture];
+        let (size, levels, border, words) = match &texture.image {
+            TextureImage::Texels(t) => ([t.width, t.height], t.levels, t.border, t.words.to_vec()),
             TextureImage::Target { target } => {
                 let s = &surfaces[*target];
-                Image { size: [s.width, s.height], format: texture.format, words: s.words.clone() }
+                ([s.width, s.height], 1, false, s.words.clone())
             }
-        }
-    }
-}
-
-/// TEX-1: R, G, B, A bytes.
-pub fn texel_bytes(format: TextureFormat, word: u32) -> [i128; 4] {
-    let byte = |n: u32| i128::from(word >> (8 * n) & 255);
-    let five = |at: u32| {
-        let v = i128::from(word >> at & 31);
-        v << 3 | v >> 2
-    };
-    match format {
-        TextureFormat::A8R8G8B8 => [byte(2), byte(1), byte(0), byte(3)],
-        TextureFormat::X8R8G8B8 => [byte(2), byte(1), byte(0), 255],
-        TextureFormat::R5G6B5 => {
-            let six = i128::from(word >> 5 & 63);
-            [five(11), six << 2 | six >> 4, five(0), 255]
-        }
-        TextureFormat::X1R5G5B5 => [five(10), five(5), five(0), 255],
-        TextureFormat::A1R5G5B5 => [five(10), five(5), five(0), if word >> 15 & 1 == 1 { 255 } else { 0 }],
-        TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
-        TextureFormat::A8 => [255, 255, 255, byte(0)],
-        TextureFormat::G8B8 => [byte(0), byte(1), byte(0), byte(1)],
-        other => unimplemented!("{other:?}"),
-    }
-}
-
-/// TEX-7, TEX-8: a texel index along one axis; none is the border.
-fn address(mode: AddressMode, index: i128, size: u32) -> Option<usize> {
-    let n = i128::from(size);
-    let i = match mode {
-        AddressMode::Wrap => index.rem_euclid(n),
-        AddressMode::Mirror => {
-            let i = index.rem_euclid(2 * n);
-            if i < n { i } else { 2 * n - 1 - i }
-        }
-        AddressMode::ClampToEdge | AddressMode::Clamp => index.clamp(0, n - 1),
-        AddressMode::ClampToBorder => {
-            if index < 0 || index >= n {
-                return None;
-            }
-            index
-        }
-    };
-    Some(i as usize)
-}
-
-/// What the unit's register holds, for coordinates in 1/256 texel.
-pub fn sample(unit: &TextureUnit, image: &Image, [u, v]: [i128; 2]) -> [i128; 4] {
-    // TEX-18: the byte as the filter sees it.
-    let fetch = |x: i128, y: i128| -> [i128; 4] {
-        let bytes = match (address(unit.address_s, x, image.size[0]), address(unit.address_t, y, image.size[1])) {
-            (Some(x), Some(y)) => texel_bytes(image.format, image.words[y * image.size[0] as usize + x]),
-            _ => unit.border_color.map(i128::from),
         };
-        std::array::from_fn(|c| if unit.signed[c] && bytes[c] >= 128 { bytes[c] - 256 } else { bytes[c] })
-    };
-    let filtered: [i128; 4] = match unit.mag_filter {
-        Filter::Nearest => fetch(u >> 8, v >> 8),
-        Filter::Linear => {
-            let (u, v) = (u - 128, v - 128);
-            let (x, y) = (u >> 8, v >> 8);
-            let (fx, fy) = (u & 255, v & 255);
-            let l = |a: i128, b: i128, w: i128| (a * (256 - w) + b * w + 128) >> 8;
-            let [a, b, c, d] = [fetch(x, y), fetch(x + 1, y), fetch(x, y + 1), fetch(x + 1, y + 1)];
-            std::array::from_fn(|k| l(l(a[k], b[k], fx), l(c[k], d[k], fx), fy))
+        let palette = unit.palette.map_or(Vec::new(), |p| scene.palettes[p].entries.to_vec());
+        let nv2a = scene.profile == Profile::Nv2a;
+        Image { unit, kind: texture.kind, format: texture.format, size, levels, border, words, palette, nv2a }
+    }
+
+    pub fn is_cube(&self) -> bool {
+        self.kind == TextureKind::Cube
+    }
+
+    fn side(&self, level: u32, axis: usize) -> u32 {
+        (self.size[axis] >> level).max(1)
+    }
+
+    /// What a coordinate of 1.0 counts in texels of a level: a rectangle's coordinates are texels.
+    pub fn scale(&self, level: u32) -> [u32; 2] {
+        [0, 1].map(|a| if self.kind == TextureKind::Rectangle { 1 } else { self.side(level, a) })
+    }
+
+    /// Columns and rows that a level stores.
+    fn stored(&self, level: u32) -> [usize; 2] {
+        [0, 1].map(|a| self.side(level, a) as usize + if self.border { 8 } else { 0 })
+    }
+
+    fn level_words(&self, level: u32) -> usize {
+        let [w, h] = self.stored(level);
+        match self.format {
+            TextureFormat::Dxt1 => 2 * w.div_ceil(4) * h.div_ceil(4),
+            TextureFormat::Dxt3 | TextureFormat::Dxt5 => 4 * w.div_ceil(4) * h.div_ceil(4),
+            _ => w * h,
         }
-    };
-    std::array::from_fn(|c| if unit.signed[c] { 2 * filtered[c] } else { filtered[c] })
+    }
+
+    /// Channels of a stored texel as the filter sees them; two halves, where the format has them.
+    fn stored_texel(&self, face: usize, level: u32, [x, y]: [usize; 2]) -> [i128; 4] {
+        let whole: usize = (0..self.levels).map(|n| self.level_words(n)).sum();
+        let start = face * whole + (0..level).map(|n| self.level_words(n)).sum::<usize>();
+        let words = &self.words[start..start + self.level_words(level)];
+        let width = self.stored(level)[0];
+        let of_block = match self.format {
+            TextureFormat::Dxt1 => 2,
+            TextureFormat::Dxt3 | TextureFormat::Dxt5 => 4,
+            _ => 0,
+        };
+        if of_block > 0 {
+            let block = of_block * (y / 4 * width.div_ceil(4) + x / 4);
+            return self.bytes(block::texel(self.format, self.nv2a, &words[block..block + of_block], x, y));
+        }
+        let word = words[y * width + x];
+        match self.format {
+            TextureFormat::P8 => {
+                let entry = self.palette[word as usize & (self.palette.len() - 1)];
+                self.bytes(texel::bytes(TextureFormat::A8R8G8B8, entry))
+            }
+            format if texel::has_halves(format) => self.halves(texel::halves(format, word)),
+            format => self.bytes(texel::bytes(format, word)),
+        }
+    }
+
+    /// TEX-18.
+    fn bytes(&self, bytes: [i128; 4]) -> [i128; 4] {
+        std::array::from_fn(|c| texel::signed(self.unit.signed[c], bytes[c], 8))
+    }
+
+    fn half_flags(&self) -> [bool; 2] {
+        // The constant upper half of Y16 is not signed by anything.
+        [self.unit.signed[3] && self.format == TextureFormat::R16B16, self.unit.signed[1]]
+    }
+
+    fn halves(&self, halves: [i128; 2]) -> [i128; 4] {
+        let [high, low] = self.half_flags();
+        [texel::signed(high, halves[0], 16), texel::signed(low, halves[1], 16), 0, 0]
+    }
+
+    fn border_color(&self) -> [i128; 4] {
+        count("border", "color");
+        let [r, g, b, a] = self.unit.border_color.map(i128::from);
+        if texel::has_halves(self.format) { self.halves([a << 8 | r, g << 8 | b]) } else { self.bytes([r, g, b, a]) }
+    }
+
+    /// TEX-7, TEX-8, TEX-14: the texel at an index that may lie outside.
+    fn fetch(&self, face: usize, level: u32, index: [i128; 2]) -> [i128; 4] {
+        let modes = [self.unit.address_s, self.unit.address_t];
+        let mut at = [0; 2];
+        for axis in 0..2 {
+            let (i, n) = (index[axis], i128::from(self.side(level, axis)));
+            if i < 0 || i >= n {
+                count(if self.is_cube() { "cube edge" } else { "outside" }, modes[axis].name());
+            }
+            // Where a border is stored, the interior begins at (4, 4).
+            let origin = if self.border { 4 } else { 0 };
+            let inside = match modes[axis] {
+                _ if self.is_cube() => i.clamp(0, n - 1),
+                AddressMode::Wrap => i.rem_euclid(n),
+                AddressMode::Mirror => {
+                    let i = i.rem_euclid(2 * n);
+                    if i < n { i } else { 2 * n - 1 - i }
+                }
+                AddressMode::ClampToEdge | AddressMode::Clamp => i.clamp(0, n - 1),
+                AddressMode::ClampToBorder if self.border => {
+                    count("border", "texels");
+                    i.clamp(-4, n + 3)
+                }
+                AddressMode::ClampToBorder if i < 0 || i >= n => return self.border_color(),
+                AddressMode::ClampToBorder => i,
+            };
+            at[axis] = (inside + origin) as usize;
+        }
+        self.stored_texel(face, level, at)
+    }
+
+    /// TEX-5, TEX-6 within a level.
+    fn filtered(&self, filter: Filter, face: usize, level: u32, [u, v]: [i128; 2]) -> [i128; 4] {
+        match filter {
+            Filter::Nearest => self.fetch(face, level, [u >> 8, v >> 8]),
+            Filter::Linear => {
+                let (u, v) = (u - 128, v - 128);
+                let (x, y) = (u >> 8, v >> 8);
+                let [a, b, c, d] =
+                    [[x, y], [x + 1, y], [x, y + 1], [x + 1, y + 1]].map(|at| self.fetch(face, level, at));
+                let rows = [mix(a, b, u & 255), mix(c, d, u & 255)];
+                mix(rows[0], rows[1], v & 255)
+            }
+        }
+    }
+
+    /// TEX-9: the bias and the limits of a lod in 1/256.
+    pub fn limited_lod(&self, lod: i128) -> i128 {
+        let biased = lod + i128::from(self.unit.lod_bias);
+        biased.max(self.unit.min_lod.into()).min(self.unit.max_lod.into())
+    }
+
+    /// What is sampled at a place, at a lod that is already limited.
+    pub fn sample(&self, setup: &Setup, sample: &Sample, place: &Place, lod: i128) -> Color {
+        count_named(self.format);
+        count_named(self.kind);
+        let last = i128::from(self.levels) - 1;
+        let level = |filter: Filter, n: i128| {
+            let (face, at) = place.at(setup, sample, self.scale(n as u32));
+            count("face", ["+X", "-X", "+Y", "-Y", "+Z", "-Z"][face]);
+            count("level", ["0", "1", "2", "3", "4", "5", "6", "7"][(n as usize).min(7)]);
+            self.filtered(filter, face, n as u32, at)
+        };
+        let min = self.unit.min_filter;
+        let value = match self.unit.mip_filter {
+            _ if lod <= 0 => {
+                count("magnified", self.unit.mag_filter.name());
+                level(self.unit.mag_filter, 0)
+            }
+            MipFilter::None => {
+                count("minified without levels", min.name());
+                level(min, 0)
+            }
+            MipFilter::Nearest => {
+                count("minified to the nearest level", min.name());
+                level(min, last.min((lod + 128) >> 8))
+            }
+            MipFilter::Linear => {
+                count("minified between levels", min.name());
+                let n = lod >> 8;
+                mix(level(min, last.min(n)), level(min, last.min(n + 1)), lod & 255)
+            }
+        };
+        if texel::has_halves(self.format) {
+            Color::of_halves([value[0], value[1]], self.half_flags())
+        } else {
+            Color::of_channels(value, self.unit.signed)
+        }
+    }
+}
+
+/// TEX-6: L(a, b, w) of every channel.
+fn mix(a: [i128; 4], b: [i128; 4], w: i128) -> [i128; 4] {
+    std::array::from_fn(|k| (a[k] * (256 - w) + b[k] * w + 128) >> 8)
 }

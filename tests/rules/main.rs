@@ -13,5 +13,7 @@ mod interpolation;
 mod numbers;
 mod raster_operations;
 mod rasteriser;
+mod texture_formats;
 mod texture_levels;
+mod texture_shader;
 mod texture_units;

@@ -6,6 +6,7 @@
 mod address;
 mod blend;
 mod combiner;
+mod cube;
 mod filter;
 mod final_combiner;
 mod inputs;
@@ -13,8 +14,6 @@ mod operation;
 mod table;
 mod template;
 mod words;
-
-use std::ffi::OsString;
 
 use clap::{Args, Subcommand};
 use ninebit::state::Profile;
@@ -46,14 +45,8 @@ pub(crate) enum Command {
     Filter(filter::Arguments),
     /// A texel index brought inside the image
     Address(address::Arguments),
-    /// A look-up in a cube map (not built yet)
-    Cube(Cube),
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Cube {
-    #[arg(trailing_var_arg = true, allow_hyphen_values = true, hide = true)]
-    rest: Vec<OsString>,
+    /// A look-up in a cube map: face, coordinates, texels
+    Cube(cube::Arguments),
 }
 
 /// The chip.
@@ -72,10 +65,6 @@ pub(crate) fn run(command: &Command, context: Context) -> Result<(), Failure> {
         Command::Blend(arguments) => blend::run(arguments, context),
         Command::Filter(arguments) => filter::run(arguments),
         Command::Address(arguments) => address::run(arguments, context),
-        Command::Cube(_) => Err(Failure::invalid(
-            "NB0401",
-            "not built yet: cube maps",
-            "the name is reserved for a later version; what is built: combiner, final, blend, filter, address",
-        )),
+        Command::Cube(arguments) => cube::run(arguments, context),
     }
 }

@@ -8,8 +8,8 @@ use super::target::Targets;
 use super::texture::Textures;
 use super::*;
 use crate::state::{
-    Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, Texture, TextureImage, Topology, VertexColor,
-    Viewport,
+    Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
+    Topology, VertexColor, Viewport,
 };
 
 /// Reads the draws, with their places.
@@ -103,13 +103,13 @@ fn draw<'a>(
         Some(raw) => targets.find(reader, raw),
         None => Some(0),
     };
-    reader.reserve(&fields.texture_shader, "texture shaders");
     reader.reserve(&fields.texgen, "texture coordinate generation");
     reader.reserve(&fields.texture_matrices, "texture matrices");
     reader.reserve(&fields.truth, "the draw's truth (light, viewer, material)");
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
-    let units = unit::units(reader, names, textures, &fields.textures);
+    let mut units = unit::units(reader, names, textures, &fields.textures);
+    shader::shader(reader, textures, &mut units, &fields.texture_shader);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
     let topology = reader.name_or(&fields.topology, Topology::Triangles);
     let (combiners, reads) = match &program {
@@ -141,7 +141,8 @@ fn draw<'a>(
     };
     raster::operations(reader, names, targets, fields, &mut draw);
     for (unit, read) in reads.iter().enumerate() {
-        if let (Some(place), None) = (read, &units.bound[unit]) {
+        let nothing = matches!(units.shader[unit].operation, ShaderOperation::None);
+        if let (Some(place), true) = (read, nothing) {
             reader.push(
                 Diagnostic::warning("NB0902", place.clone(), format!("texture unit {unit} is read but has no texture"))
                     .label("gives black, opaque")

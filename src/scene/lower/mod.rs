@@ -9,6 +9,7 @@ mod matrix;
 mod names;
 mod palette;
 mod raster;
+mod shader;
 mod target;
 mod texture;
 mod texture_legal;

@@ -9,7 +9,7 @@ use crate::state::{AddressMode, Filter, MipFilter, ShaderStage, TEXTURE_UNITS, T
 pub(super) struct Units {
     pub(super) bound: [Option<TextureUnit>; TEXTURE_UNITS],
     pub(super) shader: [ShaderStage; TEXTURE_UNITS],
-    /// Where the names of their textures stand.
+    /// Where the names of their textures stand; empty for unbound units.
     pub(super) places: [Range<usize>; TEXTURE_UNITS],
 }
 
@@ -44,6 +44,7 @@ pub(super) fn units<'a>(
         if index >= available {
             reader.push(target::only_nv2a("NB0319", place.clone(), &format!("texture unit {index}"), "CMB-12"));
         }
+        units.places[index] = place;
         if let Some((unit, coordinate_set, place)) = unit(reader, names, textures, raw, index) {
             units.bound[index] = Some(unit);
             units.shader[index] = ShaderStage { coordinate_set, ..ShaderStage::conventional(index, true) };

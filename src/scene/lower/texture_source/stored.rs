@@ -20,7 +20,7 @@ impl<'a> Sources<'_, 'a> {
             maximum_decoded_bytes: self.left,
             maximum_file_bytes: reader.limits.image_file_bytes,
         };
-        let contents = self.from_file(reader, &raw, |path| image::open(path, &limits))?;
+        let contents = self.read_file(reader, &raw, |path| image::open(path, &limits))?;
         let place = reader.span(&raw);
         let dds = match contents {
             Contents::Picture(image) => {
@@ -33,8 +33,7 @@ impl<'a> Sources<'_, 'a> {
         };
         self.afford(reader, place.clone(), dds.words.len() as u64)?;
         let format = request.format.unwrap_or(dds.format);
-        let same_bits = format.bytes() == dds.format.bytes() && !format.is_compressed() && !dds.format.is_compressed();
-        if format != dds.format && !same_bits {
+        let Some(words) = dds.words_as(format) else {
             let message = format!("the file holds {}, not {}", dds.format.name(), format.name());
             reader.push(
                 Diagnostic::error("NB0232", place, message)
@@ -42,10 +41,8 @@ impl<'a> Sources<'_, 'a> {
                     .help(format!("leave `format` out, which means {} here", dds.format.name())),
             );
             return None;
-        }
+        };
         let faces = if dds.cube { CUBE_FACES } else { 1 };
-        let used = texels::used_bits(format);
-        let words = dds.words.iter().map(|word| word & used).collect();
         let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
         let palette = dds.palette.filter(|_| format == TextureFormat::P8);
         Some(Given { format, width: dds.width, height: dds.height, faces, palette, place: source })
@@ -65,7 +62,7 @@ impl<'a> Sources<'_, 'a> {
         let words = u64::from(request.faces) * face as u64;
         self.afford(reader, place.clone(), words)?;
         let limit = reader.limits.image_file_bytes;
-        let bytes = self.from_file(reader, &file, |path| image::read(path, limit))?;
+        let bytes = self.read_file(reader, &file, |path| image::read(path, limit))?;
         let expected = words * u64::from(format.bytes().min(4));
         if bytes.len() as u64 != expected {
             let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
@@ -89,7 +86,7 @@ impl<'a> Sources<'_, 'a> {
     }
 
     /// Finds the file of that name and does something with it.
-    fn from_file<T>(
+    fn read_file<T>(
         &mut self,
         reader: &mut Reader<'a>,
         raw: &Raw<'a, String>,

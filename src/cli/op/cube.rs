@@ -1,0 +1,171 @@
+//! `ninebit op cube`.
+
+use clap::Args;
+use ninebit::raster::interpolate::Sample;
+use ninebit::raster::setup::Triangle;
+use ninebit::state::{
+    AddressMode, Filter, Level, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit,
+};
+use ninebit::texture::address::address;
+use ninebit::texture::filter::{linear, nearest};
+use ninebit::texture::place::{Coordinates, Interpolated, Place, real_coordinate};
+use ninebit::texture::report::Report;
+use ninebit::texture::unit::PlannedUnit;
+use ninebit::trace::Observer;
+use serde_json::json;
+
+use super::super::Context;
+use super::super::exit::Failure;
+use super::ProfileArgument;
+use super::inputs::set;
+use super::operation::{Column, Common, Operation, Results, drive};
+use super::template::Template;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The direction; its length does not matter
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    direction: Option<Direction>,
+    /// Texels along a side of each face, a power of two
+    #[arg(long, value_name = "N", default_value_t = 256)]
+    size: u32,
+    #[command(flatten)]
+    profile: ProfileArgument,
+    #[command(flatten)]
+    common: Common,
+}
+
+/// Three whole numbers of the direction's ratios.
+#[derive(Clone, Copy, Debug)]
+struct Direction([i64; 3]);
+
+/// A cube map and one triangle, at whose first vertex it is looked up.
+struct Cube {
+    unit: PlannedUnit,
+    triangle: Triangle,
+    columns: Vec<Column>,
+}
+
+/// Names in traces, and short ones.
+const COLUMNS: [(&str, &str); 3] = [("unit0.N_x0", "x"), ("unit0.N_y0", "y"), ("unit0.N_z0", "z")];
+
+/// Numbers of a direction have as many bits as those of the chip's (TEX-12).
+const MOST: i64 = 1 << 28;
+
+/// Looks up a cube map.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let side = arguments.size;
+    let faces = ["positive_x", "negative_x", "positive_y", "negative_y", "positive_z", "negative_z"];
+    let face = |name: &str| format!("{name}: Solid(width: {side}, height: {side}, color: (0, 0, 0))");
+    let faces: Vec<String> = faces.into_iter().map(face).collect();
+    let template = Template {
+        scene: format!("    textures: {{\"t\": (kind: Cube, format: R5G6B5, source: Faces({}))}},\n", faces.join(", ")),
+        draw: "        textures: [\"t\"],\n".to_owned(),
+        ..Template::default()
+    };
+    template.read(arguments.profile.profile, context)?;
+    let corners = [[0.0, 0.0, 0.0, 1.0], [2.0, 0.0, 0.0, 1.0], [0.0, 2.0, 0.0, 1.0]];
+    let Some(triangle) = Triangle::new(corners, false, Profile::Nv2a) else {
+        return Err(Failure::usage("the operation has no triangle", "please report this with the command line"));
+    };
+    let column = |name: &str| Column {
+        name: name.to_owned(),
+        range: -MOST..=MOST,
+        per_one: 1,
+        signed_texel: false,
+        value: None,
+    };
+    let mut columns: Vec<Column> = COLUMNS.iter().map(|(name, _)| column(name)).collect();
+    if let Some(Direction(values)) = arguments.direction {
+        columns.iter_mut().zip(values).try_for_each(|(column, value)| set(column, value))?;
+    }
+    let unit = PlannedUnit {
+        index: 0,
+        state: TextureUnit::new(0),
+        stage: ShaderStage::conventional(0, true),
+        kind: TextureKind::Cube,
+        format: TextureFormat::R5G6B5,
+        levels: vec![Level { offset: 0, width: side, height: side }],
+        face_words: side as usize * side as usize,
+        border: false,
+        dithered: false,
+        palette: None,
+        live: 15,
+    };
+    drive(&Cube { unit, triangle, columns }, &arguments.common)
+}
+
+impl Operation for Cube {
+    const NAME: &'static str = "cube";
+
+    fn columns(&self) -> &[Column] {
+        &self.columns
+    }
+
+    fn find(&self, name: &str) -> Option<usize> {
+        COLUMNS.iter().position(|(own, short)| *own == name || *short == name)
+    }
+
+    fn known(&self) -> String {
+        "x, y, z".to_owned()
+    }
+
+    fn how_to_give(&self, _: &Column) -> String {
+        "write `--direction X,Y,Z`, or give a table with `--inputs`".to_owned()
+    }
+
+    fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
+        let [x, y, z] = [values[0], values[1], values[2]];
+        let sample = Sample::new(&self.triangle, [1, 0, 0]);
+        let float = |n: i64| n as f32;
+        let place = Interpolated {
+            unit: &self.unit,
+            coordinates: &Coordinates::Direction([x, y, z].map(|n| [n, 0, 0])),
+            at: &sample,
+            pixel: (0, 0),
+            vertices: [[float(x), float(y), float(z), 1.0]; 3],
+            w: [1.0; 3],
+        };
+        let (level, face) = (&self.unit.levels[0], place.face());
+        let settled = place.on(level);
+        if O::ON {
+            let ideal = place.real(Some(face)).st.map(|c| real_coordinate(c, level.width));
+            place.describe(&Report { unit: &self.unit, prefix: "" }, level, settled, ideal, observer);
+        }
+        let inside = |i: i64| json!(address(AddressMode::ClampToEdge, i, level.width, false));
+        let [u, v] = settled.map(|c| c.value);
+        let pair = |filter: Filter, c: i64| match filter {
+            Filter::Nearest => inside(nearest(c)),
+            Filter::Linear => json!([inside(linear(c).0), inside(linear(c).0 + 1)]),
+        };
+        vec![
+            ("face".to_owned(), json!(face.name())),
+            ("u".to_owned(), json!(u)),
+            ("v".to_owned(), json!(v)),
+            ("x".to_owned(), pair(Filter::Nearest, u)),
+            ("y".to_owned(), pair(Filter::Nearest, v)),
+            ("linear_x".to_owned(), pair(Filter::Linear, u)),
+            ("linear_y".to_owned(), pair(Filter::Linear, v)),
+        ]
+    }
+}
+
+/// Three decimal numbers as whole ones of the same ratios.
+fn direction(text: &str) -> Result<Direction, String> {
+    let parts: Vec<&str> = text.split(',').map(str::trim).collect();
+    let digits = |part: &str| part.split_once('.').map_or(0, |(_, fraction)| fraction.len());
+    let most = parts.iter().map(|part| digits(part)).max().unwrap_or(0);
+    let whole = |part: &str| -> Option<i64> {
+        let zeros = "0".repeat(most - digits(part));
+        let (sign, part) = part.strip_prefix('-').map_or((1, part), |rest| (-1, rest));
+        let plain = part.replacen('.', "", 1);
+        let valid = !plain.is_empty() && plain.bytes().all(|digit| digit.is_ascii_digit());
+        let value: i64 = (plain + &zeros).parse().ok().filter(|_| valid)?;
+        Some(sign * value)
+    };
+    let values: Option<Vec<i64>> = parts.iter().map(|part| whole(part)).collect();
+    match values.as_deref() {
+        Some([x, y, z]) if most <= 9 => Ok(Direction([*x, *y, *z])),
+        _ => Err("not three decimal numbers with commas between, of at most nine decimals".to_owned()),
+    }
+}

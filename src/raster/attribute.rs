@@ -1,0 +1,278 @@
+//! A number of the vertices interpolated as such: texture coordinates where they are numbers and not places in an image, and the fog
+//! coordinate.
+//!
+//! With E the edge functions and P the perspective weights, the value is sum P x E / sum P E (INT-1, INT-4). An [`Attribute`] keeps
+//! P x of the three vertices, a [`Quotient`] the ratio at a sample; rounding it to a float or to steps sees the exact remainder.
+
+use super::interpolate::Sample;
+use super::setup::Triangle;
+use crate::number::convert::{align, shift, split};
+
+/// Bits of the largest g. The edge functions stay below 2^38 at every pixel of RAS-0's window, so sums stay below 2^102.
+const ATTRIBUTE_BITS: i32 = 62;
+
+/// Significant bits of a single-precision number.
+const SIGNIFICANT: i32 = 24;
+
+/// Exponent of the last bit of the smallest single-precision numbers.
+const SMALLEST_EXPONENT: i32 = -149;
+
+/// A linear function of the vertices over the triangle: its numerator at a sample is 2^exponent sum g_k E_k.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Attribute {
+    g: [i64; 3],
+    exponent: i32,
+}
+
+/// numerator / denominator * 2^exponent, the denominator positive.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Quotient {
+    numerator: i128,
+    denominator: i64,
+    exponent: i32,
+}
+
+impl Attribute {
+    /// g and the exponent, for observers.
+    pub fn numbers(&self) -> ([i64; 3], i32) {
+        (self.g, self.exponent)
+    }
+}
+
+impl Triangle {
+    /// P_k x_k of three finite numbers, exactly, unless they differ so much that the smaller ones fall below 2^-62 of the largest:
+    /// those are floored there (INT-4).
+    pub fn attribute(&self, x: [f32; 3]) -> Attribute {
+        let scaled: [(i128, i32); 3] = std::array::from_fn(|k| {
+            let (mantissa, exponent) = split(x[k]);
+            (i128::from(mantissa) * i128::from(self.p[k]), exponent)
+        });
+        let (g, exponent) = align(scaled, ATTRIBUTE_BITS);
+        Attribute { g, exponent }
+    }
+}
+
+impl Sample<'_> {
+    /// The value here. 0 where D is not positive: at a pixel outside the triangle and beyond its horizon.
+    pub fn attribute(&self, attribute: &Attribute) -> Quotient {
+        if self.d <= 0 {
+            return Quotient { numerator: 0, denominator: 1, exponent: 0 };
+        }
+        Quotient { numerator: self.sum(&attribute.g), denominator: self.d, exponent: attribute.exponent }
+    }
+}
+
+impl Quotient {
+    /// The nearest single-precision number, ties to even; too large ones are infinite, 0 is positive (TSH-4).
+    pub fn rounded_f32(&self) -> f32 {
+        let sign = u32::from(self.numerator < 0) << 31;
+        let Some((quotient, exponent, exact)) = self.digits() else { return 0.0 };
+        let top = bits(quotient) + exponent;
+        if top > 128 {
+            return f32::from_bits(sign | f32::INFINITY.to_bits());
+        }
+        // The exponent of the last bit that is kept; at least 40 bits go.
+        let last = (top - SIGNIFICANT).max(SMALLEST_EXPONENT);
+        let drop = last - exponent;
+        if drop > bits(quotient) {
+            // Below half of the smallest number.
+            return f32::from_bits(sign);
+        }
+        let kept = quotient.checked_shr(drop as u32).unwrap_or(0);
+        let rest = quotient - kept.checked_shl(drop as u32).unwrap_or(0);
+        let half = 1_u128 << (drop - 1);
+        let up = rest > half || (rest == half && (!exact || kept & 1 == 1));
+        // The hidden bit of a normal number adds one to the exponent's field, and so does a carry out of the mantissa.
+        let field = ((last - SMALLEST_EXPONENT) as u32) << 23;
+        f32::from_bits(sign | (field + kept as u32 + u32::from(up)))
+    }
+
+    /// The first 24 significant bits, toward zero: (m, e) for m 2^e, 2^23 <= |m| < 2^24. 0 is (0, 0). (INT-5)
+    pub fn truncated_24(&self) -> (i64, i32) {
+        let Some((quotient, exponent, _)) = self.digits() else { return (0, 0) };
+        let drop = bits(quotient) - SIGNIFICANT;
+        let mantissa = (quotient >> drop) as i64;
+        (if self.numerator < 0 { -mantissa } else { mantissa }, exponent + drop)
+    }
+
+    /// floor(value * scale), limited to what 64 bits hold.
+    pub fn floor_times(&self, scale: i64) -> i64 {
+        let saturated = if (self.numerator < 0) == (scale < 0) { i64::MAX } else { i64::MIN };
+        if self.numerator == 0 || scale == 0 {
+            return 0;
+        }
+        let (mut numerator, mut exponent) = (self.numerator, self.exponent);
+        if exponent > 0 {
+            // What leaves 127 bits is more than 2^65 times the denominator.
+            if exponent > 126 || numerator.unsigned_abs() >= 1 << (126 - exponent) {
+                return saturated;
+            }
+            (numerator, exponent) = (numerator << exponent, 0);
+        }
+        let (scale, denominator) = (i128::from(scale), i128::from(self.denominator));
+        let (whole, rest) = (numerator.div_euclid(denominator), numerator.rem_euclid(denominator));
+        // numerator scale / denominator, floored, as high 2^63 + low: more than 128 bits may be needed.
+        let low = (whole & i128::from(i64::MAX)) * scale + (rest * scale).div_euclid(denominator);
+        let high = (whole >> 63).saturating_mul(scale);
+        let floor = if exponent <= -63 {
+            shift(high + (low >> 63), exponent + 63)
+        } else {
+            match high.checked_mul(1 << 63).and_then(|high| high.checked_add(low)) {
+                Some(sum) => sum >> -exponent,
+                None => return saturated,
+            }
+        };
+        floor.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64
+    }
+
+    /// At least 64 bits of the magnitude, truncated, their exponent, and whether that is all. `None`: it is zero.
+    fn digits(&self) -> Option<(u128, i32, bool)> {
+        let magnitude = self.numerator.unsigned_abs();
+        if magnitude == 0 {
+            return None;
+        }
+        let up = magnitude.leading_zeros();
+        let (numerator, denominator) = (magnitude << up, u128::from(self.denominator.unsigned_abs()));
+        Some((numerator / denominator, self.exponent - up as i32, numerator % denominator == 0))
+    }
+}
+
+fn bits(n: u128) -> i32 {
+    128 - n.leading_zeros() as i32
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::float_arithmetic, reason = "what floats do is what is tested")]
+    use super::*;
+    use crate::state::Profile;
+    use proptest::prelude::*;
+
+    fn quotient(numerator: i128, denominator: i64, exponent: i32) -> Quotient {
+        Quotient { numerator, denominator, exponent }
+    }
+
+    /// Finite floats of all sizes.
+    fn finite() -> impl Strategy<Value = f32> {
+        any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |f| f.is_finite())
+    }
+
+    /// -1, 0 or 1: how `magnitude` compares with numerator / denominator * 2^exponent, whose own is exact. All small enough for 127 bits.
+    fn compare(magnitude: (u128, i32), numerator: u128, denominator: u128, exponent: i32) -> std::cmp::Ordering {
+        let (left, right) = (magnitude.0 * denominator, numerator);
+        let difference = magnitude.1 - exponent;
+        if difference >= 0 { (left << difference).cmp(&right) } else { left.cmp(&(right << -difference)) }
+    }
+
+    proptest! {
+        #[test]
+        fn whole_numbers_round_as_the_processor_does(n in any::<i64>(), down in 0_u32..64) {
+            let n = n >> down;
+            prop_assert_eq!(quotient(i128::from(n), 1, 0).rounded_f32().to_bits(), (n as f32).to_bits());
+        }
+
+        #[test]
+        fn quotients_of_doubles_round_as_the_processor_does(n in -(1_i64 << 24)..1 << 24, d in 1_i64..1 << 24) {
+            // Quotients of two 24-bit numbers: a double has more than twice as many bits, so rounding twice is rounding once.
+            let expected = (n as f32) / (d as f32);
+            prop_assert_eq!(quotient(i128::from(n), d, 0).rounded_f32(), expected);
+            let small = quotient(i128::from(n), d, -147).rounded_f32();
+            prop_assert_eq!(small, ((n as f64) / (d as f64) * 2_f64.powi(-147)) as f32);
+            let large = quotient(i128::from(n), d, 110).rounded_f32();
+            prop_assert_eq!(large, ((n as f64) / (d as f64) * 2_f64.powi(110)) as f32);
+        }
+
+        #[test]
+        fn floats_come_back(f in finite(), n in 1_i64..1 << 34) {
+            let (mantissa, exponent) = split(f);
+            let q = quotient(i128::from(mantissa) * i128::from(n), n, exponent);
+            prop_assert_eq!(q.rounded_f32(), f);
+            let (m, e) = q.truncated_24();
+            prop_assert_eq!(shift(i128::from(m), e - exponent), i128::from(mantissa));
+        }
+
+        #[test]
+        fn truncation_keeps_24_bits_below(n in 1_u128..1 << 70, d in 1_i64..1 << 30, e in -60..60) {
+            let (m, at) = quotient(n as i128, d, e).truncated_24();
+            prop_assert!((1 << 23..1 << 24).contains(&m));
+            prop_assert!(compare((m as u128, at), n, d as u128, e).is_le());
+            prop_assert!(compare((m as u128 + 1, at), n, d as u128, e).is_gt());
+            prop_assert_eq!(quotient(-(n as i128), d, e).truncated_24(), (-m, at));
+        }
+
+        #[test]
+        fn floors(n in -(1_i64 << 60)..1 << 60, d in 1_i64..1 << 62, e in -70_i32..6, scale in -(1_i64 << 30)..1 << 30) {
+            let top = i128::from(n) * i128::from(scale);
+            let expected = if e >= 0 {
+                (top << e).div_euclid(i128::from(d))
+            } else {
+                top.div_euclid(i128::from(d)) >> -e
+            };
+            let limited = expected.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64;
+            prop_assert_eq!(quotient(i128::from(n), d, e).floor_times(scale), limited);
+        }
+
+        #[test]
+        fn floors_of_large_numerators(n in -(1_i128 << 101)..1 << 101, d in 1_i64..1 << 62, scale in 1_i64..1 << 62, e in -300..200) {
+            // A step less and a step more decide it: value * scale * d = n * scale * 2^e, halved on both sides where it is too large.
+            let value = quotient(n, d, e).floor_times(scale);
+            let other = quotient(n * 2, d, e - 1).floor_times(scale);
+            prop_assert_eq!(value, other);
+            let finer = quotient(n, d, e - 1).floor_times(scale);
+            if value.unsigned_abs() < 1 << 62 {
+                prop_assert!(finer == value >> 1, "{} {}", value, finer);
+            }
+        }
+
+        #[test]
+        fn values_lie_between_those_of_the_vertices(
+            x in proptest::array::uniform3(-1e6_f32..1e6), w in proptest::array::uniform3(0.01_f32..100.0),
+        ) {
+            let p = [[1.0, 2.0, 0.0, w[0]], [90.0, 7.0, 0.0, w[1]], [13.0, 71.0, 0.0, w[2]]];
+            let t = Triangle::new(p, true, Profile::Nv2a).expect("area");
+            let g = t.attribute(x);
+            for (i, j) in [(20, 20), (40, 9), (14, 60), (60, 15)] {
+                let e = t.edges(i, j);
+                prop_assume!(t.covers(e));
+                let s = Sample::new(&t, e);
+                let value = f64::from(s.attribute(&g).rounded_f32());
+                let terms: [f64; 3] = std::array::from_fn(|k| s.n[k] as f64 / s.d as f64 * f64::from(x[k]));
+                let exact = terms[0] + terms[1] + terms[2];
+                let size = x.iter().map(|x| f64::from(x.abs())).fold(0.0, f64::max);
+                prop_assert!((value - exact).abs() <= exact.abs() * 6e-8 + size * 1e-14, "{value} {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn extremes() {
+        assert_eq!(quotient(1, 2, -149).rounded_f32().to_bits(), 0);
+        assert_eq!(quotient(3, 2, -149).rounded_f32().to_bits(), 2);
+        assert_eq!(quotient((1 << 90) + 1, 2, -239).rounded_f32().to_bits(), 1);
+        assert_eq!(quotient(1, 1, -400).rounded_f32().to_bits(), 0);
+        assert_eq!(quotient(-1, 1, 400).rounded_f32(), f32::NEG_INFINITY);
+        assert_eq!(quotient((1 << 24) - 1, 1, 104).rounded_f32(), f32::MAX);
+        assert_eq!(quotient((1 << 25) - 1, 1, 103).rounded_f32(), f32::INFINITY);
+        assert_eq!(quotient(0, 5, 900).rounded_f32().to_bits(), 0);
+        assert_eq!(quotient(0, 5, 900).truncated_24(), (0, 0));
+        assert_eq!(quotient(1, 3, 120).floor_times(1), i64::MAX);
+        assert_eq!(quotient(-1, 3, 900).floor_times(1), i64::MIN);
+        assert_eq!(quotient(-1, 3, -900).floor_times(i64::MAX), -1);
+        assert_eq!(quotient(1, 3, -900).floor_times(i64::MAX), 0);
+        assert_eq!(quotient(-7, 2, 0).floor_times(1), -4);
+    }
+
+    #[test]
+    fn equal_vertices_give_their_value_everywhere() {
+        let p = [[1.0, 2.0, 0.0, 1.3], [90.0, 7.0, 0.0, 2.9], [13.0, 71.0, 0.0, 0.7]];
+        let t = Triangle::new(p, true, Profile::Nv2a).expect("area");
+        for x in [0.1, -3.3e38, 1e-45, 7.0, -0.0] {
+            let g = t.attribute([x; 3]);
+            for (i, j) in [(20, 20), (40, 9), (300, 900), (4095, -4096)] {
+                let s = Sample::new(&t, t.edges(i, j));
+                let expected = if s.d > 0 { x } else { 0.0 };
+                assert_eq!(s.attribute(&g).rounded_f32(), expected, "{i} {j}");
+            }
+        }
+    }
+}

@@ -1,0 +1,310 @@
+//! The texture shader of a draw: what each unit does, checked against what the chip lets follow what (TSH-10).
+
+use super::texture::Textures;
+use super::unit::Units;
+use super::*;
+use crate::state::{DotMapping, Named, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureKind};
+
+/// Operations as they are written; the last three are refused by name.
+const OPERATIONS: &[&str] = &[
+    "None",
+    "Sample",
+    "PassThrough",
+    "CullFragment",
+    "BumpEnvironment",
+    "DependentAlphaRed",
+    "DependentGreenBlue",
+    "DotProduct",
+    "DotProduct2D",
+    "DotProductCube",
+    "DotReflectDiffuse",
+    "DotReflectSpecular",
+    "DotReflectConstantEye",
+    "DotProduct3D",
+    "DotProductDepth",
+    "Brdf",
+];
+
+/// Where a stage and the parts of it stand that may be wrong.
+struct Places {
+    stage: Range<usize>,
+    previous: Option<Range<usize>>,
+    mapping: Option<Range<usize>>,
+}
+
+/// Reads the texture shader of a draw into its units. Without one they stay conventional.
+pub(super) fn shader<'a>(
+    reader: &mut Reader<'a>,
+    textures: &Textures,
+    units: &mut Units,
+    raw: &Option<Raw<'a, source::List<'a, source::ShaderStage>>>,
+) {
+    let Some(raw) = raw else { return };
+    let Some(list) = reader.read(raw) else { return };
+    if reader.profile == Profile::Nv10 {
+        reader.push(target::only_nv2a("NB0340", reader.span(raw), "a texture shader", "TSH-10"));
+        return;
+    }
+    let mut places: [Option<Places>; TEXTURE_UNITS] = [const { None }; TEXTURE_UNITS];
+    for (index, stage) in units.shader.iter_mut().enumerate() {
+        stage.operation = ShaderOperation::None;
+        let Some(raw) = list.get(index) else { continue };
+        places[index] = self::stage(reader, raw, stage);
+    }
+    if let Some(extra) = list.get(TEXTURE_UNITS) {
+        reader.push(
+            Diagnostic::error("NB0319", reader.span(extra), format!("there is no texture unit {TEXTURE_UNITS}"))
+                .label("one too many")
+                .rule("TSH-10")
+                .help("units 0 to 3 are the entries of this list"),
+        );
+    }
+    for (index, places) in places.iter().enumerate() {
+        if let Some(places) = places {
+            previous(reader, &mut units.shader, index, places);
+            if order(reader, &units.shader, index, places) {
+                texture(reader, textures, units, index, places);
+            }
+        }
+        let written = &units.places[index];
+        if units.bound[index].is_some() && !units.shader[index].operation.samples() {
+            let operation = units.shader[index].operation.name();
+            reader.push(
+                Diagnostic::warning(
+                    "NB0905",
+                    written.clone(),
+                    format!("unit {index} has a texture that is not sampled"),
+                )
+                .label(format!("its stage of the texture shader is {operation}"))
+                .rule("TSH-10")
+                .help("write `Unbound` here, or a stage that samples"),
+            );
+        }
+    }
+}
+
+/// One entry: an operation, or fields of which one is the operation. `None` once the reason has been recorded.
+fn stage<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderStage>, stage: &mut ShaderStage) -> Option<Places> {
+    let mut places = Places { stage: reader.span(raw), previous: None, mapping: None };
+    if !raw.text.starts_with('(') {
+        stage.operation = operation(reader, &raw.as_other())?;
+        return Some(places);
+    }
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let fields = reader.read(&raw.as_other::<source::StageState<'a>>())?;
+    let operation_raw = reader.required(&fields.operation, "operation", "texture shader stage", opening);
+    if let Some(raw) = &fields.coordinates {
+        stage.coordinate_set = reader.whole(raw, "a set of texture coordinates", 0..=3)? as usize;
+    }
+    if let Some(raw) = &fields.previous {
+        stage.previous = reader.whole(raw, "an earlier texture unit", 0..=2)? as usize;
+        places.previous = Some(reader.span(raw));
+    }
+    if let Some(raw) = &fields.mapping {
+        stage.mapping = reader.name::<DotMapping>(raw)?;
+        places.mapping = Some(reader.span(raw));
+    }
+    let raw = operation_raw?;
+    places.stage = reader.span(&raw);
+    stage.operation = operation(reader, &raw)?;
+    Some(places)
+}
+
+fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>) -> Option<ShaderOperation> {
+    let (kind, rest) = reader.variant(raw, "texture shader operation", OPERATIONS)?;
+    let takes = matches!(OPERATIONS[kind], "CullFragment" | "BumpEnvironment" | "DotReflectConstantEye");
+    if kind < 13 && !takes && !rest.is_empty() {
+        reader.unknown_variant(raw, "texture shader operation", OPERATIONS);
+        return None;
+    }
+    let opening = reader.span(raw);
+    Some(match OPERATIONS[kind] {
+        "None" => ShaderOperation::None,
+        "Sample" => ShaderOperation::Sample,
+        "PassThrough" => ShaderOperation::PassThrough,
+        "CullFragment" => cull(reader, rest)?,
+        "BumpEnvironment" => bump(reader, rest, opening)?,
+        "DependentAlphaRed" => ShaderOperation::DependentAlphaRed,
+        "DependentGreenBlue" => ShaderOperation::DependentGreenBlue,
+        "DotProduct" => ShaderOperation::DotProduct,
+        "DotProduct2D" => ShaderOperation::DotProduct2D,
+        "DotProductCube" => ShaderOperation::DotProductCube,
+        "DotReflectDiffuse" => ShaderOperation::DotReflectDiffuse,
+        "DotReflectSpecular" => ShaderOperation::DotReflectSpecular,
+        "DotReflectConstantEye" => {
+            let fields = fields::<source::ConstantEye<'a>>(reader, rest)?;
+            let raw = reader.required(&fields.eye, "eye", "operation", opening)?;
+            let [x, y, z, _] = reader.numbers(&raw, "an eye vector", 3, 3, [0.0; 4])?;
+            ShaderOperation::DotReflectConstantEye { eye: [x, y, z] }
+        }
+        name => {
+            let what = match name {
+                "DotProduct3D" => "dot products that sample volume textures",
+                "DotProductDepth" => "dot products that replace the depth",
+                _ => "bidirectional reflectance lookups",
+            };
+            reader.not_built(reader.span(raw), what);
+            return None;
+        }
+    })
+}
+
+/// What stands in parentheses behind an operation; without them, no field.
+fn fields<'a, T: serde::Deserialize<'a> + source::Expected<'a>>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
+    reader.read(&Raw::new(if rest.is_empty() { "()" } else { rest }))
+}
+
+fn cull<'a>(reader: &mut Reader<'a>, rest: &'a str) -> Option<ShaderOperation> {
+    let fields = fields::<source::CullFragment<'a>>(reader, rest)?;
+    let mut drops_not_negative = [false; 4];
+    for (field, slot) in [&fields.s, &fields.t, &fields.r, &fields.q].into_iter().zip(&mut drops_not_negative) {
+        if let Some(raw) = field {
+            *slot = reader.variant(raw, "sign to be dropped", &["Negative", "NotNegative"])?.0 == 1;
+        }
+    }
+    Some(ShaderOperation::CullFragment { drops_not_negative })
+}
+
+fn bump<'a>(reader: &mut Reader<'a>, rest: &'a str, opening: Range<usize>) -> Option<ShaderOperation> {
+    let fields = fields::<source::BumpEnvironment<'a>>(reader, rest)?;
+    let raw = reader.required(&fields.matrix, "matrix", "operation", opening)?;
+    let matrix = reader.numbers(&raw, "a bump environment matrix", 4, 4, [0.0; 4])?;
+    let luminance = match &fields.luminance {
+        Some(raw) => {
+            let [scale, offset, ..] = reader.numbers(raw, "a luminance (scale and offset)", 2, 2, [0.0; 4])?;
+            Some([scale, offset])
+        }
+        None => None,
+    };
+    Some(ShaderOperation::BumpEnvironment { matrix, luminance })
+}
+
+/// Which earlier unit a stage reads: stage 1 always unit 0, stage 2 unit 0 or 1, stage 3 any of the three.
+fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) {
+    let ShaderStage { operation, previous, .. } = shader[index];
+    let mut refuse = |place: &Range<usize>, message: String, label: &str, help: String| {
+        let finding = Diagnostic::error("NB0342", place.clone(), message).label(label).rule("TSH-10").help(help);
+        reader.push(finding);
+    };
+    if let Some(place) = &places.previous {
+        if !operation.reads_previous() {
+            let message = format!("{} reads no earlier unit", operation.name());
+            refuse(place, message, "has no meaning", "leave `previous` out".to_owned());
+            shader[index].previous = index.saturating_sub(1);
+        } else if previous >= index {
+            let message = format!("stage {index} cannot read unit {previous}");
+            let help = match index {
+                0 | 1 => "stage 1 always reads unit 0: leave `previous` out".to_owned(),
+                _ => format!("it reads what is fetched before it: unit 0 to {}", index - 1),
+            };
+            refuse(place, message, "not fetched yet", help);
+            shader[index].previous = index.saturating_sub(1);
+        }
+    }
+    if let Some(place) = &places.mapping
+        && !operation.is_dot()
+    {
+        let message = format!("{} maps no colour to a vector", operation.name());
+        let help = "leave `mapping` out; the dot products have it".to_owned();
+        refuse(place, message, "has no meaning", help);
+    }
+}
+
+/// TSH-10: which operation may follow which. Says whether this one may stand where it does.
+fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) -> bool {
+    use ShaderOperation as Op;
+    let at = |n: usize| shader.get(n).map_or(Op::None, |stage| stage.operation);
+    let before = |back: usize| index.checked_sub(back).map_or(Op::None, at);
+    let pad = |operation| matches!(operation, Op::DotProduct);
+    let two_pads = pad(before(2)) && pad(before(1));
+    let operation = shader[index].operation;
+    let wanted = match operation {
+        Op::None | Op::Sample | Op::PassThrough | Op::CullFragment { .. } => None,
+        Op::BumpEnvironment { .. } => (index == 0
+            || index == 1 && matches!(before(1), Op::None | Op::CullFragment { .. }))
+        .then_some("it moves coordinates by the colour of an earlier unit: put it after a stage that has one, at stage 1, 2 or 3"),
+        Op::DependentAlphaRed | Op::DependentGreenBlue => {
+            (index == 0).then_some("it reads the colour of an earlier unit: put it at stage 1, 2 or 3")
+        }
+        Op::DotProduct => (index == 0 || index == 3)
+            .then_some("it reads an earlier unit and leaves its result to the next stage: put it at stage 1 or 2"),
+        Op::DotProduct2D => {
+            (!pad(before(1))).then_some("put `DotProduct` at the stage before it, which makes it stage 2 or 3")
+        }
+        Op::DotProductCube => (!two_pads).then_some("put `DotProduct` at stages 1 and 2, and this at stage 3"),
+        Op::DotReflectDiffuse => {
+            let next = matches!(at(index + 1), Op::DotReflectSpecular | Op::DotReflectConstantEye { .. });
+            (!pad(before(1)) || index == 3 || !next)
+                .then_some("put `DotProduct` at stage 1, this at stage 2, and `DotReflectSpecular` or `DotReflectConstantEye` at stage 3")
+        }
+        Op::DotReflectSpecular | Op::DotReflectConstantEye { .. } => {
+            let second = matches!(before(1), Op::DotProduct | Op::DotReflectDiffuse);
+            (!pad(before(2)) || !second)
+                .then_some("put `DotProduct` at stage 1, `DotProduct` or `DotReflectDiffuse` at stage 2, and this at stage 3")
+        }
+    };
+    if let Some(help) = wanted {
+        let message = format!("{} cannot stand at stage {index} here", operation.name());
+        reader.push(
+            Diagnostic::error("NB0341", places.stage.clone(), message)
+                .label("the chip refuses it")
+                .rule("TSH-10")
+                .help(help),
+        );
+    } else if index == 3 && matches!(before(1), Op::DotReflectDiffuse) && shader[3].previous == 2 {
+        // The third dot product is needed at stage 2 already.
+        let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
+        let place = places.previous.clone().unwrap_or_else(|| places.stage.clone());
+        reader.push(
+            Diagnostic::error("NB0342", place, message)
+                .label("its dot product is part of what unit 2 samples with")
+                .rule("TSH-10")
+                .help("write `(operation: ..., previous: 0)` or `previous: 1`"),
+        );
+    }
+    wanted.is_none()
+}
+
+/// Whether the texture that a stage samples is there, and of a kind that fits.
+fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: usize, places: &Places) {
+    use ShaderOperation as Op;
+    let operation = units.shader[index].operation;
+    if !operation.samples() {
+        return;
+    }
+    let name = operation.name();
+    let fits: &[TextureKind] = match operation {
+        Op::BumpEnvironment { .. } | Op::DependentAlphaRed | Op::DependentGreenBlue | Op::DotProduct2D => {
+            &[TextureKind::TwoDimensional, TextureKind::Rectangle]
+        }
+        Op::Sample => TextureKind::ALL,
+        _ => &[TextureKind::Cube],
+    };
+    let Some(unit) = units.bound[index] else {
+        if units.places[index].is_empty() {
+            reader.push(
+                Diagnostic::error(
+                    "NB0343",
+                    places.stage.clone(),
+                    format!("stage {index} samples, but its unit has no texture"),
+                )
+                .label("nothing to sample")
+                .rule("TSH-10")
+                .help(format!("give the draw `textures: [...]` with an entry for unit {index}")),
+            );
+        }
+        return;
+    };
+    let Some(texture) = textures.list.get(unit.texture) else { return };
+    if !fits.contains(&texture.kind) {
+        let kinds: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();
+        let message = format!("{name} does not sample a texture of kind {}", texture.kind.name());
+        reader.push(
+            Diagnostic::error("NB0343", places.stage.clone(), message)
+                .label(format!("needs {}", kinds.join(" or ")))
+                .related(units.places[index].clone(), "the texture of its unit")
+                .rule("TSH-10")
+                .help("give the unit another texture, or take the operation for this kind"),
+        );
+    }
+}

@@ -1,0 +1,530 @@
+//! TSH-1 to TSH-10: the stages of a texture shader, in order, for one pixel.
+
+use super::dependent::{Dependent, Moved, QuadTargets, Target};
+use super::dot;
+use super::filter::nearest;
+use super::place::{Coordinates, Interpolated, quad_samples, real_coordinate};
+use super::real::{self, RealColor, RealTarget};
+use super::shader;
+use super::shader_report as report;
+use super::unit::{self, Image, PlannedUnit};
+use crate::number::{Lane, convert};
+use crate::raster::attribute::Attribute;
+use crate::raster::ideal;
+use crate::raster::interpolate::Sample;
+use crate::raster::setup::Triangle;
+use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, Vertex};
+use crate::trace::{Decision, Observer, Rule, Silent};
+
+/// A texture shader reduced to what can reach the frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedShader {
+    /// The stages of the four units.
+    pub stages: [PlannedShaderStage; TEXTURE_UNITS],
+}
+
+impl PlannedShader {
+    /// Whether a stage can drop fragments.
+    pub fn kills(&self) -> bool {
+        self.stages.iter().any(|stage| matches!(stage.state.operation, ShaderOperation::CullFragment { .. }))
+    }
+}
+
+/// A stage of it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlannedShaderStage {
+    /// What it does.
+    pub state: ShaderStage,
+    /// Index of its unit among those of the draw, if it samples.
+    pub unit: Option<usize>,
+    /// Channels of its register, R, G, B, A, that combiners or later stages read.
+    pub live: u8,
+    /// Its dot product is part of what is sampled.
+    pub dots: bool,
+}
+
+impl PlannedShaderStage {
+    /// Whether it has to run.
+    pub fn runs(&self) -> bool {
+        let drops = matches!(self.state.operation, ShaderOperation::CullFragment { .. });
+        drops || self.dots || (self.live != 0 && self.state.operation != ShaderOperation::None)
+    }
+}
+
+/// What a triangle's vertices give a stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum StageSetup {
+    Nothing,
+    /// Coordinates of its unit's image.
+    Places(Coordinates),
+    /// s, t, r, q as numbers.
+    Numbers([Attribute; 4]),
+}
+
+/// The texture shader's coordinates, set up for one triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShaderSetup([StageSetup; TEXTURE_UNITS]);
+
+impl ShaderSetup {
+    /// Sets up every stage that runs.
+    pub fn new(shader: &PlannedShader, units: &[PlannedUnit], triangle: &Triangle, vertices: [&Vertex; 3]) -> Self {
+        ShaderSetup(std::array::from_fn(|index| {
+            let planned = &shader.stages[index];
+            if !planned.runs() {
+                return StageSetup::Nothing;
+            }
+            let set = vertices.map(|v| v.texture_coordinates[planned.state.coordinate_set]);
+            let component = |n: usize| set.map(|v| v[n]);
+            match (planned.state.operation, planned.unit) {
+                (ShaderOperation::Sample, Some(unit)) => {
+                    StageSetup::Places(Coordinates::new(triangle, set, &units[unit]))
+                }
+                (ShaderOperation::BumpEnvironment { .. }, Some(unit)) => {
+                    let unit = &units[unit];
+                    let sides = unit.scale(&unit.levels[0]);
+                    let plane = |n: usize| triangle.coordinate(component(n), sides[n]);
+                    StageSetup::Places(Coordinates::Plane([plane(0), plane(1)]))
+                }
+                (operation, _)
+                    if operation.is_dot()
+                        || matches!(operation, ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. }) =>
+                {
+                    StageSetup::Numbers([0, 1, 2, 3].map(|n| triangle.attribute(component(n))))
+                }
+                _ => StageSetup::Nothing,
+            }
+        }))
+    }
+}
+
+/// A texture shader with everything that it looks at.
+#[derive(Debug)]
+pub struct Chain<'a, L> {
+    /// The stages.
+    pub shader: &'a PlannedShader,
+    /// The units of the draw.
+    pub units: &'a [PlannedUnit],
+    /// The triangle's coordinates.
+    pub setup: &'a ShaderSetup,
+    /// The images, by number of the texture.
+    pub textures: &'a [Image<'a, L>],
+    /// The triangle's vertices, for the ideal.
+    pub vertices: [&'a Vertex; 3],
+    /// Their w; all 1 without perspective.
+    pub w: [f32; 3],
+    /// TSH-6.
+    pub scale: DependentScale,
+}
+
+/// A dot product, and what the ideal has in its place.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Dot {
+    pub(super) fixed: f32,
+    pub(super) real: f64,
+}
+
+/// What the stages have yielded so far.
+struct State<L> {
+    registers: [[L; 4]; TEXTURE_UNITS],
+    dots: [Option<Dot>; TEXTURE_UNITS],
+}
+
+/// The colour of an earlier unit as a stage reads it: bytes, whatever their sign flags.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Color {
+    pub(super) unit: usize,
+    pub(super) bytes: [u8; 4],
+    /// The registers that they were taken from.
+    pub(super) held: [i64; 4],
+    /// Channels whose registers hold twice their two's complement value (TEX-18).
+    pub(super) doubled: [bool; 4],
+    pub(super) real: RealColor,
+}
+
+/// A pixel, as the stages see it.
+#[derive(Clone, Copy)]
+struct At<'s> {
+    sample: &'s Sample<'s>,
+    pixel: (i64, i64),
+}
+
+/// TEX-16: black, opaque.
+fn black<L: Lane>() -> [L; 4] {
+    [L::ZERO, L::ZERO, L::ZERO, L::ONE]
+}
+
+impl<L: Lane> Chain<'_, L> {
+    /// Runs the stages; the four texture registers. `None`: the fragment is dropped (TSH-10).
+    pub fn run<O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        pixel: (i64, i64),
+        observer: &mut O,
+    ) -> Option<[[L; 4]; TEXTURE_UNITS]> {
+        let mut state = State::new();
+        for index in 0..TEXTURE_UNITS {
+            if !self.stage(index, At { sample, pixel }, &mut state, observer) {
+                return None;
+            }
+        }
+        Some(state.registers)
+    }
+
+    /// What the stages before one yield at another pixel of the quad; nothing is dropped there.
+    fn before(&self, last: usize, at: At<'_>) -> State<L> {
+        let mut state = State::new();
+        for index in 0..last {
+            self.stage(index, at, &mut state, &mut Silent);
+        }
+        state
+    }
+
+    /// Whether anybody wants real numbers.
+    fn wants_real<O: Observer>() -> bool {
+        O::ON || O::MEASURES || L::DECIDES
+    }
+
+    /// One stage. `false`: the fragment is dropped.
+    fn stage<O: Observer>(&self, index: usize, at: At<'_>, state: &mut State<L>, observer: &mut O) -> bool {
+        let planned = &self.shader.stages[index];
+        if !planned.runs() {
+            return true;
+        }
+        let operation = planned.state.operation;
+        if planned.dots {
+            self.dot(index, at, state, observer);
+        }
+        let register = match operation {
+            ShaderOperation::None => black(),
+            ShaderOperation::PassThrough => self.pass_through(index, at, observer),
+            ShaderOperation::CullFragment { drops_not_negative } => {
+                let dropped = self.drops(index, drops_not_negative, at, observer);
+                if O::ON && !dropped {
+                    report::constant(index, "TSH-10", planned.live, &black::<L>(), observer);
+                }
+                state.registers[index] = black();
+                return !dropped;
+            }
+            ShaderOperation::DotProduct => {
+                if O::ON {
+                    report::constant(index, "TSH-4", planned.live, &[L::ZERO; 4], observer);
+                }
+                [L::ZERO; 4]
+            }
+            ShaderOperation::Sample => self.sampled(index, at, observer),
+            _ => self.dependent(index, at, state, observer),
+        };
+        state.registers[index] = register;
+        true
+    }
+
+    /// The vertices' coordinate set of a stage.
+    fn set(&self, index: usize) -> [[f32; 4]; 3] {
+        let set = self.shader.stages[index].state.coordinate_set;
+        self.vertices.map(|v| v.texture_coordinates[set])
+    }
+
+    /// The ideal's weights of the vertices.
+    fn weights(&self, at: &Sample<'_>) -> [f64; 3] {
+        at.ideal.unwrap_or_else(|| ideal::barycentrics(at.triangle, at.e, self.w, true))
+    }
+
+    /// The ideal's interpolated coordinates of a stage.
+    fn real_coordinates(&self, index: usize, at: &Sample<'_>) -> [f64; 4] {
+        let (weights, set) = (self.weights(at), self.set(index));
+        [0, 1, 2, 3].map(|n| ideal::mix(weights, set.map(|v| f64::from(v[n]))))
+    }
+
+    /// Ordinary sampling.
+    fn sampled<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> [L; 4] {
+        let (Some(unit), StageSetup::Places(coordinates)) = (self.unit(index), &self.setup.0[index]) else {
+            return black();
+        };
+        let (vertices, w) = (self.set(index), self.w);
+        let place = Interpolated { unit, coordinates, at: at.sample, pixel: at.pixel, vertices, w };
+        unit::sample::<L, O>(unit, &self.textures[unit.state.texture], &place, observer)
+    }
+
+    fn unit(&self, index: usize) -> Option<&PlannedUnit> {
+        self.shader.stages[index].unit.map(|unit| &self.units[unit])
+    }
+
+    /// TSH-9.
+    fn pass_through<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> [L; 4] {
+        let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return black() };
+        let live = self.shader.stages[index].live;
+        let real = if Self::wants_real::<O>() { self.real_coordinates(index, at.sample) } else { [0.0; 4] };
+        std::array::from_fn(|n| {
+            if live >> n & 1 == 0 {
+                return L::ZERO;
+            }
+            let v = at.sample.attribute(&attributes[n]).floor_times(4096).clamp(0, 4096);
+            let value = L::value(i32::from(convert::factor_byte(v)), || real::pass_through(real[n]));
+            let value = observer.settle(Rule::Tsh9, value);
+            if O::ON {
+                report::pass_through(index, n, &attributes[n], at.sample, v, value, observer);
+            }
+            value
+        })
+    }
+
+    /// TSH-10: whether a coordinate is on the side that is dropped. Exact: neither rounding nor a tie moves a sign.
+    fn drops<O: Observer>(&self, index: usize, not_negative: [bool; 4], at: At<'_>, observer: &mut O) -> bool {
+        let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return false };
+        let fixed: [bool; 4] = std::array::from_fn(|n| {
+            let negative = at.sample.attribute(&attributes[n]).floor_times(1) < 0;
+            if O::ON {
+                report::sign(index, n, &attributes[n], at.sample, not_negative[n], negative, observer);
+            }
+            negative != not_negative[n]
+        });
+        let real = || {
+            let coordinates = self.real_coordinates(index, at.sample);
+            (0..4).any(|n| (coordinates[n] < 0.0) != not_negative[n])
+        };
+        let dropped = if L::DECIDES { real() } else { fixed.contains(&true) };
+        observer.decided(Decision::Kill, i64::from(dropped), || i64::from(real()));
+        dropped
+    }
+
+    /// The colour of an earlier unit. Its channels that are not live mean nothing.
+    fn color<O: Observer>(&self, unit: usize, state: &State<L>) -> Color {
+        let register = state.registers[unit];
+        let planned = &self.shader.stages[unit];
+        let luminance = matches!(planned.state.operation, ShaderOperation::BumpEnvironment { luminance: Some(_), .. });
+        let sampled = self.unit(unit);
+        let doubled: [bool; 4] = std::array::from_fn(|n| match sampled {
+            Some(_) if luminance && n < 3 => false,
+            Some(unit) => holds_double(unit, n),
+            None => false,
+        });
+        let held = register.map(Lane::decision);
+        let bytes = std::array::from_fn(|n| (held[n] >> u32::from(doubled[n])) as u8);
+        let mut real = RealColor::default();
+        if Self::wants_real::<O>() {
+            let values = register.map(|lane| lane.observe().1.unwrap_or(0.0));
+            let wide = sampled.filter(|unit| unit.is_wide()).map(|unit| unit.format == TextureFormat::R16B16);
+            real = RealColor::of_registers(values, doubled, wide);
+        }
+        Color { unit, bytes, held: held.map(i64::from), doubled, real }
+    }
+
+    /// TSH-1 to TSH-4: the dot product of a stage, computed once.
+    fn dot<O: Observer>(&self, index: usize, at: At<'_>, state: &mut State<L>, observer: &mut O) -> Dot {
+        if let Some(dot) = state.dots[index] {
+            return dot;
+        }
+        let StageSetup::Numbers(attributes) = &self.setup.0[index] else { return Dot::default() };
+        let ShaderStage { previous, mapping, .. } = self.shader.stages[index].state;
+        let color = self.color::<O>(previous, state);
+        let coordinates = [0, 1, 2].map(|n| at.sample.attribute(&attributes[n]).rounded_f32());
+        let vector = dot::remap(mapping, color.bytes);
+        let products = dot::products(coordinates, vector);
+        let mut dot = Dot { fixed: dot::sum(products), real: 0.0 };
+        if Self::wants_real::<O>() {
+            let [s, t, r, _] = self.real_coordinates(index, at.sample);
+            let real = color.real.remap(mapping);
+            dot.real = dot::dot([s, t, r], real);
+            if O::ON {
+                let parts = report::DotParts { mapping, attributes, coordinates, vector, products, dot };
+                report::dot(index, &color, &parts, ([s, t, r], real), at.sample, observer);
+            }
+        }
+        state.dots[index] = Some(dot);
+        dot
+    }
+
+    /// The dot products of stages 1 to 3.
+    fn normal<O: Observer>(&self, at: At<'_>, state: &mut State<L>, observer: &mut O) -> [Dot; 3] {
+        [1, 2, 3].map(|index| self.dot(index, at, state, observer))
+    }
+
+    /// Where a stage samples that depends on an earlier one, and where the ideal would.
+    fn target<'t, O: Observer>(
+        &'t self,
+        index: usize,
+        at: At<'t>,
+        state: &mut State<L>,
+        observer: &mut O,
+    ) -> (Target<'t>, RealTarget) {
+        let ShaderStage { operation, previous, .. } = self.shader.stages[index].state;
+        let real = |of: &dyn Fn() -> RealTarget| {
+            if Self::wants_real::<O>() { of() } else { RealTarget::Coordinates([0.0; 2]) }
+        };
+        match operation {
+            ShaderOperation::DotProduct2D => {
+                let dots = [index - 1, index].map(|index| self.dot(index, at, state, observer));
+                (Target::Floats(dots.map(|d| d.fixed)), real(&|| RealTarget::Coordinates(dots.map(|d| d.real))))
+            }
+            ShaderOperation::DotReflectSpecular | ShaderOperation::DotReflectConstantEye { .. } => {
+                let normal = self.normal(at, state, observer);
+                let (eye, real_eye) = self.eye(index, at.sample, observer);
+                let fixed = dot::reflect(normal.map(|d| d.fixed), eye);
+                let reflected = || dot::reflect(normal.map(|d| d.real), real_eye);
+                if O::ON {
+                    let constant = matches!(operation, ShaderOperation::DotReflectConstantEye { .. });
+                    report::reflection(index, normal, (eye, constant), &fixed, &reflected(), observer);
+                }
+                (Target::Vector(fixed.vector), real(&|| RealTarget::Vector(reflected().vector)))
+            }
+            ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
+                let channels = if operation == ShaderOperation::DependentAlphaRed { [3, 0] } else { [1, 2] };
+                let color = self.color::<O>(previous, state);
+                if O::ON {
+                    report::previous(index, &color, &channels, observer);
+                }
+                let own = real(&|| RealTarget::bytes(channels.map(|n| color.real.bytes[n]), 255.0));
+                (Target::Bytes(channels.map(|n| color.bytes[n]), self.scale), own)
+            }
+            ShaderOperation::BumpEnvironment { matrix, luminance } => {
+                let color = self.color::<O>(previous, state);
+                if O::ON {
+                    let red: &[usize] = if luminance.is_some() { &[0, 1, 2] } else { &[1, 2] };
+                    report::previous(index, &color, red, observer);
+                }
+                let blue_green = [color.bytes[2], color.bytes[1]];
+                let StageSetup::Places(Coordinates::Plane(planes)) = &self.setup.0[index] else {
+                    return (Target::Bytes([0; 2], self.scale), RealTarget::Coordinates([0.0; 2]));
+                };
+                let own = real(&|| {
+                    let [s, t, ..] = self.real_coordinates(index, at.sample);
+                    RealTarget::moved([s, t], real::offset(matrix, &color.real))
+                });
+                (Target::Moved(Moved { planes, at: *at.sample, matrix, blue_green }), own)
+            }
+            // DotProductCube, DotReflectDiffuse.
+            _ => {
+                let normal = self.normal(at, state, observer);
+                (Target::Vector(normal.map(|d| d.fixed)), real(&|| RealTarget::Vector(normal.map(|d| d.real))))
+            }
+        }
+    }
+
+    /// TSH-5: the eye vector, the definition's and the ideal's.
+    fn eye<O: Observer>(&self, index: usize, at: &Sample<'_>, observer: &mut O) -> ([f32; 3], [f64; 3]) {
+        if let ShaderOperation::DotReflectConstantEye { eye } = self.shader.stages[index].state.operation {
+            return (eye, eye.map(f64::from));
+        }
+        let mut real = [0.0; 3];
+        let fixed = std::array::from_fn(|n| {
+            let StageSetup::Numbers(attributes) = &self.setup.0[n + 1] else { return 0.0 };
+            let q = at.attribute(&attributes[3]).rounded_f32();
+            if Self::wants_real::<O>() {
+                real[n] = self.real_coordinates(n + 1, at)[3];
+            }
+            if O::ON {
+                report::rounded(n + 1, 3, &attributes[3], at, q, real[n], observer);
+            }
+            q
+        });
+        (fixed, real)
+    }
+
+    /// A stage that samples where an earlier one sends it.
+    fn dependent<O: Observer>(&self, index: usize, at: At<'_>, state: &mut State<L>, observer: &mut O) -> [L; 4] {
+        let Some(unit) = self.unit(index) else { return black() };
+        let (target, own) = self.target(index, at, state, observer);
+        let real = if Self::wants_real::<O>() { self.followed(index, &target, own, at.sample) } else { own };
+        if O::MEASURES {
+            let texel = |face: i64, [u, v]: [i64; 2]| face << 60 ^ nearest(u) << 30 ^ nearest(v);
+            let sides = unit.scale(&unit.levels[0]);
+            let on = |real: RealTarget| {
+                let real = real.real(None);
+                let uv = [0, 1].map(|n| unit::floored(real_coordinate(real.st[n], sides[n])));
+                texel(real.face as i64, uv)
+            };
+            let fixed = texel(target.face() as i64, target.on(unit, &unit.levels[0]).map(|c| c.value));
+            observer.decided(Decision::Dependent, if L::DECIDES { on(real) } else { fixed }, || on(own));
+        }
+        let quad = if unit.needs_lod() { self.quad(index, unit, at) } else { None };
+        let place = Dependent { unit, target, real, quad };
+        let color = unit::sample::<L, O>(unit, &self.textures[unit.state.texture], &place, observer);
+        match self.shader.stages[index].state.operation {
+            ShaderOperation::BumpEnvironment { luminance: Some(luminance), .. } => {
+                self.luminance(index, color, luminance, state, observer)
+            }
+            _ => color,
+        }
+    }
+
+    /// What the ideal samples with: its own coordinates where it decides, else the definition's.
+    fn followed(&self, index: usize, target: &Target<'_>, own: RealTarget, at: &Sample<'_>) -> RealTarget {
+        if L::DECIDES {
+            return own;
+        }
+        target.followed(|| {
+            let [s, t, ..] = self.real_coordinates(index, at);
+            [s, t]
+        })
+    }
+
+    /// TEX-11 of a dependent read: the chain at the three pixels of the quad.
+    fn quad(&self, index: usize, unit: &PlannedUnit, at: At<'_>) -> Option<QuadTargets> {
+        let samples = quad_samples(at.sample.triangle, at.pixel);
+        let (i, j) = (at.pixel.0 & !1, at.pixel.1 & !1);
+        if samples.iter().any(|sample| sample.d <= 0) {
+            return None;
+        }
+        let mut fixed = [[0; 2]; 3];
+        let mut real = [[0.0; 2]; 3];
+        let (mut face, mut real_face) = (None, None);
+        for (n, (sample, pixel)) in samples.iter().zip([(i, j), (i + 1, j), (i, j + 1)]).enumerate() {
+            let at = At { sample, pixel };
+            let mut state = self.before(index, at);
+            let (target, own) = self.target(index, at, &mut state, &mut Silent);
+            let place = self.followed(index, &target, own, sample);
+            let face = *face.get_or_insert_with(|| target.face());
+            let real_face = *real_face.get_or_insert_with(|| if L::DECIDES { place.real(None).face } else { face });
+            fixed[n] = target.at_quad(unit, face)?;
+            real[n] = place.real(Some(real_face)).st;
+        }
+        Some(QuadTargets { fixed, real, face: face? })
+    }
+
+    /// TSH-8.
+    fn luminance<O: Observer>(
+        &self,
+        index: usize,
+        color: [L; 4],
+        luminance: [f32; 2],
+        state: &State<L>,
+        observer: &mut O,
+    ) -> [L; 4] {
+        let live = self.shader.stages[index].live;
+        let previous = self.color::<O>(self.shader.stages[index].state.previous, state);
+        let red = if L::DECIDES { previous.real.bytes[0] } else { f64::from(previous.bytes[0]) };
+        if O::ON && live & 7 != 0 {
+            report::luminance_state(index, luminance, observer);
+        }
+        std::array::from_fn(|n| {
+            if n == 3 || live >> n & 1 == 0 {
+                return color[n];
+            }
+            let v = shader::luminance(color[n].decision(), previous.bytes[0], luminance);
+            let byte = i32::from(shader::luminance_byte(v));
+            let value = observer.settle(Rule::Tsh8, color[n].multiplied(byte, || real::luminance(red, luminance)));
+            if O::ON {
+                report::luminance(index, n, (color[n], v, value), previous.bytes[0], luminance, observer);
+            }
+            value
+        })
+    }
+}
+
+impl<L: Lane> State<L> {
+    /// Units that have not yielded anything are black (TEX-16).
+    fn new() -> Self {
+        State { registers: [black(); TEXTURE_UNITS], dots: [None; TEXTURE_UNITS] }
+    }
+}
+
+/// Whether the register holds twice the two's complement byte of a channel (TEX-18).
+fn holds_double(unit: &PlannedUnit, channel: usize) -> bool {
+    match (unit.format, channel) {
+        (TextureFormat::R16B16, 3) => unit.signed_lane(0),
+        (TextureFormat::R16B16, 1) => unit.signed_lane(1),
+        (TextureFormat::Y16, 1) => unit.signed_lane(0),
+        (TextureFormat::R16B16 | TextureFormat::Y16, _) => false,
+        (_, channel) => unit.state.signed[channel],
+    }
+}

@@ -1,0 +1,230 @@
+//! Where a stage of the texture shader samples whose coordinates come from earlier units.
+
+use super::cube::Face;
+use super::lod::Quad;
+use super::place::{Place, Real};
+use super::real::RealTarget;
+use super::report::Report;
+use super::shader::{self, OFFSET_BITS};
+use super::shader_report;
+use super::unit::PlannedUnit;
+use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
+use crate::state::{DependentScale, Level};
+use crate::trace::{Observer, Rule};
+
+/// The coordinates of a dependent read.
+#[derive(Clone, Copy, Debug)]
+pub enum Target<'a> {
+    /// Interpolated coordinates, moved (TSH-7).
+    Moved(Moved<'a>),
+    /// Two bytes (TSH-6).
+    Bytes([u8; 2], DependentScale),
+    /// Two numbers of the dot unit, of which 1.0 is the whole image; texels of a rectangle (TSH-4).
+    Floats([f32; 2]),
+    /// A direction made by the dot unit (TSH-4, TSH-5).
+    Vector([f32; 3]),
+}
+
+/// TSH-7: planes of level 0 over D, and what they are moved by.
+#[derive(Clone, Copy, Debug)]
+pub struct Moved<'a> {
+    /// u and v at the vertices (INT-4), 1/256 texel of level 0. q plays no part.
+    pub planes: &'a [[i64; 3]; 2],
+    /// The sample.
+    pub at: Sample<'a>,
+    /// m0 to m3.
+    pub matrix: [f32; 4],
+    /// Blue and green of the earlier unit.
+    pub blue_green: [u8; 2],
+}
+
+impl Moved<'_> {
+    /// Entries of the matrix that blue and green are multiplied by: along u, along v.
+    pub fn entries(&self) -> [[f32; 2]; 2] {
+        let [m0, m1, m2, m3] = self.matrix;
+        [[m0, m3], [m1, m2]]
+    }
+
+    /// The planes of a level.
+    pub fn planes(&self, unit: &PlannedUnit, level: &Level) -> [[i64; 3]; 2] {
+        let (sides, whole) = (unit.scale(level), unit.scale(&unit.levels[0]));
+        // Sides are powers of two: a floor of a floor.
+        std::array::from_fn(|n| self.planes[n].map(|g| g >> (sides[n].leading_zeros() - whole[n].leading_zeros())))
+    }
+
+    /// What is added on a level, 2^-24 of 1/256 texel.
+    pub fn offsets(&self, unit: &PlannedUnit, level: &Level) -> [i64; 2] {
+        let sides = unit.scale(level);
+        std::array::from_fn(|n| shader::offset(self.entries()[n], self.blue_green, sides[n]))
+    }
+
+    /// INT-4 and INT-4t of the moved coordinate.
+    fn on(&self, unit: &PlannedUnit, level: &Level) -> [Settled; 2] {
+        let (planes, offsets) = (self.planes(unit, level), self.offsets(unit, level));
+        std::array::from_fn(|n| {
+            let (value, exact) = self.quotient(&planes[n], offsets[n], OFFSET_BITS);
+            let limit = i128::from(COORDINATE_LIMIT);
+            let lowered = exact
+                && value.abs() < limit
+                && !self.at.triangle.exact_reciprocal
+                && self.at.truncation(&planes[n]) > 0;
+            Settled { value: value.clamp(-limit, limit) as i64 - i64::from(lowered), lowered }
+        })
+    }
+
+    /// floor((sum G E / D + offset / 2^24) 2^(24 - drop)), and whether nothing remains.
+    fn quotient(&self, planes: &[i64; 3], offset: i64, drop: u32) -> (i128, bool) {
+        let d = i128::from(self.at.d);
+        let numerator = (self.at.sum(planes) << OFFSET_BITS) + i128::from(offset) * d;
+        let denominator = d << drop;
+        (numerator.div_euclid(denominator), numerator.rem_euclid(denominator) == 0)
+    }
+}
+
+impl Target<'_> {
+    /// The face of a cube map; [`Face::PositiveX`] of other kinds.
+    pub fn face(&self) -> Face {
+        match self {
+            Target::Vector(vector) => {
+                let direction = shader::direction(*vector);
+                Face::of(direction, direction.map(i64::abs), 0)
+            }
+            Target::Moved(_) | Target::Bytes(..) | Target::Floats(_) => Face::PositiveX,
+        }
+    }
+
+    /// s or t, and the major component, on a face.
+    fn on_face(vector: [f32; 3], face: Face) -> [[i64; 2]; 2] {
+        let direction = shader::direction(vector);
+        let [s, t, m] = face.components().map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
+        [[s, m], [t, m]]
+    }
+
+    /// u and v on a level, 1/256 texel.
+    pub fn on(&self, unit: &PlannedUnit, level: &Level) -> [Settled; 2] {
+        let sides = unit.scale(level);
+        let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Settled { value: of(n), lowered: false });
+        match self {
+            Target::Moved(moved) => moved.on(unit, level),
+            Target::Bytes(bytes, scale) => plain(&|n| shader::dependent(bytes[n], sides[n], *scale)),
+            Target::Floats(floats) => plain(&|n| shader::coordinate(floats[n], sides[n])),
+            Target::Vector(vector) => {
+                let on_face = Self::on_face(*vector, self.face());
+                plain(&|n| shader::face_coordinate(on_face[n][0], on_face[n][1], sides[n], 8))
+            }
+        }
+    }
+
+    /// u and v on level 0, on a face, in 1/65536 texel (TEX-11). `None`: the face does not face this direction.
+    pub fn at_quad(&self, unit: &PlannedUnit, face: Face) -> Option<[i64; 2]> {
+        let level = &unit.levels[0];
+        let sides = unit.scale(level);
+        let each = |of: &dyn Fn(usize) -> i64| [of(0), of(1)];
+        Some(match self {
+            Target::Moved(moved) => {
+                let offsets = moved.offsets(unit, level);
+                let limit = 1 << 62;
+                each(&|n| moved.quotient(&moved.planes[n], offsets[n], 16).0.clamp(-limit, limit) as i64)
+            }
+            Target::Bytes(bytes, scale) => each(&|n| shader::dependent(bytes[n], sides[n] << 8, *scale)),
+            Target::Floats(floats) => each(&|n| shader::quad_coordinate(floats[n], sides[n])),
+            Target::Vector(vector) => {
+                let on_face = Self::on_face(*vector, face);
+                if on_face[0][1] <= 0 {
+                    return None;
+                }
+                each(&|n| shader::face_coordinate(on_face[n][0], on_face[n][1], sides[n], 16))
+            }
+        })
+    }
+
+    /// The same coordinates as real numbers, for an ideal that follows them; `interpolated` gives the ideal's s and t.
+    pub fn followed(&self, interpolated: impl FnOnce() -> [f64; 2]) -> RealTarget {
+        match self {
+            Target::Moved(moved) => {
+                let [blue, green] = moved.blue_green.map(f64::from);
+                let color = super::real::RealColor::of([0.0, green, blue, 0.0]);
+                RealTarget::moved(interpolated(), super::real::offset(moved.matrix, &color))
+            }
+            Target::Bytes(bytes, scale) => {
+                let whole = match scale {
+                    DependentScale::Over255 => 255.0,
+                    DependentScale::Over256 => 256.0,
+                };
+                RealTarget::bytes(bytes.map(f64::from), whole)
+            }
+            Target::Floats(floats) => RealTarget::Coordinates(floats.map(f64::from)),
+            // Its integers: NaN and infinity have been dealt with.
+            Target::Vector(vector) => RealTarget::Vector(shader::direction(*vector).map(|c| c as f64)),
+        }
+    }
+}
+
+/// What the same chain of stages gives at the three pixels of the quad that the lod is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct QuadTargets {
+    /// On the face of the first.
+    pub fixed: Quad,
+    /// s and t of the ideal.
+    pub real: [[f64; 2]; 3],
+    /// That face.
+    pub face: Face,
+}
+
+/// A dependent read as a place.
+#[derive(Clone, Copy, Debug)]
+pub struct Dependent<'a> {
+    /// The unit.
+    pub unit: &'a PlannedUnit,
+    /// Its coordinates.
+    pub target: Target<'a>,
+    /// The ideal's, where somebody wants them.
+    pub real: RealTarget,
+    /// For the lod, where it counts and can be had.
+    pub quad: Option<QuadTargets>,
+}
+
+impl Place for Dependent<'_> {
+    fn face(&self) -> Face {
+        self.target.face()
+    }
+
+    fn on(&self, level: &Level) -> [Settled; 2] {
+        self.target.on(self.unit, level)
+    }
+
+    fn quad(&self) -> Option<Quad> {
+        self.quad.map(|quad| quad.fixed)
+    }
+
+    fn real(&self, face: Option<Face>) -> Real {
+        self.real.real(face)
+    }
+
+    fn real_quad(&self) -> Option<[[f64; 2]; 3]> {
+        self.quad.map(|quad| quad.real)
+    }
+
+    fn rule(&self) -> Rule {
+        match self.target {
+            Target::Moved(_) => Rule::Tsh7,
+            Target::Bytes(..) => Rule::Tsh6,
+            Target::Floats(_) | Target::Vector(_) => Rule::Tsh4,
+        }
+    }
+
+    fn describe<O: Observer>(
+        &self,
+        report: &Report<'_>,
+        level: &Level,
+        settled: [Settled; 2],
+        ideal: [f64; 2],
+        observer: &mut O,
+    ) {
+        shader_report::coordinates(self, report, level, settled, ideal, observer);
+    }
+
+    fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O) {
+        shader_report::quad(self, report, observer);
+    }
+}

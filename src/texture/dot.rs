@@ -1,0 +1,207 @@
+//! TSH-1 to TSH-5, TSH-7: the dot unit, which computes in single precision because the chip does. The one place of the fixed path with floats.
+//!
+//! Only + - * / of IEEE single precision occur, each rounded on its own, in the order written here; nothing is fused. Every
+//! machine therefore gets the same bits (those of a NaN excepted, which counts as 0 wherever it arrives).
+#![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4); its ideal stands beside it")]
+
+use crate::state::DotMapping;
+use std::ops::{Add, Div, Mul, Sub};
+
+/// A number of the dot unit: `f32` the definition, `f64` the ideal.
+pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+    /// 2.
+    const TWO: Self;
+}
+
+impl Number for f32 {
+    const TWO: f32 = 2.0;
+}
+
+impl Number for f64 {
+    const TWO: f64 = 2.0;
+}
+
+/// Three numbers: coordinates, a remapped colour, a vector.
+pub type Vector<N> = [N; 3];
+
+/// TSH-1, TSH-2 and TSH-3: the bytes R, G, B, A of a colour as three fractions, numerator and denominator. All numerators and denominators have at most
+/// 24 bits.
+pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
+    let [r, g, b, a] = bytes;
+    let each = |of: fn(u8) -> i32, whole: i32| [r, g, b].map(|byte| (of(byte), whole));
+    let halves = [[a, r], [g, b]].map(u16::from_be_bytes);
+    match mapping {
+        DotMapping::ZeroToOne => each(i32::from, 255),
+        DotMapping::MinusOneToOneD3d => each(|v| i32::from(v) - 128, 127),
+        DotMapping::MinusOneToOneGl => each(|v| 2 * i32::from(v as i8) + 1, 255),
+        DotMapping::MinusOneToOne => each(|v| i32::from(v as i8), 127),
+        DotMapping::Hilo1 => [(i32::from(halves[0]), 65535), (i32::from(halves[1]), 65535), (1, 1)],
+        DotMapping::HiloHemisphere => {
+            let [high, low] = halves.map(|half| i32::from(half as i16));
+            [(high, 32767), (low, 32767), (third_of_unit(high, low), 1 << 24)]
+        }
+    }
+}
+
+/// TSH-3: floor(2^24 sqrt(max(0, 1 - x^2 - y^2))) of x = high/32767 and y = low/32767.
+fn third_of_unit(high: i32, low: i32) -> i32 {
+    let left = 32767 * 32767 - i64::from(high) * i64::from(high) - i64::from(low) * i64::from(low);
+    // floor(floor(sqrt n) / d) is floor(sqrt n / d).
+    let root = (u128::from(left.max(0).unsigned_abs()) << 48).isqrt();
+    (root / 32767) as i32
+}
+
+/// TSH-1 to TSH-3 in single precision: each fraction rounded once.
+pub fn remap(mapping: DotMapping, bytes: [u8; 4]) -> Vector<f32> {
+    fractions(mapping, bytes).map(|(numerator, denominator)| numerator as f32 / denominator as f32)
+}
+
+/// TSH-4: the three products of a dot product.
+pub fn products<N: Number>(a: Vector<N>, b: Vector<N>) -> Vector<N> {
+    [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
+}
+
+/// TSH-4: their sum, the first two first.
+pub fn sum<N: Number>([x, y, z]: Vector<N>) -> N {
+    (x + y) + z
+}
+
+/// TSH-4: the dot product.
+pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
+    sum(products(a, b))
+}
+
+/// TSH-7: blue and green times what they move a coordinate by; each operation is rounded.
+pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
+    entries[0] * blue_green[0] + entries[1] * blue_green[1]
+}
+
+/// TSH-5: a reflection, with what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reflection<N> {
+    /// n . e.
+    pub toward: N,
+    /// n . n.
+    pub square: N,
+    /// 2 (n . e) / (n . n).
+    pub scale: N,
+    /// scale n - e.
+    pub vector: Vector<N>,
+}
+
+/// TSH-5: the eye vector reflected about a normal of any length.
+pub fn reflect<N: Number>(normal: Vector<N>, eye: Vector<N>) -> Reflection<N> {
+    let (toward, square) = (dot(normal, eye), dot(normal, normal));
+    let scale = N::TWO * toward / square;
+    let vector = std::array::from_fn(|n| scale * normal[n] - eye[n]);
+    Reflection { toward, square, scale, vector }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Named;
+    use proptest::prelude::*;
+
+    /// The nearest f32 to a fraction of small numbers, by comparing neighbours exactly: |n/d - m 2^e| in integers.
+    fn is_nearest(value: f32, (n, d): (i32, i32)) -> bool {
+        // Everything below 2^24 / 127, and not below 2^-24: 60 fraction bits hold every candidate.
+        let scaled = |f: f32| (f64::from(f) * (1_u64 << 60) as f64) as i128;
+        let exact = i128::from(n) << 60;
+        let distance = |f: f32| (scaled(f) * i128::from(d) - exact).abs();
+        let (lower, upper) = (value.next_down(), value.next_up());
+        distance(value) <= distance(lower) && distance(value) <= distance(upper)
+    }
+
+    /// Every byte in every place of every mapping, against its statement and the exact fraction.
+    #[test]
+    fn bytes_by_their_statement() {
+        for byte in 0..=255_u8 {
+            let (v, s) = (i32::from(byte), i32::from(byte as i8));
+            let want = [(v, 255), (v - 128, 127), (2 * s + 1, 255), (s, 127)];
+            for (mapping, want) in DotMapping::ALL.iter().zip(want) {
+                let bytes = [byte, 255 - byte, byte ^ 0x55, 7];
+                assert_eq!(fractions(*mapping, bytes)[0], want, "{mapping:?} {byte}");
+                for (value, fraction) in remap(*mapping, bytes).into_iter().zip(fractions(*mapping, bytes)) {
+                    assert!(is_nearest(value, fraction), "{mapping:?} {value} {fraction:?}");
+                }
+            }
+        }
+        let [plus, minus] = [255, 0].map(|byte| fractions(DotMapping::MinusOneToOneD3d, [byte; 4])[0]);
+        assert_eq!((plus, minus), ((127, 127), (-128, 127)));
+    }
+
+    /// Every half: A R and G B, high byte first.
+    #[test]
+    fn halves_by_their_statement() {
+        for half in 0..=65535_u16 {
+            let [high, low] = half.to_be_bytes();
+            let bytes = [low, 0x12, 0x34, high];
+            let unsigned = fractions(DotMapping::Hilo1, bytes);
+            assert_eq!(unsigned, [(i32::from(half), 65535), (0x1234, 65535), (1, 1)]);
+            let signed = fractions(DotMapping::HiloHemisphere, bytes);
+            assert_eq!(signed[..2], [(i32::from(half as i16), 32767), (0x1234, 32767)]);
+            for mapping in [DotMapping::Hilo1, DotMapping::HiloHemisphere] {
+                assert!(is_nearest(remap(mapping, bytes)[0], fractions(mapping, bytes)[0]));
+            }
+        }
+    }
+
+    #[test]
+    fn third_components_complete_unit_vectors() {
+        assert_eq!((third_of_unit(0, 0), third_of_unit(32767, 0), third_of_unit(-32768, 0)), (1 << 24, 0, 0));
+        assert_eq!(third_of_unit(30000, 30000), 0);
+        // 3-4-5: x = 3/5, y = 0 gives 4/5, as far as 32767 allows.
+        let third = third_of_unit(19660, 0);
+        assert!((f64::from(third) / f64::from(1 << 24) - 0.8).abs() < 1e-4);
+    }
+
+    #[test]
+    fn reflections_of_axes() {
+        // About z, an eye in front is mirrored in x and y.
+        assert_eq!(reflect([0.0_f32, 0.0, 2.0], [0.25, -0.5, 1.0]).vector, [-0.25, 0.5, 1.0]);
+        // A normal that points at the eye returns it.
+        assert_eq!(reflect([0.25_f32, 0.5, 1.0], [0.25, 0.5, 1.0]).vector, [0.25, 0.5, 1.0]);
+        assert!(reflect([0.0_f32; 3], [1.0, 0.0, 0.0]).vector.iter().all(|c| c.is_nan()));
+    }
+
+    proptest! {
+        #[test]
+        fn the_third_is_the_floor(high in -32768..=32767_i32, low in -32768..=32767_i32) {
+            let third = u128::from(third_of_unit(high, low) as u32);
+            let left = (32767_i64.pow(2) - i64::from(high).pow(2) - i64::from(low).pow(2)).max(0) as u128;
+            // third <= 2^24 sqrt(left) / 32767 < third + 1.
+            prop_assert!((third * 32767).pow(2) <= left << 48);
+            prop_assert!(((third + 1) * 32767).pow(2) > left << 48);
+        }
+
+        /// Each operation is the correctly rounded one: single precision by way of double, which is innocuous for one operation.
+        #[test]
+        fn no_operation_is_fused(a in prop::array::uniform3(-2.0..2.0_f32), b in prop::array::uniform3(-2.0..2.0_f32)) {
+            let by_double = |x: f32, y: f32, of: fn(f64, f64) -> f64| of(f64::from(x), f64::from(y)) as f32;
+            let [x, y, z]: [f32; 3] = std::array::from_fn(|n| by_double(a[n], b[n], |x, y| x * y));
+            let sum = by_double(by_double(x, y, |x, y| x + y), z, |x, y| x + y);
+            prop_assert_eq!(dot(a, b), sum);
+            prop_assert_eq!(moved([a[0], a[1]], [b[0], b[1]]), by_double(x, y, |x, y| x + y));
+        }
+
+        /// The reflection keeps the length, and the normal halves the angle.
+        #[test]
+        fn reflections_keep_lengths(n in prop::array::uniform3(-2.0..2.0_f64), e in prop::array::uniform3(-2.0..2.0_f64)) {
+            prop_assume!(dot(n, n) > 0.01);
+            let r = reflect(n, e).vector;
+            prop_assert!((dot(r, r) - dot(e, e)).abs() < 1e-9);
+            prop_assert!((dot(r, n) - dot(e, n)).abs() < 1e-9);
+        }
+
+        /// In single precision it stays close to the real one.
+        #[test]
+        fn single_precision_is_close(n in prop::array::uniform3(-1.0..1.0_f32), e in prop::array::uniform3(-1.0..1.0_f32)) {
+            prop_assume!(dot(n, n) > 0.1);
+            let (fixed, real) = (reflect(n, e).vector, reflect(n.map(f64::from), e.map(f64::from)).vector);
+            for (fixed, real) in fixed.into_iter().zip(real) {
+                prop_assert!((f64::from(fixed) - real).abs() < 1e-5);
+            }
+        }
+    }
+}

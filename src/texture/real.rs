@@ -1,0 +1,139 @@
+//! The ideal of the texture shader: the same stages in real numbers.
+#![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
+
+use super::cube::Face;
+use super::dot::Vector;
+use super::place::{Real, real_direction};
+use crate::state::DotMapping;
+
+/// A colour as the ideal reads it: real bytes, and halves.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RealColor {
+    /// R, G, B, A in steps of a byte, 0 to 256.
+    pub bytes: [f64; 4],
+    /// A R and G B as one number each, 0 to 65536.
+    pub halves: [f64; 2],
+}
+
+impl RealColor {
+    /// The colour of these bytes.
+    pub fn of(bytes: [f64; 4]) -> RealColor {
+        let [r, g, b, a] = bytes;
+        RealColor { bytes, halves: [256.0 * a + r, 256.0 * g + b] }
+    }
+
+    /// The colour that registers hold, in steps of 1/255. `doubled` channels stand for a signed byte s as s/128 (TEX-18). Of a unit that
+    /// filters halves (`wide`), the high bytes' registers stand for whole halves: both halves (`true`), or only G B.
+    pub fn of_registers(registers: [f64; 4], doubled: [bool; 4], wide: Option<bool>) -> RealColor {
+        let part = |n: usize, signed: f64, unsigned: f64| {
+            let value = registers[n] / 255.0 * if doubled[n] { signed } else { unsigned };
+            if value < 0.0 { value + 2.0 * signed } else { value }
+        };
+        let mut color = RealColor::of([0, 1, 2, 3].map(|n| part(n, 128.0, 255.0)));
+        if let Some(both) = wide {
+            color.halves[1] = part(1, 32768.0, 65535.0);
+            if both {
+                color.halves[0] = part(3, 32768.0, 65535.0);
+            }
+        }
+        color
+    }
+
+    /// A byte as two's complement.
+    pub fn signed(&self, channel: usize) -> f64 {
+        let byte = self.bytes[channel];
+        if byte < 128.0 { byte } else { byte - 256.0 }
+    }
+
+    /// TSH-1 to TSH-3.
+    pub fn remap(&self, mapping: DotMapping) -> Vector<f64> {
+        let each = |of: &dyn Fn(usize) -> f64| [of(0), of(1), of(2)];
+        match mapping {
+            DotMapping::ZeroToOne => each(&|n| self.bytes[n] / 255.0),
+            DotMapping::MinusOneToOneD3d => each(&|n| (self.bytes[n] - 128.0) / 127.0),
+            DotMapping::MinusOneToOneGl => each(&|n| (2.0 * self.signed(n) + 1.0) / 255.0),
+            DotMapping::MinusOneToOne => each(&|n| self.signed(n) / 127.0),
+            DotMapping::Hilo1 => [self.halves[0] / 65535.0, self.halves[1] / 65535.0, 1.0],
+            DotMapping::HiloHemisphere => {
+                let [x, y] = self.halves.map(|half| (if half < 32768.0 { half } else { half - 65536.0 }) / 32767.0);
+                [x, y, (1.0 - x * x - y * y).max(0.0).sqrt()]
+            }
+        }
+    }
+}
+
+/// TSH-7: what blue and green add to s and t.
+pub fn offset([m0, m1, m2, m3]: [f32; 4], color: &RealColor) -> [f64; 2] {
+    let (blue, green) = (color.signed(2), color.signed(1));
+    [[m0, m3], [m1, m2]].map(|[b, g]| (f64::from(b) * blue + f64::from(g) * green) / 128.0)
+}
+
+/// TSH-8: what the colour is multiplied by, for a red in steps of a byte; not negative.
+pub fn luminance(red: f64, [scale, offset]: [f32; 2]) -> f64 {
+    (red / 255.0 * f64::from(scale) + f64::from(offset)).max(0.0)
+}
+
+/// TSH-9: a coordinate as a channel.
+pub fn pass_through(coordinate: f64) -> f64 {
+    255.0 * coordinate.clamp(0.0, 1.0)
+}
+
+/// Where the ideal samples.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum RealTarget {
+    /// s and t, of which 1.0 is the whole image; texels of a rectangle.
+    Coordinates([f64; 2]),
+    /// A direction.
+    Vector([f64; 3]),
+}
+
+impl RealTarget {
+    /// s and t moved.
+    pub fn moved(st: [f64; 2], by: [f64; 2]) -> RealTarget {
+        RealTarget::Coordinates([st[0] + by[0], st[1] + by[1]])
+    }
+
+    /// A byte as a coordinate, 1.0 being `whole`.
+    pub fn bytes(st: [f64; 2], whole: f64) -> RealTarget {
+        RealTarget::Coordinates(st.map(|byte| byte / whole))
+    }
+
+    /// The coordinates, on a given face of a cube map or on its own. A vector that is no number is the zero vector.
+    pub fn real(&self, face: Option<Face>) -> Real {
+        match *self {
+            RealTarget::Coordinates(st) => Real { face: Face::PositiveX, st },
+            RealTarget::Vector(v) if v.iter().any(|c| c.is_nan()) => real_direction([0.0; 3], face),
+            RealTarget::Vector(v) => real_direction(v, face),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::Named;
+    use crate::texture::dot;
+
+    /// Every byte and every half, against the definition's fractions.
+    #[test]
+    fn remaps_are_the_definitions() {
+        for half in 0..=65535_u16 {
+            let [high, low] = half.to_be_bytes();
+            let bytes = [low, 0x12, 0x34, high];
+            for mapping in DotMapping::ALL {
+                let real = RealColor::of(bytes.map(f64::from)).remap(*mapping);
+                for (fixed, real) in dot::remap(*mapping, bytes).into_iter().zip(real) {
+                    assert!((f64::from(fixed) - real).abs() <= 1.0 / f64::from(1 << 24), "{mapping:?} {half}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn offsets_luminance_and_vectors() {
+        let color = RealColor::of([51.0, 192.0, 64.0, 0.0]);
+        assert_eq!(offset([1.0, 0.0, 0.5, -1.0], &color), [1.0, -0.25]);
+        assert_eq!((luminance(51.0, [2.0, 0.5]), luminance(51.0, [-9.0, 0.5])), (0.9, 0.0));
+        assert_eq!(RealTarget::Vector([f64::NAN, 1.0, 2.0]).real(None).face, Face::PositiveX);
+    }
+}

@@ -1,0 +1,346 @@
+//! What the texture shader tells an observer. Nothing here computes a value that is used.
+
+use super::chain::{Color, Dot};
+use super::dependent::{Dependent, Target};
+use super::dot::Reflection;
+use super::report::Report;
+use super::shader::OFFSET_BITS;
+use crate::combiner::registers::channel_name;
+use crate::number::Lane;
+use crate::raster::attribute::Attribute;
+use crate::raster::interpolate::{Sample, Settled};
+use crate::state::{DependentScale, DotMapping, Level, Named};
+use crate::trace::{Observer, Operand, Step, byte, float, float_step, plain, report};
+
+const COORDINATES: [&str; 4] = ["s", "t", "r", "q"];
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+fn block(index: usize) -> String {
+    format!("texture unit {index}")
+}
+
+fn name(index: usize, suffix: &str) -> String {
+    format!("unit{index}.{suffix}")
+}
+
+/// A register that a stage yields whatever the pixel.
+pub(super) fn constant<L: Lane, O: Observer>(
+    index: usize,
+    rule: &'static str,
+    live: u8,
+    register: &[L; 4],
+    observer: &mut O,
+) {
+    for n in (0..4).filter(|n| live >> n & 1 != 0) {
+        let name = format!("texture{index}.{}", channel_name(n));
+        observer.step(report::register_step(&block(index), rule, name, register[n]));
+    }
+}
+
+/// The numbers of a coordinate at the vertices and the edge functions, as operands: the value is their sum of products over D, times 2^exponent.
+fn linear<O: Observer>(
+    index: usize,
+    n: usize,
+    attribute: &Attribute,
+    at: &Sample<'_>,
+    observer: &mut O,
+) -> Vec<Operand> {
+    let (g, exponent) = attribute.numbers();
+    let named = |k: usize| name(index, &format!("G_{}{k}", COORDINATES[n]));
+    for (k, g) in g.iter().enumerate() {
+        observer.step(Step::given(&block(index), "INT-4", named(k), *g));
+    }
+    let planes = (0..3).map(|k| plain(named(k), g[k]));
+    let edges = (0..3).map(|k| plain(format!("E{k}"), at.e[k]));
+    planes.chain(edges).chain([plain("D", at.d), plain("exponent", i64::from(exponent))]).collect()
+}
+
+/// TSH-9: one channel.
+pub(super) fn pass_through<L: Lane, O: Observer>(
+    index: usize,
+    n: usize,
+    attribute: &Attribute,
+    at: &Sample<'_>,
+    v: i64,
+    value: L,
+    observer: &mut O,
+) {
+    let inputs = linear(index, n, attribute, at, observer);
+    let block = block(index);
+    let part = name(index, &format!("{}.4096", COORDINATES[n]));
+    observer.step(Step::given(&block, "TSH-9", part.clone(), v).per(4096).by("floor_number", inputs));
+    let inputs = vec![Operand { per_one: 4096, ..plain(part, v) }];
+    let register = format!("texture{index}.{}", channel_name(n));
+    observer.step(report::register_step(&block, "TSH-9", register, value).by("factor_byte", inputs));
+}
+
+/// TSH-10: whether one coordinate drops the fragment.
+pub(super) fn sign<O: Observer>(
+    index: usize,
+    n: usize,
+    attribute: &Attribute,
+    at: &Sample<'_>,
+    drops_not_negative: bool,
+    negative: bool,
+    observer: &mut O,
+) {
+    let inputs = linear(index, n, attribute, at, observer);
+    let operation = if drops_not_negative { "is_not_negative" } else { "is_negative" };
+    let name = name(index, &format!("{}.drops", COORDINATES[n]));
+    let dropped = negative != drops_not_negative;
+    let note = dropped.then(|| "the fragment is dropped".to_string());
+    observer.step(Step::given(&block(index), "TSH-10", name, i64::from(dropped)).by(operation, inputs).note(note));
+}
+
+/// A coordinate in single precision.
+pub(super) fn rounded<O: Observer>(
+    index: usize,
+    n: usize,
+    attribute: &Attribute,
+    at: &Sample<'_>,
+    value: f32,
+    ideal: f64,
+    observer: &mut O,
+) {
+    let inputs = linear(index, n, attribute, at, observer);
+    let step = float_step(&block(index), "TSH-4", name(index, COORDINATES[n]), value, ideal);
+    observer.step(step.by("nearest_float", inputs));
+}
+
+/// The bytes of the earlier unit's colour that a stage reads.
+pub(super) fn previous<O: Observer>(index: usize, color: &Color, channels: &[usize], observer: &mut O) {
+    for &n in channels {
+        let register = format!("texture{}.{}", color.unit, channel_name(n));
+        let value = i64::from(color.bytes[n]);
+        let operation = if color.doubled[n] { "byte_of_double" } else { "byte_of_register" };
+        let step = Step::given(&block(index), "NUM-1", previous_name(index, n), value);
+        observer.step(step.by(operation, vec![byte(register, color.held[n])]));
+    }
+}
+
+fn previous_name(index: usize, channel: usize) -> String {
+    name(index, &format!("previous.{}", channel_name(channel)))
+}
+
+/// The parts of a dot product.
+pub(super) struct DotParts<'a> {
+    pub(super) mapping: DotMapping,
+    pub(super) attributes: &'a [Attribute; 4],
+    pub(super) coordinates: [f32; 3],
+    pub(super) vector: [f32; 3],
+    pub(super) products: [f32; 3],
+    pub(super) dot: Dot,
+}
+
+/// TSH-1 to TSH-4: a dot product. `real` are the ideal's coordinates and its remapped colour.
+pub(super) fn dot<O: Observer>(
+    index: usize,
+    color: &Color,
+    parts: &DotParts<'_>,
+    real: ([f64; 3], [f64; 3]),
+    at: &Sample<'_>,
+    observer: &mut O,
+) {
+    let hilo = matches!(parts.mapping, DotMapping::Hilo1 | DotMapping::HiloHemisphere);
+    previous(index, color, if hilo { &[3, 0, 1, 2] } else { &[0, 1, 2] }, observer);
+    let read = |n: usize| plain(previous_name(index, n), i64::from(color.bytes[n]));
+    let block = block(index);
+    for n in 0..3 {
+        rounded(index, n, &parts.attributes[n], at, parts.coordinates[n], real.0[n], observer);
+        let halves = [vec![read(3), read(0)], vec![read(1), read(2)]];
+        let (rule, operation, inputs) = match (parts.mapping, n) {
+            (DotMapping::ZeroToOne, _) => ("TSH-1", "remap_zero_to_one", vec![read(n)]),
+            (DotMapping::MinusOneToOneD3d, _) => ("TSH-2", "remap_d3d", vec![read(n)]),
+            (DotMapping::MinusOneToOneGl, _) => ("TSH-2", "remap_gl", vec![read(n)]),
+            (DotMapping::MinusOneToOne, _) => ("TSH-2", "remap_twos_complement", vec![read(n)]),
+            (DotMapping::Hilo1, 2) => ("TSH-3", "float_one", Vec::new()),
+            (DotMapping::Hilo1, _) => ("TSH-3", "remap_half", halves[n].clone()),
+            (DotMapping::HiloHemisphere, 2) => ("TSH-3", "third_of_unit", halves.concat()),
+            (DotMapping::HiloHemisphere, _) => ("TSH-3", "remap_half_signed", halves[n].clone()),
+        };
+        let vector = name(index, &format!("vector.{}", AXES[n]));
+        observer.step(float_step(&block, rule, vector.clone(), parts.vector[n], real.1[n]).by(operation, inputs));
+    }
+    for n in 0..3 {
+        let inputs = vec![
+            float(name(index, COORDINATES[n]), parts.coordinates[n]),
+            float(name(index, &format!("vector.{}", AXES[n])), parts.vector[n]),
+        ];
+        let product = name(index, &format!("product.{}", AXES[n]));
+        observer.step(
+            float_step(&block, "TSH-4", product, parts.products[n], product_of(real, n)).by("float_product", inputs),
+        );
+    }
+    let inputs = (0..3).map(|n| float(name(index, &format!("product.{}", AXES[n])), parts.products[n])).collect();
+    observer
+        .step(float_step(&block, "TSH-4", name(index, "dot"), parts.dot.fixed, parts.dot.real).by("float_sum", inputs));
+}
+
+#[allow(clippy::float_arithmetic, reason = "the ideal's product")]
+fn product_of((a, b): ([f64; 3], [f64; 3]), n: usize) -> f64 {
+    a[n] * b[n]
+}
+
+/// TSH-5: a reflection. The eye is the scene's or the q of the three stages.
+pub(super) fn reflection<O: Observer>(
+    index: usize,
+    normal: [Dot; 3],
+    (eye, constant): ([f32; 3], bool),
+    fixed: &Reflection<f32>,
+    real: &Reflection<f64>,
+    observer: &mut O,
+) {
+    let block = block(index);
+    let eye_name = |n: usize| if constant { name(index, &format!("eye.{}", AXES[n])) } else { name(n + 1, "q") };
+    if constant {
+        for n in 0..3 {
+            observer.step(float_step(&block, "TSH-5", eye_name(n), eye[n], f64::from(eye[n])));
+        }
+    }
+    let normals = |n: usize| float(name(n + 1, "dot"), normal[n].fixed);
+    let eyes = |n: usize| float(eye_name(n), eye[n]);
+    let step = |what: &str, value: f32, ideal: f64| float_step(&block, "TSH-5", name(index, what), value, ideal);
+    let toward = (0..3).flat_map(|n| [normals(n), eyes(n)]).collect();
+    observer.step(step("toward", fixed.toward, real.toward).by("float_dot", toward));
+    let square = (0..3).flat_map(|n| [normals(n), normals(n)]).collect();
+    observer.step(step("square", fixed.square, real.square).by("float_dot", square));
+    let inputs = vec![float(name(index, "toward"), fixed.toward), float(name(index, "square"), fixed.square)];
+    observer.step(step("scale", fixed.scale, real.scale).by("float_double_quotient", inputs));
+    for n in 0..3 {
+        let inputs = vec![float(name(index, "scale"), fixed.scale), normals(n), eyes(n)];
+        let vector = step(&format!("reflection.{}", AXES[n]), fixed.vector[n], real.vector[n]);
+        observer.step(vector.by("float_reflection", inputs));
+    }
+}
+
+/// TSH-8: scale and offset.
+pub(super) fn luminance_state<O: Observer>(index: usize, luminance: [f32; 2], observer: &mut O) {
+    for (what, value) in ["luminance.scale", "luminance.offset"].into_iter().zip(luminance) {
+        observer.step(float_step(&block(index), "TSH-8", name(index, what), value, f64::from(value)));
+    }
+}
+
+/// TSH-8: one channel, from the colour as sampled, the number in 4096ths and the result.
+pub(super) fn luminance<L: Lane, O: Observer>(
+    index: usize,
+    n: usize,
+    (sampled, v, value): (L, i64, L),
+    red: u8,
+    luminance: [f32; 2],
+    observer: &mut O,
+) {
+    let block = block(index);
+    let register = format!("texture{index}.{}", channel_name(n));
+    let inputs = vec![
+        report::register(register.clone(), sampled),
+        plain(previous_name(index, 0), i64::from(red)),
+        float(name(index, "luminance.scale"), luminance[0]),
+        float(name(index, "luminance.offset"), luminance[1]),
+    ];
+    let part = name(index, &format!("luminance.{}", channel_name(n)));
+    observer.step(Step::given(&block, "TSH-8", part.clone(), v).per(4096).by("luminance", inputs));
+    let inputs = vec![Operand { per_one: 4096, ..plain(part, v) }];
+    observer.step(report::register_step(&block, "TSH-8", register, value).by("luminance_byte", inputs));
+}
+
+/// Where the coordinates of a dependent read on a level come from.
+pub(super) fn coordinates<O: Observer>(
+    place: &Dependent<'_>,
+    report: &Report<'_>,
+    level: &Level,
+    settled: [Settled; 2],
+    ideal: [f64; 2],
+    observer: &mut O,
+) {
+    let (unit, index) = (place.unit, place.unit.index);
+    let sides = unit.scale(level);
+    let vector = if let Target::Vector(vector) = place.target { Some((vector, vector_names(place))) } else { None };
+    let direction: Vec<Operand> =
+        vector.iter().flat_map(|(vector, names)| (0..3).map(|n| float(names[n].clone(), vector[n]))).collect();
+    if vector.is_some() {
+        let face = place.target.face();
+        let step = Step::given(&report.block(), "TEX-12", report.name("face"), face as i64);
+        observer.step(step.by("float_face", direction.clone()).note(Some(Named::name(face).to_string())));
+    }
+    for (axis, letter) in ["u", "v"].into_iter().enumerate() {
+        let size = plain("size", i64::from(sides[axis]));
+        let (rule, operation, inputs) = match place.target {
+            Target::Moved(moved) => {
+                let offset = moved.offsets(unit, level)[axis];
+                let offset_name = report.name(&format!("offset_{letter}"));
+                let [along_blue, along_green] = moved.entries()[axis];
+                let entries = [["m0", "m3"], ["m1", "m2"]][axis].map(|m| name(index, m));
+                for (entry, value) in entries.iter().zip([along_blue, along_green]) {
+                    observer.step(float_step(&report.block(), "TSH-7", entry.clone(), value, f64::from(value)));
+                }
+                let [blue, green] = moved.blue_green.map(i64::from);
+                let inputs = vec![
+                    float(entries[0].clone(), along_blue),
+                    float(entries[1].clone(), along_green),
+                    plain(previous_name(index, 2), blue),
+                    plain(previous_name(index, 1), green),
+                    size,
+                ];
+                let per_one = 256 << OFFSET_BITS;
+                let step = Step::given(&report.block(), "TSH-7", offset_name.clone(), offset).per(per_one);
+                observer.step(step.by("bump_offset", inputs));
+                let mut inputs =
+                    report.planes("INT-4", &format!("G_{letter}"), &moved.planes(unit, level)[axis], observer);
+                inputs.extend((0..3).map(|k| plain(format!("E{k}"), moved.at.e[k])));
+                inputs.push(plain("D", moved.at.d));
+                inputs.push(Operand { per_one, ..plain(offset_name, offset) });
+                inputs.push(plain("lowered", i64::from(settled[axis].lowered)));
+                ("TSH-7", "floor_plane_moved", inputs)
+            }
+            Target::Bytes(bytes, scale) => {
+                let channel = dependent_channels(place)[axis];
+                let operation = match scale {
+                    DependentScale::Over255 => "dependent_255",
+                    DependentScale::Over256 => "dependent_256",
+                };
+                ("TSH-6", operation, vec![plain(previous_name(index, channel), i64::from(bytes[axis])), size])
+            }
+            Target::Floats(floats) => {
+                let dot = float(name(index + axis - 1, "dot"), floats[axis]);
+                ("TSH-4", "floor_float", vec![dot, size])
+            }
+            Target::Vector(_) => {
+                let mut inputs = direction.clone();
+                inputs.push(plain(report.name("face"), place.target.face() as i64));
+                inputs.push(size);
+                ("TEX-12", ["floor_float_face_u", "floor_float_face_v"][axis], inputs)
+            }
+        };
+        report.coordinate(rule, letter, settled[axis], ideal[axis], (operation, inputs), observer);
+    }
+}
+
+/// Where the components of the vector that a unit samples with were reported.
+fn vector_names(place: &Dependent<'_>) -> [String; 3] {
+    use crate::state::ShaderOperation as Op;
+    let index = place.unit.index;
+    match place.unit.stage.operation {
+        Op::DotReflectSpecular | Op::DotReflectConstantEye { .. } => {
+            AXES.map(|axis| name(index, &format!("reflection.{axis}")))
+        }
+        _ => [1, 2, 3].map(|index| name(index, "dot")),
+    }
+}
+
+/// The channels that a dependent read takes as u and v.
+fn dependent_channels(place: &Dependent<'_>) -> [usize; 2] {
+    match place.unit.stage.operation {
+        crate::state::ShaderOperation::DependentAlphaRed => [3, 0],
+        _ => [1, 2],
+    }
+}
+
+/// TEX-11: u and v of the quad, as the same chain gives them there.
+pub(super) fn quad<O: Observer>(place: &Dependent<'_>, report: &Report<'_>, observer: &mut O) {
+    let Some(quad) = place.quad else { return };
+    for (n, uv) in quad.fixed.iter().enumerate() {
+        for (axis, letter) in ["u", "v"].into_iter().enumerate() {
+            report.quad_coordinate((n, letter), uv[axis], ("chain", Vec::new()), observer);
+        }
+    }
+}

@@ -1,0 +1,233 @@
+//! Random textures, palettes, texture units and texture shaders.
+
+use super::{Choices, CoordinateStyles, Given, TEXTURE_SHADERS};
+use ninebit::state::*;
+use std::sync::Arc;
+
+/// What the chip can sample as this kind of texture.
+fn formats(profile: Profile, kind: TextureKind) -> Vec<TextureFormat> {
+    let legal = |f: TextureFormat| match (profile, kind) {
+        (Profile::Nv10, TextureKind::Rectangle) => {
+            use TextureFormat::{A1R5G5B5, A8R8G8B8, I8, R5G6B5};
+            matches!(f, A1R5G5B5 | R5G6B5 | A8R8G8B8 | I8)
+        }
+        (Profile::Nv10, _) => !f.is_nv2a_only(),
+        (Profile::Nv2a, TextureKind::Rectangle) => !f.is_compressed() && f != TextureFormat::P8,
+        (Profile::Nv2a, _) => true,
+    };
+    TextureFormat::ALL.iter().copied().filter(|f| legal(*f)).collect()
+}
+
+/// 32 to 256 colours.
+pub(super) fn palette(c: &mut Choices<'_>, n: u32) -> Palette {
+    let (entries, seed) = (32 << c.below(4), c.word());
+    Palette { name: format!("palette{n}"), entries: (0..entries).map(|k| scrambled(seed, k)).collect() }
+}
+
+/// A word that has nothing to do with the next.
+fn scrambled(seed: u32, k: u32) -> u32 {
+    let x = (seed ^ k.wrapping_mul(0x9e37_79b9)).wrapping_mul(0x85eb_ca6b);
+    (x ^ x >> 15).wrapping_mul(0xc2b2_ae35) ^ x >> 13
+}
+
+/// A texture with its own texels.
+pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
+    let mut c = c.part(24);
+    let kind = c.pick(&[TextureKind::TwoDimensional, TextureKind::Cube, TextureKind::Rectangle]);
+    let format: TextureFormat = c.pick(&formats(profile, kind));
+    let side = |c: &mut Choices<'_>| match kind {
+        TextureKind::Rectangle => c.size(1, 24),
+        _ if c.once_in(8) => 64 >> c.below(2),
+        _ => 16 >> c.below(5),
+    };
+    let (mut width, height) = (side(&mut c), side(&mut c));
+    match (kind, profile) {
+        (TextureKind::Cube, _) => width = height,
+        // An even width.
+        (TextureKind::Rectangle, Profile::Nv10) => width += width & 1,
+        _ => {}
+    }
+    let most = if kind == TextureKind::Rectangle { 1 } else { u32::max(width, height).ilog2() + 1 };
+    let levels = if c.once_in(3) { c.size(1, most) } else { most };
+    let may = profile == Profile::Nv2a && kind == TextureKind::TwoDimensional && !format.is_compressed();
+    let border = may && c.once_in(4);
+    let mask = if format.is_compressed() { u32::MAX } else { u32::MAX >> (32 - 8 * format.bytes()) };
+    let faces = if kind == TextureKind::Cube { CUBE_FACES } else { 1 };
+    let (_, face_words) = Level::chain(format, width, height, levels, border);
+    // Few words of tape a texture: the rest follows from them.
+    let (even, seed, step) = (c.once_in(2), c.word(), c.word());
+    let word = |k: u32| if even { seed.wrapping_add(step.wrapping_mul(k)) } else { scrambled(seed, k) };
+    let words: Arc<[u32]> = (0..faces * face_words as u32).map(|k| word(k) & mask).collect();
+    let image = TextureImage::Texels(Texels { width, height, levels, border, words });
+    Texture { name: format!("texture{n}"), kind, format, image }
+}
+
+/// A render target as a texture.
+pub(super) fn view(c: &mut Choices<'_>, profile: Profile, n: usize, target: &Target) -> Option<Texture> {
+    let mut c = c.part(2);
+    let squares = target.width.is_power_of_two() && target.height.is_power_of_two();
+    let small = target.width.max(target.height) <= 48;
+    let even = profile == Profile::Nv2a || target.width % 2 == 0;
+    let kind = if squares && c.below(3) != 0 { TextureKind::TwoDimensional } else { TextureKind::Rectangle };
+    let fitting: Vec<TextureFormat> = formats(profile, kind)
+        .into_iter()
+        .filter(|f| f.bytes() == target.format.bytes() && !f.is_compressed() && *f != TextureFormat::P8)
+        .collect();
+    if !small || fitting.is_empty() || (kind == TextureKind::Rectangle && !even) {
+        return None;
+    }
+    let format = c.pick(&fitting);
+    Some(Texture { name: format!("view{n}"), kind, format, image: TextureImage::Target { target: n } })
+}
+
+type Units = ([Option<TextureUnit>; TEXTURE_UNITS], [ShaderStage; TEXTURE_UNITS]);
+
+/// The units of a draw that may sample these textures, and their texture shader.
+pub(super) fn units(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize], styles: &CoordinateStyles) -> Units {
+    let shader = TEXTURE_SHADERS && given.profile == Profile::Nv2a && c.once_in(2);
+    let operations = shader.then(|| operations(&mut c.part(48)));
+    let mut stages = [0, 1, 2, 3].map(|k| ShaderStage::conventional(k, false));
+    let bound = std::array::from_fn(|k| {
+        let mut c = c.part(28);
+        let sets = given.profile.texture_units();
+        let (any_set, fitting_set) = (c.below(sets as u32) as usize, c.below(3) != 2);
+        // Mostly a set that suits what is sampled.
+        let set_for = |suits: &dyn Fn(u32) -> bool| {
+            let suiting = (0..sets).map(|n| (any_set + n) % sets).find(|n| fitting_set && suits(styles[*n]));
+            suiting.unwrap_or(any_set)
+        };
+        let set_of = |unit: &Option<TextureUnit>| {
+            set_for(&|style| match unit.map(|unit| given.textures[unit.texture].kind) {
+                Some(TextureKind::Cube) => matches!(style, 12..=14),
+                Some(TextureKind::Rectangle) => matches!(style, 2 | 8 | 9),
+                _ => style < 12,
+            })
+        };
+        let previous = c.below(k.max(1) as u32) as usize;
+        let mapping = c.any();
+        if k >= given.profile.texture_units() {
+            return None;
+        }
+        let Some(operation) = operations.map(|o| o[k]) else {
+            let unit = (c.below(3) != 0).then(|| unit(&mut c, given, usable));
+            stages[k] = ShaderStage { coordinate_set: set_of(&unit), ..ShaderStage::conventional(k, unit.is_some()) };
+            return unit;
+        };
+        let of_kind = |cube: bool| -> Vec<usize> {
+            usable.iter().copied().filter(|t| (given.textures[*t].kind == TextureKind::Cube) == cube).collect()
+        };
+        let fitting = match operation {
+            ShaderOperation::Sample => usable.to_vec(),
+            ShaderOperation::DotProductCube
+            | ShaderOperation::DotReflectDiffuse
+            | ShaderOperation::DotReflectSpecular
+            | ShaderOperation::DotReflectConstantEye { .. } => of_kind(true),
+            _ if operation.samples() => of_kind(false),
+            _ => Vec::new(),
+        };
+        let unit = (!fitting.is_empty()).then(|| unit(&mut c, given, &fitting));
+        let coordinate_set = match operation {
+            ShaderOperation::Sample => set_of(&unit),
+            _ if operation.is_dot() => set_for(&|style| style >= 12),
+            _ => any_set,
+        };
+        stages[k] = ShaderStage { operation, coordinate_set, previous, mapping };
+        unit
+    });
+    repair(&mut stages, &bound);
+    (bound, stages)
+}
+
+/// One operation for each unit, in legal order.
+fn operations(c: &mut Choices<'_>) -> [ShaderOperation; TEXTURE_UNITS] {
+    use ShaderOperation::*;
+    let first = free(c, true);
+    let eye = DotReflectConstantEye { eye: std::array::from_fn(|_| c.between(-1.0, 1.0)) };
+    let last = c.pick(&[DotProductCube, DotReflectSpecular, eye]);
+    match c.below(6) {
+        0 | 1 => [first, free(c, false), free(c, false), free(c, false)],
+        2 => [first, DotProduct, DotProduct2D, free(c, false)],
+        3 => [first, free(c, false), DotProduct, DotProduct2D],
+        4 => [first, DotProduct, DotReflectDiffuse, if last == DotProductCube { eye } else { last }],
+        _ => [first, DotProduct, DotProduct, last],
+    }
+}
+
+/// An operation that needs no dot product before it; the first unit has no unit before it.
+fn free(c: &mut Choices<'_>, first: bool) -> ShaderOperation {
+    use ShaderOperation::*;
+    let mut c = c.part(12);
+    match c.below(if first { 8 } else { 13 }) {
+        0..=4 => Sample,
+        5 => PassThrough,
+        6 => None,
+        7 => CullFragment { drops_not_negative: std::array::from_fn(|_| c.once_in(4)) },
+        8 => DependentAlphaRed,
+        9 => DependentGreenBlue,
+        _ => {
+            let element = |c: &mut Choices<'_>| {
+                if c.once_in(2) { c.between(-1.0, 1.0) } else { c.pick(&[0.0, 1.0, 0.25, -0.5, 0.1, 3.0]) }
+            };
+            let matrix = std::array::from_fn(|_| element(&mut c));
+            let luminance = c.once_in(2).then(|| [element(&mut c), element(&mut c)]);
+            BumpEnvironment { matrix, luminance }
+        }
+    }
+}
+
+/// Units without a fitting texture sample nothing, and what rests on a unit that does not fit it goes too.
+fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit>; TEXTURE_UNITS]) {
+    use ShaderOperation::{BumpEnvironment, CullFragment, DotReflectDiffuse, None, Sample};
+    let lacks = |k: usize, stages: &[ShaderStage; 4]| stages[k].operation.samples() && bound[k].is_none();
+    if (0..4).any(|k| stages[k].operation.is_dot() && lacks(k, stages)) {
+        for stage in stages.iter_mut().filter(|s| s.operation.is_dot()) {
+            stage.operation = None;
+        }
+    }
+    for k in 0..4 {
+        if lacks(k, stages) {
+            stages[k].operation = None;
+        }
+    }
+    // Unit 2 samples with the dot product of unit 3.
+    if stages[2].operation == DotReflectDiffuse {
+        stages[3].previous = stages[3].previous.min(1);
+    }
+    // At unit 1 nothing that fetches no colour may come before a bump environment.
+    if matches!(stages[1].operation, BumpEnvironment { .. })
+        && matches!(stages[0].operation, None | CullFragment { .. })
+    {
+        stages[1].operation = Sample;
+    }
+}
+
+fn unit(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize]) -> TextureUnit {
+    let nv2a = given.profile == Profile::Nv2a;
+    let texture = c.pick(usable);
+    let modes: &[AddressMode] = match (given.profile, given.textures[texture].kind) {
+        (Profile::Nv2a, _) => AddressMode::ALL,
+        (Profile::Nv10, TextureKind::Rectangle) => &[AddressMode::ClampToEdge],
+        (Profile::Nv10, _) => &[AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge, AddressMode::Clamp],
+    };
+    let palette = c.below(given.palettes as u32) as usize;
+    let limited = c.once_in(4);
+    let (min_lod, reach) = (c.below(800) as i32, c.below(800) as i32);
+    TextureUnit {
+        palette: (given.textures[texture].format == TextureFormat::P8).then_some(palette),
+        address_s: c.pick(modes),
+        address_t: c.pick(modes),
+        mag_filter: c.any(),
+        min_filter: c.any(),
+        mip_filter: c.any(),
+        lod_bias: match c.below(6) {
+            0 | 1 => 0,
+            2 => c.pick(&[256, -256, 128, -128, 4095, -4096]),
+            _ => c.size(0, 1600) as i32 - 600,
+        },
+        min_lod: if limited { min_lod } else { 0 },
+        max_lod: if limited { min_lod + reach } else { 4095 },
+        border_color: if given.textures[texture].format == TextureFormat::Y16 { [255; 4] } else { c.bytes() },
+        signed: std::array::from_fn(|_| nv2a && c.once_in(5)),
+        ..TextureUnit::new(texture)
+    }
+}

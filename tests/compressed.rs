@@ -1,0 +1,68 @@
+//! Blocks of DXT1, DXT3 and DXT5 against a decoder that others wrote (`bcdec_rs`), and where and why the two differ.
+//!
+//! That decoder's colours are the bytes nearest to the real numbers. The chips' are not: end points are widened by repeating bits (3 of 31 is 24,
+//! not 25), thirds are taken of bytes already rounded (TEX-2), nv2a dithers DXT1 (TEX-3), nv10 mixes it at five and six bits (TEX-4). Which
+//! texel gets which mix, and which is transparent, must be the same.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use ninebit::state::TextureFormat;
+use ninebit::texture::compressed::decode;
+
+/// SplitMix64: the same blocks in every run.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ z >> 31
+    }
+}
+
+/// Lowest and highest of (ours - theirs) in each channel.
+fn differences(format: TextureFormat, dithered: bool, theirs: impl Fn(&[u8], &mut [u8])) -> [(i32, i32); 4] {
+    let mut random = Random(1);
+    let mut found = [(0, 0); 4];
+    for _ in 0..200_000 {
+        let bytes: Vec<u8> = (0..format.bytes() / 8).flat_map(|_| random.next().to_le_bytes()).collect();
+        let words: Vec<u32> = bytes.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
+        let mut decoded = [0; 64];
+        theirs(&bytes, &mut decoded);
+        for (n, pixel) in decoded.as_chunks::<4>().0.iter().enumerate() {
+            let ours = decode(format, dithered, &words, n as u32 % 4, n as u32 / 4).bytes;
+            for channel in 0..4 {
+                let difference = i32::from(ours[channel]) - i32::from(pixel[channel]);
+                let (low, high) = &mut found[channel];
+                (*low, *high) = (difference.min(*low), difference.max(*high));
+            }
+        }
+    }
+    found
+}
+
+/// One step: where bits are repeated, and where a third of rounded bytes falls on the other side.
+#[test]
+fn dxt3_and_dxt5_are_within_a_step() {
+    let dxt3 = differences(TextureFormat::Dxt3, true, |block, out| bcdec_rs::bc2(block, out, 16));
+    assert_eq!(dxt3, [(-1, 1), (-1, 1), (-1, 1), (0, 0)]);
+    let dxt5 = differences(TextureFormat::Dxt5, true, |block, out| bcdec_rs::bc3(block, out, 16));
+    // The other decoder adds 1 before it divides by 7 or 5, which rounds up only from six sevenths or four fifths of a step on; the
+    // chip rounds to the nearest.
+    assert_eq!(dxt5, [(-1, 1), (-1, 1), (-1, 1), (0, 1)]);
+}
+
+/// Dither of three bits moves red and blue, of two bits green; dark colours fall to 0.
+#[test]
+fn dxt1_of_nv2a_is_dithered() {
+    let found = differences(TextureFormat::Dxt1, true, |block, out| bcdec_rs::bc1(block, out, 16));
+    assert_eq!(found, [(-14, 5), (-6, 3), (-14, 5), (0, 0)]);
+}
+
+/// A third or half of five bits is up to half a 31st off.
+#[test]
+fn dxt1_of_nv10_is_mixed_at_its_own_width() {
+    let found = differences(TextureFormat::Dxt1, false, |block, out| bcdec_rs::bc1(block, out, 16));
+    assert_eq!(found, [(-3, 5), (-2, 3), (-3, 5), (0, 0)]);
+}

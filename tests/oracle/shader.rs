@@ -1,0 +1,209 @@
+//! The texture units in their order, each with what it makes of the ones before: TEX-16, TSH-1 to TSH-10.
+
+use super::coordinate::{Place, lod};
+use super::raster::{Sample, Setup};
+use super::real::{factor_byte, floor_div, floor_sum, nearest_f32, shift, split};
+use super::tally::{count, count_named};
+use super::texel::{Color, signed};
+use super::texture::Image;
+use ninebit::state::{DependentScale, DotMapping, Draw, Policies, ShaderOperation};
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+/// The units of one draw on one triangle.
+pub struct Units<'a> {
+    draw: &'a Draw,
+    images: &'a [Option<Image>],
+    setup: &'a Setup,
+    policies: &'a Policies,
+    /// One lod a unit and quad.
+    lods: RefCell<HashMap<(usize, i128, i128), i128>>,
+}
+
+impl<'a> Units<'a> {
+    pub fn new(draw: &'a Draw, images: &'a [Option<Image>], setup: &'a Setup, policies: &'a Policies) -> Units<'a> {
+        Units { draw, images, setup, policies, lods: RefCell::default() }
+    }
+
+    /// The four texture registers of a covered pixel; none where a unit drops it.
+    pub fn registers(&self, i: i128, j: i128, sample: &Sample) -> Option<[[i128; 4]; 4]> {
+        let kept = (0..4).all(|k| match self.draw.texture_shader[k].operation {
+            ShaderOperation::CullFragment { drops_not_negative } => !self.culled(k, sample, drops_not_negative),
+            _ => true,
+        });
+        count("fragment", if kept { "kept" } else { "culled" });
+        kept.then(|| [0, 1, 2, 3].map(|k| self.unit(k, i, j, sample).register))
+    }
+
+    /// TSH-10.
+    fn culled(&self, k: usize, sample: &Sample, drops_not_negative: [bool; 4]) -> bool {
+        let set = self.draw.texture_shader[k].coordinate_set;
+        (0..4).any(|c| {
+            let (n, _) = self.setup.attribute(sample, |v| v.texture_coordinates[set][c]);
+            (n >= 0) == drops_not_negative[c]
+        })
+    }
+
+    /// What a unit fetches or makes at a pixel.
+    fn unit(&self, k: usize, i: i128, j: i128, sample: &Sample) -> Color {
+        let stage = &self.draw.texture_shader[k];
+        count("operation", stage.operation.name());
+        match stage.operation {
+            ShaderOperation::None | ShaderOperation::CullFragment { .. } => Color::plain([0, 0, 0, 255]),
+            ShaderOperation::DotProduct => Color::plain([0; 4]),
+            ShaderOperation::PassThrough => Color::plain([0, 1, 2, 3].map(|c| {
+                // TSH-9
+                let (n, e) = self.setup.attribute(sample, |v| v.texture_coordinates[stage.coordinate_set][c]);
+                factor_byte(floor_div(shift(n, e + 12), sample.d).0.clamp(0, 4096))
+            })),
+            _ => {
+                // TEX-16
+                let Some(image) = &self.images[k] else { return Color::plain([0, 0, 0, 255]) };
+                let Some(place) = self.place(k, i, j, sample) else { return Color::plain([0, 0, 0, 255]) };
+                let lod = image.limited_lod(self.lod(k, image, i, j));
+                let color = image.sample(self.setup, sample, &place, lod);
+                match stage.operation {
+                    ShaderOperation::BumpEnvironment { luminance: Some(luminance), .. } => {
+                        self.luminance(color, self.previous(k, i, j, sample)[0], luminance)
+                    }
+                    _ => color,
+                }
+            }
+        }
+    }
+
+    /// The bytes that a unit reads of an earlier one.
+    fn previous(&self, k: usize, i: i128, j: i128, sample: &Sample) -> [i128; 4] {
+        self.unit(self.draw.texture_shader[k].previous, i, j, sample).bytes
+    }
+
+    /// TSH-8: the luminance multiplies R, G and B as the register holds them (a signed channel doubled); below 0 counts as 0.
+    fn luminance(&self, color: Color, red: i128, [scale, offset]: [f32; 2]) -> Color {
+        let ((ms, es), (mo, eo)) = (split(scale), split(offset));
+        // 4096 (c / 255) (red / 255 scale + offset) = c (red scale + 255 offset) 4096 / 65025.
+        let lit = |c: i128| {
+            let c = c.max(0);
+            let fine = floor_sum(&[(c * red * ms, es + 12 + 30), (255 * c * mo, eo + 12 + 30)]);
+            let v = floor_div(fine, 65025 << 30).0.max(0);
+            factor_byte(v).min(255)
+        };
+        let [r, g, b, _] = color.register;
+        let bytes = [lit(r), lit(g), lit(b), color.bytes[3]];
+        Color { bytes, register: [bytes[0], bytes[1], bytes[2], color.register[3]] }
+    }
+
+    /// Where a unit samples; none where that is not defined for a pixel outside the triangle.
+    fn place(&self, k: usize, i: i128, j: i128, sample: &Sample) -> Option<Place> {
+        let stage = &self.draw.texture_shader[k];
+        if stage.operation.reads_previous() && sample.d <= 0 {
+            return None;
+        }
+        let set = stage.coordinate_set;
+        let dot = |unit: usize| self.dot(unit, i, j, sample);
+        Some(match stage.operation {
+            ShaderOperation::BumpEnvironment { matrix, .. } => {
+                // TSH-7: both bytes are two's complement whatever the flags; the sums are in single precision.
+                let [_, g, b, _] = self.previous(k, i, j, sample).map(|v| signed(true, v, 8) as f32);
+                let [m0, m1, m2, m3] = matrix;
+                Place::Moved(set, [m0 * b + m3 * g, m1 * b + m2 * g].map(split))
+            }
+            ShaderOperation::DependentAlphaRed => {
+                let [r, _, _, a] = self.previous(k, i, j, sample);
+                Place::Bytes([a, r], self.whole())
+            }
+            ShaderOperation::DependentGreenBlue => {
+                let [_, g, b, _] = self.previous(k, i, j, sample);
+                Place::Bytes([g, b], self.whole())
+            }
+            ShaderOperation::DotProduct2D => Place::Floats([dot(k - 1), dot(k)]),
+            ShaderOperation::DotProductCube => Place::Vector([dot(k - 2), dot(k - 1), dot(k)]),
+            ShaderOperation::DotReflectDiffuse => Place::Vector([dot(k - 1), dot(k), dot(k + 1)]),
+            ShaderOperation::DotReflectSpecular => {
+                let eye = [k - 2, k - 1, k].map(|unit| {
+                    let set = self.draw.texture_shader[unit].coordinate_set;
+                    self.float(sample, set, 3)
+                });
+                Place::Vector(reflect([dot(k - 2), dot(k - 1), dot(k)], eye))
+            }
+            ShaderOperation::DotReflectConstantEye { eye } => {
+                Place::Vector(reflect([dot(k - 2), dot(k - 1), dot(k)], eye))
+            }
+            _ if self.images[k].as_ref().is_some_and(Image::is_cube) => Place::Direction(set),
+            _ => Place::Set(set),
+        })
+    }
+
+    /// TSH-6: what a byte counts as 1.
+    fn whole(&self) -> i128 {
+        match self.policies.dependent_scale {
+            DependentScale::Over255 => 255,
+            DependentScale::Over256 => 256,
+        }
+    }
+
+    /// TSH-4: an interpolated coordinate, rounded to f32.
+    fn float(&self, sample: &Sample, set: usize, c: usize) -> f32 {
+        let (n, e) = self.setup.attribute(sample, |v| v.texture_coordinates[set][c]);
+        nearest_f32(n, sample.d, e)
+    }
+
+    /// TSH-1 to TSH-4: a unit's dot product.
+    fn dot(&self, k: usize, i: i128, j: i128, sample: &Sample) -> f32 {
+        let stage = &self.draw.texture_shader[k];
+        count_named(stage.mapping);
+        let v = mapped(stage.mapping, self.previous(k, i, j, sample));
+        let [s, t, r] = [0, 1, 2].map(|c| self.float(sample, stage.coordinate_set, c));
+        v[0] * s + v[1] * t + v[2] * r
+    }
+
+    /// TEX-11: the lod of the quad that a pixel lies in.
+    fn lod(&self, k: usize, image: &Image, i: i128, j: i128) -> i128 {
+        let key = (k, i >> 1, j >> 1);
+        if let Some(lod) = self.lods.borrow().get(&key) {
+            return *lod;
+        }
+        let (left, top) = (i & !1, j & !1);
+        let mut face = None;
+        let corners = [(left, top), (left + 1, top), (left, top + 1)].map(|(i, j)| {
+            let sample = self.setup.sample(i, j);
+            let place = self.place(k, i, j, &sample)?;
+            let face = *face.get_or_insert_with(|| place.face(self.setup, &sample));
+            place.fine(self.setup, &sample, image.scale(0), face)
+        });
+        let lod = lod(corners);
+        count("lod", if lod == -32768 { "least" } else { "measured" });
+        self.lods.borrow_mut().insert(key, lod);
+        lod
+    }
+}
+
+/// TSH-1 to TSH-3.
+fn mapped(mapping: DotMapping, bytes: [i128; 4]) -> [f32; 3] {
+    let [r, g, b, a] = bytes;
+    let each = |f: &dyn Fn(i128) -> f32| [f(r), f(g), f(b)];
+    match mapping {
+        DotMapping::ZeroToOne => each(&|v| nearest_f32(v, 255, 0)),
+        DotMapping::MinusOneToOneD3d => each(&|v| nearest_f32(v - 128, 127, 0)),
+        DotMapping::MinusOneToOneGl => each(&|v| nearest_f32(2 * signed(true, v, 8) + 1, 255, 0)),
+        DotMapping::MinusOneToOne => each(&|v| nearest_f32(signed(true, v, 8), 127, 0)),
+        DotMapping::Hilo1 => {
+            let [high, low] = [a << 8 | r, g << 8 | b].map(|v| nearest_f32(v, 65535, 0));
+            [high, low, 1.0]
+        }
+        DotMapping::HiloHemisphere => {
+            let [high, low] = [a << 8 | r, g << 8 | b].map(|v| signed(true, v, 16));
+            let whole = 32767 * 32767;
+            let left = (whole - high * high - low * low).max(0);
+            // floor(2^24 sqrt(left / whole)) is the root of the floor.
+            let third = (((left << 48) / whole) as u128).isqrt() as i128;
+            [nearest_f32(high, 32767, 0), nearest_f32(low, 32767, 0), nearest_f32(third, 1, -24)]
+        }
+    }
+}
+
+/// TSH-5: 2n(n.e)/(n.n) - e, the quotient first.
+fn reflect(n: [f32; 3], e: [f32; 3]) -> [f32; 3] {
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let scale = 2.0 * dot(n, e) / dot(n, n);
+    [0, 1, 2].map(|c| scale * n[c] - e[c])
+}

@@ -1,0 +1,88 @@
+//! What a stored texel is: TEX-1, TEX-18 on the way into the filter and out of it.
+
+use ninebit::state::TextureFormat;
+
+/// Formats that are filtered as two halves of 16 bits.
+pub fn has_halves(format: TextureFormat) -> bool {
+    matches!(format, TextureFormat::R16B16 | TextureFormat::Y16)
+}
+
+/// TEX-1: R, G, B, A bytes of a word of an uncompressed format.
+pub fn bytes(format: TextureFormat, word: u32) -> [i128; 4] {
+    // `count` bits from bit `at` on, replicated to 8.
+    let field = |at: u32, count: u32| {
+        let v = i128::from(word >> at & ((1 << count) - 1));
+        let mut wide = 0;
+        let mut have = 0;
+        while have < 8 {
+            wide = wide << count | v;
+            have += count;
+        }
+        wide >> (have - 8)
+    };
+    let byte = |n: u32| i128::from(word >> (8 * n) & 255);
+    match format {
+        TextureFormat::A8R8G8B8 => [byte(2), byte(1), byte(0), byte(3)],
+        TextureFormat::X8R8G8B8 => [byte(2), byte(1), byte(0), 255],
+        TextureFormat::A8B8G8R8 => [byte(0), byte(1), byte(2), byte(3)],
+        TextureFormat::B8G8R8A8 => [byte(1), byte(2), byte(3), byte(0)],
+        TextureFormat::R8G8B8A8 => [byte(3), byte(2), byte(1), byte(0)],
+        TextureFormat::R5G6B5 => [field(11, 5), field(5, 6), field(0, 5), 255],
+        TextureFormat::R6G5B5 => [field(10, 6), field(5, 5), field(0, 5), 255],
+        TextureFormat::X1R5G5B5 => [field(10, 5), field(5, 5), field(0, 5), 255],
+        TextureFormat::A1R5G5B5 => [field(10, 5), field(5, 5), field(0, 5), field(15, 1)],
+        TextureFormat::A4R4G4B4 => [field(8, 4), field(4, 4), field(0, 4), field(12, 4)],
+        TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
+        TextureFormat::I8 => [byte(0); 4],
+        TextureFormat::A8 => [255, 255, 255, byte(0)],
+        TextureFormat::A8L8 => [byte(0), byte(0), byte(0), byte(1)],
+        TextureFormat::G8B8 => [byte(0), byte(1), byte(0), byte(1)],
+        TextureFormat::R8B8 => [byte(1), byte(0), byte(0), byte(1)],
+        other => unreachable!("{other:?} is looked up, decoded or read in halves"),
+    }
+}
+
+/// TEX-1: the two halves of a word that is filtered at 16 bits. Y16 has 255 in both bytes of the upper one.
+pub fn halves(format: TextureFormat, word: u32) -> [i128; 2] {
+    let low = i128::from(word & 0xffff);
+    if format == TextureFormat::Y16 { [0xffff, low] } else { [i128::from(word >> 16), low] }
+}
+
+/// Two's complement of `bits` bits, where a flag says so.
+pub fn signed(flag: bool, v: i128, bits: u32) -> i128 {
+    if flag && v >> (bits - 1) & 1 == 1 { v - (1 << bits) } else { v }
+}
+
+/// A sampled colour: its bytes as later units read them, and the register.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Color {
+    /// R, G, B, A, 0..=255.
+    pub bytes: [i128; 4],
+    /// R, G, B, A in 1/255.
+    pub register: [i128; 4],
+}
+
+impl Color {
+    pub fn plain(bytes: [i128; 4]) -> Color {
+        Color { bytes, register: bytes }
+    }
+
+    /// TEX-18 of filtered channels.
+    pub fn of_channels(v: [i128; 4], flags: [bool; 4]) -> Color {
+        let register = std::array::from_fn(|c| if flags[c] { 2 * v[c] } else { v[c] });
+        Color { bytes: v.map(|v| v & 255), register }
+    }
+
+    /// TEX-18 of filtered halves: only the upper byte of a signed half is signed.
+    pub fn of_halves([high, low]: [i128; 2], [high_signed, low_signed]: [bool; 2]) -> Color {
+        let bytes = [high & 255, low >> 8 & 255, low & 255, high >> 8 & 255];
+        let mut register = bytes;
+        if high_signed {
+            register[3] = 2 * signed(true, bytes[3], 8);
+        }
+        if low_signed {
+            register[1] = 2 * signed(true, bytes[1], 8);
+        }
+        Color { bytes, register }
+    }
+}

@@ -1,0 +1,214 @@
+//! Captured frames of a real NV2A whose textures and geometry are known, drawn from the scenes of `vectors/scenes/silicon`.
+//!
+//! The captures are not part of the repository; a scene's expectation holds the digest of what is compared of one. Nor are some
+//! images that the captured programs load: scenes that need them are drawn where `NINEBIT_CAPTURES` names a folder that has
+//! `frames/SUITE/NAME.png` and `assets/NAME`. Every scene is compared with its capture itself there.
+//!
+//! `BLESS=1` writes generated scenes and textures anew; with `NINEBIT_CAPTURES` also masks and expectations, from the captures.
+#![allow(
+    clippy::float_arithmetic,
+    clippy::unwrap_used,
+    missing_docs,
+    unreachable_pub,
+    reason = "a test that computes what the captured programs computed"
+)]
+
+mod cases;
+mod geometry;
+#[path = "../common/scene_files.rs"]
+mod scene_files;
+mod scenes;
+mod textures;
+
+use cases::{CASES, Case};
+use ninebit::engine::{RenderOptions, render, trace};
+use ninebit::expectation::{Expectation, masked_digest};
+use ninebit::frame::Surface;
+use ninebit::limits::Limits;
+use ninebit::output::{Compression, encode_png, write_file};
+use ninebit::plan::Plan;
+use ninebit::report::trace_text;
+use ninebit::scene;
+use ninebit::scene::image::{ImageLimits, load};
+use std::path::{Path, PathBuf};
+use textures::Picture;
+
+/// Overlaid text is white with alpha 0.
+const TEXT: [u8; 4] = [255, 255, 255, 0];
+
+/// Differing pixels that are listed.
+const LISTED: usize = 20;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/silicon")
+}
+
+fn set(name: &str) -> bool {
+    std::env::var_os(name).is_some_and(|value| !value.is_empty() && value != "0")
+}
+
+/// Files are to be written anew.
+fn bless() -> bool {
+    assert!(!(set("BLESS") && set("CI")), "nothing is rewritten in continuous integration");
+    set("BLESS")
+}
+
+/// The folder of captures, if there is one.
+fn captures() -> Option<PathBuf> {
+    set("NINEBIT_CAPTURES").then(|| PathBuf::from(std::env::var_os("NINEBIT_CAPTURES").unwrap()))
+}
+
+/// A scene as it was drawn.
+struct Drawn {
+    plan: Plan,
+    surface: Surface,
+}
+
+/// Draws a scene; `None` if it needs images that are not here.
+fn draw(case: &Case) -> Option<Drawn> {
+    let file = folder().join(case.name).with_extension("ron");
+    let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    let place;
+    let file = if scene_files::needs_captured(&text) {
+        place = tempfile::tempdir().unwrap();
+        let assets = captures()?.join("assets");
+        copy(&folder().join("textures"), &place.path().join("textures"));
+        copy(&assets, &place.path().join(scene_files::CAPTURED));
+        let copied = place.path().join("scene.ron");
+        std::fs::write(&copied, text).unwrap();
+        copied
+    } else {
+        file
+    };
+    let loaded = scene::load(&file, &Limits::default()).unwrap_or_else(|error| panic!("{}", error.render(false)));
+    assert!(loaded.warnings.is_empty(), "{}: a warning", case.name);
+    let surface = render(&loaded.plan, &RenderOptions::default()).surfaces.remove(0);
+    Some(Drawn { plan: loaded.plan, surface })
+}
+
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap_or_else(|error| panic!("{}: {error}", from.display())) {
+        let path = entry.unwrap().path();
+        if path.is_file() {
+            std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
+        }
+    }
+}
+
+/// Compares a picture with the capture, pixel by pixel; what is wrong, with the trace of the first difference.
+fn against_capture(case: &Case, drawn: &Drawn, captured: &[[u8; 4]], compared: &[bool]) -> Option<String> {
+    let ours = drawn.surface.rgba8();
+    let different: Vec<usize> = (0..ours.len()).filter(|n| compared[*n] && ours[*n] != captured[*n]).collect();
+    let total = compared.iter().filter(|compared| **compared).count();
+    println!("{:<28}{total:>8} pixels compared{:>8} differ", case.name, different.len());
+    let width = drawn.surface.width as usize;
+    let first = *different.first()?;
+    let mut message = format!("{}: {} of {total} pixels differ\n", case.name, different.len());
+    for n in different.iter().take(LISTED) {
+        message += &format!("  {},{}: captured {:?}, ours {:?}\n", n % width, n / width, captured[*n], ours[*n]);
+    }
+    let trace = trace(&drawn.plan, 0, ((first % width) as u32, (first / width) as u32), None).unwrap();
+    Some(message + &trace_text(&drawn.plan, &trace))
+}
+
+/// A case's scene against its expectation and, if it is there, its capture.
+fn check(case: &Case) -> Result<(), String> {
+    let Some(drawn) = draw(case) else {
+        println!("{:<28}not drawn: its images are not here; NINEBIT_CAPTURES names their folder", case.name);
+        return Ok(());
+    };
+    let path = folder().join(case.name).with_extension("expect.ron");
+    let mut wrong = None;
+    if let Some(captures) = captures() {
+        let file = captures.join("frames").join(case.capture);
+        let mut captured = load(&file, &ImageLimits::default()).unwrap_or_else(|error| panic!("{error}"));
+        let (width, height) = (captured.width, captured.height);
+        assert_eq!([width, height], [drawn.surface.width, drawn.surface.height], "{}", case.name);
+        let inside = |n: u32| (case.region)(n % width, n / width, &drawn.surface);
+        let compared: Vec<bool> =
+            (0..width * height).map(|n| inside(n) && captured.pixels[n as usize] != TEXT).collect();
+        let pixels = compared.iter().filter(|compared| **compared).count() as u64;
+        wrong = against_capture(case, &drawn, &captured.pixels, &compared);
+        assert_eq!(pixels, case.pixels, "{}: pixels compared", case.name);
+        let expectation = Expectation {
+            sha256: masked_digest(width, height, &mut captured.pixels, &compared),
+            capture: Some(case.capture.to_string()),
+            pixels: Some(pixels),
+            mask: Some(format!("masks/{}.png", case.name)),
+            ..Expectation::of("frame", &drawn.surface)
+        };
+        if bless() {
+            let mask: Vec<[u8; 4]> =
+                compared.iter().map(|compared| if *compared { [255; 4] } else { [0, 0, 0, 255] }).collect();
+            let png = encode_png(width, height, &mask, Compression::Small).unwrap();
+            write_file(&folder().join(format!("masks/{}.png", case.name)), &png).unwrap();
+            write_file(&path, expectation.to_text().as_bytes()).unwrap();
+        }
+        let text = std::fs::read_to_string(&path).unwrap_or_default();
+        assert!(text == expectation.to_text(), "{} is not what the capture gives", path.display());
+    }
+    if let Some(message) = wrong {
+        return Err(message);
+    }
+    let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
+    let expectation = Expectation::parse(&text).map_err(|error| error.to_string())?;
+    assert_eq!(expectation.capture.as_deref(), Some(case.capture), "{}", case.name);
+    assert_eq!(expectation.pixels, Some(case.pixels), "{}", case.name);
+    match expectation.compare(&drawn.surface, &folder()).map_err(|error| format!("{}: {error}", case.name))? {
+        None => Ok(()),
+        Some(mismatch) => Err(format!("{}: {mismatch}; set NINEBIT_CAPTURES to see where", case.name)),
+    }
+}
+
+#[test]
+fn every_scene_shows_what_was_captured() {
+    if bless() {
+        write_generated();
+    }
+    let only = std::env::var("NINEBIT_CASE").unwrap_or_default();
+    let wrong: Vec<String> =
+        CASES.iter().filter(|case| case.name.contains(&only)).filter_map(|case| check(case).err()).collect();
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Writes everything that formulas give.
+fn write_generated() {
+    for case in CASES {
+        if let Some(scene) = case.scene {
+            write_file(&folder().join(case.name).with_extension("ron"), scene().as_bytes()).unwrap();
+        }
+    }
+    for (path, picture) in pictures() {
+        let png = encode_png(picture.width, picture.height, &picture.pixels, Compression::Small).unwrap();
+        write_file(&path, &png).unwrap();
+    }
+    write_file(&folder().join(INDICES), &textures::indices()).unwrap();
+}
+
+/// Texels of T3.
+const INDICES: &str = "textures/indices-64.bin";
+
+fn pictures() -> impl Iterator<Item = (PathBuf, Picture)> {
+    let path = |name: String| folder().join("textures").join(name).with_extension("png");
+    textures::pictures().into_iter().map(move |(name, picture)| (path(name), picture))
+}
+
+#[test]
+fn generated_scenes_are_what_their_formulas_give() {
+    for case in CASES {
+        let Some(scene) = case.scene else { continue };
+        let path = folder().join(case.name).with_extension("ron");
+        assert!(std::fs::read_to_string(&path).unwrap() == scene(), "{}: BLESS=1 writes it", path.display());
+    }
+}
+
+#[test]
+fn stored_textures_are_what_their_formulas_give() {
+    for (path, picture) in pictures() {
+        let stored = load(&path, &ImageLimits::default()).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!([stored.width, stored.height], [picture.width, picture.height], "{}", path.display());
+        assert!(stored.pixels == picture.pixels, "{}: BLESS=1 writes it", path.display());
+    }
+    assert!(std::fs::read(folder().join(INDICES)).unwrap() == textures::indices(), "{INDICES}: BLESS=1 writes it");
+}
