@@ -69,7 +69,7 @@ fn from_565(color: u16) -> [u8; 4] {
 }
 
 fn explicit_alpha(texels: &[[u8; 4]; 16]) -> u64 {
-    (0..16).map(|n| (u64::from(texels[n][3]) + 8) / 17 << (4 * n)).sum()
+    (0..16).map(|n| ((u64::from(texels[n][3]) + 8) / 17) << (4 * n)).sum()
 }
 
 fn interpolated_alpha(texels: &[[u8; 4]; 16]) -> u64 {
@@ -78,7 +78,7 @@ fn interpolated_alpha(texels: &[[u8; 4]; 16]) -> u64 {
     let mut bits = high | low << 8;
     // Eight steps from high to low; index 0 and 1 are the ends, 2 to 7 go down.
     for (n, alpha) in alphas.into_iter().enumerate().filter(|_| high > low) {
-        let down = (2 * 7 * (high - alpha) / (high - low) + 1) / 2;
+        let down = (7 * (high - alpha) + (high - low) / 2) / (high - low);
         let index = [0, 2, 3, 4, 5, 6, 7, 1][down as usize];
         bits |= index << (16 + 3 * n);
     }
