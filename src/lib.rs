@@ -107,3 +107,4 @@ pub mod scene;
 pub mod state;
 pub mod texture;
 pub mod trace;
+pub mod vertex;

@@ -303,7 +303,7 @@ impl<L: Lane> Chain<'_, L> {
         let mut real = RealColor::default();
         if Self::wants_real::<O>() {
             let values = register.map(|lane| lane.observe().1.unwrap_or(0.0));
-            let wide = sampled.filter(|unit| unit.is_wide()).map(|unit| unit.format == TextureFormat::R16B16);
+            let wide = sampled.is_some_and(|unit| unit.is_wide());
             real = RealColor::of_registers(values, doubled, wide);
         }
         Color { unit, bytes, held: held.map(i64::from), doubled, real }
@@ -521,9 +521,8 @@ impl<L: Lane> State<L> {
 /// Whether the register holds twice the two's complement byte of a channel (TEX-18).
 fn holds_double(unit: &PlannedUnit, channel: usize) -> bool {
     match (unit.format, channel) {
-        (TextureFormat::R16B16, 3) => unit.signed_lane(0),
-        (TextureFormat::R16B16, 1) => unit.signed_lane(1),
-        (TextureFormat::Y16, 1) => unit.signed_lane(0),
+        (TextureFormat::R16B16 | TextureFormat::Y16, 3) => unit.signed_lane(0),
+        (TextureFormat::R16B16 | TextureFormat::Y16, 1) => unit.signed_lane(1),
         (TextureFormat::R16B16 | TextureFormat::Y16, _) => false,
         (_, channel) => unit.state.signed[channel],
     }

@@ -102,6 +102,7 @@ pub fn face_coordinate(s: i64, m: i64, size: u32, bits: u32) -> i64 {
 
 #[cfg(test)]
 mod tests {
+    #![allow(clippy::float_arithmetic, reason = "numbers to be taken apart")]
     use super::*;
     use proptest::prelude::*;
 
