@@ -4,6 +4,7 @@ use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
 use super::page::{Section, cells};
 use super::view::{Covered, draw, plan, scene, visit};
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::raster::interpolate::COORDINATE_LIMIT;
 use ninebit::state::Scene;
 use ninebit::texture::place::{Coordinates, Interpolated, Place};
 
@@ -17,7 +18,11 @@ pub fn section() -> Section {
     let mut worst = [[None; 11]; 3];
     visit(&plan_of_page, |covered| {
         let strip = (covered.pixel.1 as usize - 2) / 24;
-        let error = error(covered).abs();
+        let (u, exact) = u(covered);
+        if FIRST + strip > 16 {
+            assert_eq!(u, COORDINATE_LIMIT, "through q beyond the limit");
+        }
+        let error = (u - exact).abs();
         let most = &mut worst[covered.draw][strip];
         *most = Some(most.unwrap_or(0).max(error));
     });
@@ -60,8 +65,8 @@ pub fn section() -> Section {
     }
 }
 
-/// u as the model has it minus the floor of the exact rational number, 1/256 texel.
-fn error(covered: &Covered<'_>) -> i64 {
+/// u as the model has it, and the floor of the exact rational number, 1/256 texel.
+fn u(covered: &Covered<'_>) -> (i64, i64) {
     let (sample, coordinates) =
         (covered.sample(), Coordinates::new(covered.triangle, covered.coordinates(), covered.unit));
     let place = Interpolated {
@@ -83,17 +88,22 @@ fn error(covered: &Covered<'_>) -> i64 {
         (0..3).map(|k| values[k] * i128::from(sample.e[k]) * w[(k + 1) % 3] * w[(k + 2) % 3]).sum()
     };
     let exact = (sum(s) * 256 * 16).div_euclid(sum(q));
-    u - exact as i64
+    (u, exact as i64)
 }
 
-/// RAS-0: with q = 1 one texel more than 65536 is refused, with another q it is not.
+/// RAS-0: with q = 1 coordinates beyond 65536 texels are refused, with another q they are not.
 fn refused(scene: &Scene) {
     let mut scene = scene.clone();
     scene.draws.truncate(1);
-    let far = &mut scene.draws[0].vertices[0].texture_coordinates[0];
-    (far[0], far[3]) = (4096.0625, 1.0);
-    let compile = |scene: &Scene| Plan::compile(scene, &PlanOptions::default());
-    assert_eq!(compile(&scene).unwrap_err()[0].rule, "RAS-0");
-    scene.draws[0].vertices[0].texture_coordinates[0][3] = 2.0;
-    assert!(compile(&scene).is_ok());
+    let mut rules = |texels: f32, q: f32| -> Vec<&'static str> {
+        let far = &mut scene.draws[0].vertices[0].texture_coordinates[0];
+        (far[0], far[3]) = (texels / 16.0, q);
+        let planned = Plan::compile(&scene, &PlanOptions::default());
+        planned.err().into_iter().flatten().map(|error| error.rule).collect()
+    };
+    assert!(rules(65536.0, 1.0).is_empty());
+    for texels in [65537, 1 << 17, 1 << 18, 1 << 19, 1 << 20] {
+        assert_eq!(rules(texels as f32, 1.0), ["RAS-0"]);
+        assert!(rules(texels as f32, 2.0).is_empty());
+    }
 }

@@ -9,7 +9,7 @@ use ninebit::texture::filter::lerp;
 pub fn section() -> Section {
     let frame = draw(&plan(&scene("filtered-length.ron")));
     let mut rows = vec![cells(["angle", "length", "of the chip", "N . L renormalised", "of the chip", "steps lost"])];
-    for angle in [15, 30, 45, 60, 90, 120, 150, 180] {
+    for angle in [0, 15, 30, 45, 60, 90, 120, 150, 180] {
         let row = (0..PAIRS).find(|row| pair_angle(*row) == f64::from(angle)).unwrap();
         let mixed = mix(row, 128);
         // The light stands between the two, where a ridge should be brightest.
@@ -51,7 +51,7 @@ pub fn section() -> Section {
     };
     let of = |label: &str, values: Vec<String>| [vec![label.to_string()], values].concat();
     let highlight = vec![
-        cells(["highlight (N . H)^8, against renormalising exactly", "most dark, steps", "rms, steps"]),
+        cells(["highlight (N . H)^8, against renormalising exactly", "largest loss, steps", "rms, steps"]),
         of("N as the filter gives it", error(0)),
         of("one step of Newton's method before", error(1)),
     ];
