@@ -99,7 +99,7 @@ impl RealTarget {
     pub fn real(&self, face: Option<Face>) -> Real {
         match *self {
             RealTarget::Coordinates(st) => Real { face: Face::PositiveX, st },
-            RealTarget::Vector(v) if v.iter().any(|c| c.is_nan()) => real_direction([0.0; 3], face),
+            RealTarget::Vector(v) if v.iter().any(|c| !c.is_finite()) => real_direction([0.0; 3], face),
             RealTarget::Vector(v) => real_direction(v, face),
         }
     }

@@ -453,7 +453,7 @@ fn color(c: &mut Choices<'_>, style: u32) -> VertexColor {
 
 /// s, t, r, q.
 fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
-    let mut c = c.part(5);
+    let mut c = c.part(8);
     let (x, y) = (x.clamp(-256.0, 256.0), y.clamp(-256.0, 256.0));
     let one_to_one = [x / 16.0, y / 16.0, 0.0, 1.0];
     match style {
@@ -490,7 +490,9 @@ fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
             let mut out =
                 [c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-1.0, 1.0)];
             out[row] = c.pick(&[1.0, -1.0, 0.5]);
-            out
+            // So large, or so small, that the dot unit overflows; still the same for a whole triangle now and then.
+            let scale = c.pick(&[1.0, 1.0, 1.0, 1.0, 1.0, 1e-25, 300.0, 1e20]);
+            out.map(|x| x * scale)
         }
     }
 }
