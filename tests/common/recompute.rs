@@ -361,6 +361,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "read_surface" => byte(surface(&inputs[1].0, v(0), &inputs[2].0)?),
         "constant_0" => byte(0),
         "constant_255" => byte(255),
+        "constant_65535" => sixteen_bits(0xffff),
         "invert_255" => byte(255 - v(0)),
         "saturate_factor" => byte(v(0).min(255 - v(1))),
         "blend_add" => nearest_255(add(times(n(0), n(2)), times(n(1), n(3)))),
