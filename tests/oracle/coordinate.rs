@@ -118,9 +118,7 @@ impl Place {
             Place::Moved(set, by) => (0, [0, 1].map(|a| moved(setup, sample, *set, a, by[a], size[a]))),
             Place::Direction(set) => direction(setup, sample, setup.three(*set, [0, 1, 2]), size[0]),
             Place::Bytes(v, whole) => (0, [0, 1].map(|a| floor_div(256 * i128::from(size[a]) * v[a], *whole).0)),
-            Place::Floats(f) => {
-                (0, [0, 1].map(|a| floor_float(f[a], 256 * i128::from(size[a])).clamp(-LIMIT, LIMIT)))
-            }
+            Place::Floats(f) => (0, [0, 1].map(|a| floor_float(f[a], 256 * i128::from(size[a])).clamp(-LIMIT, LIMIT))),
             Place::Vector(v) => {
                 let Some(face) = vector_face(*v) else { return (0, [0, 0]) };
                 let p = vector_on(*v, face);
