@@ -38,14 +38,13 @@ const EXPONENTIAL: f32 = 11.090_355;
 const SQUARED: f32 = 4.709_64;
 
 /// Fog that falls from 1 at `start` to 0 at `end` in a straight line. Without any distance between them it is 1 before `end` and 0
-/// from there on.
-pub fn linear(mode: FogMode, start: f32, end: f32) -> FogFunction {
-    if start == end {
-        // (end - d) 2^40 - 1: the step is less than 2^-39 wide.
-        const STEEP: f32 = 1_099_511_627_776.0;
-        return FogFunction { mode, p0: end * STEEP, p1: -STEEP };
-    }
-    FogFunction { mode, p0: 2.0 + start / (end - start), p1: -1.0 / (end - start) }
+/// from there on. `None`: the parameters are not finite.
+pub fn linear(mode: FogMode, start: f32, end: f32) -> Option<FogFunction> {
+    // (end - d) 2^40 - 1: the step is less than 2^-39 wide.
+    const STEEP: f32 = 1_099_511_627_776.0;
+    let distance = end - start;
+    let (p0, p1) = if start == end { (end * STEEP, -STEEP) } else { (2.0 + start / distance, -1.0 / distance) };
+    (distance.is_finite() && p0.is_finite() && p1.is_finite()).then_some(FogFunction { mode, p0, p1 })
 }
 
 /// Fog of a density: e^(-density d), or its square in the exponent.
@@ -85,7 +84,7 @@ mod tests {
         ) {
             let mode = FogMode::ALL[mode];
             let function = if matches!(mode, FogMode::Linear | FogMode::LinearAbs) {
-                linear(mode, start, start + span)
+                linear(mode, start, start + span).expect("finite")
             } else {
                 exponential(mode, density)
             };
@@ -106,12 +105,15 @@ mod tests {
     #[test]
     fn no_distance_is_a_wall() {
         for end in [0.0, 0.1, 50.0, -3.0, 1e9] {
-            let function = linear(FogMode::Linear, end, end);
+            let function = linear(FogMode::Linear, end, end).expect("finite");
             let factors = [end - 0.01 - end.abs() * 1e-6, end, end + 0.01].map(|d| vertex_factor(&function, d));
             assert_eq!(factors, [1.0, 0.0, 0.0], "{end}");
         }
+        assert_eq!(linear(FogMode::Linear, 0.0, 1e-45), None);
+        assert_eq!(linear(FogMode::Linear, 3e38, -3e38), None);
+        assert_eq!(linear(FogMode::Linear, 1e30, 1e30), None);
         // The other way round is fog that lifts.
-        let lifting = linear(FogMode::Linear, 24.0, 16.0);
+        let lifting = linear(FogMode::Linear, 24.0, 16.0).expect("finite");
         assert_eq!([0.0, 16.0, 20.0, 24.0, 30.0].map(|d| vertex_factor(&lifting, d)), [0.0, 0.0, 0.5, 1.0, 1.0]);
     }
 }

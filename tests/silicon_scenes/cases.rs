@@ -47,9 +47,10 @@ fn border(x: u32, y: u32, _: &Surface) -> bool {
     !(15..=69).contains(&y) && !(190..=244).contains(&y) && !((253..=387).contains(&x) && (245..=390).contains(&y))
 }
 
-/// That group, without the row whose pixels lie exactly between two border texels.
+/// That group, without the 28 pixels that are known to differ: all lie exactly between two border texels.
 fn border_texels(x: u32, y: u32, _: &Surface) -> bool {
-    (256..384).contains(&x) && (255..378).contains(&y) && y != 275
+    let known = matches!(x, 267..=277 | 311 | 312 | 315 | 316 | 318 | 319 | 352..=362);
+    (256..384).contains(&x) && (255..378).contains(&y) && !(y == 275 && known)
 }
 
 /// What is nearer than the cleared depth.
@@ -116,7 +117,7 @@ pub const CASES: [Case; 15] = [
     Case {
         name: "t07-border-texels",
         capture: "Texture_border/2D.png",
-        pixels: 15_616,
+        pixels: 15_716,
         region: border_texels,
         scene: Some(scenes::border_texels),
     },

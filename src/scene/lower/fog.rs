@@ -100,10 +100,10 @@ fn function<'a>(
         let (start, end) = (number(&fields.start, 0.0), number(&fields.end, 1.0));
         linear(mode, start?, end?)
     } else {
-        exponential(mode, number(&fields.density, 1.0)?)
+        Some(exponential(mode, number(&fields.density, 1.0)?))
     };
-    if function.p0.is_finite() && function.p1.is_finite() {
-        return Some(function);
+    if function.is_some() {
+        return function;
     }
     reader.push(
         Diagnostic::error("NB0207", place.clone(), "the parameters of this fog are not finite")
