@@ -111,3 +111,4 @@ mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;
+pub mod vertex;

@@ -63,3 +63,22 @@ fn a_bump_environment_map_in_a_scene() {
     let shader = parse(&text("Nv2a", "texture_shader: [Sample, Sample],")).unwrap_err();
     assert_eq!(shader.diagnostics[0].code, "NB0352");
 }
+
+#[test]
+fn camera_space_coordinates_take_a_set_that_nothing_reads() {
+    let text = |more: &str| {
+        format!(
+            "(version: 1, profile: Nv10, textures: {{ \"t\": (source: Solid(width: 1, height: 1, color: (1, 2, 3))) }}, \
+             draws: [(vertices: Window([(position: (0, 0)), (position: (4, 0)), (position: (0, 4))]), \
+             textures: [\"t\", \"t\"], {more} program: TextureStages(stages: [\
+             (texture_coordinate_index: CameraSpaceNormal), (color_op: Modulate, texture_coordinate_index: 0)]))])"
+        )
+    };
+    let parse = |text: &str| scene::parse(text, Path::new("made.ron"), &Limits::default());
+    let loaded = parse(&text("")).unwrap_or_else(|error| panic!("{error}"));
+    let draw = &loaded.scene.draws[0];
+    // Unit 1 reads set 0 as it was given: the normals go to set 1.
+    assert_eq!([0, 1].map(|unit| draw.texture_shader[unit].coordinate_set), [1, 0]);
+    assert_eq!(draw.vertices[0].texture_coordinates[1], [0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(parse(&text("texgen: [CameraSpacePosition],")).unwrap_err().diagnostics[0].code, "NB0352");
+}

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::operation::Surroundings;
-use super::{ArgumentSource, Half, Operation, ResultArgument, StageArgument, TextureStage, TextureStages};
+use super::{ArgumentSource, Generation, Half, Operation, ResultArgument, StageArgument, TextureStage, TextureStages};
 use crate::diagnostic::Diagnostic;
 use crate::program::At;
 use crate::program::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
@@ -28,6 +28,8 @@ pub struct Context {
 pub struct UnitChange {
     /// Its coordinate set.
     pub coordinate_set: Option<usize>,
+    /// Its coordinates are made on the vertex side.
+    pub generation: Option<At<Generation>>,
     /// Its texture shader operation, with the place of the stage operation that asks for it. It reads the unit before.
     pub operation: Option<At<ShaderOperation>>,
 }
@@ -180,14 +182,19 @@ impl Walk<'_> {
     /// TEXCOORDINDEX and TEXTURETRANSFORMFLAGS.
     fn coordinates(&mut self, index: usize, stage: &TextureStage) {
         if let Some(at) = &stage.coordinate_index {
-            if at.value.generation != 0 {
-                self.findings.push(finding(
-                    "NB0401",
-                    at.place.clone(),
-                    "not built yet: camera-space texture coordinates in texture stages",
-                    "reserved for a later version",
-                    "write the draw's `texgen: [...]` for this unit, and its coordinate set here",
-                ));
+            let made = at.value.generation.checked_sub(1).map(|index| Generation::ALL.get(index as usize));
+            if let Some(made) = made {
+                match (made, self.units.get_mut(index)) {
+                    (Some(made), Some(unit)) => unit.generation = Some(At { value: *made, place: at.place.clone() }),
+                    (Some(_), None) => {}
+                    (None, _) => self.findings.push(finding(
+                        "NB0206",
+                        at.place.clone(),
+                        format!("there is no source of coordinates {:#x}", at.value.generation << 16),
+                        "out of range",
+                        "write 0x10000 (D3DTSS_TCI_CAMERASPACENORMAL) to 0x40000 (D3DTSS_TCI_SPHEREMAP)",
+                    )),
+                }
             } else if at.value.set >= 4 {
                 self.findings.push(finding(
                     "NB0206",

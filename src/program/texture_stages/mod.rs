@@ -75,6 +75,20 @@ impl StageArgument {
     }
 }
 
+named! {
+    /// D3DTSS_TCI: coordinates that the vertex side makes, in the order of its values 1 to 4.
+    pub enum Generation {
+        /// The normal in eye space.
+        CameraSpaceNormal,
+        /// The position in eye space.
+        CameraSpacePosition,
+        /// The reflected line of sight in eye space.
+        CameraSpaceReflectionVector,
+        /// Where a mirroring sphere shows the reflection.
+        SphereMap,
+    }
+}
+
 /// D3DTSS_TEXCOORDINDEX: the coordinate set, and whether the vertices' coordinates are replaced by generated ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct CoordinateIndex {

@@ -7,7 +7,10 @@ use super::*;
 use crate::program::At;
 use crate::program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};
 use crate::program::texture_stages::{self as stages, TextureStages};
-use crate::state::{Combiners, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS, TextureKind, TextureUnit};
+use crate::state::{
+    Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS, TextureKind, TextureUnit,
+};
+use crate::vertex::texgen::CoordinateSet;
 
 /// A program of an API.
 pub(super) enum ApiProgram {
@@ -15,6 +18,18 @@ pub(super) enum ApiProgram {
     Stages(TextureStages, Option<ProgramText>),
     /// OpenGL.
     Environment(TextureEnvironment),
+}
+
+/// What of a draw the lowering depends on, or changes.
+pub(super) struct Around {
+    /// Fog is enabled.
+    pub(super) fog: bool,
+    /// The draw has a texture shader of its own.
+    pub(super) shader: bool,
+    /// The draw has generators of its own.
+    pub(super) generators: bool,
+    /// How the coordinate sets are made, if not all are as they were given.
+    pub(super) sets: Option<[CoordinateSet; 4]>,
 }
 
 /// What it becomes in a draw.
@@ -25,15 +40,13 @@ pub(super) struct Lowered {
 }
 
 impl ApiProgram {
-    /// Lowers the program for a draw, whose texture shader stands at `written` if it has one; the default program once the reason that
-    /// it has no form has been recorded.
+    /// Lowers the program for a draw; the default program once the reason that it has no form has been recorded.
     pub(super) fn lower(
         &self,
         reader: &mut Reader<'_>,
         units: &Units,
         textures: &Textures,
-        fog: bool,
-        written: Option<Range<usize>>,
+        around: &mut Around,
     ) -> Lowered {
         let profile = reader.profile;
         let signed = units.bound.map(|unit| unit.is_some_and(|unit| unit.signed != [false; 4]));
@@ -41,13 +54,13 @@ impl ApiProgram {
         let lowered = match self {
             ApiProgram::Stages(program, text) => {
                 let bound = units.shader.map(|stage| stage.operation != ShaderOperation::None);
-                let context = stages::Context { profile, bound, signed, fog };
+                let context = stages::Context { profile, bound, signed, fog: around.fog };
                 let mut findings = Vec::new();
                 let lowered = stages::lower(program, &context).map(|lowered| {
+                    generate(&lowered.units, profile, &mut shader, around, &mut findings);
                     for (index, change) in lowered.units.iter().enumerate() {
-                        shader[index].coordinate_set = change.coordinate_set.unwrap_or(shader[index].coordinate_set);
                         let Some(bump) = &change.operation else { continue };
-                        findings.extend(objection(units, textures, index, bump, written.clone()));
+                        findings.extend(objection(units, textures, index, bump, around.shader));
                         (shader[index].operation, shader[index].previous) = (bump.value, index.saturating_sub(1));
                     }
                     (lowered.combiners, lowered.origins)
@@ -64,7 +77,7 @@ impl ApiProgram {
                     ShaderOperation::None => None,
                     _ => Some(units.bound[index].and_then(format).map_or(BaseFormat::Rgba, BaseFormat::of)),
                 });
-                let context = environment::Context { profile, textures: formats, signed, fog };
+                let context = environment::Context { profile, textures: formats, signed, fog: around.fog };
                 environment::lower(program, &context).map(|lowered| (lowered.combiners, lowered.origins))
             }
         };
@@ -83,15 +96,56 @@ impl ApiProgram {
     }
 }
 
+/// Coordinate sets of the units: chosen, or made. A made one takes the set of the unit's number if no other unit reads that as it was
+/// given, or else one that none reads.
+fn generate(
+    changes: &[stages::UnitChange; TEXTURE_UNITS],
+    profile: Profile,
+    shader: &mut [ShaderStage; TEXTURE_UNITS],
+    around: &mut Around,
+    findings: &mut Vec<Diagnostic>,
+) {
+    let mut taken = [false; 4];
+    for (stage, change) in shader.iter_mut().zip(changes) {
+        stage.coordinate_set = change.coordinate_set.unwrap_or(stage.coordinate_set);
+        if change.generation.is_none() && stage.operation != ShaderOperation::None {
+            taken[stage.coordinate_set] = true;
+        }
+    }
+    for (index, change) in changes.iter().enumerate() {
+        let Some(made) = &change.generation else { continue };
+        if around.generators {
+            findings.push(
+                Diagnostic::error(
+                    "NB0352",
+                    made.place.clone(),
+                    format!("{} beside the draw's texgen", made.value.name()),
+                )
+                .label("generates coordinates as well")
+                .rule("TSH-11")
+                .help("leave one of them out"),
+            );
+            continue;
+        }
+        let free = std::iter::once(index).chain(0..profile.texture_units()).find(|set| !taken[*set]);
+        let Some(set) = free else { continue };
+        taken[set] = true;
+        shader[index].coordinate_set = set;
+        let sets = around.sets.get_or_insert_with(|| [0, 1, 2, 3].map(CoordinateSet::given));
+        let matrix = sets[index].matrix;
+        sets[set] = CoordinateSet { generators: texgen::whole(made.value), matrix, ..CoordinateSet::given(set) };
+    }
+}
+
 /// What keeps a unit from looking up where the texture before it moves the coordinates.
 fn objection(
     units: &Units,
     textures: &Textures,
     index: usize,
     bump: &At<ShaderOperation>,
-    written: Option<Range<usize>>,
+    shader: bool,
 ) -> Option<Diagnostic> {
-    if written.is_some() {
+    if shader {
         return Some(
             Diagnostic::error("NB0352", bump.place.clone(), "a bump environment map beside a texture shader")
                 .label("becomes a texture shader itself")

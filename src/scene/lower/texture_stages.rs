@@ -6,7 +6,7 @@ use super::program_text::ProgramText;
 use super::*;
 use crate::program::At;
 use crate::program::texture_stages::{
-    self, ArgumentSource, CoordinateIndex, Half, STAGES, StageArgument, TextureStage, TextureStages,
+    self, ArgumentSource, CoordinateIndex, Generation, Half, STAGES, StageArgument, TextureStage, TextureStages,
 };
 use crate::scene::raw::Tuple;
 use crate::state::Named;
@@ -123,7 +123,6 @@ fn argument<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StageArgument>) -
     Some(argument)
 }
 
-const GENERATIONS: &[&str] = &["CameraSpaceNormal", "CameraSpacePosition", "CameraSpaceReflectionVector", "SphereMap"];
 const TRANSFORMS: &[&str] = &["Disable", "Count1", "Count2", "Count3", "Count4", "Projected"];
 
 fn coordinates<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {
@@ -133,7 +132,7 @@ fn coordinates<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, s
             let set = reader.whole(&raw.as_other(), "a set of texture coordinates", 0..=3);
             set.map(|set| CoordinateIndex { set, generation: 0 })
         } else {
-            let generation = reader.variant(raw, "source of coordinates", GENERATIONS);
+            let generation = reader.variant(raw, "source of coordinates", Generation::NAMES);
             generation.map(|(index, _)| CoordinateIndex { set: 0, generation: 1 + index as u32 })
         };
         stage.coordinate_index = value.map(|value| At { value, place });
