@@ -28,7 +28,7 @@ impl Final {
         match parser.word() {
             "clamp_color_sum" => {
                 parser.call()?;
-                parser.once(&mut self.clamp, start)
+                parser.once(&mut self.clamp, start);
             }
             "final_product" => {
                 parser.advance();
@@ -37,7 +37,7 @@ impl Final {
                 parser.sign('*')?;
                 let f = operand(parser, 5)?;
                 parser.sign(';')?;
-                set(parser, &mut self.product, [e, f], start)
+                set(parser, &mut self.product, [e, f], start);
             }
             "color_sum" => {
                 parser.advance();
@@ -46,10 +46,11 @@ impl Final {
                 parser.sign('+')?;
                 let secondary = side(parser, FinalRegister::SecondaryColor)?;
                 parser.sign(';')?;
-                set(parser, &mut self.sum, [spare0, secondary], start)
+                set(parser, &mut self.sum, [spare0, secondary], start);
             }
-            _ => self.out(parser),
+            _ => self.out(parser)?,
         }
+        Ok(())
     }
 
     /// `out.rgb = ...;` or `out.a = ...;`
@@ -67,11 +68,13 @@ impl Final {
         if what == "a" {
             let g = operand(parser, 6)?;
             parser.sign(';')?;
-            return set(parser, &mut self.alpha, g, span);
+            set(parser, &mut self.alpha, g, span);
+            return Ok(());
         }
         let inputs = rgb(parser)?;
         parser.sign(';')?;
-        set(parser, &mut self.rgb, inputs, span)
+        set(parser, &mut self.rgb, inputs, span);
+        Ok(())
     }
 
     /// The state of it all. Without any statement it is OpenGL's initial one.
@@ -105,18 +108,14 @@ impl Final {
 }
 
 /// Keeps what a statement says, once.
-fn set<T>(
-    parser: &mut Parser<'_>,
-    slot: &mut Option<(T, Range<usize>)>,
-    value: T,
-    span: Range<usize>,
-) -> Result<(), GivenUp> {
-    if let Some((_, first)) = slot {
-        let first = first.clone();
-        return Err(parser.twice(span, first, "this"));
+fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Range<usize>)>, value: T, span: Range<usize>) {
+    match slot {
+        Some((_, first)) => {
+            let first = first.clone();
+            parser.twice(span, first, "this");
+        }
+        None => *slot = Some((value, span)),
     }
-    *slot = Some((value, span));
-    Ok(())
 }
 
 /// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`: A B + (1 - A) C + D.

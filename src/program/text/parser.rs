@@ -58,7 +58,7 @@ impl<'t> Parser<'t> {
                 "const1" => self.constant(&mut shared[1]),
                 "mux_by_least_significant_bit" => {
                     let span = self.token.span.clone();
-                    self.call().and_then(|()| self.once(&mut mux, span))
+                    self.call().map(|()| self.once(&mut mux, span))
                 }
                 "out" | "final_product" | "color_sum" | "clamp_color_sum" => last.statement(&mut self),
                 _ => Err(self.unknown_statement(
@@ -82,6 +82,8 @@ impl<'t> Parser<'t> {
                 }
             }
         }
+        let end = self.text.trim_end().len();
+        self.places.set(Place::Stages, self.before(end));
         let shared = shared.map(|written| written.map_or([0; 4], |(bytes, _)| bytes));
         let final_combiner = last.finish(&mut self, shared);
         if !self.findings.is_empty() {
@@ -166,11 +168,13 @@ impl<'t> Parser<'t> {
             }
         }
         self.advance();
-        if let Some((_, first)) = slot {
-            let first = first.clone();
-            return Err(self.twice(name, first, "this portion"));
+        match slot {
+            Some((_, first)) => {
+                let first = first.clone();
+                self.twice(name, first, "this portion");
+            }
+            None => *slot = Some((reader.portion, name)),
         }
-        *slot = Some((reader.portion, name));
         Ok(())
     }
 
@@ -201,17 +205,22 @@ impl<'t> Parser<'t> {
         let span = opening..self.end;
         self.sign(';')?;
         let Ok(values) = <[_; 4]>::try_from(values) else {
-            let finding = Diagnostic::error("NB0211", span, "a constant colour has four numbers: R, G, B and A")
-                .label("not four")
-                .help("write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`");
-            return Err(self.give_up(finding));
+            self.findings.push(
+                Diagnostic::error("NB0211", span, "a constant colour has four numbers: R, G, B and A")
+                    .label("not four")
+                    .help("write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`"),
+            );
+            return Ok(());
         };
-        let [Some(r), Some(g), Some(b), Some(a)] = values else { return Err(GivenUp) };
-        if let Some((_, first)) = slot {
-            let first = first.clone();
-            return Err(self.twice(name, first, "this constant"));
+        // What is out of range has been recorded.
+        let bytes = values.map(Option::unwrap_or_default);
+        match slot {
+            Some((_, first)) => {
+                let first = first.clone();
+                self.twice(name, first, "this constant");
+            }
+            None => *slot = Some((bytes, name.start..span.end)),
         }
-        *slot = Some(([r, g, b, a], name.start..span.end));
         Ok(())
     }
 
@@ -324,12 +333,12 @@ impl<'t> Parser<'t> {
         self.sign(';')
     }
 
-    pub(super) fn once(&mut self, slot: &mut Option<Range<usize>>, span: Range<usize>) -> Read<()> {
-        if let Some(first) = slot.clone() {
-            return Err(self.twice(span, first, "this"));
+    /// Keeps the place of a statement that may be there once.
+    pub(super) fn once(&mut self, slot: &mut Option<Range<usize>>, span: Range<usize>) {
+        match slot.clone() {
+            Some(first) => self.twice(span, first, "this"),
+            None => *slot = Some(span),
         }
-        *slot = Some(span);
-        Ok(())
     }
 
     pub(super) fn give_up(&mut self, finding: Diagnostic) -> GivenUp {
@@ -342,14 +351,14 @@ impl<'t> Parser<'t> {
             Kind::End => "the end of the program".to_owned(),
             _ => format!("`{}`", shorten(self.lexeme())),
         };
-        // A sign that is missing is missing behind what stands before.
-        let span = match self.token.kind {
-            Kind::End => self.end.saturating_sub(1)..self.end,
-            _ => self.here(),
+        // What is missing at the end of a line is missing there, not where the next one starts.
+        let between = self.text.get(self.end..self.token.span.start).unwrap_or("");
+        let (span, label) = if self.token.kind == Kind::End || between.contains('\n') {
+            (self.before(self.end), "behind this")
+        } else {
+            (self.here(), "not expected here")
         };
-        self.give_up(
-            Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label("not expected here"),
-        )
+        self.give_up(Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label(label))
     }
 
     /// The finding that a word is none of the known ones.
@@ -368,14 +377,20 @@ impl<'t> Parser<'t> {
         if self.token.kind == Kind::Word { self.unknown("statement", known) } else { self.expected(expected) }
     }
 
-    pub(super) fn twice(&mut self, span: Range<usize>, first: Range<usize>, what: &str) -> GivenUp {
-        let message = format!("{what} is given twice");
-        self.give_up(
-            Diagnostic::error("NB0364", span, message)
+    /// Records that a statement, which has been read to its end, was there before.
+    pub(super) fn twice(&mut self, span: Range<usize>, first: Range<usize>, what: &str) {
+        self.findings.push(
+            Diagnostic::error("NB0364", span, format!("{what} is given twice"))
                 .label("again here")
                 .related(first, "first here")
                 .help("keep one of them"),
-        )
+        );
+    }
+
+    /// The character that ends at a place.
+    fn before(&self, end: usize) -> Range<usize> {
+        let start = self.text.get(..end).and_then(|text| text.char_indices().next_back()).map_or(0, |(start, _)| start);
+        start..end
     }
 
     fn unclosed(&mut self, opening: Range<usize>) -> GivenUp {
@@ -449,12 +464,12 @@ impl PortionReader {
         }
         parser.call()?;
         if let Some(scale) = scale {
-            parser.once(&mut self.scale, span.clone())?;
+            parser.once(&mut self.scale, span.clone());
             parser.places.set(self.at(Part::Scale), span.clone());
             self.portion.scale = scale;
         }
         if bias {
-            parser.once(&mut self.bias, span.clone())?;
+            parser.once(&mut self.bias, span.clone());
             parser.places.set(self.at(Part::Bias), span);
             self.portion.bias = Bias::NegativeHalf;
         }
@@ -469,7 +484,8 @@ impl PortionReader {
         if let third @ ("sum" | "mux") = parser.word() {
             parser.call()?;
             if let Some(first) = self.third.clone() {
-                return Err(parser.twice(start..parser.end(), first, "the third result of this portion"));
+                parser.twice(start..parser.end(), first, "the third result of this portion");
+                return Ok(());
             }
             self.third = Some(start..parser.end());
             self.portion.sum_output = output;
