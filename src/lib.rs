@@ -110,3 +110,4 @@ mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;
+pub mod vertex;

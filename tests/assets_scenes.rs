@@ -2,7 +2,7 @@
 //!
 //! `BLESS=1 cargo test --test assets_scenes` rewrites the expectations, but for those that come from a capture; look at the pictures
 //! and at the difference before committing.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, unreachable_pub, reason = "a test fails by panicking, and shares a file with others")]
 
 #[path = "common/scene_files.rs"]
 mod scene_files;
@@ -72,4 +72,7 @@ fn stored_textures_are_what_the_generators_make() {
     assert!(stored("hemisphere-normal.png") == clean, "ninebit generate hemisphere-normals");
     let noisy = hemisphere::normals(&hemisphere::Options { noise: 0.02, ..hemisphere::Options::default() });
     assert!(stored("hemisphere-noisy-normal.png") == noisy, "ninebit generate hemisphere-normals --noise 0.02");
+    let small = hemisphere::normals(&hemisphere::Options { size: 128, ..hemisphere::Options::default() });
+    let stored = load(&scenes_folder().join("texture-shader/hemisphere-normal.png"), &ImageLimits::default()).unwrap();
+    assert!(stored == small, "ninebit generate hemisphere-normals --size 128");
 }

@@ -88,7 +88,8 @@ fn followed_ideals_are_those_of_the_trace() {
     let mut compared = 0;
     random(250, |plan, scene| {
         // The trace starts anew where a draw reads a surface.
-        if scene.textures.iter().any(|t| matches!(t.image, TextureImage::Target { .. })) {
+        let mut read = scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten());
+        if read.any(|unit| matches!(scene.textures[unit.texture].image, TextureImage::Target { .. })) {
             return;
         }
         let comparison = compare(plan, &options(Mode::Follow));

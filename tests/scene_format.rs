@@ -252,6 +252,40 @@ fn units_targets_as_textures_and_combiners() {
 }
 
 #[test]
+fn texture_shaders() {
+    use ninebit::state::{DotMapping, ShaderOperation, ShaderStage};
+    let loaded = parse(
+        "(version: 1, profile: Nv2a, textures: { \"t\": (source: Solid(width: 4, height: 4, color: (1, 2, 3))) }, draws: [\
+         (vertices: Window([]), textures: [(texture: \"t\", coordinates: 2), Unbound, \"t\"], texture_shader: [Sample, \
+         (operation: DotProduct, mapping: HiloHemisphere), (operation: DotProduct2D, previous: 0, coordinates: 3)]), \
+         (vertices: Window([]), textures: [Unbound, \"t\"], texture_shader: [PassThrough, \
+         BumpEnvironment(matrix: (1, 2, 3, 4), luminance: (0.5, -1)), CullFragment(t: NotNegative, q: Negative)]), \
+         (vertices: Window([]), textures: [Unbound, \"t\"])])",
+    );
+    assert!(loaded.warnings.is_empty(), "{}", loaded.render_warnings(false));
+    let draws = &loaded.scene.draws;
+    let stage =
+        |operation, coordinate_set, previous, mapping| ShaderStage { operation, coordinate_set, previous, mapping };
+    let zero_to_one = DotMapping::ZeroToOne;
+    assert_eq!(
+        draws[0].texture_shader,
+        [
+            // The unit's coordinates hold unless the stage names others.
+            stage(ShaderOperation::Sample, 2, 0, zero_to_one),
+            stage(ShaderOperation::DotProduct, 1, 0, DotMapping::HiloHemisphere),
+            stage(ShaderOperation::DotProduct2D, 3, 0, zero_to_one),
+            stage(ShaderOperation::None, 3, 2, zero_to_one),
+        ]
+    );
+    let operations = draws[1].texture_shader.map(|stage| stage.operation);
+    let bump = ShaderOperation::BumpEnvironment { matrix: [1.0, 2.0, 3.0, 4.0], luminance: Some([0.5, -1.0]) };
+    let cull = ShaderOperation::CullFragment { drops_not_negative: [false, true, false, false] };
+    assert_eq!(operations, [ShaderOperation::PassThrough, bump, cull, ShaderOperation::None]);
+    let conventional = [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, unit == 1));
+    assert_eq!(draws[2].texture_shader, conventional);
+}
+
+#[test]
 fn matrices_multiply_column_vectors() {
     let position = |matrix: &str| {
         let text = format!(

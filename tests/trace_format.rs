@@ -22,7 +22,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Random scenes whose traces are looked at.
-const SCENES: usize = 400;
+const SCENES: usize = 600;
 
 type Words = BTreeSet<String>;
 

@@ -57,7 +57,7 @@ fn write(out: &mut String, plan: &Plan, c: &Comparison) -> std::fmt::Result {
             let (mean, rms, bias) = (e.mean(), e.rms(), e.bias());
             writeln!(out, "{rule:<7}{count:>11}{low:>10.4}{high:>10.4}{mean:>9.4}{rms:>9.4}{bias:>9.4}   {bound}")?;
         }
-        writeln!(out, "INT-4 and TEX-15 count in 256ths of a texel")?;
+        writeln!(out, "INT-4, TEX-9, TEX-12, TEX-15, TSH-4, TSH-6 and TSH-7 count in 256ths of a texel or level")?;
     }
     if !c.decisions.is_empty() {
         writeln!(out, "\ndecision               taken   the ideal differs")?;

@@ -11,8 +11,9 @@ use crate::raster::setup::Triangle;
 use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
 use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
-use crate::texture::chain::{Chain, ShaderSetup};
+use crate::texture::chain::Chain;
 use crate::texture::place::{Coordinates, Interpolated};
+use crate::texture::stage::ShaderSetup;
 use crate::texture::unit::{self, Image};
 use crate::trace::{Decision, Observer, Rule, Step, Work, report};
 

@@ -3,7 +3,7 @@
 use crate::combiner::general::PlannedPortion;
 use crate::plan::PlannedDraw;
 use crate::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, SumRounding};
-use crate::texture::chain::PlannedShader;
+use crate::texture::stage::PlannedShader;
 use crate::texture::unit::PlannedUnit;
 use crate::trace::Work;
 

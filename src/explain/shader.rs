@@ -2,7 +2,7 @@
 
 use super::channels;
 use crate::state::ShaderOperation;
-use crate::texture::chain::PlannedShader;
+use crate::texture::stage::PlannedShader;
 
 /// What a stage does before its unit samples, if it does.
 pub(super) fn before(shader: &PlannedShader, index: usize) -> Vec<String> {

@@ -18,7 +18,7 @@ use crate::state::{
     Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texture,
     TextureImage, TextureKind, TextureUnit,
 };
-use crate::texture::chain::{PlannedShader, PlannedShaderStage};
+use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
 use liveness::Liveness;
 

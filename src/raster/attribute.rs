@@ -45,13 +45,6 @@ impl Triangle {
     }
 }
 
-impl Attribute {
-    /// g and the exponent, for observers.
-    pub fn numbers(&self) -> ([i64; 3], i32) {
-        (self.g, self.exponent)
-    }
-}
-
 impl Sample<'_> {
     /// The value here. 0 where D is not positive: at a pixel outside the triangle and beyond its horizon.
     pub fn attribute(&self, attribute: &Attribute) -> Quotient {

@@ -68,6 +68,12 @@ impl FogPlane {
 
 /// INT-5 at the coordinate m 2^e given as (m, e), |m| < 2^24; p0 and p1 are finite.
 pub fn evaluate(function: &FogFunction, coordinate: (i64, i32)) -> FogFactor {
+    let (factor, power) = factor(function, coordinate);
+    FogFactor { value: factor >> (POWER_BITS - 12), coordinate, power }
+}
+
+/// The same factor floored to 2^-32, 0..=2^32, and the power of two in it.
+pub fn factor(function: &FogFunction, coordinate: (i64, i32)) -> (i64, Option<i64>) {
     let (p0, p1) = (split(function.p0), split(function.p1));
     // d p1, exactly: 48 bits.
     let product = (coordinate.0 * p1.0, coordinate.1 + p1.1);
@@ -84,11 +90,11 @@ pub fn evaluate(function: &FogFunction, coordinate: (i64, i32)) -> FogFactor {
         None => Fixed::sum(p0, product).plus(-(1 << POWER_BITS)),
         Some(power) => Fixed::sum(p0, (0, 0)).plus(power - (3 << (POWER_BITS - 1))),
     };
-    let value = match function.mode {
+    let factor = match function.mode {
         FogMode::Linear | FogMode::Exp | FogMode::Exp2 => sum.floor,
         FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs => sum.magnitude(),
     };
-    FogFactor { value: (value >> (POWER_BITS - 12)).clamp(0, 4096) as i64, coordinate, power: power.map(|n| n as i64) }
+    (factor.clamp(0, 1 << POWER_BITS) as i64, power.map(|power| power as i64))
 }
 
 /// A number floored to 2^-32, and whether something was cut off: the number lies above by less than 2^-32. Far outside 0..1 it is

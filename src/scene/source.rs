@@ -9,6 +9,7 @@ use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
 use super::reader::Name;
 use super::split;
 use crate::state;
+use crate::vertex::fog::FogSource;
 
 /// What a value of a type looks like, for "expected ...".
 pub(super) trait Expected<'a>: Sized {
@@ -109,6 +110,10 @@ pub(super) struct ShaderStage;
 pub(super) struct ShaderOperation;
 /// What of a mesh goes into a vertex.
 pub(super) struct Attribute;
+/// How a coordinate set is made: `(s: ..., t: ...)`, a word, or `None`.
+pub(super) struct CoordinateSource;
+/// Where a component of a coordinate set comes from.
+pub(super) struct Generator;
 /// An input of a combiner portion.
 pub(super) struct Input;
 /// An input of the final combiner.
@@ -194,8 +199,8 @@ source! {
         stencil_test: Reserved,
         logic_op: Reserved,
         texture_shader: List<'a, ShaderStage>,
-        texgen: Reserved,
-        texture_matrices: Reserved,
+        texgen: List<'a, CoordinateSource>,
+        texture_matrices: List<'a, Matrix>,
         truth: Reserved,
     }
     struct Vertex {
@@ -203,7 +208,8 @@ source! {
         diffuse: Color,
         specular: Color,
         fog: f32,
-        fog_coordinate: Reserved,
+        fog_coordinate: f32,
+        normal: Numbers,
         t0: Numbers,
         t1: Numbers,
         t2: Numbers,
@@ -211,6 +217,7 @@ source! {
     }
     struct MatrixVertices {
         matrix: Matrix,
+        model_view: Matrix,
         viewport: Viewport<'a>,
         vertices: VertexList,
         mesh: MeshSource,
@@ -232,12 +239,15 @@ source! {
     struct Fog {
         enabled: bool,
         color: Color,
-        mode: Reserved,
-        density: Reserved,
-        start: Reserved,
-        end: Reserved,
-        coordinate_source: Reserved,
+        mode: Name<state::FogMode>,
+        density: f32,
+        start: f32,
+        end: f32,
+        parameters: Numbers,
+        coordinate_source: Name<FogSource>,
     }
+    struct CoordinateSet { input: u32, s: Generator, t: Generator, r: Generator, q: Generator }
+    struct Emboss { light: Numbers, scale: Numbers }
     struct UnitState {
         texture: String,
         palette: String,

@@ -7,95 +7,13 @@ use super::place::{Coordinates, Interpolated, quad_samples, real_coordinate};
 use super::real::{self, RealColor, RealTarget};
 use super::shader;
 use super::shader_report as report;
+use super::stage::{PlannedShader, ShaderSetup, StageSetup};
 use super::unit::{self, Image, PlannedUnit};
 use crate::number::{Lane, convert};
-use crate::raster::attribute::Attribute;
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;
-use crate::raster::setup::Triangle;
 use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, Vertex};
 use crate::trace::{Decision, Observer, Rule, Silent};
-
-/// A texture shader reduced to what can reach the frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PlannedShader {
-    /// The stages of the four units.
-    pub stages: [PlannedShaderStage; TEXTURE_UNITS],
-}
-
-impl PlannedShader {
-    /// Whether a stage can drop fragments.
-    pub fn kills(&self) -> bool {
-        self.stages.iter().any(|stage| matches!(stage.state.operation, ShaderOperation::CullFragment { .. }))
-    }
-}
-
-/// A stage of it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PlannedShaderStage {
-    /// What it does.
-    pub state: ShaderStage,
-    /// Index of its unit among those of the draw, if it samples.
-    pub unit: Option<usize>,
-    /// Channels of its register, R, G, B, A, that combiners or later stages read.
-    pub live: u8,
-    /// Its dot product is part of what is sampled.
-    pub dots: bool,
-}
-
-impl PlannedShaderStage {
-    /// Whether it has to run.
-    pub fn runs(&self) -> bool {
-        let drops = matches!(self.state.operation, ShaderOperation::CullFragment { .. });
-        drops || self.dots || (self.live != 0 && self.state.operation != ShaderOperation::None)
-    }
-}
-
-/// What a triangle's vertices give a stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum StageSetup {
-    Nothing,
-    /// Coordinates of its unit's image.
-    Places(Coordinates),
-    /// s, t, r, q as numbers.
-    Numbers([Attribute; 4]),
-}
-
-/// The texture shader's coordinates, set up for one triangle.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct ShaderSetup([StageSetup; TEXTURE_UNITS]);
-
-impl ShaderSetup {
-    /// Sets up every stage that runs.
-    pub fn new(shader: &PlannedShader, units: &[PlannedUnit], triangle: &Triangle, vertices: [&Vertex; 3]) -> Self {
-        ShaderSetup(std::array::from_fn(|index| {
-            let planned = &shader.stages[index];
-            if !planned.runs() {
-                return StageSetup::Nothing;
-            }
-            let set = vertices.map(|v| v.texture_coordinates[planned.state.coordinate_set]);
-            let component = |n: usize| set.map(|v| v[n]);
-            match (planned.state.operation, planned.unit) {
-                (ShaderOperation::Sample, Some(unit)) => {
-                    StageSetup::Places(Coordinates::new(triangle, set, &units[unit]))
-                }
-                (ShaderOperation::BumpEnvironment { .. }, Some(unit)) => {
-                    let unit = &units[unit];
-                    let sides = unit.scale(&unit.levels[0]);
-                    let plane = |n: usize| triangle.coordinate(component(n), sides[n]);
-                    StageSetup::Places(Coordinates::Plane([plane(0), plane(1)]))
-                }
-                (operation, _)
-                    if operation.is_dot()
-                        || matches!(operation, ShaderOperation::PassThrough | ShaderOperation::CullFragment { .. }) =>
-                {
-                    StageSetup::Numbers([0, 1, 2, 3].map(|n| triangle.attribute(component(n))))
-                }
-                _ => StageSetup::Nothing,
-            }
-        }))
-    }
-}
 
 /// A texture shader with everything that it looks at.
 #[derive(Debug)]
@@ -303,7 +221,7 @@ impl<L: Lane> Chain<'_, L> {
         let mut real = RealColor::default();
         if Self::wants_real::<O>() {
             let values = register.map(|lane| lane.observe().1.unwrap_or(0.0));
-            let wide = sampled.filter(|unit| unit.is_wide()).map(|unit| unit.format == TextureFormat::R16B16);
+            let wide = sampled.is_some_and(|unit| unit.is_wide());
             real = RealColor::of_registers(values, doubled, wide);
         }
         Color { unit, bytes, held: held.map(i64::from), doubled, real }
@@ -521,9 +439,8 @@ impl<L: Lane> State<L> {
 /// Whether the register holds twice the two's complement byte of a channel (TEX-18).
 fn holds_double(unit: &PlannedUnit, channel: usize) -> bool {
     match (unit.format, channel) {
-        (TextureFormat::R16B16, 3) => unit.signed_lane(0),
-        (TextureFormat::R16B16, 1) => unit.signed_lane(1),
-        (TextureFormat::Y16, 1) => unit.signed_lane(0),
+        (TextureFormat::R16B16 | TextureFormat::Y16, 3) => unit.signed_lane(0),
+        (TextureFormat::R16B16 | TextureFormat::Y16, 1) => unit.signed_lane(1),
         (TextureFormat::R16B16 | TextureFormat::Y16, _) => false,
         (_, channel) => unit.state.signed[channel],
     }

@@ -24,7 +24,7 @@ impl Number for f64 {
 /// Three numbers: coordinates, a remapped colour, a vector.
 pub type Vector<N> = [N; 3];
 
-/// TSH-1 to TSH-3: the bytes R, G, B, A of a colour as three fractions, numerator and denominator. All numerators and denominators have at most
+/// TSH-1, TSH-2 and TSH-3: the bytes R, G, B, A of a colour as three fractions, numerator and denominator. All numerators and denominators have at most
 /// 24 bits.
 pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
     let [r, g, b, a] = bytes;

@@ -50,20 +50,18 @@ impl PlannedUnit {
         matches!(self.format, TextureFormat::R16B16 | TextureFormat::Y16)
     }
 
-    /// Lanes that anybody reads, bit n lane n: channels R, G, B, A; of R16B16 the high and the low half, of Y16 the one there is.
+    /// Lanes that anybody reads, bit n lane n: channels R, G, B, A, or the high and the low half.
     pub fn live_lanes(&self) -> u8 {
         let any = |channels: u8| u8::from(self.live & channels != 0);
-        match self.format {
-            TextureFormat::R16B16 => any(1 | 8) | any(2 | 4) << 1,
-            TextureFormat::Y16 => any(2 | 4),
-            _ => self.live,
-        }
+        if self.is_wide() { any(1 | 8) | any(2 | 4) << 1 } else { self.live }
     }
 
-    /// Whether a lane is two's complement (TEX-18): of R16B16 by the flags of A (high) and G (low), of Y16 by that of G.
+    /// Whether a lane is two's complement (TEX-18): halves by the flags of A (high) and G (low). The high half of Y16, which is constant,
+    /// never is.
     pub fn signed_lane(&self, lane: usize) -> bool {
         match (self.format, lane) {
             (TextureFormat::R16B16, 0) => self.state.signed[3],
+            (TextureFormat::Y16, 0) => false,
             (TextureFormat::R16B16 | TextureFormat::Y16, _) => self.state.signed[1],
             (_, lane) => self.state.signed[lane],
         }
@@ -189,10 +187,16 @@ pub fn compressed_rule(unit: &PlannedUnit) -> Rule {
     }
 }
 
-/// The halves of a texel of a format that is filtered at 16 bits; those of a border colour are its bytes, A and R, G and B.
+/// The halves of a texel of a format that is filtered at 16 bits. The high half of Y16 is 255 in both bytes; those of a border colour are
+/// its bytes, A and R, G and B, whatever the format.
 pub fn halves(format: TextureFormat, texel: &Texel) -> [u32; 2] {
     let (high, low) = (texel.word >> 16, texel.word & 0xffff);
-    if format == TextureFormat::Y16 { [low, 0] } else { [high, low] }
+    if has_no_high_half(format, texel) { [0xffff, low] } else { [high, low] }
+}
+
+/// Whether the high half of a texel is not stored but constant.
+pub fn has_no_high_half(format: TextureFormat, texel: &Texel) -> bool {
+    format == TextureFormat::Y16 && texel.at.is_some()
 }
 
 fn compressed_lanes<L: Lane>(decoded: &compressed::Decoded, signed: &[bool; 4]) -> [L; 4] {

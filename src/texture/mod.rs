@@ -16,4 +16,5 @@ pub mod report;
 pub mod shader;
 mod shader_report;
 pub mod show;
+pub mod stage;
 pub mod unit;

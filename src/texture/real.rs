@@ -23,18 +23,15 @@ impl RealColor {
     }
 
     /// The colour that registers hold, in steps of 1/255. `doubled` channels stand for a signed byte s as s/128 (TEX-18). Of a unit that
-    /// filters halves (`wide`), the high bytes' registers stand for whole halves: both halves (`true`), or only G B.
-    pub fn of_registers(registers: [f64; 4], doubled: [bool; 4], wide: Option<bool>) -> RealColor {
+    /// filters halves (`wide`), the high bytes' registers stand for whole halves.
+    pub fn of_registers(registers: [f64; 4], doubled: [bool; 4], wide: bool) -> RealColor {
         let part = |n: usize, signed: f64, unsigned: f64| {
             let value = registers[n] / 255.0 * if doubled[n] { signed } else { unsigned };
             if value < 0.0 { value + 2.0 * signed } else { value }
         };
         let mut color = RealColor::of([0, 1, 2, 3].map(|n| part(n, 128.0, 255.0)));
-        if let Some(both) = wide {
-            color.halves[1] = part(1, 32768.0, 65535.0);
-            if both {
-                color.halves[0] = part(3, 32768.0, 65535.0);
-            }
+        if wide {
+            color.halves = [3, 1].map(|n| part(n, 32768.0, 65535.0));
         }
         color
     }
@@ -102,7 +99,7 @@ impl RealTarget {
     pub fn real(&self, face: Option<Face>) -> Real {
         match *self {
             RealTarget::Coordinates(st) => Real { face: Face::PositiveX, st },
-            RealTarget::Vector(v) if v.iter().any(|c| c.is_nan()) => real_direction([0.0; 3], face),
+            RealTarget::Vector(v) if v.iter().any(|c| !c.is_finite()) => real_direction([0.0; 3], face),
             RealTarget::Vector(v) => real_direction(v, face),
         }
     }

@@ -183,10 +183,9 @@ impl Report<'_> {
         &self,
         slice: &Slice<'_>,
         words: &[u32],
-        texel: &Texel,
+        (texel, lanes): (&Texel, &[L; 4]),
         index: [(&str, i64); 2],
         suffix: &str,
-        lanes: &[L; 4],
         observer: &mut O,
     ) {
         let block = self.block();
@@ -211,8 +210,11 @@ impl Report<'_> {
             let letter = self.lane(lane);
             let mut inputs = vec![plain(texel_name("word"), i64::from(word))];
             let operation = if self.unit.is_wide() {
-                let low = lane == 1 || self.unit.format == TextureFormat::Y16;
-                match (low, signed) {
+                match (lane == 1, signed) {
+                    (false, false) if fetch::has_no_high_half(self.unit.format, texel) => {
+                        inputs.clear();
+                        "constant_65535"
+                    }
                     (false, false) => "high_half",
                     (false, true) => "high_half_signed",
                     (true, false) => "low_half",
@@ -348,17 +350,10 @@ impl Report<'_> {
         observer.step(report::register_step(&self.block(), rule, name, register).by(operation, inputs));
     }
 
-    /// A channel of the register that the format does not have.
-    pub(super) fn whole<L: Lane, O: Observer>(&self, channel: usize, register: L, observer: &mut O) {
-        let name = format!("texture{}.{}", self.unit.index, channel_name(channel));
-        observer.step(report::register_step(&self.block(), "TEX-1", name, register));
-    }
-
     /// The name of a lane.
     fn lane(&self, lane: usize) -> &'static str {
         match self.unit.format {
-            TextureFormat::R16B16 => ["hi", "lo", "", ""][lane],
-            TextureFormat::Y16 => "y",
+            TextureFormat::R16B16 | TextureFormat::Y16 => ["hi", "lo", "", ""][lane],
             _ => channel_name(lane),
         }
     }

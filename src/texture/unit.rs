@@ -166,7 +166,7 @@ fn sample_level<L: Lane, O: Observer>(
             let texel = slice.texel(image.words, x, y);
             let channels = lanes::<L, O>(unit, image, &texel, observer);
             if O::ON {
-                report.texel(slice, image.words, &texel, [("", x), ("", y)], "", &channels, observer);
+                report.texel(slice, image.words, (&texel, &channels), [("", x), ("", y)], "", observer);
             }
             channels
         }
@@ -181,7 +181,7 @@ fn sample_level<L: Lane, O: Observer>(
                 for (n, (dx, dy)) in [("0", "0"), ("1", "0"), ("0", "1"), ("1", "1")].into_iter().enumerate() {
                     let index = [(dx, x + (n & 1) as i64), (dy, y + (n >> 1) as i64)];
                     let suffix = format!("{dx}{dy}");
-                    report.texel(slice, image.words, &texels[n], index, &suffix, &channels[n], observer);
+                    report.texel(slice, image.words, (&texels[n], &channels[n]), index, &suffix, observer);
                 }
             }
             mix(report, channels, weights, observer)
@@ -296,11 +296,7 @@ fn load_halves<L: Lane, O: Observer>(halves: [L; 4], from: &str, report: &Report
     let unit = report.unit;
     let mut register = [L::ONE; 4];
     // Channel, lane, and whether it is the high byte.
-    let bytes: &[(usize, usize, bool)] = match unit.format {
-        TextureFormat::Y16 => &[(1, 0, true), (2, 0, false)],
-        _ => &[(0, 0, false), (1, 1, true), (2, 1, false), (3, 0, true)],
-    };
-    for &(channel, lane, high) in bytes {
+    for (channel, lane, high) in [(0, 0, false), (1, 1, true), (2, 1, false), (3, 0, true)] {
         if unit.live >> channel & 1 != 0 {
             let signed = unit.signed_lane(lane);
             let byte = byte_of_half(halves[lane], high, signed);
@@ -309,11 +305,6 @@ fn load_halves<L: Lane, O: Observer>(halves: [L; 4], from: &str, report: &Report
             if O::ON {
                 report.byte_of_half(from, (channel, lane, high), halves[lane], register[channel], observer);
             }
-        }
-    }
-    if O::ON {
-        for channel in (0..4).filter(|c| unit.live >> c & 1 != 0 && !bytes.iter().any(|b| b.0 == *c)) {
-            report.whole(channel, register[channel], observer);
         }
     }
     register

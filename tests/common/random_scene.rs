@@ -258,10 +258,19 @@ fn fog(c: &mut Choices<'_>, profile: Profile) -> Fog {
     let mut c = c.part(16);
     let (enabled, color) = (c.once_in(2), [c.byte(), c.byte(), c.byte()]);
     let possible = FOG_FUNCTIONS && profile == Profile::Nv2a;
+    let extreme = c.once_in(12);
     let function = (possible && c.below(3) != 0).then(|| FogFunction {
         mode: c.any(),
-        p0: if c.once_in(2) { c.between(0.0, 3.0) } else { c.pick(&[1.5, 2.0, 1.0, 0.0, -1.0, 2.5]) },
-        p1: if c.once_in(2) { c.between(-1.0, 1.0) } else { c.pick(&[-0.125, -1.0, 0.25, 0.0, -0.090_168_44, 1e-9]) },
+        p0: match c.below(2) {
+            _ if extreme => c.pick(&[1e30, -1e30, -100.0, 1e-30, 1.5, -1.5, -65535.0, -1e5]),
+            0 => c.between(0.0, 3.0),
+            _ => c.pick(&[1.5, 2.0, 1.0, 0.0, -1.0, 2.5]),
+        },
+        p1: match c.below(2) {
+            _ if extreme => c.pick(&[1e30, -1e30, 1e-30, -1e-30, 1e5, -1e5]),
+            0 => c.between(-1.0, 1.0),
+            _ => c.pick(&[-0.125, -1.0, 0.25, 0.0, -0.090_168_44, 1e-9]),
+        },
     });
     Fog { enabled, color, function }
 }
@@ -444,7 +453,7 @@ fn color(c: &mut Choices<'_>, style: u32) -> VertexColor {
 
 /// s, t, r, q.
 fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
-    let mut c = c.part(5);
+    let mut c = c.part(8);
     let (x, y) = (x.clamp(-256.0, 256.0), y.clamp(-256.0, 256.0));
     let one_to_one = [x / 16.0, y / 16.0, 0.0, 1.0];
     match style {
@@ -481,7 +490,9 @@ fn coordinates(c: &mut Choices<'_>, style: u32, [x, y]: [f32; 2]) -> [f32; 4] {
             let mut out =
                 [c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-0.25, 0.25), c.between(-1.0, 1.0)];
             out[row] = c.pick(&[1.0, -1.0, 0.5]);
-            out
+            // So large, or so small, that the dot unit overflows; still the same for a whole triangle now and then.
+            let scale = c.pick(&[1.0, 1.0, 1.0, 1.0, 1.0, 1e-25, 300.0, 1e20]);
+            out.map(|x| x * scale)
         }
     }
 }

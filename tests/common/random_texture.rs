@@ -64,10 +64,13 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
 
 /// A render target as a texture.
 pub(super) fn view(c: &mut Choices<'_>, profile: Profile, n: usize, target: &Target) -> Option<Texture> {
-    let mut c = c.part(2);
+    let mut c = c.part(3);
+    if c.once_in(2) {
+        return None;
+    }
     let squares = target.width.is_power_of_two() && target.height.is_power_of_two();
     let small = target.width.max(target.height) <= 48;
-    let even = profile == Profile::Nv2a || target.width % 2 == 0;
+    let even = profile == Profile::Nv2a || target.width.is_multiple_of(2);
     let kind = if squares && c.below(3) != 0 { TextureKind::TwoDimensional } else { TextureKind::Rectangle };
     let fitting: Vec<TextureFormat> = formats(profile, kind)
         .into_iter()
@@ -226,7 +229,7 @@ fn unit(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize]) -> TextureUnit
         },
         min_lod: if limited { min_lod } else { 0 },
         max_lod: if limited { min_lod + reach } else { 4095 },
-        border_color: if given.textures[texture].format == TextureFormat::Y16 { [255; 4] } else { c.bytes() },
+        border_color: c.bytes(),
         signed: std::array::from_fn(|_| nv2a && c.once_in(5)),
         ..TextureUnit::new(texture)
     }

@@ -361,6 +361,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "read_surface" => byte(surface(&inputs[1].0, v(0), &inputs[2].0)?),
         "constant_0" => byte(0),
         "constant_255" => byte(255),
+        "constant_65535" => sixteen_bits(0xffff),
         "invert_255" => byte(255 - v(0)),
         "saturate_factor" => byte(v(0).min(255 - v(1))),
         "blend_add" => nearest_255(add(times(n(0), n(2)), times(n(1), n(3)))),
@@ -420,7 +421,7 @@ fn power_of_two(m: i128, e: i128) -> Number {
     let bits = 128 - i128::from(m.unsigned_abs().leading_zeros()) + e;
     let x = match m.signum() {
         0 => 0,
-        sign if bits > 6 => sign * 64 << 110,
+        sign if bits > 6 => (sign * 64) << 110,
         _ if e + 110 >= 0 => m << (e + 110),
         _ => m >> (-e - 110).min(127),
     };
@@ -430,7 +431,7 @@ fn power_of_two(m: i128, e: i128) -> Number {
     let times = |a: u128, b: u128| {
         let (high, low) = (a >> 55, a & ((1 << 55) - 1));
         let (b1, b0) = (b >> 55, b & ((1 << 55) - 1));
-        high * b1 + ((high * b0 + low * b1 + (low * b0 >> 55)) >> 55)
+        high * b1 + ((high * b0 + low * b1 + ((low * b0) >> 55)) >> 55)
     };
     let t = times(fraction, 0x58b9_0bfb_e8e7_bcd5_e4f1_d9cc_01f9_7b57 >> 17);
     let (mut term, mut sum, mut n) = (1_u128 << 110, 0_u128, 0);
@@ -485,7 +486,7 @@ fn log2_ratio(uv: [i128; 6]) -> i128 {
     let mut mantissa = if exponent > 60 { n >> (exponent - 60) } else { n << (60 - exponent) };
     let mut log = i128::from(exponent);
     for _ in 0..7 {
-        mantissa = mantissa * mantissa >> 60;
+        mantissa = (mantissa * mantissa) >> 60;
         log *= 2;
         if mantissa >> 61 != 0 {
             mantissa >>= 1;

@@ -125,13 +125,10 @@ pub fn floor_float(inputs: &Inputs) -> i128 {
     if x.is_nan() { 0 } else { floor_scaled(x, value(inputs, 1), 8, 1 << 24) }
 }
 
-/// x, y, z; zero where something is not a number, infinity as something larger than all.
+/// x, y, z; zero where something is not a number, or infinite.
 fn vector(inputs: &Inputs) -> [f64; 3] {
     let vector = [0, 1, 2].map(|n| f64::from(single(inputs, n)));
-    if vector.iter().any(|c| c.is_nan()) {
-        return [0.0; 3];
-    }
-    vector.map(|c| c.clamp(-(2_f64.powi(128)), 2_f64.powi(128)))
+    if vector.iter().all(|c| c.is_finite()) { vector } else { [0.0; 3] }
 }
 
 pub fn face(inputs: &Inputs) -> i128 {

@@ -3,7 +3,7 @@
 use super::raster::{Sample, Setup};
 use super::real::{align, bits, floor_div, floor_sum, shift, split};
 
-/// TEX-15: 65536 texels, in 1/256 texel.
+/// TEX-15: 65536 texels, in 1/256 texel. Coordinates made by the texture shader are limited to them too.
 const LIMIT: i128 = 1 << 24;
 
 /// m 2^e.
@@ -118,7 +118,7 @@ impl Place {
             Place::Moved(set, by) => (0, [0, 1].map(|a| moved(setup, sample, *set, a, by[a], size[a]))),
             Place::Direction(set) => direction(setup, sample, setup.three(*set, [0, 1, 2]), size[0]),
             Place::Bytes(v, whole) => (0, [0, 1].map(|a| floor_div(256 * i128::from(size[a]) * v[a], *whole).0)),
-            Place::Floats(f) => (0, [0, 1].map(|a| floor_float(f[a], 256 * i128::from(size[a])))),
+            Place::Floats(f) => (0, [0, 1].map(|a| floor_float(f[a], 256 * i128::from(size[a])).clamp(-LIMIT, LIMIT))),
             Place::Vector(v) => {
                 let Some(face) = vector_face(*v) else { return (0, [0, 0]) };
                 let p = vector_on(*v, face);
@@ -218,7 +218,7 @@ fn moved_by(total: i128, d: i128, by: i128) -> Option<i128> {
 fn moved(setup: &Setup, sample: &Sample, set: usize, axis: usize, by: Exact, size: u32) -> i128 {
     let g = setup.plane(setup.component(set, axis), size);
     let (total, by) = (Setup::total(sample, g), offset(by, size));
-    let u = moved_by(total, sample.d, by).unwrap_or(0);
+    let u = moved_by(total, sample.d, by).unwrap_or(0).clamp(-LIMIT, LIMIT);
     let (rest, down) = (total.rem_euclid(sample.d), sample.d << 24);
     let tie = ((rest << 24) + (by & 0xff_ffff) * sample.d) % down == 0;
     if tie && setup.lean(sample, g) > 0 { u - 1 } else { u }
@@ -269,11 +269,10 @@ fn floor_float(f: f32, scale: i128) -> i128 {
 /// TEX-9 to TEX-11: the lod of a quad in 1/256, before bias and limits, from the coordinates of its top left, right and lower pixel.
 pub fn lod(corners: [Option<[i128; 2]>; 3]) -> i128 {
     const LEAST: i128 = -32768;
-    let [Some(left), Some(right), Some(lower)] = corners else { return LEAST };
-    let square = |to: [i128; 2]| -> u128 {
-        // Beyond 2^60 every limit is passed.
-        (0..2).map(|a| (to[a] - left[a]).unsigned_abs().min(1 << 60).pow(2)).sum()
-    };
+    // Coordinates beyond 2^44 texels are as far away as any.
+    let limited = corners.map(|c| c.map(|c| c.map(|c| c.clamp(-1 << 60, 1 << 60))));
+    let [Some(left), Some(right), Some(lower)] = limited else { return LEAST };
+    let square = |to: [i128; 2]| -> u128 { (0..2).map(|a| (to[a] - left[a]).unsigned_abs().pow(2)).sum() };
     let n = square(right).max(square(lower));
     debug_assert!(bits(n as i128) < 125);
     if n == 0 { LEAST } else { super::real::log2_in_128ths(n) - 128 * 32 }

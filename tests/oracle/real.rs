@@ -63,16 +63,12 @@ pub fn color_byte(c: f32) -> i128 {
 
 /// floor of the sum of all m 2^e, exactly where at most one of them is tiny beside the others; limited to +-2^100.
 pub fn floor_sum(terms: &[(i128, i32)]) -> i128 {
-    let terms: Vec<_> = terms.iter().filter(|t| t.0 != 0).collect();
-    let top = terms.iter().map(|t| t.1 + bits(t.0)).max().unwrap_or(0);
-    if top > 100 {
-        let huge = terms.iter().max_by_key(|t| t.1 + bits(t.0)).unwrap();
-        return huge.0.signum() << 100;
-    }
-    let least = terms.iter().map(|t| t.1).min().unwrap_or(0);
+    let terms = || terms.iter().filter(|t| t.0 != 0);
+    let top = terms().map(|t| t.1 + bits(t.0)).max().unwrap_or(0);
     // A finer term is floored to a step that all the others are multiples of: the sum's floor stays.
-    let base = least.max(top - 115).min(0);
-    shift(terms.iter().map(|t| shift(t.0, t.1 - base)).sum(), base)
+    let base = terms().map(|t| t.1).min().unwrap_or(0).max(top - 115);
+    let sum: i128 = terms().map(|t| shift(t.0, t.1 - base)).sum();
+    if base > 0 && bits(sum) + base > 100 { sum.signum() << 100 } else { shift(sum, base).clamp(-1 << 100, 1 << 100) }
 }
 
 /// The f32 nearest to n / d * 2^e, ties to even.

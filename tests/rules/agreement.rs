@@ -13,6 +13,9 @@ const FIELDS: [&str; 6] = ["Grade", "Formula", "Range", "Source", "Example", "Er
 /// Tests that hold ids of rules that do not exist.
 const INVENTED: [&str; 2] = ["tests/cli.rs", "tests/rules/handbook.rs"];
 
+/// Where the scenes of captured frames lie.
+const CAPTURED_SCENES: &str = "vectors/scenes/silicon/";
+
 /// The test that draws the vectors of `vectors/silicon`.
 const PROBES: &str = "tests/silicon/probes.rs";
 
@@ -218,6 +221,26 @@ fn vectors_and_rules_name_each_other() {
         let drawn = entry.references("Pinned by").iter().any(|(file, _)| file == PROBES);
         assert_eq!(drawn, !pinning.is_empty(), "{}: whether {PROBES} pins it, and whether there are vectors", entry.id);
     }
+}
+
+/// The table of `vectors/scenes/silicon/README.md` says which rules a scene of a captured frame pins, and the rules say the same.
+#[test]
+fn scenes_of_captures_and_rules_name_each_other() {
+    let mut pinned = BTreeSet::new();
+    for line in read("vectors/scenes/silicon/README.md").lines().filter(|line| line.starts_with("| `")) {
+        let scene = line.split('`').nth(1).unwrap();
+        pinned.extend(ids(line).into_iter().map(|rule| (format!("{CAPTURED_SCENES}{scene}.ron"), rule)));
+    }
+    let mut named = BTreeSet::new();
+    for entry in ENTRIES.iter() {
+        let files = entry.references("Pinned by").into_iter().map(|(file, _)| file);
+        named.extend(files.filter(|f| f.starts_with(CAPTURED_SCENES)).map(|file| (file, entry.id.clone())));
+    }
+    assert_eq!(pinned, named, "the table names the left, docs/numerics.md the right");
+    let scenes: BTreeSet<String> = pinned.into_iter().map(|(scene, _)| scene).collect();
+    let stored = files(CAPTURED_SCENES.trim_end_matches('/'), "ron").into_iter();
+    let stored = stored.map(|file| format!("{CAPTURED_SCENES}{}", file.file_name().unwrap().to_str().unwrap()));
+    assert_eq!(scenes, stored.filter(|file| !file.ends_with(".expect.ron")).collect());
 }
 
 /// The table of `vectors/silicon/README.md` says the same as the files.

@@ -3,7 +3,6 @@
 use crate::handbook::{example, read};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
-use ninebit::number::convert::factor_byte;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::{Sample, Settled, color};
 use ninebit::raster::setup::Triangle;
@@ -19,11 +18,11 @@ fn right_triangle(side: f32, w: [f32; 3], profile: Profile) -> Triangle {
 }
 
 /// The triangle that the section uses.
-fn of_the_section() -> Triangle {
+pub fn of_the_section() -> Triangle {
     right_triangle(96.0, [1.0; 3], Profile::Nv2a)
 }
 
-fn at(triangle: &Triangle, i: i64, j: i64) -> Sample<'_> {
+pub fn at(triangle: &Triangle, i: i64, j: i64) -> Sample<'_> {
     Sample::new(triangle, triangle.edges(i, j))
 }
 
@@ -97,15 +96,6 @@ fn examples_of_interpolation() {
     int4t.gives("1792 D", sample.sum(&second), 1792 * i128::from(sample.d));
     int4t.gives("S < 0", sample.truncation(&second) < 0, true);
     int4t.gives("u of (0, 1, 0)", sample.coordinate(&second), settled(1792, false));
-
-    let int5 = example(
-        "INT-5",
-        "factors (0, 1, 0.5), pixel (10, 2): 4096 (10.5 + 1.25)/96 = 501.33, v = 501, the byte is (501 - 1) >> 4 = 31 \
-         (real: 31.21).",
-    );
-    let v = at(&triangle, 10, 2).factor(&triangle.factor([0.0, 1.0, 0.5]));
-    int5.shows("4096 f", 4096.0 * 11.75 / 96.0, 2, "501.33").gives("v", v, 501);
-    int5.gives("the byte", factor_byte(v), 31).shows("the real number", 255.0 * 11.75 / 96.0, 2, "31.21");
 
     let int6 = example("INT-6", "on `Nv10` w = 1 + 2^-20 counts as 1, w = 1 + 2^-15 as itself.");
     let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p;

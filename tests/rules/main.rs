@@ -8,6 +8,7 @@ mod handbook;
 mod pixel;
 
 mod final_combiner;
+mod fog;
 mod general_stage;
 mod interpolation;
 mod numbers;

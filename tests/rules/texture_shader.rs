@@ -76,7 +76,7 @@ fn examples_of_dot_products() {
 
     let tsh3 = example(
         "TSH-3",
-        "A, R, G, B = 76, 204, 0, 0: x = 19660, unsigned 19660/65535; hemisphere 19660/32767, 0, and 13421897 / 2^24.",
+        "A, R, G, B = 76, 204, 0, 0: x = 19660, unsigned 19660/65535; hemisphere 19660/32767, 0, and 13421849 / 2^24.",
     );
     let word = 76 << 24 | 204 << 16;
     let vector = |mapping| {
@@ -85,7 +85,7 @@ fn examples_of_dot_products() {
     };
     tsh3.gives("x", 256 * 76 + 204, 19_660);
     tsh3.gives("unsigned", vector(DotMapping::Hilo1), [19_660.0 / 65_535.0, 0.0, 1.0]);
-    let third = 13_421_897.0 / (1 << 24) as f32;
+    let third = 13_421_849.0 / (1 << 24) as f32;
     tsh3.gives("hemisphere", vector(DotMapping::HiloHemisphere), [19_660.0 / 32_767.0, 0.0, third]);
 
     let tsh4 = example(
@@ -158,14 +158,14 @@ fn examples_of_moved_coordinates() {
 fn examples_of_colors() {
     let tsh8 = example(
         "TSH-8",
-        "c = 200, R = 128, scale 1.5, offset 0.1: v = floor(2740.11) = 2740, (2740 - 10) >> 4 = 170 (real: 170.59).",
+        "c = 200, R = 128, scale 1.5, offset 0.1: v = floor(2740.12) = 2740, (2740 - 10) >> 4 = 170 (real: 170.59).",
     );
     let bump = ShaderOperation::BumpEnvironment { matrix: [0.0; 4], luminance: Some([1.5, 0.1]) };
     let stages = [SAMPLE, bump].map(|operation| stage(operation, DotMapping::ZeroToOne));
     let second = texture("second", TextureKind::TwoDimensional, 1, &[0x0000_00c8]);
     let pixel = shaded(128 << 16, &stages, second, [[0.0; 4]; 4], Policies::DEFAULT);
     let real = 200.0 / 255.0 * (128.0 / 255.0 * 1.5 + f64::from(0.1_f32));
-    tsh8.shows("4096 f", 4096.0 * real, 2, "2740.11").gives("v", pixel.value("unit1.luminance.b"), 2740);
+    tsh8.shows("4096 f", 4096.0 * real, 2, "2740.12").gives("v", pixel.value("unit1.luminance.b"), 2740);
     tsh8.gives("the byte", pixel.value("texture1.b"), 170).gives("by hand", (2740 - 10) >> 4, 170);
     tsh8.shows("the real number", 255.0 * pixel.step("texture1.b").ideal.unwrap(), 2, "170.59");
 

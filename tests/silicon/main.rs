@@ -12,6 +12,7 @@ mod blend_probes;
 mod build;
 mod cases;
 mod combiner_probes;
+mod fog;
 mod frames;
 mod picture;
 mod probes;

@@ -4,6 +4,9 @@ use crate::geometry::{self, CUBES, FACES, PIXEL_OFFSET};
 use crate::textures::RADIAL;
 use std::fmt::{Display, Write};
 
+/// The colour that most of the frames are cleared to.
+const GREY: &str = "(0x20, 0x20, 0x20, 0xfe)";
+
 /// One vertex: window position, and its coordinate sets by number.
 struct Corner {
     position: Vec<f32>,
@@ -106,8 +109,8 @@ impl Sheet<'_> {
     }
 }
 
-/// T6: fifteen biases of the lod on a texture whose eight levels have a colour each.
-pub fn lod_bias() -> String {
+/// The texture of T6: eight levels, a colour each.
+fn levels() -> String {
     const COLORS: [&str; 8] = [
         "(0, 0, 255)",
         "(0, 255, 0)",
@@ -118,37 +121,73 @@ pub fn lod_bias() -> String {
         "(255, 255, 0)",
         "(128, 128, 128)",
     ];
-    const BIASES: [f32; 15] = [-15.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 15.0, -0.8, 1.2, 1.8, 2.5, 3.5];
     let level = |n: usize| {
         let (side, color) = (512 >> n, COLORS[n]);
         format!("Checker(width: {side}, height: {side}, cell: 4, colors: ({color}, (5, 5, 5)))")
     };
     let mips: String = (1..8).map(|n| format!("        {},\n", level(n))).collect();
-    let texture = format!("\"levels\": (\n    source: {},\n    mips: [\n{mips}    ],\n),", level(0));
-    let draws = BIASES.iter().enumerate().map(|(n, bias)| {
-        let (x, y) = (192.0 + 96.0 * (n % 5) as f32, [200.0, 296.0, 392.0][n / 5]);
-        let corners = rectangle([x, y], [x + 64.0, y + 64.0], &[(0, [0.0, 0.0], [1.0, 1.0])]);
-        Draw::new(&format!("bias {bias}"), &corners).line(&format!(
-            "textures: [(texture: \"levels\", address: ClampToEdge, min_filter: Linear, mag_filter: Nearest, mip_filter: Linear, \
-             lod_bias: {bias})],"
-        ))
-    });
-    let sheet = Sheet {
-        comment: "A texture of eight levels at one eighth of its size, under fifteen biases of the lod: which level, which two, and how\n\
-                  they mix (TEX-9, TEX-6).",
-        shown: 0,
-        opaque: true,
-        clear: "(0x20, 0x20, 0x20, 0xfe)",
-        depth: false,
-        textures: &[&texture],
-        draws: draws.collect(),
-    };
+    format!("\"levels\": (\n    source: {},\n    mips: [\n{mips}    ],\n),", level(0))
+}
+
+/// A square of that texture.
+fn square_of_levels(name: &str, from: [f32; 2], side: f32, bias: &str) -> Draw {
+    let corners = rectangle(from, [from[0] + side, from[1] + side], &[(0, [0.0, 0.0], [1.0, 1.0])]);
+    Draw::new(name, &corners).line(&format!(
+        "textures: [(texture: \"levels\", address: ClampToEdge, min_filter: Linear, mag_filter: Nearest, mip_filter: Linear{bias})],"
+    ))
+}
+
+fn level_scene(comment: &str, draws: Vec<Draw>) -> String {
+    let sheet = Sheet { comment, shown: 0, opaque: true, clear: GREY, depth: false, textures: &[&levels()], draws };
     sheet.text()
+}
+
+/// T6: fifteen biases of the lod.
+pub fn lod_bias() -> String {
+    const BIASES: [f32; 15] = [-15.0, -4.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0, 4.0, 15.0, -0.8, 1.2, 1.8, 2.5, 3.5];
+    let draws = BIASES.iter().enumerate().map(|(n, bias)| {
+        let from = [192.0 + 96.0 * (n % 5) as f32, [200.0, 296.0, 392.0][n / 5]];
+        square_of_levels(&format!("bias {bias}"), from, 64.0, &format!(", lod_bias: {bias}"))
+    });
+    level_scene(
+        "A texture of eight levels at one eighth of its size, under fifteen biases of the lod: which level, which two, and how\n\
+         they mix (TEX-9, TEX-6).",
+        draws.collect(),
+    )
+}
+
+/// The left of the same frame: the texture at sizes from its own down to 1/128.
+pub fn nested_levels() -> String {
+    let draws = (0..8).map(|n| {
+        let side = (512 >> n) as f32;
+        square_of_levels(&format!("level {n}"), [160.0 - side, 272.0 - side / 2.0], side, "")
+    });
+    level_scene(
+        "A texture of eight levels at its own size and at every half of it down to 1/128 (TEX-9, TEX-11).",
+        draws.collect(),
+    )
+}
+
+/// T7: the nine quads of a group, 0 to 5; `sides` are s, and t, at the four lines between them.
+fn nine_quads(group: usize, sides: [f32; 4]) -> Vec<Corner> {
+    const CELL: [f64; 2] = [(5.5 - 0.2) / 9.0, (3.5 - 0.1) / 6.0];
+    let left = -2.75 + (group % 3) as f64 * ((5.5 - 0.2) / 3.0 + 0.1);
+    let top = if group < 3 { 1.75 + 0.425 + 0.1 } else { -0.2 };
+    let corner = |column: usize, row: usize| {
+        let [x, y, w] =
+            geometry::project([left + column as f64 * CELL[0], top - row as f64 * CELL[1], 1.0], PIXEL_OFFSET);
+        Corner {
+            position: vec![snapped(x), snapped(y), 0.0, w as f32],
+            sets: vec![(0, vec![sides[column], sides[row]])],
+        }
+    };
+    let cells = (0..3).flat_map(|row| (0..3).map(move |column| (column, row)));
+    let around = [(0, 0), (1, 0), (1, 1), (0, 1)];
+    cells.flat_map(|(column, row)| around.map(|(right, down)| corner(column + right, row + down))).collect()
 }
 
 /// T7: five address modes, from one texture's width before the texture to one beyond.
 pub fn border() -> String {
-    const CELL: [f64; 2] = [(5.5 - 0.2) / 9.0, (3.5 - 0.1) / 6.0];
     let groups: [(usize, &str); 5] = [
         (0, "Wrap"),
         (1, "Mirror"),
@@ -157,33 +196,33 @@ pub fn border() -> String {
         (5, "Clamp"),
     ];
     let draws = groups.iter().map(|(group, mode)| {
-        let left = -2.75 + (group % 3) as f64 * ((5.5 - 0.2) / 3.0 + 0.1);
-        let top = if *group < 3 { 1.75 + 0.425 + 0.1 } else { -0.2 };
-        let mut corners = Vec::new();
-        for (row, column) in (0..3).flat_map(|row| (0..3).map(move |column| (row, column))) {
-            let corner = |column: i32, row: i32| {
-                let at = [left + f64::from(column) * CELL[0], top - f64::from(row) * CELL[1], 1.0];
-                let [x, y, w] = geometry::project(at, PIXEL_OFFSET);
-                Corner {
-                    position: vec![snapped(x), snapped(y), 0.0, w as f32],
-                    sets: vec![(0, vec![(column - 1) as f32, (row - 1) as f32])],
-                }
-            };
-            let around = [(0, 0), (1, 0), (1, 1), (0, 1)];
-            corners.extend(around.map(|(right, down)| corner(column + right, row + down)));
-        }
-        let name = mode.split(',').next().unwrap();
-        Draw::new(name, &corners)
+        Draw::new(mode.split(',').next().unwrap(), &nine_quads(*group, [-1.0, 0.0, 1.0, 2.0]))
             .line(&format!("textures: [(texture: \"stripes\", address: {mode}, min_filter: Nearest)],"))
     });
     let sheet = Sheet {
         comment: "Address modes: nine quads each, which together show a texture from -1 to 2 along both sides (TEX-7).",
         shown: 0,
         opaque: false,
-        clear: "(0x20, 0x20, 0x20, 0xfe)",
+        clear: GREY,
         depth: false,
         textures: &["\"stripes\": (source: File(\"textures/stripes.png\")),"],
         draws: draws.collect(),
+    };
+    sheet.text()
+}
+
+/// The sixth group of the same frame: a border of texels.
+pub fn border_texels() -> String {
+    let draw = Draw::new("border texels", &nine_quads(4, [-0.125, 0.0, 1.0, 1.125]))
+        .line("textures: [(texture: \"stripes\", address: ClampToBorder, min_filter: Nearest)],");
+    let sheet = Sheet {
+        comment: "A texture with border texels: nine quads, the outer ones four texels wide (TEX-7).",
+        shown: 0,
+        opaque: false,
+        clear: GREY,
+        depth: false,
+        textures: &["\"stripes\": (border: true, source: File(\"textures/bordered-stripes.png\")),"],
+        draws: vec![draw],
     };
     sheet.text()
 }
@@ -261,7 +300,7 @@ pub fn dot_cube() -> String {
         .map(|(face, (name, _))| format!("    {face}: File(\"textures/radial-{name}.png\"),\n"))
         .collect();
     let texture = format!("\"radial\": (kind: Cube, source: Faces(\n{faces})),");
-    let rows = CUBES.map(|cube| cube.from_window());
+    let rows = CUBES.map(|cube| cube.window_to_object());
     let line = "textures: [(texture: \"normals\", address: ClampToEdge, min_filter: Nearest), Unbound, Unbound, (texture: \"radial\", \
                 min_filter: Nearest)],\n            texture_shader: [\n                Sample,\n                (operation: \
                 DotProduct, mapping: MinusOneToOneGl),\n                (operation: DotProduct, previous: 0, mapping: \
@@ -380,7 +419,7 @@ pub fn bump_signs() -> String {
                   complement it runs from the largest number to the smallest (TEX-18). What moves the squares is signed either way (TSH-7).",
         shown: 1,
         opaque: false,
-        clear: "(0x20, 0x20, 0x20, 0xfe)",
+        clear: GREY,
         depth: false,
         textures: &[
             "\"step\": (format: G8B8, source: File(\"textures/step.png\")),",

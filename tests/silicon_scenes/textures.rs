@@ -47,7 +47,20 @@ pub fn stripes() -> Picture {
     Picture::of(32, 32, |x, y| {
         let n = (x / 2 + y / 2) as usize % 8;
         let [r, g, b] = COLORS[n / 2];
-        [r, g, b, if n % 2 == 0 { 255 } else { 0x66 }]
+        [r, g, b, if n.is_multiple_of(2) { 255 } else { 0x66 }]
+    })
+}
+
+/// The same with red and blue exchanged, within a checkered border of four texels on each side.
+pub fn bordered_stripes() -> Picture {
+    let inside = stripes();
+    Picture::of(40, 40, |x, y| match (x.checked_sub(4), y.checked_sub(4)) {
+        (Some(x), Some(y)) if x < 32 && y < 32 => {
+            let [r, g, b, a] = inside.pixels[(y * 32 + x) as usize];
+            [b, g, r, a]
+        }
+        _ if (x / 2 + y / 2) % 2 == 0 => [204, 204, 204, 255],
+        _ => [68, 68, 68, 255],
     })
 }
 
@@ -81,6 +94,7 @@ pub fn pictures() -> Vec<(String, Picture)> {
         ("gradient-256".to_string(), gradient(256, 256)),
         ("four-gradients".to_string(), four_gradients()),
         ("stripes".to_string(), stripes()),
+        ("bordered-stripes".to_string(), bordered_stripes()),
         ("step".to_string(), step()),
     ];
     for (name, mask) in RADIAL {

@@ -11,6 +11,9 @@ use crate::state::{
     Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
     Topology, VertexColor, Viewport,
 };
+use crate::vertex::fog::{FogSource, vertex_factor};
+use crate::vertex::texgen::CoordinateSet;
+use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows};
 
 /// Reads the draws, with their places.
 pub(super) fn draws<'a>(
@@ -86,6 +89,61 @@ struct Geometry {
     spans: VertexSpans,
     /// Of a mesh.
     triangles: Option<Vec<u32>>,
+    /// What generated coordinates and fog start from.
+    objects: Vec<ObjectVertex>,
+    model_view: Rows,
+}
+
+/// Generated texture coordinates, texture matrices and fog, into the vertices. False once a finding has been recorded.
+fn vertex_side(
+    reader: &mut Reader<'_>,
+    geometry: &mut Geometry,
+    sets: &Option<[CoordinateSet; 4]>,
+    fog: &fog::FogFields,
+    draw: &Range<usize>,
+) -> bool {
+    if sets.is_none() && fog.function.is_none() {
+        return true;
+    }
+    let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone() };
+    if let (Some(_), FogSource::Vertex, Some(_)) = (&fog.function, fog.source, &geometry.triangles) {
+        reader.push(
+            Diagnostic::error("NB0222", fog.place.clone(), "the vertices of a mesh give no fog coordinates")
+                .label("needs them from the vertices")
+                .rule("INT-5")
+                .help("add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices"),
+        );
+        return false;
+    }
+    let model_view = ModelView::new(&geometry.model_view);
+    for (index, (vertex, object)) in geometry.vertices.iter_mut().zip(&geometry.objects).enumerate() {
+        let eye = EyeVertex::new(object, &model_view);
+        if let Some(sets) = sets {
+            let given = vertex.texture_coordinates;
+            vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
+        }
+        if let Some(function) = &fog.function {
+            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye);
+            if reader.profile == Profile::Nv10 && vertex.fog.is_finite() {
+                vertex.fog = vertex_factor(function, vertex.fog);
+            }
+        }
+        let what = if !vertex.fog.is_finite() {
+            "the fog coordinate"
+        } else if !vertex.texture_coordinates.iter().flatten().all(|c| c.is_finite()) {
+            "a texture coordinate"
+        } else {
+            continue;
+        };
+        reader.push(
+            Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
+                .label("beyond all numbers")
+                .rule("TSH-11")
+                .help("use smaller numbers in the matrices, in the planes or in the position"),
+        );
+        return false;
+    }
+    true
 }
 
 #[expect(clippy::too_many_arguments, reason = "a draw can refer to everything")]
@@ -103,11 +161,16 @@ fn draw<'a>(
         Some(raw) => targets.find(reader, raw),
         None => Some(0),
     };
-    reader.reserve(&fields.texgen, "texture coordinate generation");
-    reader.reserve(&fields.texture_matrices, "texture matrices");
     reader.reserve(&fields.truth, "the draw's truth (light, viewer, material)");
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
-    let geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
+    let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
+    let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
+    let fog = fog::fog(reader, names, &fields.fog);
+    if let Some(made) = &mut geometry
+        && !vertex_side(reader, made, &sets, &fog, &header.place)
+    {
+        geometry = None;
+    }
     let mut units = unit::units(reader, names, textures, &fields.textures);
     shader::shader(reader, textures, &mut units, &fields.texture_shader);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
@@ -129,7 +192,7 @@ fn draw<'a>(
         cull: reader.name_or(&fields.cull, Cull::None),
         front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
         scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
-        fog: raster::fog(reader, names, &fields.fog),
+        fog: fog.state(reader.profile),
         textures: units.bound,
         texture_shader: units.shader,
         combiners,
@@ -256,6 +319,8 @@ fn geometry<'a>(
                 vertices: data.vertices.clone(),
                 spans: data.spans.clone(),
                 triangles: None,
+                objects: listed(&data),
+                model_view: matrix::IDENTITY,
             })
         }
         1 => matrix_geometry(reader, names, targets, target, rest),
@@ -277,9 +342,13 @@ fn matrix_geometry<'a>(
     let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
     let matrix = reader.required(&fields.matrix, "matrix", "vertex source", opening.clone());
     let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
+    let model_view = match &fields.model_view {
+        Some(raw) => names.matrix(reader, raw),
+        None => Some(matrix::IDENTITY),
+    };
     let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
     let viewport = viewport(reader, &fields.viewport, size);
-    let (mut vertices, spans, triangles) = match (&fields.vertices, &fields.mesh) {
+    let (mut vertices, spans, triangles, objects) = match (&fields.vertices, &fields.mesh) {
         (Some(raw), None) => {
             let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
             if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
@@ -290,14 +359,20 @@ fn matrix_geometry<'a>(
                 );
             }
             let data = names.vertices(reader, raw)?;
-            (data.vertices.clone(), data.spans.clone(), None)
+            (data.vertices.clone(), data.spans.clone(), None, listed(&data))
         }
         (None, Some(raw)) => {
             let mesh = names.mesh(reader, raw);
             let outputs = outputs(reader, names, &fields);
             let mesh = mesh?;
             let vertices = attribute::vertices(&mesh, &outputs);
-            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()))
+            let object = |(vertex, normal): (&crate::state::Vertex, &[f32; 3])| ObjectVertex {
+                position: vertex.position,
+                normal: *normal,
+                fog_coordinate: 0.0,
+            };
+            let objects = vertices.iter().zip(&mesh.normals).map(object).collect();
+            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()), objects)
         }
         (both, _) => {
             let (code, message) = match both {
@@ -312,9 +387,9 @@ fn matrix_geometry<'a>(
             return None;
         }
     };
-    let matrix = matrix?;
+    let (matrix, model_view) = (matrix?, model_view?);
     for vertex in &mut vertices {
-        vertex.position = matrix::transform(&matrix, vertex.position);
+        vertex.position = crate::vertex::transform(&matrix, vertex.position);
     }
     if let Some(bad) = vertices.iter().position(|vertex| !vertex.position.iter().all(|value| value.is_finite())) {
         let spans = DrawSpans { draw: opening, vertices: spans };
@@ -326,7 +401,17 @@ fn matrix_geometry<'a>(
         );
         return None;
     }
-    Some(Geometry { positions: Positions::Clip(viewport), vertices, spans, triangles })
+    Some(Geometry { positions: Positions::Clip(viewport), vertices, spans, triangles, objects, model_view })
+}
+
+/// Listed vertices as the vertex side takes them.
+fn listed(data: &vertex::VertexData) -> Vec<ObjectVertex> {
+    let object = |(vertex, extra): (&crate::state::Vertex, &vertex::Extra)| ObjectVertex {
+        position: vertex.position,
+        normal: extra.normal,
+        fog_coordinate: extra.fog_coordinate,
+    };
+    data.vertices.iter().zip(&data.extras).map(object).collect()
 }
 
 fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::MatrixVertices<'a>) -> Outputs {

@@ -4,11 +4,13 @@
     reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
 )]
 
-use super::names::{Rows, Table};
+use super::names::Table;
 use super::*;
 use crate::scene::raw::{Numbers, Tuple};
+use crate::vertex::Rows;
 
-const IDENTITY: Rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+pub(super) const IDENTITY: Rows =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
 
 /// Deepest product of products: each level reads its text again.
 const DEEPEST: usize = 16;
@@ -111,11 +113,6 @@ fn multiply(a: &Rows, b: &Rows) -> Rows {
         }
     }
     result
-}
-
-/// M p.
-pub(super) fn transform(matrix: &Rows, p: [f32; 4]) -> [f32; 4] {
-    matrix.map(|row| row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * p[3])
 }
 
 /// The rotation of a quaternion of any length but zero.

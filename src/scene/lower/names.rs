@@ -11,6 +11,7 @@ use super::*;
 use crate::scene::mesh::Mesh;
 use crate::scene::reader::Entry;
 use crate::state::{Blend, VertexColor};
+use crate::vertex::Rows;
 
 /// Longest chain of names that stand for names.
 const LONGEST_CHAIN: usize = 32;
@@ -126,9 +127,6 @@ pub(super) fn unused(what: &str, name: &str, place: Range<usize>) -> Diagnostic 
         .label("nothing refers to it")
         .help("remove it, or check the spelling where it was meant to be used")
 }
-
-/// Four rows of a matrix.
-pub(super) type Rows = [[f32; 4]; 4];
 
 /// All tables.
 pub(super) struct Names<'a> {

@@ -5,7 +5,7 @@ use super::target::Targets;
 use super::*;
 use crate::scene::raw::Tuple;
 use crate::state::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Fog, Rectangle, SurfaceFormat,
+    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle, SurfaceFormat,
 };
 
 /// Reads a blend function.
@@ -123,21 +123,6 @@ pub(super) fn four_flags<'a>(
         *flag = reader.read(part).unwrap_or(default);
     }
     flags
-}
-
-/// Reads the fog state.
-pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<Raw<'a, source::Fog<'a>>>) -> Fog {
-    let mut fog = Fog { enabled: false, color: [0; 3], function: None };
-    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return fog };
-    fog.enabled = reader.or(&fields.enabled, true);
-    let [r, g, b, _] = color::constant_or(reader, names, &fields.color, [0; 4]);
-    fog.color = [r, g, b];
-    reader.reserve(&fields.mode, "fog functions");
-    reader.reserve(&fields.density, "fog functions");
-    reader.reserve(&fields.start, "fog functions");
-    reader.reserve(&fields.end, "fog functions");
-    reader.reserve(&fields.coordinate_source, "fog coordinates");
-    fog
 }
 
 /// Reads the scissor: a part of the target.

@@ -277,7 +277,7 @@ fn of_target<'a>(
     }
     let own = target.format.texture_format();
     let (format, format_place) = match format {
-        Some((format, place)) if format == TextureFormat::P8 => {
+        Some((TextureFormat::P8, place)) => {
             reader.push(
                 Diagnostic::error("NB0232", place, "a render target does not hold indices of a palette")
                     .label("does not go with `Target`")

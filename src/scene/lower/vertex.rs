@@ -8,7 +8,16 @@ use crate::state::{Vertex, VertexColor};
 /// Vertices and where each stands.
 pub(super) struct VertexData {
     pub(super) vertices: Vec<Vertex>,
+    /// What they bring for generated coordinates and fog: normal and fog coordinate.
+    pub(super) extras: Vec<Extra>,
     pub(super) spans: VertexSpans,
+}
+
+/// What only the vertex side looks at.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Extra {
+    pub(super) normal: [f32; 3],
+    pub(super) fog_coordinate: f32,
 }
 
 /// Reads a list of vertices. Findings do not end it: the list keeps its length, so that indices can be checked.
@@ -23,12 +32,15 @@ pub(super) fn list<'a>(
         return None;
     }
     let mut vertices = Vec::with_capacity(list.len());
+    let mut extras = Vec::with_capacity(list.len());
     let mut spans = Vec::with_capacity(list.len());
     for raw in &list {
-        vertices.push(vertex(reader, names, raw).unwrap_or_default());
+        let (vertex, extra) = vertex(reader, names, raw).unwrap_or_default();
+        vertices.push(vertex);
+        extras.push(extra);
         spans.push(reader.span(raw));
     }
-    Some(VertexData { vertices, spans: VertexSpans::Each(spans) })
+    Some(VertexData { vertices, extras, spans: VertexSpans::Each(spans) })
 }
 
 /// The finding that the scene has more vertices than it may.
@@ -38,7 +50,11 @@ pub(super) fn too_many(place: Range<usize>, count: usize, limit: usize) -> Diagn
         .help("use indices to share vertices, or split the scene; `ninebit limits` prints what is allowed")
 }
 
-fn vertex<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::Vertex<'a>>) -> Option<Vertex> {
+fn vertex<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::Vertex<'a>>,
+) -> Option<(Vertex, Extra)> {
     let place = reader.span(raw);
     let fields = reader.read(raw)?;
     let mut vertex = Vertex::default();
@@ -57,7 +73,15 @@ fn vertex<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::
     if let Some(fog) = &fields.fog {
         vertex.fog = fog_factor(reader, fog).unwrap_or(vertex.fog);
     }
-    reader.reserve(&fields.fog_coordinate, "fog coordinates");
+    let mut extra = Extra::default();
+    if let Some(raw) = &fields.fog_coordinate {
+        extra.fog_coordinate = reader.finite(raw).unwrap_or(0.0);
+    }
+    if let Some(raw) = &fields.normal
+        && let Some([x, y, z, _]) = reader.numbers(raw, "a normal", 3, 3, [0.0; 4])
+    {
+        extra.normal = [x, y, z];
+    }
     for (set, field) in vertex.texture_coordinates.iter_mut().zip([&fields.t0, &fields.t1, &fields.t2, &fields.t3]) {
         if let Some(raw) = field
             && let Some(values) = coordinates(reader, raw)
@@ -65,7 +89,7 @@ fn vertex<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::
             *set = values;
         }
     }
-    Some(vertex)
+    Some((vertex, extra))
 }
 
 /// One to four texture coordinates s, t, r, q.

@@ -20,7 +20,7 @@ impl<'a> Sources<'_, 'a> {
             maximum_decoded_bytes: self.left,
             maximum_file_bytes: reader.limits.image_file_bytes,
         };
-        let contents = self.from_file(reader, &raw, |path| image::open(path, &limits))?;
+        let contents = self.read_file(reader, &raw, |path| image::open(path, &limits))?;
         let place = reader.span(&raw);
         let dds = match contents {
             Contents::Picture(image) => {
@@ -62,7 +62,7 @@ impl<'a> Sources<'_, 'a> {
         let words = u64::from(request.faces) * face as u64;
         self.afford(reader, place.clone(), words)?;
         let limit = reader.limits.image_file_bytes;
-        let bytes = self.from_file(reader, &file, |path| image::read(path, limit))?;
+        let bytes = self.read_file(reader, &file, |path| image::read(path, limit))?;
         let expected = words * u64::from(format.bytes().min(4));
         if bytes.len() as u64 != expected {
             let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
@@ -86,7 +86,7 @@ impl<'a> Sources<'_, 'a> {
     }
 
     /// Finds the file of that name and does something with it.
-    fn from_file<T>(
+    fn read_file<T>(
         &mut self,
         reader: &mut Reader<'a>,
         raw: &Raw<'a, String>,

@@ -1,0 +1,115 @@
+//! The fog of a draw: its colour, its function, and where the function's coordinate comes from.
+
+use super::names::Names;
+use super::*;
+use crate::state::{Fog, FogFunction, FogMode, Named};
+use crate::vertex::fog::{FogSource, exponential, linear};
+
+/// Fog as it was written.
+pub(super) struct FogFields {
+    enabled: bool,
+    color: [u8; 3],
+    /// None: the vertices give factors.
+    pub(super) function: Option<FogFunction>,
+    /// Of the function's coordinate.
+    pub(super) source: FogSource,
+    /// Where the function stands in the text.
+    pub(super) place: Range<usize>,
+}
+
+impl FogFields {
+    /// The state of the pixel pipe: on nv10 the vertices have been through the function (INT-5n).
+    pub(super) fn state(&self, profile: Profile) -> Fog {
+        let function = self.function.filter(|_| profile == Profile::Nv2a);
+        Fog { enabled: self.enabled, color: self.color, function }
+    }
+}
+
+/// Reads the fog of a draw.
+pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<Raw<'a, source::Fog<'a>>>) -> FogFields {
+    let mut fog = FogFields { enabled: false, color: [0; 3], function: None, source: FogSource::Vertex, place: 0..0 };
+    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return fog };
+    fog.enabled = reader.or(&fields.enabled, true);
+    let [r, g, b, _] = color::constant_or(reader, names, &fields.color, [0; 4]);
+    fog.color = [r, g, b];
+    let Some(raw) = &fields.mode else {
+        let numbers = [(&fields.start, "start"), (&fields.end, "end"), (&fields.density, "density")];
+        let mut given = numbers.iter().filter_map(|(field, name)| Some((reader.span(field.as_ref()?), *name)));
+        let given = given
+            .next()
+            .or_else(|| fields.parameters.as_ref().map(|raw| (reader.span(raw), "parameters")))
+            .or_else(|| fields.coordinate_source.as_ref().map(|raw| (reader.span(raw), "coordinate_source")));
+        if let Some((place, name)) = given {
+            reader.push(
+                Diagnostic::error("NB0223", place, format!("`{name}` says nothing without a `mode`"))
+                    .label("belongs to a fog function")
+                    .help("add `mode: Linear` (or Exp, Exp2); without a mode the vertices give factors in `fog`"),
+            );
+        }
+        return fog;
+    };
+    fog.place = reader.span(raw);
+    fog.source = reader.name_or(&fields.coordinate_source, FogSource::Vertex);
+    if let Some(mode) = reader.name(raw) {
+        if mode == FogMode::LinearAbs && reader.profile == Profile::Nv10 {
+            reader.push(target::only_nv2a("NB0324", fog.place.clone(), "fog mode LinearAbs", "INT-5n"));
+        }
+        fog.function = function(reader, &fields, mode, &fog.place);
+    }
+    fog
+}
+
+/// The parameters of a mode: as they are, or of the usual range or density.
+fn function<'a>(
+    reader: &mut Reader<'a>,
+    fields: &source::Fog<'a>,
+    mode: FogMode,
+    place: &Range<usize>,
+) -> Option<FogFunction> {
+    let straight = matches!(mode, FogMode::Linear | FogMode::LinearAbs);
+    let numbers = [(&fields.start, "start"), (&fields.end, "end"), (&fields.density, "density")];
+    let (fitting, other) = if straight { ("`start` and `end`", &numbers[2..]) } else { ("`density`", &numbers[..2]) };
+    for (field, name) in other {
+        if let Some(raw) = field {
+            let message = format!("{} fog has no `{name}`", mode.name());
+            reader.push(
+                Diagnostic::error("NB0223", reader.span(raw), message)
+                    .label("does not go with this mode")
+                    .help(format!("{} takes {fitting}, or `parameters: (p0, p1)`", mode.name())),
+            );
+            return None;
+        }
+    }
+    if let Some(raw) = &fields.parameters {
+        if let Some(field) = numbers.iter().find_map(|(field, _)| field.as_ref()) {
+            reader.push(
+                Diagnostic::error("NB0223", reader.span(field), "fog has `parameters` or a range or density, not both")
+                    .label("one or the other")
+                    .related(reader.span(raw), "the parameters"),
+            );
+            return None;
+        }
+        let [p0, p1, ..] = reader.numbers(raw, "the parameters of fog", 2, 2, [0.0; 4])?;
+        return Some(FogFunction { mode, p0, p1 });
+    }
+    let mut number = |field: &Option<Raw<'a, f32>>, default: f32| match field {
+        Some(raw) => reader.finite(raw),
+        None => Some(default),
+    };
+    let function = if straight {
+        let (start, end) = (number(&fields.start, 0.0), number(&fields.end, 1.0));
+        linear(mode, start?, end?)
+    } else {
+        Some(exponential(mode, number(&fields.density, 1.0)?))
+    };
+    if function.is_some() {
+        return function;
+    }
+    reader.push(
+        Diagnostic::error("NB0207", place.clone(), "the parameters of this fog are not finite")
+            .label("start and end too close together, or too far away")
+            .rule("INT-5")
+            .help("write `start` and `end` the same for a wall of fog, or further apart"),
+    );
+    None
+}

@@ -1,0 +1,151 @@
+//! How the coordinate sets of a draw are made: generators and texture matrices.
+
+use super::names::Names;
+use super::*;
+use crate::scene::raw::Numbers;
+use crate::state::TEXTURE_UNITS;
+use crate::vertex::texgen::{CoordinateSet, Emboss, Generator};
+
+/// Words for whole sets, as Direct3D 7 has them.
+const WHOLE: [&str; 3] = ["CameraSpacePosition", "CameraSpaceNormal", "CameraSpaceReflectionVector"];
+
+/// Reads both lists. None: all sets are as they were given.
+pub(super) fn sets<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    generators: &Option<Raw<'a, source::List<'a, source::CoordinateSource>>>,
+    matrices: &Option<Raw<'a, source::List<'a, source::Matrix>>>,
+) -> Option<[CoordinateSet; 4]> {
+    let mut sets = [0, 1, 2, 3].map(CoordinateSet::given);
+    let list = generators.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    for (index, raw) in list.iter().enumerate().filter(|(_, raw)| raw.split() != ("None", "")) {
+        if exists(reader, index, reader.span(raw))
+            && let Some(set) = set(reader, raw, index)
+        {
+            sets[index] = set;
+        }
+    }
+    let list = matrices.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    for (index, raw) in list.iter().enumerate().filter(|(_, raw)| raw.split() != ("None", "")) {
+        if exists(reader, index, reader.span(raw)) {
+            sets[index].matrix = names.matrix(reader, raw);
+        }
+    }
+    (generators.is_some() || matrices.is_some()).then_some(sets)
+}
+
+/// Whether the chip has that coordinate set.
+fn exists(reader: &mut Reader<'_>, index: usize, place: Range<usize>) -> bool {
+    if index >= TEXTURE_UNITS {
+        reader.push(
+            Diagnostic::error("NB0319", place, format!("there is no coordinate set {index}"))
+                .label("one too many")
+                .rule("TSH-11")
+                .help("sets 0 to 3 are the entries of this list"),
+        );
+        return false;
+    }
+    if index >= reader.profile.texture_units() {
+        reader.push(target::only_nv2a("NB0319", place, &format!("coordinate set {index}"), "TSH-11"));
+        return false;
+    }
+    true
+}
+
+fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, index: usize) -> Option<CoordinateSet> {
+    let mut set = CoordinateSet::given(index);
+    let (head, rest) = raw.split();
+    if head == "Emboss" {
+        return emboss(reader, raw, rest, index);
+    }
+    if !head.is_empty() {
+        let (word, rest) =
+            reader.variant(raw, "coordinate generation", &["None", WHOLE[0], WHOLE[1], WHOLE[2], "Emboss"])?;
+        if !rest.is_empty() {
+            reader.unknown_variant(raw, "coordinate generation", &WHOLE);
+            return None;
+        }
+        let axis = |k: usize| std::array::from_fn(|n| if n == k { 1.0 } else { 0.0 });
+        set.generators = match word {
+            1 => [0, 1, 2, 3].map(|k| Some(Generator::EyeLinear(axis(k)))),
+            2 => [Some(Generator::NormalMap), Some(Generator::NormalMap), Some(Generator::NormalMap), None],
+            _ => [Some(Generator::ReflectionMap), Some(Generator::ReflectionMap), Some(Generator::ReflectionMap), None],
+        };
+        return Some(set);
+    }
+    let fields = reader.read(&raw.as_other::<source::CoordinateSet<'a>>())?;
+    if let Some(raw) = &fields.input {
+        set.input = reader.whole(raw, "a given coordinate set", 0..=3)? as usize;
+    }
+    for (component, field) in [&fields.s, &fields.t, &fields.r, &fields.q].into_iter().enumerate() {
+        if let Some(raw) = field {
+            set.generators[component] = Some(generator(reader, raw, component)?);
+        }
+    }
+    Some(set)
+}
+
+const GENERATORS: &[&str] = &["ObjectLinear", "EyeLinear", "SphereMap", "NormalMap", "ReflectionMap"];
+
+fn generator<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Generator>, component: usize) -> Option<Generator> {
+    let (kind, rest) = reader.variant(raw, "coordinate generator", GENERATORS)?;
+    if kind < 2 {
+        let plane = reader.numbers(&Raw::<Numbers>::new(rest), "a plane", 4, 4, [0.0; 4])?;
+        return Some(if kind == 0 { Generator::ObjectLinear(plane) } else { Generator::EyeLinear(plane) });
+    }
+    if !rest.is_empty() {
+        reader.unknown_variant(raw, "coordinate generator", GENERATORS);
+        return None;
+    }
+    let (generator, components) = match kind {
+        2 => (Generator::SphereMap, 2),
+        3 => (Generator::NormalMap, 3),
+        _ => (Generator::ReflectionMap, 3),
+    };
+    if component >= components {
+        let name = ["s", "t", "r", "q"][component];
+        reader.push(
+            Diagnostic::error("NB0224", reader.span(raw), format!("{} makes no {name}", GENERATORS[kind]))
+                .label("not for this component")
+                .rule("TSH-11")
+                .help(if components == 2 { "it makes s and t" } else { "it makes s, t and r" }),
+        );
+        return None;
+    }
+    Some(generator)
+}
+
+/// NV10 alone: set 1 as set 0 moved toward a light.
+fn emboss<'a>(
+    reader: &mut Reader<'a>,
+    raw: &Raw<'a, source::CoordinateSource>,
+    rest: &'a str,
+    index: usize,
+) -> Option<CoordinateSet> {
+    let place = reader.range(raw.split().0);
+    if reader.profile != Profile::Nv10 {
+        reader.push(
+            Diagnostic::error("NB0324", place.clone(), "Emboss exists on Nv10 only")
+                .label("not on this chip")
+                .rule("TSH-11")
+                .help("write `profile: Nv10`, or give the moved coordinates with the vertices"),
+        );
+        return None;
+    }
+    if index != 1 {
+        reader.push(
+            Diagnostic::error("NB0224", place, "Emboss makes coordinate set 1 only")
+                .label(format!("this is set {index}"))
+                .rule("TSH-11")
+                .help("write `texgen: [None, Emboss(...)]`: set 1 becomes set 0, moved"),
+        );
+        return None;
+    }
+    let fields = reader.read(&Raw::<source::Emboss<'a>>::new(rest))?;
+    let light = reader.required(&fields.light, "light", "emboss", place.clone());
+    let scale = reader.required(&fields.scale, "scale", "emboss", place);
+    let light = light.and_then(|raw| reader.numbers(&raw, "the direction of a light", 3, 3, [0.0; 4]));
+    let scale = scale.and_then(|raw| reader.numbers(&raw, "a scale", 2, 2, [0.0; 4]));
+    let ([x, y, z, _], [s, t, ..]) = (light?, scale?);
+    Some(CoordinateSet { emboss: Some(Emboss { light: [x, y, z], scale: [s, t] }), ..CoordinateSet::given(1) })
+}

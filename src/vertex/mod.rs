@@ -1,0 +1,164 @@
+//! The vertex side of the fixed-function pipe, as far as texture coordinates and fog need it: eye space, generated coordinates,
+//! texture matrices, fog coordinates.
+//!
+//! The chip's transform unit is not modelled bit by bit. Everything here is 32-bit floats in the order that is written, + - * / and
+//! square root only, so that every machine gets the same vertices. No vector without a length becomes NaN: its direction is zero.
+#![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule; set-up quantises afterwards")]
+
+pub mod fog;
+pub mod texgen;
+mod vector;
+
+use vector::{dot3, dot4, unit};
+
+/// Four rows of a matrix; a column vector stands to its right.
+pub type Rows = [[f32; 4]; 4];
+
+/// M p: each row times the vector, added from left to right.
+pub fn transform(matrix: &Rows, p: [f32; 4]) -> [f32; 4] {
+    matrix.map(|row| dot4(row, p))
+}
+
+/// A vertex as it was given, before any transform.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ObjectVertex {
+    /// Object space; of window vertices the window position.
+    pub position: [f32; 4],
+    /// Object space, of any length; zero where none is given (TSH-11).
+    pub normal: [f32; 3],
+    /// Given fog coordinate.
+    pub fog_coordinate: f32,
+}
+
+/// From object space to eye space: the viewer at the origin.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModelView {
+    position: Rows,
+    normal: [[f32; 3]; 3],
+}
+
+impl ModelView {
+    /// Of the matrix that takes positions there. Normals are taken by its cofactors, which point where the inverse transpose points,
+    /// need no division, and are right for a singular matrix as well.
+    pub fn new(matrix: &Rows) -> ModelView {
+        let m = |row: usize, column: usize| matrix[row % 3][column % 3];
+        let mut cofactors = [[0.0; 3]; 3];
+        for (i, row) in cofactors.iter_mut().enumerate() {
+            for (j, cofactor) in row.iter_mut().enumerate() {
+                *cofactor = m(i + 1, j + 1) * m(i + 2, j + 2) - m(i + 1, j + 2) * m(i + 2, j + 1);
+            }
+        }
+        let determinant = m(0, 0) * cofactors[0][0] + m(0, 1) * cofactors[0][1] + m(0, 2) * cofactors[0][2];
+        let normal = if determinant < 0.0 { cofactors.map(|row| row.map(|c| -c)) } else { cofactors };
+        ModelView { position: *matrix, normal }
+    }
+
+    /// A direction, of unit length or zero, as normals are taken.
+    fn direction(&self, v: [f32; 3]) -> [f32; 3] {
+        unit(self.normal.map(|row| dot3(row, v)))
+    }
+}
+
+/// A vertex in eye space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EyeVertex<'a> {
+    /// As it was given.
+    pub object: &'a ObjectVertex,
+    /// How it came here.
+    pub model_view: &'a ModelView,
+    /// Position.
+    pub position: [f32; 4],
+    /// Normal, of unit length or zero.
+    pub normal: [f32; 3],
+}
+
+impl<'a> EyeVertex<'a> {
+    /// Takes a vertex to eye space.
+    pub fn new(object: &'a ObjectVertex, model_view: &'a ModelView) -> Self {
+        EyeVertex {
+            object,
+            model_view,
+            position: transform(&model_view.position, object.position),
+            normal: model_view.direction(object.normal),
+        }
+    }
+
+    /// The position as a point: divided by its w, unless that is 0.
+    pub fn point(&self) -> [f32; 3] {
+        let [x, y, z, w] = self.position;
+        if w == 0.0 { [x, y, z] } else { [x / w, y / w, z / w] }
+    }
+
+    /// The viewer's line of sight to the vertex mirrored at its normal, of unit length: u - 2 n (n u). Zero at the viewer's place; the
+    /// line of sight itself where the normal is zero.
+    pub fn reflection(&self) -> [f32; 3] {
+        let (u, n) = (unit(self.point()), self.normal);
+        let along = 2.0 * dot3(n, u);
+        std::array::from_fn(|k| u[k] - n[k] * along)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn matrix() -> impl Strategy<Value = Rows> {
+        proptest::array::uniform4(proptest::array::uniform4(-3.0_f32..3.0)).prop_map(|mut rows| {
+            rows[3] = [0.0, 0.0, 0.0, 1.0];
+            rows
+        })
+    }
+
+    fn vector() -> impl Strategy<Value = [f32; 3]> {
+        proptest::array::uniform3(-3.0_f32..3.0)
+    }
+
+    fn wide(v: [f32; 3]) -> [f64; 3] {
+        v.map(f64::from)
+    }
+
+    fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+        a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    }
+
+    proptest! {
+        /// What makes a normal a normal: it stays perpendicular to the surface, on the side where it was.
+        #[test]
+        fn normals_stay_perpendicular(matrix in matrix(), n in vector(), v in vector()) {
+            let view = ModelView::new(&matrix);
+            let determinant = {
+                let m = matrix.map(|row| wide([row[0], row[1], row[2]]));
+                let cross = |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+                dot(m[0], cross(m[1], m[2]))
+            };
+            prop_assume!(determinant.abs() > 0.1 && dot(wide(n), wide(n)) > 0.1 && dot(wide(v), wide(v)) > 0.1);
+            let moved = transform(&matrix, [v[0], v[1], v[2], 0.0]);
+            let normal = wide(view.direction(n));
+            let product = dot(normal, wide([moved[0], moved[1], moved[2]]));
+            // n v has the sign and, with the length that normals lose, the ratio of (M^-T n)(M v).
+            prop_assert!((dot(normal, normal) - 1.0).abs() < 1e-6);
+            let given = dot(wide(n), wide(v));
+            prop_assert!(product * given > -1e-4, "{product} {given}");
+        }
+
+        #[test]
+        fn reflection_is_a_mirror(p in vector(), n in vector()) {
+            let object = ObjectVertex { position: [p[0], p[1], p[2], 1.0], normal: n, fog_coordinate: 0.0 };
+            let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+            let view = ModelView::new(&identity);
+            let vertex = EyeVertex::new(&object, &view);
+            let r = vertex.reflection();
+            prop_assume!(dot(wide(p), wide(p)) > 1e-3 && dot(wide(n), wide(n)) > 1e-3);
+            // As long as the line of sight, in its plane with the normal, leaving the surface as steeply as it came.
+            let (r, n, u) = (wide(r), wide(vertex.normal), wide(p).map(|c| c / dot(wide(p), wide(p)).sqrt()));
+            prop_assert!((dot(r, r) - 1.0).abs() < 1e-5);
+            prop_assert!((dot(r, n) + dot(u, n)).abs() < 1e-5);
+            let sideways = |v: [f64; 3]| [0, 1, 2].map(|k| v[k] - n[k] * dot(v, n));
+            prop_assert!((0..3).all(|k| (sideways(r)[k] - sideways(u)[k]).abs() < 1e-5));
+            // Mirrored once more it is the line of sight: the eye stands where the mirror image of the reflection goes.
+            let back = [0, 1, 2].map(|k| r[k] - 2.0 * n[k] * dot(r, n));
+            prop_assert!((0..3).all(|k| (back[k] - u[k]).abs() < 1e-5));
+        }
+    }
+}

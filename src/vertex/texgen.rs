@@ -1,0 +1,218 @@
+//! TSH-11: generated texture coordinates and texture matrices.
+#![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
+
+use super::vector::{cross, dot3, dot4, length};
+use super::{EyeVertex, Rows};
+use crate::state::Profile;
+
+/// Where a component of a coordinate set comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Generator {
+    /// A plane's distance from the given position.
+    ObjectLinear([f32; 4]),
+    /// A plane's distance from the position in eye space; the plane stands in eye space.
+    EyeLinear([f32; 4]),
+    /// Where a mirroring sphere shows the reflection: s, t.
+    SphereMap,
+    /// The normal in eye space: s, t, r.
+    NormalMap,
+    /// The reflected line of sight in eye space: s, t, r.
+    ReflectionMap,
+}
+
+/// nv10: set 1 is set 0 moved toward a light, along the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Emboss {
+    /// Toward the light, in eye space; its length counts.
+    pub light: [f32; 3],
+    /// How far s and t move.
+    pub scale: [f32; 2],
+}
+
+/// How one coordinate set is made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CoordinateSet {
+    /// The given set that components without a generator come from.
+    pub input: usize,
+    /// Of s, t, r, q.
+    pub generators: [Option<Generator>; 4],
+    /// In place of the generators.
+    pub emboss: Option<Emboss>,
+    /// Applied at the end.
+    pub matrix: Option<Rows>,
+}
+
+impl CoordinateSet {
+    /// Set number `index` as it was given.
+    pub fn given(index: usize) -> CoordinateSet {
+        CoordinateSet { input: index, generators: [None; 4], emboss: None, matrix: None }
+    }
+
+    /// The set of a vertex whose given sets are `given`.
+    pub fn at(&self, vertex: &EyeVertex<'_>, given: &[[f32; 4]; 4], profile: Profile) -> [f32; 4] {
+        let coordinates = match &self.emboss {
+            Some(emboss) => embossed(emboss, vertex, given[0], given[1]),
+            None => std::array::from_fn(|component| match self.generators[component] {
+                None => given[self.input][component],
+                Some(generator) => generate(generator, component, vertex),
+            }),
+        };
+        match &self.matrix {
+            Some(matrix) => multiplied(matrix, coordinates, profile),
+            None => coordinates,
+        }
+    }
+}
+
+fn generate(generator: Generator, component: usize, vertex: &EyeVertex<'_>) -> f32 {
+    let of = |v: [f32; 3]| v.get(component).copied().unwrap_or(0.0);
+    match generator {
+        Generator::ObjectLinear(plane) => dot4(plane, vertex.object.position),
+        Generator::EyeLinear(plane) => dot4(plane, vertex.position),
+        Generator::SphereMap => of(sphere(vertex.reflection())),
+        Generator::NormalMap => of(vertex.normal),
+        Generator::ReflectionMap => of(vertex.reflection()),
+    }
+}
+
+/// (r + (0, 0, 1)) / (2 |r + (0, 0, 1)|) + 1/2; the middle for a reflection straight away from the viewer.
+fn sphere([x, y, z]: [f32; 3]) -> [f32; 3] {
+    let m = 2.0 * length([x, y, z + 1.0]);
+    if m == 0.0 { [0.5; 3] } else { [x / m + 0.5, y / m + 0.5, 0.0] }
+}
+
+/// s + q Ks (L . B), t - q Kt (L . T). The tangent is what set 1 gives, B = N x T and T = B x N, of unit length.
+fn embossed(emboss: &Emboss, vertex: &EyeVertex<'_>, [s, t, r, q]: [f32; 4], tangent: [f32; 4]) -> [f32; 4] {
+    let tangent = vertex.model_view.direction([tangent[0], tangent[1], tangent[2]]);
+    let binormal = super::unit(cross(vertex.normal, tangent));
+    let tangent = cross(binormal, vertex.normal);
+    let [ks, kt] = emboss.scale;
+    [s + q * (ks * dot3(emboss.light, binormal)), t - q * (kt * dot3(emboss.light, tangent)), r, q]
+}
+
+/// M t. On nv10 the row of q meets the s that the first row has made.
+fn multiplied(matrix: &Rows, coordinates: [f32; 4], profile: Profile) -> [f32; 4] {
+    let mut result = super::transform(matrix, coordinates);
+    if profile == Profile::Nv10 {
+        let [_, t, r, q] = coordinates;
+        result[3] = dot4(matrix[3], [result[0], t, r, q]);
+    }
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ModelView, ObjectVertex};
+    use super::*;
+    use proptest::prelude::*;
+
+    const IDENTITY: Rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+    const GIVEN: [[f32; 4]; 4] =
+        [[0.25, 0.5, 0.75, 2.0], [1.0, 0.0, 0.0, 1.0], [3.0, 4.0, 5.0, 6.0], [7.0, 8.0, 9.0, 10.0]];
+
+    fn set(generators: [Option<Generator>; 4]) -> CoordinateSet {
+        CoordinateSet { generators, ..CoordinateSet::given(2) }
+    }
+
+    fn at(set: &CoordinateSet, view: &Rows, position: [f32; 4], normal: [f32; 3], profile: Profile) -> [f32; 4] {
+        let object = ObjectVertex { position, normal, fog_coordinate: 0.0 };
+        let view = ModelView::new(view);
+        set.at(&EyeVertex::new(&object, &view), &GIVEN, profile)
+    }
+
+    #[test]
+    fn planes_and_inputs() {
+        let mut view = IDENTITY;
+        view[0][3] = 10.0;
+        let made = set([
+            Some(Generator::ObjectLinear([1.0, 2.0, 3.0, 4.0])),
+            Some(Generator::EyeLinear([1.0, 2.0, 3.0, 4.0])),
+            None,
+            None,
+        ]);
+        assert_eq!(at(&made, &view, [1.0, 1.0, 1.0, 1.0], [0.0; 3], Profile::Nv2a), [10.0, 20.0, 5.0, 6.0]);
+        assert_eq!(at(&CoordinateSet::given(0), &view, [9.0; 4], [0.0; 3], Profile::Nv2a), GIVEN[0]);
+    }
+
+    #[test]
+    fn without_normals_the_reflection_is_the_line_of_sight() {
+        let made =
+            set([Some(Generator::ReflectionMap), Some(Generator::ReflectionMap), Some(Generator::ReflectionMap), None]);
+        let r = at(&made, &IDENTITY, [0.0, 3.0, -4.0, 1.0], [0.0; 3], Profile::Nv2a);
+        assert!((r[1] - 0.6).abs() < 1e-6 && (r[2] + 0.8).abs() < 1e-6 && r[0] == 0.0);
+    }
+
+    #[test]
+    fn sphere_maps_in_the_middle() {
+        let made = set([Some(Generator::SphereMap), Some(Generator::SphereMap), None, None]);
+        // Looking straight at a mirror; straight through where there is none; from the viewer's own place.
+        for (position, normal) in [
+            ([0.0, 0.0, -5.0, 1.0], [0.0, 0.0, 1.0]),
+            ([0.0, 0.0, -5.0, 1.0], [0.0; 3]),
+            ([0.0, 0.0, 0.0, 1.0], [0.0; 3]),
+        ] {
+            assert_eq!(at(&made, &IDENTITY, position, normal, Profile::Nv2a), [0.5, 0.5, 5.0, 6.0]);
+        }
+        // At grazing angle the reflection goes on: the rim.
+        let rim = at(&made, &IDENTITY, [0.0, 0.0, -5.0, 1.0], [0.999_999, 0.001, 0.0], Profile::Nv2a);
+        assert!(rim.iter().all(|c| c.is_finite()));
+    }
+
+    #[test]
+    fn the_first_chip_mixes_up_its_last_row() {
+        let matrix = [[2.0, 0.0, 0.0, 1.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [1.0, 0.0, 0.0, 1.0]];
+        let made = CoordinateSet { matrix: Some(matrix), ..CoordinateSet::given(2) };
+        // s' = 2 * 3 + 6 = 12; q' = 3 + 6, or 12 + 6.
+        assert_eq!(at(&made, &IDENTITY, [0.0; 4], [0.0; 3], Profile::Nv2a), [12.0, 4.0, 5.0, 9.0]);
+        assert_eq!(at(&made, &IDENTITY, [0.0; 4], [0.0; 3], Profile::Nv10), [12.0, 4.0, 5.0, 18.0]);
+    }
+
+    #[test]
+    fn embossing_moves_along_the_surface() {
+        let emboss = Some(Emboss { light: [0.5, 0.25, 7.0], scale: [0.1, 0.2] });
+        let made = CoordinateSet { emboss, ..CoordinateSet::given(1) };
+        // n = z, tangent = x: B = y, T = x. q is 2.
+        let moved = at(&made, &IDENTITY, [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0], Profile::Nv10);
+        let expected = [0.25 + 2.0 * 0.1 * 0.25, 0.5 - 2.0 * 0.2 * 0.5, 0.75, 2.0];
+        assert!((0..4).all(|k| (moved[k] - expected[k] as f32).abs() < 1e-6), "{moved:?}");
+        // Without a normal nothing moves.
+        assert_eq!(at(&made, &IDENTITY, [0.0; 4], [0.0; 3], Profile::Nv10), GIVEN[0]);
+    }
+
+    proptest! {
+        /// The usual text in float64.
+        #[test]
+        fn sphere_and_reflection_as_in_the_text(
+            p in proptest::array::uniform3(-9.0_f64..9.0), n in proptest::array::uniform3(-1.0_f64..1.0),
+        ) {
+            let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+            let direction = |v: [f64; 3]| v.map(|c| c / dot(v, v).sqrt());
+            prop_assume!(dot(p, p) > 0.1 && dot(n, n) > 0.1);
+            let (u, n64) = (direction(p), direction(n));
+            let r: [f64; 3] = std::array::from_fn(|k| u[k] - 2.0 * n64[k] * dot(n64, u));
+            let m = 2.0 * (r[0] * r[0] + r[1] * r[1] + (r[2] + 1.0) * (r[2] + 1.0)).sqrt();
+            prop_assume!(m > 0.1);
+            let position = [p[0] as f32, p[1] as f32, p[2] as f32, 1.0];
+            let normal = n.map(|c| c as f32);
+            let all = |g| set([Some(g); 4]);
+            let sphere = at(&all(Generator::SphereMap), &IDENTITY, position, normal, Profile::Nv2a);
+            prop_assert!((f64::from(sphere[0]) - (r[0] / m + 0.5)).abs() < 1e-5);
+            prop_assert!((f64::from(sphere[1]) - (r[1] / m + 0.5)).abs() < 1e-5);
+            let mirrored = at(&all(Generator::ReflectionMap), &IDENTITY, position, normal, Profile::Nv2a);
+            prop_assert!((0..3).all(|k| (f64::from(mirrored[k]) - r[k]).abs() < 1e-5));
+        }
+
+        #[test]
+        fn nothing_becomes_nan(
+            bits in proptest::array::uniform4(any::<u32>()), normal in proptest::array::uniform3(any::<u32>()), divide in any::<bool>(),
+        ) {
+            let number = |bits: u32| { let f = f32::from_bits(bits); if f.is_finite() { f } else { 0.0 } };
+            let mut position = bits.map(number);
+            if divide { position[3] = 0.0; }
+            for generator in [Generator::SphereMap, Generator::NormalMap, Generator::ReflectionMap] {
+                let made = at(&set([Some(generator); 4]), &IDENTITY, position, normal.map(number), Profile::Nv2a);
+                prop_assert!(made.iter().all(|c| c.is_finite() && c.abs() <= 4.0), "{made:?}");
+            }
+        }
+    }
+}

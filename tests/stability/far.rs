@@ -1,0 +1,109 @@
+//! Coordinates far from the origin: `far-coordinates.ron`.
+
+use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
+use super::page::{Section, cells};
+use super::view::{Covered, draw, plan, scene, visit};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::raster::interpolate::COORDINATE_LIMIT;
+use ninebit::state::Scene;
+use ninebit::texture::place::{Coordinates, Interpolated, Place};
+
+/// Bits of the texel coordinate that the strips of a draw end at, from top to bottom.
+const FIRST: usize = 10;
+
+pub fn section() -> Section {
+    let scene = scene("far-coordinates.ron");
+    let plan_of_page = plan(&scene);
+    // By draw and strip.
+    let mut worst = [[None; 11]; 3];
+    visit(&plan_of_page, |covered| {
+        let strip = (covered.pixel.1 as usize - 2) / 24;
+        let (u, exact) = u(covered);
+        if FIRST + strip > 16 {
+            assert_eq!(u, COORDINATE_LIMIT, "through q beyond the limit");
+        }
+        let error = (u - exact).abs();
+        let most = &mut worst[covered.draw][strip];
+        *most = Some(most.unwrap_or(0).max(error));
+    });
+    let mut rows =
+        vec![cells(["texels from the origin", "q = 1, equal w", "q = 1, in perspective", "through q, in perspective"])];
+    let shown = |error: Option<i64>, k: usize| match error {
+        None => "refused (RAS-0)".to_string(),
+        Some(_) if k > 16 => "held at 65536".to_string(),
+        Some(error) => error.to_string(),
+    };
+    for k in FIRST..=20 {
+        let cells = (0..3).map(|draw| shown(worst[draw][k - FIRST], k));
+        rows.push([format!("2^{k}")].into_iter().chain(cells).collect());
+    }
+    refused(&scene);
+
+    let exponent = |error: i64| if error == 0 { -2.0 } else { (error as f64).log2() };
+    let line = |draw: usize, label: &'static str, color: &'static str| {
+        let points = (FIRST..=16).filter_map(|k| Some([k as f64, exponent(worst[draw][k - FIRST]?)])).collect();
+        Line { label, color, beneath: draw == 0, points }
+    };
+    let lines = [
+        line(0, "q = 1, equal w", BLUE),
+        line(1, "q = 1, in perspective", GREEN),
+        line(2, "through q, in perspective", RED),
+    ];
+    let x = Axis {
+        label: "texels from the origin, texture of 16",
+        range: [10.0, 16.0],
+        ticks: ticks(10, 16, 1, |k| format!("2^{k}")),
+    };
+    let mut marks = ticks(0, 12, 2, |k| (1_i64 << k).to_string());
+    marks.insert(0, (-2.0, "0".to_string()));
+    let y = Axis { label: "largest error, 1/256 texel", range: [-2.0, 12.5], ticks: marks };
+    Section {
+        name: "far",
+        tables: vec![rows],
+        pictures: vec![("far-coordinates.png", draw(&plan_of_page))],
+        charts: vec![("far-coordinates.svg", chart(&x, &y, &lines, false))],
+    }
+}
+
+/// u as the model has it, and the floor of the exact rational number, 1/256 texel.
+fn u(covered: &Covered<'_>) -> (i64, i64) {
+    let (sample, coordinates) =
+        (covered.sample(), Coordinates::new(covered.triangle, covered.coordinates(), covered.unit));
+    let place = Interpolated {
+        unit: covered.unit,
+        coordinates: &coordinates,
+        at: &sample,
+        pixel: covered.pixel,
+        vertices: covered.coordinates(),
+        w: covered.w(),
+    };
+    let settled = place.on(&covered.unit.levels[0])[0];
+    // INT-4t takes an exact tie one step lower: that is the rule and no error.
+    let u = settled.value + i64::from(settled.lowered);
+    // Everything as whole numbers: w, s and q of the scene are multiples of 2^-23, 2^-5 and 2^-5.
+    let whole = |value: f32, bits: i32| (f64::from(value) * f64::from(bits).exp2()) as i128;
+    let w = covered.w().map(|w| whole(w, 23));
+    let [s, q] = [0, 3].map(|n| covered.coordinates().map(|c| whole(c[n], 5)));
+    let sum = |values: [i128; 3]| -> i128 {
+        (0..3).map(|k| values[k] * i128::from(sample.e[k]) * w[(k + 1) % 3] * w[(k + 2) % 3]).sum()
+    };
+    let exact = (sum(s) * 256 * 16).div_euclid(sum(q));
+    (u, exact as i64)
+}
+
+/// RAS-0: with q = 1 coordinates beyond 65536 texels are refused, with another q they are not.
+fn refused(scene: &Scene) {
+    let mut scene = scene.clone();
+    scene.draws.truncate(1);
+    let mut rules = |texels: f32, q: f32| -> Vec<&'static str> {
+        let far = &mut scene.draws[0].vertices[0].texture_coordinates[0];
+        (far[0], far[3]) = (texels / 16.0, q);
+        let planned = Plan::compile(&scene, &PlanOptions::default());
+        planned.err().into_iter().flatten().map(|error| error.rule).collect()
+    };
+    assert!(rules(65536.0, 1.0).is_empty());
+    for texels in [65537, 1 << 17, 1 << 18, 1 << 19, 1 << 20] {
+        assert_eq!(rules(texels as f32, 1.0), ["RAS-0"]);
+        assert!(rules(texels as f32, 2.0).is_empty());
+    }
+}

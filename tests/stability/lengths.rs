@@ -1,0 +1,155 @@
+//! Normals shortened by the filter: `filtered-length.ron`, `seams.ron`.
+
+use super::chart::{Axis, BLUE, GREEN, Line, RED, chart, ticks};
+use super::content::{BALL, PAIRS, dot, length, pair, pair_angle, unit};
+use super::page::{Section, cells};
+use super::view::{Picture, draw, plan, scene};
+use ninebit::texture::filter::lerp;
+
+pub fn section() -> Section {
+    let frame = draw(&plan(&scene("filtered-length.ron")));
+    let mut rows = vec![cells(["angle", "length", "of the chip", "N . L renormalised", "of the chip", "steps lost"])];
+    for angle in [0, 15, 30, 45, 60, 90, 120, 150, 180] {
+        let row = (0..PAIRS).find(|row| pair_angle(*row) == f64::from(angle)).unwrap();
+        let mixed = mix(row, 128);
+        // The light stands between the two, where a ridge should be brightest.
+        let light = round_255(mixed[2] * expand_normal(255));
+        let exact = (f64::from(angle) / 2.0).to_radians().cos();
+        let renormalised = if angle == 180 { "none".to_string() } else { "255".to_string() };
+        rows.push(vec![
+            format!("{angle} degrees"),
+            format!("{exact:.3}"),
+            format!("{:.3}", fixed_length(mixed)),
+            renormalised,
+            light.to_string(),
+            (255 - light).to_string(),
+        ]);
+    }
+
+    let (mut worst, mut at) = (0.0_f64, (0, 0));
+    for row in 0..PAIRS {
+        for weight in 0..256 {
+            let mixed = mix(row, weight);
+            // The scene shows what is measured here.
+            let shown = i32::from(frame.at(weight as usize, row)[0]);
+            assert_eq!(shown, round_255(mixed.iter().map(|n| n * n).sum::<i32>()).min(255), "{row} {weight}");
+            let difference = (fixed_length(mixed) - exact_length(row, weight)).abs();
+            if difference > worst {
+                (worst, at) = (difference, (row, weight));
+            }
+        }
+    }
+    let balls = draw(&plan(&scene("seams.ron")));
+    let exact = renormalised();
+    let error = |panel: usize| {
+        let (mut most, mut squares) = (0.0_f64, 0.0);
+        for (n, want) in exact.iter().enumerate() {
+            let error = f64::from(balls.at(256 * panel + n % 256, n / 256)[0]) - want;
+            (most, squares) = (most.min(error), squares + error * error);
+        }
+        vec![format!("{:.1}", -most), format!("{:.1}", (squares / exact.len() as f64).sqrt())]
+    };
+    let of = |label: &str, values: Vec<String>| [vec![label.to_string()], values].concat();
+    let highlight = vec![
+        cells(["highlight (N . H)^8, against renormalising exactly", "largest loss, steps", "rms, steps"]),
+        of("N as the filter gives it", error(0)),
+        of("one step of Newton's method before", error(1)),
+    ];
+    let fixed = vec![
+        cells(["chip against float64", "value"]),
+        of(
+            "largest difference of the lengths, every weight and angle",
+            vec![format!("{worst:.4} (at {:.0} degrees, weight {}/256)", pair_angle(at.0), at.1)],
+        ),
+    ];
+    let wanted = Picture::from(256, 256, |x, y| [exact[256 * y + x].round() as u8; 3]);
+    let panels = [balls.part(0, 0, 256, 256), balls.part(256, 0, 256, 256), wanted];
+    Section {
+        name: "lengths",
+        tables: vec![rows, fixed, highlight],
+        pictures: vec![("filtered-length.png", frame), ("seams.png", Picture::row(&panels))],
+        charts: vec![("filtered-length.svg", length_chart())],
+    }
+}
+
+/// The mix of the two normals of a row as the first combiner input receives it, in 255ths.
+fn mix(row: usize, weight: i32) -> [i32; 3] {
+    let [a, b] = pair(row);
+    std::array::from_fn(|n| expand_normal(lerp(i32::from(a[n]), i32::from(b[n]), weight)))
+}
+
+fn fixed_length(v: [i32; 3]) -> f64 {
+    length(v.map(|n| f64::from(n) / 255.0))
+}
+
+fn exact_length(row: usize, weight: i32) -> f64 {
+    let half = pair_angle(row).to_radians() / 2.0;
+    let t = 2.0 * f64::from(weight) / 256.0 - 1.0;
+    length([t * half.sin(), 0.0, half.cos()])
+}
+
+/// The highlight of `seams.ron` with the filtered normals brought back to length in float64, in 255ths.
+fn renormalised() -> Vec<f64> {
+    let map = image::open("vectors/scenes/stability/ball-normal.png").unwrap().to_rgb8();
+    let last = i64::from(BALL) - 1;
+    let normal = |x: i64, y: i64| {
+        let pixel = map.get_pixel(x.clamp(0, last) as u32, y.clamp(0, last) as u32);
+        pixel.0.map(|byte| (f64::from(byte) - 128.0) / 127.0)
+    };
+    let half = unit([109.0, 141.0, 253.0].map(|byte| (byte - 128.0) / 127.0));
+    let value = |n: usize| {
+        let along = |pixel: usize| (pixel as f64 + 0.5) * 0.75 * f64::from(BALL) / 256.0;
+        let [u, v] = [along(n % 256), along(n / 256)];
+        let (x, y) = (u.floor(), v.floor());
+        let mut mixed = [0.0; 3];
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            let share = |d: i64, fraction: f64| if d == 1 { fraction } else { 1.0 - fraction };
+            let weight = share(dx, u - x) * share(dy, v - y);
+            let texel = normal(x as i64 + dx, y as i64 + dy);
+            mixed = std::array::from_fn(|n| mixed[n] + weight * texel[n]);
+        }
+        255.0 * dot(unit(mixed), half).max(0.0).powi(8)
+    };
+    (0..256 * 256).map(value).collect()
+}
+
+fn length_chart() -> String {
+    let over = |length: &dyn Fn(usize) -> f64| (0..=240).map(|row| [pair_angle(row), length(row)]).collect::<Vec<_>>();
+    let newton = |l: f64| l * (3.0 - l * l) / 2.0;
+    let lines = [
+        Line { label: "half-way, float64", color: BLUE, beneath: true, points: over(&|row| exact_length(row, 128)) },
+        Line {
+            label: "half-way, the chip",
+            color: RED,
+            beneath: false,
+            points: over(&|row| fixed_length(mix(row, 128))),
+        },
+        Line {
+            label: "after one step of Newton's method",
+            color: GREEN,
+            beneath: false,
+            points: over(&|row| newton(exact_length(row, 128))),
+        },
+    ];
+    let x = Axis {
+        label: "angle between the two texels, degrees",
+        range: [0.0, 180.0],
+        ticks: ticks(0, 180, 30, |n| n.to_string()),
+    };
+    let y = Axis {
+        label: "length",
+        range: [0.0, 1.05],
+        ticks: (0..=5).map(|n| (f64::from(n) / 5.0, format!("{:.1}", f64::from(n) / 5.0))).collect(),
+    };
+    chart(&x, &y, &lines, true)
+}
+
+/// CMB-3 of a byte, in 255ths.
+fn expand_normal(byte: i32) -> i32 {
+    2 * (byte - 128)
+}
+
+/// NUM-2.
+fn round_255(n: i32) -> i32 {
+    (2 * n + 255).div_euclid(510)
+}

@@ -1,0 +1,70 @@
+//! `docs/stability.md`, where sampling fails: every number, picture and chart of the page is made here again and compared.
+//!
+//! `BLESS=1 cargo test --test stability` writes the tables of the page, the pictures under `docs/pictures/stability` and the textures of
+//! `vectors/scenes/stability`; look at them before committing. What an item measures is in the file of its name.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
+
+mod blocks;
+mod chart;
+mod content;
+mod page;
+mod view;
+
+mod compressed;
+mod cube;
+mod far;
+mod lengths;
+mod level_of_detail;
+mod minified;
+mod near_eye;
+mod one_texel;
+
+#[test]
+fn textures() {
+    content::check();
+}
+
+#[test]
+fn lengths() {
+    page::check(&lengths::section());
+}
+
+#[test]
+fn minified() {
+    page::check(&minified::section());
+}
+
+#[test]
+fn cube() {
+    page::check(&cube::section());
+}
+
+#[test]
+fn far() {
+    page::check(&far::section());
+}
+
+#[test]
+fn near_eye() {
+    page::check(&near_eye::section());
+}
+
+#[test]
+fn compressed() {
+    page::check(&compressed::section());
+}
+
+#[test]
+fn one_texel() {
+    page::check(&one_texel::section());
+}
+
+#[test]
+fn level_of_detail() {
+    page::check(&level_of_detail::section());
+}
+
+#[test]
+fn page_shows_no_other_files() {
+    page::check_files();
+}

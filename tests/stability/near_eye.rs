@@ -1,0 +1,135 @@
+//! w close to zero: `near-eye.ron`.
+
+use super::chart::{Axis, BLUE, Line, RED, chart, ticks};
+use super::page::{Section, cells};
+use super::view::{draw, plan, scene};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::raster::ideal;
+use ninebit::raster::interpolate::{Sample, Settled};
+use ninebit::raster::setup::Triangle;
+use ninebit::state::{Profile, Scene};
+
+/// Texels of the texture that the coordinates count in.
+const SIDE: u32 = 64;
+
+/// Largest errors of a triangle's samples.
+#[derive(Clone, Copy, Default)]
+struct Errors {
+    /// Of 256 times a weight, against the floor of the exact one.
+    weight: f64,
+    /// Of u, 1/256 texel, against the floor.
+    u: f64,
+}
+
+pub fn section() -> Section {
+    let scene = scene("near-eye.ron");
+    floor_below_the_eye_is_refused(&scene);
+    let near = |k: i32| [(-f64::from(k)).exp2(), 1.1, 1.3];
+    let both = |k: i32| [(-f64::from(k)).exp2(), 1.1, 1.3 * f64::from(k).exp2()];
+    let mut rows = vec![cells([
+        "w of the three vertices",
+        "inside: weights, 1/256",
+        "u, 1/256 texel",
+        "on the edge: weights, 1/256",
+        "u, 1/256 texel",
+    ])];
+    let row = |label: String, w: [f64; 3]| {
+        let ([inside, _], [_, edge]) = (slanted(w), errors(EDGE, w));
+        let numbers = [inside.weight, inside.u, edge.weight, edge.u].map(|error| format!("{error:.2}"));
+        [vec![label], numbers.to_vec()].concat()
+    };
+    for k in [0, 8, 12, 16, 20] {
+        rows.push(row(format!("2^-{k}, 1.1, 1.3"), near(k)));
+    }
+    for k in [4, 8, 12, 16, 20] {
+        rows.push(row(format!("2^-{k}, 1.1, 1.3 x 2^{k}"), both(k)));
+    }
+    let over = |w: &dyn Fn(i32) -> [f64; 3]| {
+        (0..=20).map(|k| [f64::from(k), log(errors(EDGE, w(k))[1].u)]).collect::<Vec<_>>()
+    };
+    let lines = [
+        Line { label: "2^-k, 1.1, 1.3", color: BLUE, beneath: false, points: over(&near) },
+        Line { label: "2^-k, 1.1, 1.3 x 2^k", color: RED, beneath: false, points: over(&both) },
+    ];
+    let x = Axis { label: "k", range: [0.0, 20.0], ticks: ticks(0, 20, 4, |k| k.to_string()) };
+    let y = Axis {
+        label: "u on the edge, 1/256 texel",
+        range: [-16.0, 16.0],
+        ticks: ticks(-16, 16, 4, |k| match k {
+            -16 => "none".to_string(),
+            ..0 => format!("2^{k}"),
+            k => (1_i64 << k).to_string(),
+        }),
+    };
+    Section {
+        name: "near-eye",
+        tables: vec![rows],
+        pictures: vec![("near-eye.png", draw(&plan(&scene)))],
+        charts: vec![("near-eye.svg", chart(&x, &y, &lines, false))],
+    }
+}
+
+/// RAS-0: what is cut off at w = 2^-20 must lie in the window's domain there, as it does only if it passes close to the eye itself.
+fn floor_below_the_eye_is_refused(scene: &Scene) {
+    let mut scene = scene.clone();
+    scene.draws[1].vertices[0].position = [0.0, -1.0, 0.0, -1.0];
+    let errors = Plan::compile(&scene, &PlanOptions::default()).unwrap_err();
+    assert!(errors.iter().all(|error| error.rule == "RAS-0"), "{errors:?}");
+}
+
+fn log(error: f64) -> f64 {
+    error.log2().clamp(-16.0, 16.0)
+}
+
+/// A triangle whose upper edge, opposite its first vertex, runs exactly through the centres of a row of pixels that belong to it.
+const EDGE: [[f32; 2]; 3] = [[60.3, 121.7], [4.2, 8.5], [119.6, 8.5]];
+
+/// The largest errors of many triangles with slanted edges.
+fn slanted(w: [f64; 3]) -> [Errors; 2] {
+    let mut random = 1_u32;
+    let mut next = || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (random >> 21) as f32 / 16.0
+    };
+    let mut worst = [Errors::default(); 2];
+    for _ in 0..100 {
+        let corners = std::array::from_fn(|_| [next(), next()]);
+        for (most, error) in worst.iter_mut().zip(errors(corners, w)) {
+            (most.weight, most.u) = (most.weight.max(error.weight), most.u.max(error.u));
+        }
+    }
+    worst
+}
+
+/// Over a triangle: inside, and on the edge that the first vertex does not touch.
+fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
+    let w = w.map(|w| w as f32);
+    let positions = std::array::from_fn(|k| [corners[k][0], corners[k][1], 0.0, w[k]]);
+    let mut worst = [Errors::default(); 2];
+    let Some(triangle) = Triangle::new(positions, true, Profile::Nv2a) else { return worst };
+    let s = [0.5, 0.0, 1.0];
+    let g = triangle.coordinate(s, SIDE);
+    for j in triangle.rows.0..triangle.rows.1 {
+        let (low, high) = triangle.span(j, (0, 128));
+        for i in low..high {
+            let e = triangle.edges(i, j);
+            let sample = Sample::new(&triangle, e);
+            let exact = ideal::barycentrics(&triangle, e, w, true);
+            let most = &mut worst[usize::from(e[0] == 0)];
+            for (n, settled) in [0, 2].into_iter().zip(sample.weights()) {
+                most.weight = most.weight.max(beyond(settled, 256.0 * exact[n]));
+            }
+            let u = 256.0 * f64::from(SIDE) * ideal::mix(exact, s.map(f64::from));
+            most.u = most.u.max(beyond(sample.coordinate(&g), u));
+        }
+    }
+    worst
+}
+
+/// How far an integer lies from a floor: 0 where the real number is within the step above it. A tie that was taken one step lower
+/// counts as exact.
+fn beyond(settled: Settled, exact: f64) -> f64 {
+    const ROUNDING: f64 = 1e-9;
+    let error = (settled.value + i64::from(settled.lowered)) as f64 - exact;
+    if error > ROUNDING { error } else { (-error - 1.0 - ROUNDING).max(0.0) }
+}

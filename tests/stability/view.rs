@@ -1,0 +1,178 @@
+//! Scenes drawn, and pictures put together.
+
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::raster::interpolate::Sample;
+use ninebit::raster::setup::Triangle;
+use ninebit::scene;
+use ninebit::state::{Scene, Vertex};
+use ninebit::texture::lod;
+use ninebit::texture::place::{Coordinates, Interpolated, Place};
+use ninebit::texture::unit::PlannedUnit;
+use std::path::Path;
+
+/// Where the scenes are.
+pub const FOLDER: &str = "vectors/scenes/stability";
+
+/// A picture: R, G, B, row by row.
+#[derive(Clone, PartialEq)]
+pub struct Picture {
+    pub width: usize,
+    pub height: usize,
+    pub pixels: Vec<[u8; 3]>,
+}
+
+impl Picture {
+    pub fn filled(width: usize, height: usize, color: [u8; 3]) -> Picture {
+        Picture { width, height, pixels: vec![color; width * height] }
+    }
+
+    pub fn from(width: usize, height: usize, color: impl Fn(usize, usize) -> [u8; 3]) -> Picture {
+        let pixels = (0..width * height).map(|n| color(n % width, n / width)).collect();
+        Picture { width, height, pixels }
+    }
+
+    pub fn at(&self, x: usize, y: usize) -> [u8; 3] {
+        self.pixels[y * self.width + x]
+    }
+
+    /// A part of it.
+    pub fn part(&self, x: usize, y: usize, width: usize, height: usize) -> Picture {
+        Picture::from(width, height, |i, j| self.at(x + i, y + j))
+    }
+
+    /// Each pixel as a square.
+    pub fn enlarged(&self, times: usize) -> Picture {
+        Picture::from(self.width * times, self.height * times, |x, y| self.at(x / times, y / times))
+    }
+
+    /// Two pictures of one width, one above the other.
+    pub fn above(&self, lower: &Picture) -> Picture {
+        const GAP: usize = 6;
+        let gap = vec![[255; 3]; GAP * self.width];
+        let pixels = [self.pixels.clone(), gap, lower.pixels.clone()].concat();
+        Picture { width: self.width, height: self.height + GAP + lower.height, pixels }
+    }
+
+    /// Pictures of one height side by side, a light gap between them.
+    pub fn row(parts: &[Picture]) -> Picture {
+        const GAP: usize = 6;
+        let width = parts.iter().map(|p| p.width).sum::<usize>() + GAP * (parts.len() - 1);
+        let mut whole = Picture::filled(width, parts[0].height, [255; 3]);
+        let mut left = 0;
+        for part in parts {
+            for y in 0..part.height {
+                for x in 0..part.width {
+                    whole.pixels[y * width + left + x] = part.at(x, y);
+                }
+            }
+            left += part.width + GAP;
+        }
+        whole
+    }
+}
+
+pub fn scene(name: &str) -> Scene {
+    super::content::bless();
+    let loaded = scene::load(&Path::new(FOLDER).join(name), &Limits::default());
+    loaded.unwrap_or_else(|error| panic!("{}", error.render(false))).scene
+}
+
+pub fn plan(scene: &Scene) -> Plan {
+    Plan::compile(scene, &PlanOptions::default()).unwrap_or_else(|errors| panic!("{errors:?}"))
+}
+
+/// The first target of a plan.
+pub fn draw(plan: &Plan) -> Picture {
+    let frames = render(plan, &RenderOptions::default());
+    let surface = &frames.surfaces[0];
+    let pixels = surface.rgba8().into_iter().map(|[r, g, b, _]| [r, g, b]).collect();
+    Picture { width: surface.width as usize, height: surface.height as usize, pixels }
+}
+
+/// Root of the mean square of the differences of the red channels.
+pub fn rms(a: &Picture, b: &Picture) -> f64 {
+    let squares = a.pixels.iter().zip(&b.pixels).map(|(a, b)| f64::from(a[0].abs_diff(b[0])).powi(2));
+    (squares.sum::<f64>() / a.pixels.len() as f64).sqrt()
+}
+
+/// A pixel that a triangle covers.
+pub struct Covered<'a> {
+    pub draw: usize,
+    pub triangle: &'a Triangle,
+    pub vertices: [&'a Vertex; 3],
+    pub unit: &'a PlannedUnit,
+    pub pixel: (i64, i64),
+}
+
+impl Covered<'_> {
+    pub fn sample(&self) -> Sample<'_> {
+        Sample::new(self.triangle, self.triangle.edges(self.pixel.0, self.pixel.1))
+    }
+
+    /// Texture coordinates s, t, r, q of the vertices.
+    pub fn coordinates(&self) -> [[f32; 4]; 3] {
+        self.vertices.map(|v| v.texture_coordinates[self.unit.stage.coordinate_set])
+    }
+
+    pub fn w(&self) -> [f32; 3] {
+        self.vertices.map(|v| v.position[3])
+    }
+
+    /// TEX-10, TEX-11 as the model does it: 256 times the lod before bias and limits.
+    pub fn lod(&self) -> i32 {
+        let coordinates = Coordinates::new(self.triangle, self.coordinates(), self.unit);
+        let at = self.sample();
+        let place = Interpolated {
+            unit: self.unit,
+            coordinates: &coordinates,
+            at: &at,
+            pixel: self.pixel,
+            vertices: self.coordinates(),
+            w: self.w(),
+        };
+        lod::log2_ratio(place.quad())
+    }
+
+    /// The same of real numbers, from the derivatives at this very pixel.
+    pub fn exact_lod(&self) -> f64 {
+        let (vertices, w, t) = (self.coordinates(), self.w(), self.triangle);
+        let e = t.edges(self.pixel.0, self.pixel.1);
+        let sides = self.unit.scale(&self.unit.levels[0]);
+        // u = S / W with S and W linear on the screen: its derivative is (S' - u W') / W.
+        let linear = |values: [f64; 3], e: [i64; 3]| -> f64 { (0..3).map(|k| values[k] * e[k] as f64).sum() };
+        let inverse = w.map(|w| 1.0 / f64::from(w));
+        let at = linear(inverse, e);
+        let squared = |slope: [i64; 3]| -> f64 {
+            (0..2)
+                .map(|n| {
+                    let values: [f64; 3] = std::array::from_fn(|k| f64::from(vertices[k][n]) * inverse[k]);
+                    let u = linear(values, e) / at;
+                    (f64::from(sides[n]) * (linear(values, slope) - u * linear(inverse, slope)) / at).powi(2)
+                })
+                .sum()
+        };
+        128.0 * squared(t.a).max(squared(t.b)).log2()
+    }
+}
+
+/// Visits every pixel that a plan's triangles cover, in their order; each draw has unit 0.
+pub fn visit(plan: &Plan, mut visit: impl FnMut(&Covered<'_>)) {
+    for (draw, planned) in plan.draws.iter().enumerate() {
+        let window = planned.window;
+        let columns = (i64::from(window.x), i64::from(window.x + window.width));
+        for assembled in &planned.assembly.triangles {
+            let vertices = assembled.vertices.map(|v| &planned.assembly.vertices[v as usize]);
+            let Some(triangle) = Triangle::new(vertices.map(|v| v.position), true, plan.profile) else { continue };
+            let rows = (i64::from(window.y), i64::from(window.y + window.height));
+            for j in triangle.rows.0.max(rows.0)..triangle.rows.1.min(rows.1) {
+                let (low, high) = triangle.span(j, columns);
+                for i in low..high {
+                    let unit = &planned.units[0];
+                    visit(&Covered { draw, triangle: &triangle, vertices, unit, pixel: (i, j) });
+                }
+            }
+        }
+    }
+}
