@@ -32,6 +32,13 @@ pub struct Quotient {
     exponent: i32,
 }
 
+impl Attribute {
+    /// g and the exponent, for observers.
+    pub fn numbers(&self) -> ([i64; 3], i32) {
+        (self.g, self.exponent)
+    }
+}
+
 impl Triangle {
     /// P_k x_k of three finite numbers, exactly, unless they differ so much that the smaller ones fall below 2^-62 of the largest:
     /// those are floored there (INT-4).

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::parser::{GivenUp, Parser};
+use super::parser::{GivenUp, Parser, Source};
 use super::words::{REGISTERS, find};
 use crate::diagnostic::Diagnostic;
 use crate::program::Place;
@@ -133,10 +133,9 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
         parser.sign(')')?;
     } else {
         // Where a lone operand stands in the sum is known behind it.
-        let (operand_span, first, component) = unplaced(parser, false)?;
+        let first = unplaced(parser, false)?;
         let slot = if parser.is('*') || parser.is('+') { 0 } else { 3 };
-        inputs[slot] = first;
-        place(parser, slot, operand_span, component);
+        inputs[slot] = place(parser, slot, first);
         if slot == 0 {
             inputs[1] = ONE;
         }
@@ -157,20 +156,29 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
 
 /// Input n of the final combiner.
 fn operand(parser: &mut Parser<'_>, n: usize) -> Result<FinalInput, GivenUp> {
-    let (span, input, component) = unplaced(parser, n == 6)?;
-    place(parser, n, span, component);
-    Ok(input)
+    let operand = unplaced(parser, n == 6)?;
+    Ok(place(parser, n, operand))
 }
 
-fn place(parser: &mut Parser<'_>, n: usize, span: Range<usize>, component: Option<Range<usize>>) {
-    parser.places.set(Place::FinalInput(n), span);
-    if let Some(component) = component {
+/// Notes where input n stands.
+fn place(parser: &mut Parser<'_>, n: usize, operand: Operand) -> FinalInput {
+    parser.places.set(Place::FinalInput(n), operand.span);
+    if let Some(component) = operand.component {
         parser.places.set(Place::FinalComponent(n), component);
     }
+    operand.input
+}
+
+/// An input and its place.
+struct Operand {
+    input: FinalInput,
+    span: Range<usize>,
+    /// Where the component stands, if it is written.
+    component: Option<Range<usize>>,
 }
 
 /// `spare0`, `spare0.a`, `unsigned_invert(spare0)`, `unsigned(spare0)`
-fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<(Range<usize>, FinalInput, Option<Range<usize>>), GivenUp> {
+fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
     let start = parser.here().start;
     let function = parser.word();
     if parser.is('-') || matches!(function, "expand" | "half_bias") {
@@ -190,19 +198,19 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<(Range<usize>, Final
             REGISTERS.iter().map(|(name, _)| *name).chain(["unsigned", "unsigned_invert", "lerp"]).collect();
         return Err(parser.unknown("input", &known));
     }
-    let (register, component, _) = parser.register()?;
+    let Source { register, component, .. } = parser.register()?;
     if mapped {
         parser.sign(')')?;
     }
     let plain = if alpha { Component::Alpha } else { Component::Rgb };
-    let (component, place) = component.map_or((plain, None), |(component, place)| (component, Some(place)));
-    let input = FinalInput { register, component, invert: function == "unsigned_invert" };
-    Ok((start..parser.end(), input, place))
+    let (read, component) = component.map_or((plain, None), |(read, place)| (read, Some(place)));
+    let input = FinalInput { register, component: read, invert: function == "unsigned_invert" };
+    Ok(Operand { input, span: start..parser.end(), component })
 }
 
 /// A side of the colour sum: the register, as it is or inverted.
 fn side(parser: &mut Parser<'_>, wanted: FinalRegister) -> Result<bool, GivenUp> {
-    let (span, input, _) = unplaced(parser, false)?;
+    let Operand { input, span, .. } = unplaced(parser, false)?;
     if input.register != wanted || input.component != Component::Rgb {
         let finding = Diagnostic::error("NB0104", span, "the colour sum is that of spare0 and col1")
             .label("not this")
