@@ -144,11 +144,8 @@ fn direct3d6(state: u32, stage: u32, alpha: bool) -> Portion {
             6 => Register::Texture1,
             other => panic!("argument {other}"),
         };
-        let component = match (alpha, byte >> 1 & 1) {
-            (false, 0) => Component::Rgb,
-            (true, 0) => Component::Blue,
-            _ => Component::Alpha,
-        };
+        // The alpha portion takes alpha, whatever the argument says.
+        let component = if alpha || byte >> 1 & 1 == 1 { Component::Alpha } else { Component::Rgb };
         let mapping = [InputMapping::UnsignedIdentity, InputMapping::UnsignedInvert][(byte & 1) as usize];
         CombinerInput { register, component, mapping }
     });

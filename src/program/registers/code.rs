@@ -151,8 +151,7 @@ pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Re
     for (field, shift, kind) in registers(word) {
         let code = value >> shift & 15;
         if !kind.takes(code, chip) {
-            let message =
-                format!("{name} is {value:08x}: {field} is register code {code:x}, which {} there", kind.why(code));
+            let message = format!("{name} is {value:08x}: {field} is register code {code:x}, which {}", kind.why(code));
             return refuse("NB0360", message, format!("codes there: {}", kind.list(chip)));
         }
     }
@@ -208,8 +207,8 @@ impl Field {
         match (self, code) {
             (_, 6 | 7) => "is no register",
             (Field::Output, 1..=3) => "cannot be written",
-            (_, 14 | 15) => "cannot be named",
-            _ => "the chip lacks",
+            (_, 14 | 15) => "is for A to D of the final combiner",
+            _ => "this chip lacks",
         }
     }
 

@@ -123,7 +123,10 @@ pub fn word_of(place: Place, chip: Profile) -> (Word, usize) {
             Profile::Nv10 => (Word::RcOutRgb, 1),
             Profile::Nv2a => (Word::RcConfig, 0),
         },
-        Place::StageConstants(stage) => (Word::RcConstantColor0, stage),
+        Place::StageConstants(stage) => match chip {
+            Profile::Nv10 => (Word::RcColor, 0),
+            Profile::Nv2a => (Word::RcConstantColor0, stage),
+        },
         Place::FinalConstants => (Word::RcColor, 0),
         Place::General { stage, alpha, part: Part::Input(_) | Part::Component(_) } => {
             (if alpha { Word::RcInAlpha } else { Word::RcInRgb }, stage)

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::parser::{GivenUp, Parser};
+use super::parser::{GivenUp, Parser, Source};
 use super::words::{REGISTERS, find};
 use crate::diagnostic::Diagnostic;
 use crate::program::Place;
@@ -28,7 +28,7 @@ impl Final {
         match parser.word() {
             "clamp_color_sum" => {
                 parser.call()?;
-                parser.once(&mut self.clamp, start)
+                parser.once(&mut self.clamp, start);
             }
             "final_product" => {
                 parser.advance();
@@ -37,7 +37,7 @@ impl Final {
                 parser.sign('*')?;
                 let f = operand(parser, 5)?;
                 parser.sign(';')?;
-                set(parser, &mut self.product, [e, f], start)
+                set(parser, &mut self.product, [e, f], start);
             }
             "color_sum" => {
                 parser.advance();
@@ -46,10 +46,11 @@ impl Final {
                 parser.sign('+')?;
                 let secondary = side(parser, FinalRegister::SecondaryColor)?;
                 parser.sign(';')?;
-                set(parser, &mut self.sum, [spare0, secondary], start)
+                set(parser, &mut self.sum, [spare0, secondary], start);
             }
-            _ => self.out(parser),
+            _ => self.out(parser)?,
         }
+        Ok(())
     }
 
     /// `out.rgb = ...;` or `out.a = ...;`
@@ -67,11 +68,13 @@ impl Final {
         if what == "a" {
             let g = operand(parser, 6)?;
             parser.sign(';')?;
-            return set(parser, &mut self.alpha, g, span);
+            set(parser, &mut self.alpha, g, span);
+            return Ok(());
         }
         let inputs = rgb(parser)?;
         parser.sign(';')?;
-        set(parser, &mut self.rgb, inputs, span)
+        set(parser, &mut self.rgb, inputs, span);
+        Ok(())
     }
 
     /// The state of it all. Without any statement it is OpenGL's initial one.
@@ -105,18 +108,14 @@ impl Final {
 }
 
 /// Keeps what a statement says, once.
-fn set<T>(
-    parser: &mut Parser<'_>,
-    slot: &mut Option<(T, Range<usize>)>,
-    value: T,
-    span: Range<usize>,
-) -> Result<(), GivenUp> {
-    if let Some((_, first)) = slot {
-        let first = first.clone();
-        return Err(parser.twice(span, first, "this"));
+fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Range<usize>)>, value: T, span: Range<usize>) {
+    match slot {
+        Some((_, first)) => {
+            let first = first.clone();
+            parser.twice(span, first, "this");
+        }
+        None => *slot = Some((value, span)),
     }
-    *slot = Some((value, span));
-    Ok(())
 }
 
 /// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`: A B + (1 - A) C + D.
@@ -134,10 +133,9 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
         parser.sign(')')?;
     } else {
         // Where a lone operand stands in the sum is known behind it.
-        let (operand_span, first, component) = unplaced(parser, false)?;
+        let first = unplaced(parser, false)?;
         let slot = if parser.is('*') || parser.is('+') { 0 } else { 3 };
-        inputs[slot] = first;
-        place(parser, slot, operand_span, component);
+        inputs[slot] = place(parser, slot, first);
         if slot == 0 {
             inputs[1] = ONE;
         }
@@ -158,20 +156,29 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
 
 /// Input n of the final combiner.
 fn operand(parser: &mut Parser<'_>, n: usize) -> Result<FinalInput, GivenUp> {
-    let (span, input, component) = unplaced(parser, n == 6)?;
-    place(parser, n, span, component);
-    Ok(input)
+    let operand = unplaced(parser, n == 6)?;
+    Ok(place(parser, n, operand))
 }
 
-fn place(parser: &mut Parser<'_>, n: usize, span: Range<usize>, component: Option<Range<usize>>) {
-    parser.places.set(Place::FinalInput(n), span);
-    if let Some(component) = component {
+/// Notes where input n stands.
+fn place(parser: &mut Parser<'_>, n: usize, operand: Operand) -> FinalInput {
+    parser.places.set(Place::FinalInput(n), operand.span);
+    if let Some(component) = operand.component {
         parser.places.set(Place::FinalComponent(n), component);
     }
+    operand.input
+}
+
+/// An input and its place.
+struct Operand {
+    input: FinalInput,
+    span: Range<usize>,
+    /// Where the component stands, if it is written.
+    component: Option<Range<usize>>,
 }
 
 /// `spare0`, `spare0.a`, `unsigned_invert(spare0)`, `unsigned(spare0)`
-fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<(Range<usize>, FinalInput, Option<Range<usize>>), GivenUp> {
+fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
     let start = parser.here().start;
     let function = parser.word();
     if parser.is('-') || matches!(function, "expand" | "half_bias") {
@@ -191,19 +198,19 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<(Range<usize>, Final
             REGISTERS.iter().map(|(name, _)| *name).chain(["unsigned", "unsigned_invert", "lerp"]).collect();
         return Err(parser.unknown("input", &known));
     }
-    let (register, component, _) = parser.register()?;
+    let Source { register, component, .. } = parser.register()?;
     if mapped {
         parser.sign(')')?;
     }
     let plain = if alpha { Component::Alpha } else { Component::Rgb };
-    let (component, place) = component.map_or((plain, None), |(component, place)| (component, Some(place)));
-    let input = FinalInput { register, component, invert: function == "unsigned_invert" };
-    Ok((start..parser.end(), input, place))
+    let (read, component) = component.map_or((plain, None), |(read, place)| (read, Some(place)));
+    let input = FinalInput { register, component: read, invert: function == "unsigned_invert" };
+    Ok(Operand { input, span: start..parser.end(), component })
 }
 
 /// A side of the colour sum: the register, as it is or inverted.
 fn side(parser: &mut Parser<'_>, wanted: FinalRegister) -> Result<bool, GivenUp> {
-    let (span, input, _) = unplaced(parser, false)?;
+    let Operand { input, span, .. } = unplaced(parser, false)?;
     if input.register != wanted || input.component != Component::Rgb {
         let finding = Diagnostic::error("NB0104", span, "the colour sum is that of spare0 and col1")
             .label("not this")

@@ -16,6 +16,7 @@
 mod final_part;
 mod lexer;
 mod parser;
+mod portion;
 mod print;
 pub mod words;
 

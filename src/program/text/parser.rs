@@ -4,16 +4,13 @@ use std::ops::Range;
 
 use super::final_part::Final;
 use super::lexer::{Kind, Lexer, Token};
-use super::words::{MAPPINGS, REGISTERS, find};
+use super::portion::PortionReader;
+use super::words::{REGISTERS, find};
 use crate::diagnostic::{Diagnostic, shorten};
 use crate::number::convert::constant;
-use crate::program::legality::only_final;
-use crate::program::{Part, Place, Places};
+use crate::program::{Place, Places};
 use crate::spelling::closest;
-use crate::state::{
-    Bias, CombinerInput, Combiners, Component, FinalRegister, GeneralStage, InputMapping, MuxSelect, Portion, Register,
-    Scale,
-};
+use crate::state::{Combiners, Component, FinalRegister, GeneralStage, MuxSelect, Portion};
 
 /// Findings beyond this many are not looked for.
 const MOST_FINDINGS: usize = 64;
@@ -21,7 +18,15 @@ const MOST_FINDINGS: usize = 64;
 /// Why a statement was given up: the reason has been recorded.
 pub(super) struct GivenUp;
 
-type Read<T> = Result<T, GivenUp>;
+pub(super) type Read<T> = Result<T, GivenUp>;
+
+/// A register as an input names it.
+pub(super) struct Source {
+    pub(super) register: FinalRegister,
+    /// The component and its place, if it is written.
+    pub(super) component: Option<(Component, Range<usize>)>,
+    pub(super) span: Range<usize>,
+}
 
 /// What is known while a program is read.
 pub(super) struct Parser<'t> {
@@ -58,7 +63,7 @@ impl<'t> Parser<'t> {
                 "const1" => self.constant(&mut shared[1]),
                 "mux_by_least_significant_bit" => {
                     let span = self.token.span.clone();
-                    self.call().and_then(|()| self.once(&mut mux, span))
+                    self.call().map(|()| self.once(&mut mux, span))
                 }
                 "out" | "final_product" | "color_sum" | "clamp_color_sum" => last.statement(&mut self),
                 _ => Err(self.unknown_statement(
@@ -82,6 +87,8 @@ impl<'t> Parser<'t> {
                 }
             }
         }
+        let end = self.text.trim_end().len();
+        self.places.set(Place::Stages, self.before(end));
         let shared = shared.map(|written| written.map_or([0; 4], |(bytes, _)| bytes));
         let final_combiner = last.finish(&mut self, shared);
         if !self.findings.is_empty() {
@@ -148,15 +155,7 @@ impl<'t> Parser<'t> {
         self.advance();
         let opening = self.token.span.clone();
         self.sign('{')?;
-        let mut reader = PortionReader {
-            stage,
-            alpha,
-            portion: Portion::idle(if alpha { Component::Alpha } else { Component::Rgb }),
-            products: Vec::new(),
-            third: None,
-            scale: None,
-            bias: None,
-        };
+        let mut reader = PortionReader::new(stage, alpha);
         while self.token.kind != Kind::Sign('}') && self.findings.len() < MOST_FINDINGS {
             if self.token.kind == Kind::End {
                 return Err(self.unclosed(opening));
@@ -166,11 +165,13 @@ impl<'t> Parser<'t> {
             }
         }
         self.advance();
-        if let Some((_, first)) = slot {
-            let first = first.clone();
-            return Err(self.twice(name, first, "this portion"));
+        match slot {
+            Some((_, first)) => {
+                let first = first.clone();
+                self.twice(name, first, "this portion");
+            }
+            None => *slot = Some((reader.portion, name)),
         }
-        *slot = Some((reader.portion, name));
         Ok(())
     }
 
@@ -201,17 +202,22 @@ impl<'t> Parser<'t> {
         let span = opening..self.end;
         self.sign(';')?;
         let Ok(values) = <[_; 4]>::try_from(values) else {
-            let finding = Diagnostic::error("NB0211", span, "a constant colour has four numbers: R, G, B and A")
-                .label("not four")
-                .help("write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`");
-            return Err(self.give_up(finding));
+            self.findings.push(
+                Diagnostic::error("NB0211", span, "a constant colour has four numbers: R, G, B and A")
+                    .label("not four")
+                    .help("write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`"),
+            );
+            return Ok(());
         };
-        let [Some(r), Some(g), Some(b), Some(a)] = values else { return Err(GivenUp) };
-        if let Some((_, first)) = slot {
-            let first = first.clone();
-            return Err(self.twice(name, first, "this constant"));
+        // What is out of range has been recorded.
+        let bytes = values.map(Option::unwrap_or_default);
+        match slot {
+            Some((_, first)) => {
+                let first = first.clone();
+                self.twice(name, first, "this constant");
+            }
+            None => *slot = Some((bytes, name.start..span.end)),
         }
-        *slot = Some(([r, g, b, a], name.start..span.end));
         Ok(())
     }
 
@@ -241,8 +247,8 @@ impl<'t> Parser<'t> {
         value
     }
 
-    /// A register with its component: `tex0`, `tex0.a`. The component's place if it is written.
-    pub(super) fn register(&mut self) -> Read<(FinalRegister, Option<(Component, Range<usize>)>, Range<usize>)> {
+    /// A register, perhaps with a component: `tex0`, `tex0.a`.
+    pub(super) fn register(&mut self) -> Read<Source> {
         let span = self.token.span.clone();
         if self.token.kind != Kind::Word {
             return Err(self.expected("a register"));
@@ -253,11 +259,11 @@ impl<'t> Parser<'t> {
         };
         self.advance();
         let component = self.component();
-        Ok((register, component, span.start..self.end))
+        Ok(Source { register, component, span: span.start..self.end })
     }
 
     /// `.rgb`, `.a` or `.b` without a space before the point: anything else is an operator.
-    fn component(&mut self) -> Option<(Component, Range<usize>)> {
+    pub(super) fn component(&mut self) -> Option<(Component, Range<usize>)> {
         if self.token.kind != Kind::Sign('.') || self.token.span.start != self.end {
             return None;
         }
@@ -324,12 +330,12 @@ impl<'t> Parser<'t> {
         self.sign(';')
     }
 
-    pub(super) fn once(&mut self, slot: &mut Option<Range<usize>>, span: Range<usize>) -> Read<()> {
-        if let Some(first) = slot.clone() {
-            return Err(self.twice(span, first, "this"));
+    /// Keeps the place of a statement that may be there once.
+    pub(super) fn once(&mut self, slot: &mut Option<Range<usize>>, span: Range<usize>) {
+        match slot.clone() {
+            Some(first) => self.twice(span, first, "this"),
+            None => *slot = Some(span),
         }
-        *slot = Some(span);
-        Ok(())
     }
 
     pub(super) fn give_up(&mut self, finding: Diagnostic) -> GivenUp {
@@ -342,14 +348,14 @@ impl<'t> Parser<'t> {
             Kind::End => "the end of the program".to_owned(),
             _ => format!("`{}`", shorten(self.lexeme())),
         };
-        // A sign that is missing is missing behind what stands before.
-        let span = match self.token.kind {
-            Kind::End => self.end.saturating_sub(1)..self.end,
-            _ => self.here(),
+        // What is missing at the end of a line is missing there, not where the next one starts.
+        let between = self.text.get(self.end..self.token.span.start).unwrap_or("");
+        let (span, label) = if self.token.kind == Kind::End || between.contains('\n') {
+            (self.before(self.end), "behind this")
+        } else {
+            (self.here(), "not expected here")
         };
-        self.give_up(
-            Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label("not expected here"),
-        )
+        self.give_up(Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label(label))
     }
 
     /// The finding that a word is none of the known ones.
@@ -364,18 +370,29 @@ impl<'t> Parser<'t> {
         self.give_up(Diagnostic::error("NB0204", self.here(), message).label("not known").help(help))
     }
 
+    /// A word that is not known, or something that is no word.
+    pub(super) fn unknown_or_expected(&mut self, what: &str, known: &[&str]) -> GivenUp {
+        if self.token.kind == Kind::Word { self.unknown(what, known) } else { self.expected(&format!("a {what}")) }
+    }
+
     fn unknown_statement(&mut self, expected: &str, known: &[&str]) -> GivenUp {
         if self.token.kind == Kind::Word { self.unknown("statement", known) } else { self.expected(expected) }
     }
 
-    pub(super) fn twice(&mut self, span: Range<usize>, first: Range<usize>, what: &str) -> GivenUp {
-        let message = format!("{what} is given twice");
-        self.give_up(
-            Diagnostic::error("NB0364", span, message)
+    /// Records that a statement, which has been read to its end, was there before.
+    pub(super) fn twice(&mut self, span: Range<usize>, first: Range<usize>, what: &str) {
+        self.findings.push(
+            Diagnostic::error("NB0364", span, format!("{what} is given twice"))
                 .label("again here")
                 .related(first, "first here")
                 .help("keep one of them"),
-        )
+        );
+    }
+
+    /// The character that ends at a place.
+    fn before(&self, end: usize) -> Range<usize> {
+        let start = self.text.get(..end).and_then(|text| text.char_indices().next_back()).map_or(0, |(start, _)| start);
+        start..end
     }
 
     fn unclosed(&mut self, opening: Range<usize>) -> GivenUp {
@@ -405,224 +422,5 @@ impl<'t> Parser<'t> {
             }
             self.advance();
         }
-    }
-}
-
-/// A portion while its statements are read.
-struct PortionReader {
-    stage: usize,
-    alpha: bool,
-    portion: Portion,
-    /// Places of the products so far.
-    products: Vec<Range<usize>>,
-    /// Place of the sum or mux.
-    third: Option<Range<usize>>,
-    scale: Option<Range<usize>>,
-    bias: Option<Range<usize>>,
-}
-
-const CALLS: [&str; 5] = [
-    "scale_by_two",
-    "scale_by_four",
-    "scale_by_one_half",
-    "bias_by_negative_one_half",
-    "bias_by_negative_one_half_scale_by_two",
-];
-
-impl PortionReader {
-    fn at(&self, part: Part) -> Place {
-        Place::General { stage: self.stage, alpha: self.alpha, part }
-    }
-
-    fn statement(&mut self, parser: &mut Parser<'_>) -> Read<()> {
-        let span = parser.here();
-        let word = parser.word();
-        let scale = match word {
-            "scale_by_two" | "bias_by_negative_one_half_scale_by_two" => Some(Scale::Two),
-            "scale_by_four" => Some(Scale::Four),
-            "scale_by_one_half" => Some(Scale::Half),
-            _ => None,
-        };
-        let bias = word.starts_with("bias_by_negative_one_half") && CALLS.contains(&word);
-        if scale.is_none() && !bias {
-            return self.assignment(parser);
-        }
-        parser.call()?;
-        if let Some(scale) = scale {
-            parser.once(&mut self.scale, span.clone())?;
-            parser.places.set(self.at(Part::Scale), span.clone());
-            self.portion.scale = scale;
-        }
-        if bias {
-            parser.once(&mut self.bias, span.clone())?;
-            parser.places.set(self.at(Part::Bias), span);
-            self.portion.bias = Bias::NegativeHalf;
-        }
-        Ok(())
-    }
-
-    /// `spare0 = ...;`
-    fn assignment(&mut self, parser: &mut Parser<'_>) -> Read<()> {
-        let start = parser.here().start;
-        let (output, written) = self.destination(parser)?;
-        parser.sign('=')?;
-        if let third @ ("sum" | "mux") = parser.word() {
-            parser.call()?;
-            if let Some(first) = self.third.clone() {
-                return Err(parser.twice(start..parser.end(), first, "the third result of this portion"));
-            }
-            self.third = Some(start..parser.end());
-            self.portion.sum_output = output;
-            self.portion.mux = third == "mux";
-            parser.places.set(self.at(Part::Output(2)), written);
-            return Ok(());
-        }
-        let n = self.products.len();
-        if n == 2 {
-            let finding = Diagnostic::error("NB0364", start..parser.end(), "a portion has two products")
-                .label("the third")
-                .rule("CMB-12")
-                .help("use another stage; `sum()` and `mux()` give the two products together");
-            return Err(parser.give_up(finding));
-        }
-        let first = self.operand(parser, 2 * n)?;
-        let sign = parser.here();
-        let mut dot = false;
-        let second = if parser.is('*') || parser.is('.') {
-            dot = parser.is('.');
-            parser.advance();
-            self.operand(parser, 2 * n + 1)?
-        } else {
-            // A register on its own is taken times one.
-            let component = if self.alpha { Component::Alpha } else { Component::Rgb };
-            CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
-        };
-        let mut blue = None;
-        if parser.is(',') {
-            parser.advance();
-            blue = Some(parser.here());
-            if parser.word() != "blue_to_alpha" {
-                return Err(parser.unknown_or_expected("property of a product", &["blue_to_alpha"]));
-            }
-            parser.advance();
-        }
-        if !parser.is(';') {
-            return Err(parser.expected("`*`, `.` or `;`"));
-        }
-        parser.advance();
-        parser.places.set(self.at(Part::Output(n)), written);
-        if dot {
-            parser.places.set(self.at(Part::Dot(n)), sign);
-        }
-        if let Some(span) = blue.clone() {
-            parser.places.set(self.at(Part::BlueToAlpha(n)), span);
-        }
-        self.products.push(start..parser.end());
-        self.portion.inputs[2 * n] = first;
-        self.portion.inputs[2 * n + 1] = second;
-        let portion = &mut self.portion;
-        let (out, is_dot, to_alpha) = if n == 0 {
-            (&mut portion.ab_output, &mut portion.ab_dot_product, &mut portion.ab_blue_to_alpha)
-        } else {
-            (&mut portion.cd_output, &mut portion.cd_dot_product, &mut portion.cd_blue_to_alpha)
-        };
-        (*out, *is_dot, *to_alpha) = (output, dot, blue.is_some());
-        Ok(())
-    }
-
-    /// A register to write, or `discard`.
-    fn destination(&self, parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
-        let span = parser.here();
-        if parser.word() == "discard" {
-            parser.advance();
-            return Ok((Register::Zero, span));
-        }
-        let register = find(parser.word()).and_then(general);
-        let Some(register) = register.filter(|register| *register != Register::Zero) else {
-            let known = REGISTERS[4..12].iter().map(|(name, _)| *name).chain(["discard"]).chain(CALLS);
-            let known: Vec<&str> = known.collect();
-            return Err(parser.unknown_or_expected("destination or statement", &known));
-        };
-        parser.advance();
-        if let Some((component, place)) = parser.component() {
-            let own = if self.alpha { Component::Alpha } else { Component::Rgb };
-            if component != own {
-                let (what, help) = if self.alpha {
-                    ("alpha", "write other components in `rgb { ... }`")
-                } else {
-                    ("RGB", "write alpha in `alpha { ... }`, or add `, blue_to_alpha` to a product (Nv2a)")
-                };
-                let finding = Diagnostic::error("NB0311", place, format!("this portion writes {what}"))
-                    .label("not this component")
-                    .rule("CMB-12")
-                    .help(help);
-                return Err(parser.give_up(finding));
-            }
-        }
-        Ok((register, span.start..parser.end()))
-    }
-
-    /// `tex0`, `-tex0`, `expand(tex0.a)`, `-expand(tex0)`
-    fn operand(&self, parser: &mut Parser<'_>, n: usize) -> Read<CombinerInput> {
-        let start = parser.here().start;
-        let negative = parser.is('-');
-        if negative {
-            parser.advance();
-        }
-        let function = MAPPINGS.iter().find(|(name, _, _)| *name == parser.word());
-        let mapping = match function {
-            Some((_, mapping, _)) if !negative => *mapping,
-            Some((_, _, Some(negated))) => *negated,
-            Some((name, _, None)) => {
-                let finding = Diagnostic::error("NB0311", start..parser.here().end, format!("there is no `-{name}`"))
-                    .label("not negated")
-                    .rule("CMB-5")
-                    .help("a plain register can be negated, `expand` and `half_bias` too");
-                return Err(parser.give_up(finding));
-            }
-            None if negative => InputMapping::SignedNegate,
-            None => InputMapping::SignedIdentity,
-        };
-        if function.is_some() {
-            parser.advance();
-            parser.sign('(')?;
-        } else if find(parser.word()).is_none() && !parser.word().is_empty() {
-            let known = REGISTERS[..12].iter().map(|(name, _)| *name).chain(MAPPINGS.iter().map(|(name, _, _)| *name));
-            let known: Vec<&str> = known.collect();
-            return Err(parser.unknown("input", &known));
-        }
-        let (register, component, span) = parser.register()?;
-        let Some(register) = general(register) else {
-            let name = super::words::register(register);
-            return Err(parser.give_up(only_final(span, name, "use it in `out.rgb = ...`")));
-        };
-        if function.is_some() {
-            parser.sign(')')?;
-        }
-        parser.places.set(self.at(Part::Input(n)), start..parser.end());
-        let plain = if self.alpha { Component::Alpha } else { Component::Rgb };
-        let component = match component {
-            Some((component, place)) => {
-                parser.places.set(self.at(Part::Component(n)), place);
-                component
-            }
-            None => plain,
-        };
-        Ok(CombinerInput { register, component, mapping })
-    }
-}
-
-impl Parser<'_> {
-    /// A word that is not known, or something that is no word.
-    pub(super) fn unknown_or_expected(&mut self, what: &str, known: &[&str]) -> GivenUp {
-        if self.token.kind == Kind::Word { self.unknown(what, known) } else { self.expected(&format!("a {what}")) }
-    }
-}
-
-/// The register of general stages; `None` if only the final combiner has it.
-fn general(register: FinalRegister) -> Option<Register> {
-    match register {
-        FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => None,
-        other => Some(crate::combiner::final_combiner::general(other)),
     }
 }

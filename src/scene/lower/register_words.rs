@@ -27,7 +27,7 @@ pub(super) fn register_words<'a>(reader: &mut Reader<'a>, text: &'a str) -> Opti
     }
     match decode(&given.words) {
         Ok(combiners) => {
-            let places = given.parts(combiners.stages.len());
+            let places = given.parts(&combiners);
             Some((combiners, places))
         }
         Err(refusals) => {
@@ -99,15 +99,18 @@ impl Given {
     }
 
     /// Where the parts of the program stand: in their words.
-    fn parts(&self, stages: usize) -> Places {
+    fn parts(&self, combiners: &Combiners) -> Places {
         let mut places = Places::default();
         let mut note = |place| {
             let (word, index) = word_of(place, self.words.chip);
             places.set(place, self.place(word, index));
         };
         note(Place::Stages);
-        for stage in 0..stages {
+        for (stage, state) in combiners.stages.iter().enumerate() {
             note(Place::Stage(stage));
+            if state.constants != combiners.final_combiner.constants {
+                note(Place::StageConstants(stage));
+            }
             for alpha in [false, true] {
                 let products = [0, 1].into_iter().flat_map(|n| [Part::Dot(n), Part::BlueToAlpha(n)]);
                 let outputs = (0..3).map(Part::Output);

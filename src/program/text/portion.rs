@@ -1,0 +1,236 @@
+//! The statements of a portion of a general stage.
+
+use std::ops::Range;
+
+use super::parser::{Parser, Read, Source};
+use super::words::{MAPPINGS, REGISTERS, find};
+use crate::diagnostic::Diagnostic;
+use crate::program::legality::only_final;
+use crate::program::{Part, Place};
+use crate::state::{Bias, CombinerInput, Component, FinalRegister, InputMapping, Portion, Register, Scale};
+
+/// A portion while its statements are read.
+pub(super) struct PortionReader {
+    stage: usize,
+    alpha: bool,
+    pub(super) portion: Portion,
+    /// Places of the products so far.
+    products: Vec<Range<usize>>,
+    /// Place of the sum or mux.
+    third: Option<Range<usize>>,
+    scale: Option<Range<usize>>,
+    bias: Option<Range<usize>>,
+}
+
+const CALLS: [&str; 5] = [
+    "scale_by_two",
+    "scale_by_four",
+    "scale_by_one_half",
+    "bias_by_negative_one_half",
+    "bias_by_negative_one_half_scale_by_two",
+];
+
+impl PortionReader {
+    pub(super) fn new(stage: usize, alpha: bool) -> Self {
+        PortionReader {
+            stage,
+            alpha,
+            portion: Portion::idle(if alpha { Component::Alpha } else { Component::Rgb }),
+            products: Vec::new(),
+            third: None,
+            scale: None,
+            bias: None,
+        }
+    }
+
+    fn at(&self, part: Part) -> Place {
+        Place::General { stage: self.stage, alpha: self.alpha, part }
+    }
+
+    /// Reads one of them.
+    pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Read<()> {
+        let span = parser.here();
+        let word = parser.word();
+        let scale = match word {
+            "scale_by_two" | "bias_by_negative_one_half_scale_by_two" => Some(Scale::Two),
+            "scale_by_four" => Some(Scale::Four),
+            "scale_by_one_half" => Some(Scale::Half),
+            _ => None,
+        };
+        let bias = word.starts_with("bias_by_negative_one_half") && CALLS.contains(&word);
+        if scale.is_none() && !bias {
+            return self.assignment(parser);
+        }
+        parser.call()?;
+        if let Some(scale) = scale {
+            parser.once(&mut self.scale, span.clone());
+            parser.places.set(self.at(Part::Scale), span.clone());
+            self.portion.scale = scale;
+        }
+        if bias {
+            parser.once(&mut self.bias, span.clone());
+            parser.places.set(self.at(Part::Bias), span);
+            self.portion.bias = Bias::NegativeHalf;
+        }
+        Ok(())
+    }
+
+    /// `spare0 = ...;`
+    fn assignment(&mut self, parser: &mut Parser<'_>) -> Read<()> {
+        let start = parser.here().start;
+        let (output, written) = self.destination(parser)?;
+        parser.sign('=')?;
+        if let third @ ("sum" | "mux") = parser.word() {
+            parser.call()?;
+            if let Some(first) = self.third.clone() {
+                parser.twice(start..parser.end(), first, "the third result of this portion");
+                return Ok(());
+            }
+            self.third = Some(start..parser.end());
+            self.portion.sum_output = output;
+            self.portion.mux = third == "mux";
+            parser.places.set(self.at(Part::Output(2)), written);
+            return Ok(());
+        }
+        let n = self.products.len();
+        if n == 2 {
+            let finding = Diagnostic::error("NB0364", start..parser.end(), "a portion has two products")
+                .label("the third")
+                .rule("CMB-12")
+                .help("use another stage; `sum()` and `mux()` give the two products together");
+            return Err(parser.give_up(finding));
+        }
+        let first = self.operand(parser, 2 * n)?;
+        let sign = parser.here();
+        let mut dot = false;
+        let second = if parser.is('*') || parser.is('.') {
+            dot = parser.is('.');
+            parser.advance();
+            self.operand(parser, 2 * n + 1)?
+        } else {
+            // A register on its own is taken times one.
+            let component = if self.alpha { Component::Alpha } else { Component::Rgb };
+            CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
+        };
+        let mut blue = None;
+        if parser.is(',') {
+            parser.advance();
+            blue = Some(parser.here());
+            if parser.word() != "blue_to_alpha" {
+                return Err(parser.unknown_or_expected("property of a product", &["blue_to_alpha"]));
+            }
+            parser.advance();
+        }
+        if !parser.is(';') {
+            return Err(parser.expected("`*`, `.` or `;`"));
+        }
+        parser.advance();
+        parser.places.set(self.at(Part::Output(n)), written);
+        if dot {
+            parser.places.set(self.at(Part::Dot(n)), sign);
+        }
+        if let Some(span) = blue.clone() {
+            parser.places.set(self.at(Part::BlueToAlpha(n)), span);
+        }
+        self.products.push(start..parser.end());
+        self.portion.inputs[2 * n] = first;
+        self.portion.inputs[2 * n + 1] = second;
+        let portion = &mut self.portion;
+        let (out, is_dot, to_alpha) = if n == 0 {
+            (&mut portion.ab_output, &mut portion.ab_dot_product, &mut portion.ab_blue_to_alpha)
+        } else {
+            (&mut portion.cd_output, &mut portion.cd_dot_product, &mut portion.cd_blue_to_alpha)
+        };
+        (*out, *is_dot, *to_alpha) = (output, dot, blue.is_some());
+        Ok(())
+    }
+
+    /// A register to write, or `discard`.
+    fn destination(&self, parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
+        let span = parser.here();
+        if parser.word() == "discard" {
+            parser.advance();
+            return Ok((Register::Zero, span));
+        }
+        let register = find(parser.word()).and_then(general);
+        let Some(register) = register.filter(|register| *register != Register::Zero) else {
+            let known = REGISTERS[4..12].iter().map(|(name, _)| *name).chain(["discard"]).chain(CALLS);
+            let known: Vec<&str> = known.collect();
+            return Err(parser.unknown_or_expected("destination or statement", &known));
+        };
+        parser.advance();
+        if let Some((component, place)) = parser.component() {
+            let own = if self.alpha { Component::Alpha } else { Component::Rgb };
+            if component != own {
+                let (what, help) = if self.alpha {
+                    ("alpha", "write other components in `rgb { ... }`")
+                } else {
+                    ("RGB", "write alpha in `alpha { ... }`, or add `, blue_to_alpha` to a product (Nv2a)")
+                };
+                let finding = Diagnostic::error("NB0311", place, format!("this portion writes {what}"))
+                    .label("not this component")
+                    .rule("CMB-12")
+                    .help(help);
+                return Err(parser.give_up(finding));
+            }
+        }
+        Ok((register, span.start..parser.end()))
+    }
+
+    /// `tex0`, `-tex0`, `expand(tex0.a)`, `-expand(tex0)`
+    fn operand(&self, parser: &mut Parser<'_>, n: usize) -> Read<CombinerInput> {
+        let start = parser.here().start;
+        let negative = parser.is('-');
+        if negative {
+            parser.advance();
+        }
+        let function = MAPPINGS.iter().find(|(name, _, _)| *name == parser.word());
+        let mapping = match function {
+            Some((_, mapping, _)) if !negative => *mapping,
+            Some((_, _, Some(negated))) => *negated,
+            Some((name, _, None)) => {
+                let finding = Diagnostic::error("NB0311", start..parser.here().end, format!("there is no `-{name}`"))
+                    .label("not negated")
+                    .rule("CMB-5")
+                    .help("a plain register can be negated, `expand` and `half_bias` too");
+                return Err(parser.give_up(finding));
+            }
+            None if negative => InputMapping::SignedNegate,
+            None => InputMapping::SignedIdentity,
+        };
+        if function.is_some() {
+            parser.advance();
+            parser.sign('(')?;
+        } else if find(parser.word()).is_none() && !parser.word().is_empty() {
+            let known = REGISTERS[..12].iter().map(|(name, _)| *name).chain(MAPPINGS.iter().map(|(name, _, _)| *name));
+            let known: Vec<&str> = known.collect();
+            return Err(parser.unknown("input", &known));
+        }
+        let Source { register, component, span } = parser.register()?;
+        let Some(register) = general(register) else {
+            let name = super::words::register(register);
+            return Err(parser.give_up(only_final(span, name, "use it in `out.rgb = ...`")));
+        };
+        if function.is_some() {
+            parser.sign(')')?;
+        }
+        parser.places.set(self.at(Part::Input(n)), start..parser.end());
+        let plain = if self.alpha { Component::Alpha } else { Component::Rgb };
+        let component = match component {
+            Some((component, place)) => {
+                parser.places.set(self.at(Part::Component(n)), place);
+                component
+            }
+            None => plain,
+        };
+        Ok(CombinerInput { register, component, mapping })
+    }
+}
+
+/// The register of general stages; `None` if only the final combiner has it.
+fn general(register: FinalRegister) -> Option<Register> {
+    match register {
+        FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => None,
+        other => Some(crate::combiner::final_combiner::general(other)),
+    }
+}
