@@ -100,6 +100,7 @@ fn text(program: &TextureStages, form: Form) -> String {
 /// The program without its places.
 fn bare(mut program: TextureStages) -> TextureStages {
     for stage in &mut program.stages {
+        stage.place = 0..0;
         for half in [&mut stage.color, &mut stage.alpha] {
             half.operation.place = 0..0;
             half.arguments.iter_mut().for_each(|argument| argument.place = 0..0);

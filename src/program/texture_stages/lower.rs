@@ -69,7 +69,13 @@ pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<
             ResultArgument::Current => Destination::Current,
             ResultArgument::Temp => Destination::Temporary,
         };
-        cascade.stage(stage.color.operation.place.clone(), &rgb, alpha, destination, origin(index, stage));
+        cascade.stage(
+            written([&stage.color.operation.place, &stage.place]),
+            &rgb,
+            alpha,
+            destination,
+            origin(index, stage),
+        );
     }
     let mut findings = walk.findings;
     match cascade.finish("cascade", End { specular: program.specular_enable, fog: context.fog }) {
@@ -82,6 +88,11 @@ pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<
             Err(findings)
         }
     }
+}
+
+/// The first place that is written.
+fn written<const N: usize>(places: [&Range<usize>; N]) -> Range<usize> {
+    places.into_iter().find(|place| !place.is_empty()).cloned().unwrap_or(0..0)
 }
 
 /// What is known while the stages are gone through.
@@ -98,10 +109,12 @@ impl Walk<'_> {
     /// The equation of the colour or the alpha of a stage.
     fn half(&mut self, index: usize, half: &Half, alpha: bool) -> crate::program::cascade::Equation {
         let operation = half.operation.value;
+        let stage = &self.program.stages[index];
+        let place = written([&half.operation.place, &stage.color.operation.place, &stage.place]);
         if alpha && operation.is_color_only() {
             self.findings.push(finding(
                 "NB0353",
-                half.operation.place.clone(),
+                place.clone(),
                 format!("AlphaOp cannot be {}", operation.name()),
                 "a colour operation",
                 "alpha has SelectArg1 to AddSmooth, the Blend operations, PreModulate, MultiplyAdd and Lerp",
@@ -109,16 +122,14 @@ impl Walk<'_> {
         }
         let reads = operation.reads();
         let arguments = std::array::from_fn(|n| {
-            if reads[n] { self.argument(index, &half.arguments[n], alpha) } else { Argument::ZERO }
+            if reads[n] { self.argument(index, &half.arguments[n], alpha, &place) } else { Argument::ZERO }
         });
         let texture = match operation {
-            Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => {
-                self.texture(index, half.operation.place.clone())
-            }
+            Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => self.texture(index, place.clone()),
             _ => Argument::ONE,
         };
         let next_texture = match operation {
-            Operation::PreModulate if index + 1 < self.active => self.texture(index + 1, half.operation.place.clone()),
+            Operation::PreModulate if index + 1 < self.active => self.texture(index + 1, place.clone()),
             _ => Argument::ONE,
         };
         let around = Surroundings {
@@ -131,12 +142,13 @@ impl Walk<'_> {
         operation.equation(arguments, &around)
     }
 
-    fn argument(&mut self, index: usize, at: &At<StageArgument>, alpha: bool) -> Argument {
+    fn argument(&mut self, index: usize, at: &At<StageArgument>, alpha: bool, operation: &Range<usize>) -> Argument {
+        let place = written([&at.place, operation]);
         let StageArgument { source, complement, alpha_replicate } = at.value;
         let mut argument = match source {
             ArgumentSource::Diffuse => Argument::new(Source::Primary),
             ArgumentSource::Current => Argument::new(Source::Current),
-            ArgumentSource::Texture => self.texture(index, at.place.clone()),
+            ArgumentSource::Texture => self.texture(index, place.clone()),
             ArgumentSource::TextureFactor => Argument::new(Source::Constant(self.program.texture_factor)),
             ArgumentSource::Specular => Argument::new(Source::Secondary),
             ArgumentSource::Temp => Argument::new(Source::Temporary),
@@ -145,7 +157,7 @@ impl Walk<'_> {
         if source == ArgumentSource::Specular && (alpha || alpha_replicate) && self.context.profile == Profile::Nv10 {
             let error = finding(
                 "NB0309",
-                at.place.clone(),
+                place,
                 "the alpha of Specular is not defined on Nv10",
                 "undefined",
                 "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of Diffuse",

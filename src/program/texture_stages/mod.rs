@@ -7,6 +7,8 @@ mod lower;
 mod operation;
 mod text;
 
+use std::ops::Range;
+
 use crate::program::At;
 use crate::state::named;
 
@@ -126,6 +128,8 @@ pub struct TextureStage {
     pub bump_matrix: [f32; 4],
     /// BUMPENVLSCALE, BUMPENVLOFFSET.
     pub bump_luminance: [f32; 2],
+    /// Where the stage is written, for findings about what is not; empty if it is not.
+    pub place: Range<usize>,
 }
 
 impl TextureStage {
@@ -149,6 +153,7 @@ impl TextureStage {
             transform_flags: At::default_of(0),
             bump_matrix: [0.0; 4],
             bump_luminance: [0.0; 2],
+            place: 0..0,
         }
     }
 }

@@ -326,6 +326,9 @@ impl<'t> Parser<'t> {
             self.findings.push(finding("NB0206", stage.place.clone(), message, "out of range", help));
             return;
         };
+        if target.place.is_empty() {
+            target.place = state.clone();
+        }
         let findings = &mut self.findings;
         let place = value.place.clone();
         let at = |argument| At { value: argument, place: place.clone() };

@@ -14,7 +14,7 @@ use crate::state::Named;
 /// Reads the fields in the parentheses.
 pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
-    several(reader, &fields);
+    several(reader, &fields)?;
     let written = match (&fields.text, &fields.file) {
         (Some(raw), _) => Some(ProgramText::inline(reader, raw)?),
         (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?),
@@ -43,6 +43,7 @@ pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, tex
         for (index, raw) in list.iter().enumerate().take(STAGES) {
             let Some(fields) = reader.read(raw) else { continue };
             if let Some(stage) = program.stage_mut(index) {
+                stage.place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
                 self::stage(reader, names, &fields, stage);
             }
         }
@@ -53,21 +54,21 @@ pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, tex
 }
 
 /// Stages come from one place.
-fn several<'a>(reader: &mut Reader<'a>, fields: &source::TextureStages<'a>) {
+fn several<'a>(reader: &mut Reader<'a>, fields: &source::TextureStages<'a>) -> Option<()> {
     let given = [
         fields.stages.as_ref().map(|raw| reader.span(raw)),
         fields.text.as_ref().map(|raw| reader.span(raw)),
         fields.file.as_ref().map(|raw| reader.span(raw)),
     ];
     let mut given = given.into_iter().flatten();
-    if let (Some(first), Some(second)) = (given.next(), given.next()) {
-        reader.push(
-            Diagnostic::error("NB0356", second, "texture stages are given twice")
-                .label("again here")
-                .related(first, "first here")
-                .help("keep one of `stages`, `text` and `file`"),
-        );
-    }
+    let (Some(first), Some(second)) = (given.next(), given.next()) else { return Some(()) };
+    reader.push(
+        Diagnostic::error("NB0356", second, "texture stages are given twice")
+            .label("again here")
+            .related(first, "first here")
+            .help("keep one of `stages`, `text` and `file`"),
+    );
+    None
 }
 
 fn stage<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {
