@@ -255,3 +255,59 @@ fn words_make_of_colours_what_is_expected() {
         }
     }
 }
+
+/// Operations of NV20's texture shader by their codes: in a scene, and the texture that the unit needs.
+const SHADER_OPERATIONS: [(u32, &str, &str); 19] = [
+    (0x00, "None", "Unbound"),
+    (0x01, "Sample", "\"flat\""),
+    (0x02, "VolumeTexture", "Unbound"),
+    (0x03, "Sample", "\"cube\""),
+    (0x04, "PassThrough", "Unbound"),
+    (0x05, "CullFragment()", "Unbound"),
+    (0x06, "BumpEnvironment(matrix: (1, 0, 0, 1))", "\"flat\""),
+    (0x07, "BumpEnvironment(matrix: (1, 0, 0, 1), luminance: (1, 0))", "\"flat\""),
+    (0x08, "Brdf", "Unbound"),
+    (0x09, "DotProduct2D", "\"flat\""),
+    (0x0a, "DotProductDepth", "Unbound"),
+    (0x0b, "DotReflectDiffuse", "\"cube\""),
+    (0x0c, "DotReflectSpecular", "\"cube\""),
+    (0x0d, "DotProduct3D", "Unbound"),
+    (0x0e, "DotProductCube", "\"cube\""),
+    (0x0f, "DependentAlphaRed", "\"flat\""),
+    (0x10, "DependentGreenBlue", "\"flat\""),
+    (0x11, "DotProduct", "Unbound"),
+    (0x12, "DotReflectConstantEye(eye: (0, 0, 1))", "\"cube\""),
+];
+
+#[test]
+fn texture_shaders_are_taken_as_the_chip_does() {
+    let document = std::fs::read_to_string("docs/known-differences.md").unwrap();
+    let rows = rows("texture-shader-words.tsv");
+    assert_eq!(rows.len(), 14);
+    for row in rows {
+        let [_, value, accepted] = &row[..] else { panic!("{row:?}") };
+        let operations = [0, 5, 10, 15].map(|shift| {
+            let code = hex(value) >> shift & 31;
+            SHADER_OPERATIONS.iter().find(|(known, _, _)| *known == code).unwrap()
+        });
+        let solid = "Solid(width: 1, height: 1, color: (1, 2, 3))";
+        let faces = ["positive_x", "negative_x", "positive_y", "negative_y", "positive_z", "negative_z"];
+        let faces = faces.map(|face| format!("{face}: {solid}")).join(", ");
+        let text = format!(
+            "(version: 1, profile: Nv2a, textures: {{ \"flat\": (source: {solid}), \
+             \"cube\": (kind: Cube, source: Faces({faces})) }}, draws: [(vertices: Window([]), textures: [{}], texture_shader: [{}])])",
+            operations.map(|(_, _, texture)| *texture).join(", "),
+            // Which earlier unit is read is another register's matter: the first suits all.
+            operations
+                .map(|(code, operation, _)| match code {
+                    0x00..=0x05 | 0x08 | 0x0a | 0x0d => (*operation).to_owned(),
+                    _ => format!("(operation: {operation}, previous: 0)"),
+                })
+                .join(", "),
+        );
+        let found = scene::parse(&text, Path::new("shader.ron"), &Limits::default());
+        let listed = document.contains(&format!("| tex_shader_op {value} |"));
+        let agree = found.is_ok() == (accepted == "yes");
+        assert_eq!(agree, !listed, "{row:?}: {:?}", found.map(|_| ()).map_err(|error| error.to_string()));
+    }
+}
