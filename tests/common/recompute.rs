@@ -421,7 +421,7 @@ fn power_of_two(m: i128, e: i128) -> Number {
     let bits = 128 - i128::from(m.unsigned_abs().leading_zeros()) + e;
     let x = match m.signum() {
         0 => 0,
-        sign if bits > 6 => sign * 64 << 110,
+        sign if bits > 6 => (sign * 64) << 110,
         _ if e + 110 >= 0 => m << (e + 110),
         _ => m >> (-e - 110).min(127),
     };
@@ -431,7 +431,7 @@ fn power_of_two(m: i128, e: i128) -> Number {
     let times = |a: u128, b: u128| {
         let (high, low) = (a >> 55, a & ((1 << 55) - 1));
         let (b1, b0) = (b >> 55, b & ((1 << 55) - 1));
-        high * b1 + ((high * b0 + low * b1 + (low * b0 >> 55)) >> 55)
+        high * b1 + ((high * b0 + low * b1 + ((low * b0) >> 55)) >> 55)
     };
     let t = times(fraction, 0x58b9_0bfb_e8e7_bcd5_e4f1_d9cc_01f9_7b57 >> 17);
     let (mut term, mut sum, mut n) = (1_u128 << 110, 0_u128, 0);
