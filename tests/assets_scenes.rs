@@ -2,7 +2,7 @@
 //!
 //! `BLESS=1 cargo test --test assets_scenes` rewrites the expectations, but for those that come from a capture; look at the pictures
 //! and at the difference before committing.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::unwrap_used, unreachable_pub, reason = "a test fails by panicking, and shares a file with others")]
 
 #[path = "common/scene_files.rs"]
 mod scene_files;

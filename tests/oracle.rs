@@ -17,7 +17,12 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
-/// A runner whose scenes are the same on every machine.
+/// A number from the environment.
+fn setting(name: &str, otherwise: u32) -> u32 {
+    std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(otherwise)
+}
+
+/// A runner whose scenes are the same on every machine. NINEBIT_ORACLE_SEED gives others.
 fn runner(cases: u32) -> TestRunner {
     let config = Config {
         cases,
@@ -26,7 +31,8 @@ fn runner(cases: u32) -> TestRunner {
         failure_persistence: None,
         ..Config::default()
     };
-    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[9; 32]))
+    let seed = setting("NINEBIT_ORACLE_SEED", 9) as u8;
+    TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]))
 }
 
 /// The first pixel where two renders differ: target, x, y and what stands there.
@@ -77,14 +83,10 @@ fn policies() -> impl Strategy<Value = Policies> {
     })
 }
 
-fn scenes() -> u32 {
-    std::env::var("NINEBIT_ORACLE_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(2000)
-}
-
 #[test]
 fn random_scenes_agree() {
     let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
-    run(scenes(), &(random_scene::scene(), policies).boxed());
+    run(setting("NINEBIT_ORACLE_SCENES", 2000), &(random_scene::scene(), policies).boxed());
 }
 
 #[test]

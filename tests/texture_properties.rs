@@ -1,5 +1,5 @@
 //! What holds for texture units at large: faces of cubes, addressing, scaled coordinates, filter weights.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "a test binary")]
 
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;

@@ -154,6 +154,7 @@ impl Interpolated<'_> {
 /// TEX-12 of real numbers.
 pub fn real_direction(direction: [f64; 3], face: Option<Face>) -> Real {
     let face = face.unwrap_or_else(|| Face::of(direction, direction.map(f64::abs), 0.0));
+    #[allow(clippy::float_arithmetic, reason = "the ideal's direction")]
     let [s, t, m] = face.components().map(|c| {
         let component = direction[c.axis];
         if c.negative { -component } else { component }

@@ -183,10 +183,9 @@ impl Report<'_> {
         &self,
         slice: &Slice<'_>,
         words: &[u32],
-        texel: &Texel,
+        (texel, lanes): (&Texel, &[L; 4]),
         index: [(&str, i64); 2],
         suffix: &str,
-        lanes: &[L; 4],
         observer: &mut O,
     ) {
         let block = self.block();

@@ -82,12 +82,14 @@ pub fn quad_coordinate(f: f32, side: u32) -> i64 {
 
 /// A vector of the dot unit as integers of one unit. A component that is NaN or infinite makes it the zero vector (TEX-13).
 ///
-/// The largest keeps 62 bits and the others are floored, which moves no texel: a component below 2^-38 of the largest counts only by its sign.
+/// The largest keeps 62 bits and the others are floored, which moves no texel: a component below 2^-38 of the largest counts only by its sign,
+/// and keeps that.
 pub fn direction(vector: [f32; 3]) -> [i64; 3] {
     if vector.iter().any(|c| !c.is_finite()) {
         return [0; 3];
     }
-    align(vector.map(split).map(|(mantissa, exponent)| (i128::from(mantissa), exponent)), 62).0
+    let (aligned, _) = align(vector.map(split).map(|(mantissa, exponent)| (i128::from(mantissa), exponent)), 62);
+    std::array::from_fn(|n| if vector[n] > 0.0 { aligned[n].max(1) } else { aligned[n] })
 }
 
 /// TEX-12 of such a vector: floor(2^bits size (s + m) / 2m) with the minor component s and the major one m; the zero vector is 0.
@@ -177,6 +179,8 @@ mod tests {
         assert_eq!(on([f32::INFINITY, -1.0, 0.0]), [0; 3]);
         let [x, y, z] = on([f32::MAX, -1.0, 0.0]);
         assert!(x > 0 && y < 0 && z == 0);
+        // Whichever sign a face sees them with.
+        assert_eq!(on([f32::MAX, 1.0, -1.0])[1..], [1, -1]);
         assert_eq!(face_coordinate(y, x, 4, 8), 511);
         assert_eq!(
             (face_coordinate(3, 3, 4, 8), face_coordinate(-3, 3, 4, 8), face_coordinate(0, 0, 4, 8)),

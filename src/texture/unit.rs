@@ -166,7 +166,7 @@ fn sample_level<L: Lane, O: Observer>(
             let texel = slice.texel(image.words, x, y);
             let channels = lanes::<L, O>(unit, image, &texel, observer);
             if O::ON {
-                report.texel(slice, image.words, &texel, [("", x), ("", y)], "", &channels, observer);
+                report.texel(slice, image.words, (&texel, &channels), [("", x), ("", y)], "", observer);
             }
             channels
         }
@@ -181,7 +181,7 @@ fn sample_level<L: Lane, O: Observer>(
                 for (n, (dx, dy)) in [("0", "0"), ("1", "0"), ("0", "1"), ("1", "1")].into_iter().enumerate() {
                     let index = [(dx, x + (n & 1) as i64), (dy, y + (n >> 1) as i64)];
                     let suffix = format!("{dx}{dy}");
-                    report.texel(slice, image.words, &texels[n], index, &suffix, &channels[n], observer);
+                    report.texel(slice, image.words, (&texels[n], &channels[n]), index, &suffix, observer);
                 }
             }
             mix(report, channels, weights, observer)

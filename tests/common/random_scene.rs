@@ -262,7 +262,7 @@ fn fog(c: &mut Choices<'_>, profile: Profile) -> Fog {
     let function = (possible && c.below(3) != 0).then(|| FogFunction {
         mode: c.any(),
         p0: match c.below(2) {
-            _ if extreme => c.pick(&[1e30, -1e30, -100.0, 1e-30, 1.5, -1.5]),
+            _ if extreme => c.pick(&[1e30, -1e30, -100.0, 1e-30, 1.5, -1.5, -65535.0, -1e5]),
             0 => c.between(0.0, 3.0),
             _ => c.pick(&[1.5, 2.0, 1.0, 0.0, -1.0, 2.5]),
         },

@@ -70,7 +70,7 @@ pub(super) fn view(c: &mut Choices<'_>, profile: Profile, n: usize, target: &Tar
     }
     let squares = target.width.is_power_of_two() && target.height.is_power_of_two();
     let small = target.width.max(target.height) <= 48;
-    let even = profile == Profile::Nv2a || target.width % 2 == 0;
+    let even = profile == Profile::Nv2a || target.width.is_multiple_of(2);
     let kind = if squares && c.below(3) != 0 { TextureKind::TwoDimensional } else { TextureKind::Rectangle };
     let fitting: Vec<TextureFormat> = formats(profile, kind)
         .into_iter()

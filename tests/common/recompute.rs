@@ -486,7 +486,7 @@ fn log2_ratio(uv: [i128; 6]) -> i128 {
     let mut mantissa = if exponent > 60 { n >> (exponent - 60) } else { n << (60 - exponent) };
     let mut log = i128::from(exponent);
     for _ in 0..7 {
-        mantissa = mantissa * mantissa >> 60;
+        mantissa = (mantissa * mantissa) >> 60;
         log *= 2;
         if mantissa >> 61 != 0 {
             mantissa >>= 1;

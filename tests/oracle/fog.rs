@@ -66,12 +66,13 @@ fn power_of_minus_square(m: i128, e: i32) -> i128 {
     power_of_two(-(m * m), 2 * e + 5)
 }
 
-/// floor(2^32 2^(m 2^e)), limited to 2^100.
+/// floor(2^32 2^x), x = m 2^e; an x beyond 16 counts as 16 (INT-5).
 pub fn power_of_two(m: i128, e: i32) -> i128 {
+    const MOST: i128 = 16;
     if m == 0 || e >= 0 || bits(m) + e > 12 {
         // An integer, or out of reach.
         let x = if bits(m) + e > 12 { m.signum() * 4096 } else { m << e.max(0) };
-        return if x > 60 { 1 << 100 } else { floor_sum(&[(1, x.max(-200) as i32 + 32)]) };
+        return shift(1, x.clamp(-200, MOST) as i32 + 32);
     }
     let down = (-e) as u32;
     let whole = if down > 127 { m.signum().min(0) } else { m >> down };
@@ -96,11 +97,10 @@ pub fn power_of_two(m: i128, e: i32) -> i128 {
     }
     // The bits not looked at add less than one step of the last.
     high = (times(high, roots()[roots().len() - 1].1) + 1).min((1 << (ONE + 1)) - 1);
-    let x = whole as i32;
-    if x > 60 {
-        return 1 << 100;
+    if whole >= MOST {
+        return 1 << (MOST + 32);
     }
-    let keep = x + 32 - ONE as i32;
+    let keep = whole as i32 + 32 - ONE as i32;
     let (l, h) = (shift(low as i128, keep), shift(high as i128, keep));
     assert_eq!(l, h, "2^({m} 2^{e}) needs more bits");
     l

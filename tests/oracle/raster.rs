@@ -256,8 +256,8 @@ impl Setup {
         })
     }
 
-    /// A number of the vertices at a pixel, as numerator and exponent; the denominator is the sample's D. The products with P share
-    /// one exponent far below what matters.
+    /// TSH-4, INT-5: a number of the vertices at a pixel, as numerator and exponent; the denominator is the sample's D. The products
+    /// with P share one exponent, 62 bits.
     pub fn attribute(&self, sample: &Sample, x: impl Fn(&Vertex) -> f32) -> (i128, i32) {
         let parts: [(i128, i32); 3] = std::array::from_fn(|k| {
             let (m, e) = split(x(&self.vertices[k]));
@@ -266,7 +266,7 @@ impl Setup {
         let Some(top) = parts.iter().filter(|p| p.0 != 0).map(|p| p.1 + super::real::bits(p.0)).max() else {
             return (0, 0);
         };
-        let exponent = top - 88;
+        let exponent = top - 62;
         ((0..3).map(|k| shift(parts[k].0, parts[k].1 - exponent) * sample.e[k]).sum(), exponent)
     }
 

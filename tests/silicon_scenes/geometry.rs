@@ -63,7 +63,7 @@ impl Cube {
     }
 
     /// From the window, scaled by depths of 16 bits, back to the cube's own space.
-    pub fn from_window(&self) -> Matrix {
+    pub fn window_to_object(&self) -> Matrix {
         let (near, far) = (1.0, 200.0);
         let q = far / (far - near);
         let projection =

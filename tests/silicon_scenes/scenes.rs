@@ -300,7 +300,7 @@ pub fn dot_cube() -> String {
         .map(|(face, (name, _))| format!("    {face}: File(\"textures/radial-{name}.png\"),\n"))
         .collect();
     let texture = format!("\"radial\": (kind: Cube, source: Faces(\n{faces})),");
-    let rows = CUBES.map(|cube| cube.from_window());
+    let rows = CUBES.map(|cube| cube.window_to_object());
     let line = "textures: [(texture: \"normals\", address: ClampToEdge, min_filter: Nearest), Unbound, Unbound, (texture: \"radial\", \
                 min_filter: Nearest)],\n            texture_shader: [\n                Sample,\n                (operation: \
                 DotProduct, mapping: MinusOneToOneGl),\n                (operation: DotProduct, previous: 0, mapping: \

@@ -47,7 +47,7 @@ pub fn stripes() -> Picture {
     Picture::of(32, 32, |x, y| {
         let n = (x / 2 + y / 2) as usize % 8;
         let [r, g, b] = COLORS[n / 2];
-        [r, g, b, if n % 2 == 0 { 255 } else { 0x66 }]
+        [r, g, b, if n.is_multiple_of(2) { 255 } else { 0x66 }]
     })
 }
 
