@@ -111,4 +111,5 @@ mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;
+pub mod vectors;
 pub mod vertex;

@@ -17,6 +17,7 @@ mod scene;
 mod terminal;
 mod texture;
 mod trace;
+mod vectors;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -67,6 +68,9 @@ enum Command {
     Op(op::Command),
     /// Describe a texture, or write what a texture unit reads of it
     Texture(texture::Arguments),
+    /// Conformance vectors: tables of what the units of the chip yield
+    #[command(subcommand)]
+    Vectors(vectors::Command),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -123,6 +127,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Diff(arguments) => diff::run(&arguments, context),
         Command::Op(command) => op::run(&command, context),
         Command::Texture(arguments) => texture::run(&arguments, context),
+        Command::Vectors(command) => vectors::run(&command),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Generate(command) => generate::run(&command),
