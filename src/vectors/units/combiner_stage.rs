@@ -238,7 +238,7 @@ impl Unit for BlueToAlpha {
     }
 
     fn rules(&self) -> &'static [&'static str] {
-        &["CMB-11"]
+        &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"]
     }
 
     fn profiles(&self) -> &'static [Profile] {

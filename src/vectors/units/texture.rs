@@ -58,7 +58,7 @@ impl Unit for NearestAddress {
 
     fn results(&self) -> Vec<Column> {
         vec![
-            Column::result("mid.index", Kind::Signed(16)),
+            Column::result("mid.index", Kind::Signed(17)),
             Column::result("out.inside", Kind::Unsigned(1)),
             Column::result("out.texel", Kind::Signed(14)),
         ]
@@ -102,7 +102,7 @@ impl Unit for LinearAddress {
     fn results(&self) -> Vec<Column> {
         let (inside, texel) = (Kind::Unsigned(1), Kind::Signed(14));
         vec![
-            Column::result("mid.index", Kind::Signed(16)),
+            Column::result("mid.index", Kind::Signed(17)),
             Column::result("out.weight", Kind::Unsigned(8)),
             Column::result("out.inside0", inside.clone()),
             Column::result("out.texel0", texel.clone()),
