@@ -405,7 +405,9 @@ impl Lowering {
                     if instruction.target.value.mask.has(alpha) {
                         match self.portion(&copy, n, alpha, &mut pool) {
                             Ok((mut portion, positive)) => {
-                                portion.ab_output = register;
+                                for output in [&mut portion.ab_output, &mut portion.sum_output] {
+                                    *output = if *output == Register::Zero { *output } else { register };
+                                }
                                 halves[usize::from(alpha)] = (portion, positive);
                             }
                             Err(need) => return self.prepare(need, slot, live, place),
