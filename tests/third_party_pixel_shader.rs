@@ -96,9 +96,8 @@ fn scene_of(inputs: &Value) -> Result<String, String> {
             (own, _) => format!("t{set}: {}", numbers(own)),
         })
         .collect();
-    let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(x, y)| {
-        format!("(position: ({x}, {y}), diffuse: {diffuse}, specular: {specular}, {})", sets.join(", "))
-    });
+    let corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
+        .map(|(x, y)| format!("(position: ({x}, {y}), diffuse: {diffuse}, specular: {specular}, {})", sets.join(", ")));
     let table = if table.is_empty() { String::new() } else { format!("textures: {{ {table} }},") };
     Ok(format!(
         "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 1, height: 1, format: A8R8G8B8)], {table}\n\
@@ -176,7 +175,8 @@ fn texture(inputs: &Value, unit: usize) -> Result<Option<(String, String)>, Stri
         let [u, v] = [0, 1].map(|n| pair[n].as_i64().unwrap() as u8);
         return Ok(Some((format!("source: Solid(width: 1, height: 1, color: (0, {v}, {u}, 255))"), unsigned)));
     }
-    let shared = inputs.as_object().unwrap().iter().find(|(key, _)| key.len() > 4 && key.contains(&format!("tex{unit}")));
+    let shared =
+        inputs.as_object().unwrap().iter().find(|(key, _)| key.len() > 4 && key.contains(&format!("tex{unit}")));
     if let Some((_, text)) = shared {
         return Ok(Some((texels(text.as_str().ok_or("a texture without texels")?)?, unsigned)));
     }
