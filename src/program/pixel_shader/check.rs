@@ -133,7 +133,7 @@ impl Check<'_> {
                 self.push("NB0373", &texture.place, message, "too late", "texture instructions come first: move it up");
             }
             if let Some(last) = last.filter(|last| unit <= *last) {
-                let message = format!("t{unit} behind t{last}");
+                let message = format!("t{unit} is loaded behind t{last}");
                 let help = "each texture instruction has a register of its own, in the order of their numbers";
                 self.push("NB0373", &texture.unit.place, message, "not in this order", help);
             }

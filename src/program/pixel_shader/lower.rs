@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::constants::{Pool, Signed, signed, values};
 use super::factor::{Factor, Need, Part, product};
-use super::scratch::{free, hardware, live};
+use super::scratch::{Set, contains, free, hardware, live};
 use super::*;
 use crate::program::cascade::{End, final_combiner, one, too_many_constants, too_many_stages};
 use crate::program::finding::finding;
@@ -129,6 +129,15 @@ struct Held {
     taken: Vec<Register>,
 }
 
+impl Held {
+    /// Forgets what was prepared for one instruction, and constants in registers that are to be used otherwise.
+    fn keep(&mut self, keeps: impl Fn(Register) -> bool) {
+        self.constants.iter_mut().for_each(|register| *register = register.filter(|register| keeps(*register)));
+        self.factors = [None; 2];
+        self.taken = self.constants.iter().flatten().copied().collect();
+    }
+}
+
 /// General stages under construction.
 pub(super) struct Lowering {
     profile: Profile,
@@ -158,10 +167,10 @@ impl Lowering {
     }
 
     /// One instruction or pair.
-    fn slot(&mut self, slot: &[Arithmetic], live: u16) {
+    fn slot(&mut self, slot: &[Arithmetic], live: Set) {
         let Some(first) = slot.first() else { return };
         let place = first.place.clone();
-        self.held = Held::default();
+        self.held.keep(|register| !contains(live, register));
         // Each turn prepares one thing; there are fewer things than this.
         for _ in 0..16 {
             let mut pool = if self.profile == Profile::Nv10 { self.pool } else { Pool::default() };
@@ -176,6 +185,8 @@ impl Lowering {
                     let [rgb_origin, alpha_origin] = [false, true].map(|alpha| part(alpha).unwrap_or_else(none));
                     self.push(rgb, alpha, pool, StageOrigin { rgb: rgb_origin, alpha: alpha_origin }, place);
                     self.write(slot);
+                    let targets = slot.iter().map(|instruction| hardware(instruction.target.value.register));
+                    self.held.keep(|register| targets.clone().all(|target| target != Some(register)));
                     return;
                 }
                 Err(need) => {
@@ -185,6 +196,7 @@ impl Lowering {
                 }
             }
         }
+        self.no_register(&place);
     }
 
     fn push(&mut self, rgb: Written, alpha: Written, pool: Pool, origin: StageOrigin, place: Range<usize>) {
@@ -363,7 +375,7 @@ impl Lowering {
     }
 
     /// A stage before the instruction. `None` once the reason has been recorded that nothing helps.
-    fn prepare(&mut self, need: Need, slot: &[Arithmetic], live: u16, place: &Range<usize>) -> Option<()> {
+    fn prepare(&mut self, need: Need, slot: &[Arithmetic], live: Set, place: &Range<usize>) -> Option<()> {
         let idle = |component| (Portion::idle(component), true);
         let mut pool = if self.profile == Profile::Nv10 { self.pool } else { Pool::default() };
         let ([rgb, alpha], what) = match need {
@@ -457,18 +469,24 @@ impl Lowering {
         Some((portion, false))
     }
 
-    fn scratch(&mut self, live: u16, place: &Range<usize>) -> Option<Register> {
-        let found = free(live, &self.held.taken, self.profile);
+    fn scratch(&mut self, live: Set, place: &Range<usize>) -> Option<Register> {
+        let mut found = free(live, &self.held.taken, self.profile);
+        if found.is_none() {
+            // Constants can be brought again.
+            self.held.keep(|_| false);
+            found = free(live, &self.held.taken, self.profile);
+        }
         match found {
             Some(register) => self.held.taken.push(register),
-            None => {
-                let message = "this instruction needs a register more than are free";
-                let help = "write it in two instructions, or read fewer texture registers after it";
-                self.findings
-                    .push(finding("NB0379", place.clone(), message, "for a value in between", help).rule("CMB-12"));
-            }
+            None => self.no_register(place),
         }
         found
+    }
+
+    fn no_register(&mut self, place: &Range<usize>) {
+        let message = "this instruction needs a register more than are free";
+        let help = "write it in two instructions, or read fewer texture registers after it";
+        self.findings.push(finding("NB0379", place.clone(), message, "for a value in between", help).rule("CMB-12"));
     }
 
     fn name(&self, register: Register) -> String {
@@ -491,6 +509,13 @@ impl Lowering {
         if let Some(place) = self.places.get(most) {
             let error = too_many_stages(self.profile, needed, place.clone(), "pixel shader");
             let dot = program.arithmetic.iter().any(|instruction| instruction.operation == Operation::Dp3);
+            let more = needed.saturating_sub(program.slots().count());
+            let error = match more {
+                0 => error,
+                _ => error.note(format!(
+                    "{more} of them for what one stage does not read: constants of both signs, negatives of saturated registers"
+                )),
+            };
             self.findings.push(match self.profile {
                 Profile::Nv10 if dot => error.note(
                     "diffuse light without it: texture stage 0 is DotProduct3 of the normal map and the light direction, stage 1 Modulate",

@@ -356,11 +356,16 @@ impl<'t> Parser<'t> {
         }
         let signed_scale = modifier == Modifier::SignedScale;
         if negate || selector != Selector::All || modifier != Modifier::Plain && !(signed_scale && operation.is_row()) {
-            let help = match operation.is_row() {
-                true => "write the register alone, or with `_bx2`",
-                false => "write the register alone; the rows of matrices, texm..., take `_bx2`",
+            let (message, help) = match operation.is_row() {
+                true => {
+                    (format!("{name} reads its source as it is, or `_bx2`"), "write the register alone, or with `_bx2`")
+                }
+                false => (
+                    format!("{name} reads its source as it is"),
+                    "write the register alone; the rows of matrices take `_bx2`",
+                ),
             };
-            self.push("NB0371", place.clone(), format!("{name} cannot modify its source so"), "not here", help);
+            self.push("NB0371", place.clone(), message, "modified here", help);
         }
         Some(At { value: TextureSource { unit: register.index, signed_scale }, place })
     }

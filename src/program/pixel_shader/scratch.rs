@@ -19,7 +19,7 @@ pub(super) fn hardware(register: ShaderRegister) -> Option<Register> {
 }
 
 /// A set of registers: bit n for register n.
-type Set = u16;
+pub(super) type Set = u16;
 
 fn bit(register: Register) -> Set {
     1 << register as usize
@@ -57,11 +57,16 @@ fn before(slot: &[Arithmetic], after: Set) -> Set {
     after & !(written[0] & written[1]) | read
 }
 
+/// Whether a register is in a set.
+pub(super) fn contains(set: Set, register: Register) -> bool {
+    set & bit(register) != 0
+}
+
 /// A register that is in none of the sets.
 pub(super) fn free(live: Set, taken: &[Register], profile: Profile) -> Option<Register> {
     let both = [Register::Spare1, Register::Texture1, Register::Texture0, Register::PrimaryColor, Register::Spare0];
     let nv2a = [Register::Texture3, Register::Texture2, Register::SecondaryColor];
     let more: &[Register] = if profile == Profile::Nv2a { &nv2a } else { &[] };
     let mut all = more.iter().chain(&both).copied();
-    all.find(|register| live & bit(*register) == 0 && !taken.contains(register))
+    all.find(|register| !contains(live, *register) && !taken.contains(register))
 }

@@ -16,7 +16,10 @@ pub(super) fn units(
     let mut units = [const { None }; TEXTURE_UNITS];
     for texture in &program.textures {
         let index = usize::from(texture.unit.value);
-        findings.extend(refused(texture, context));
+        if let Some(finding) = refused(texture, context) {
+            findings.push(finding);
+            continue;
+        }
         let source = texture.source.as_ref().map(|source| source.value);
         let previous = source.map_or(index.saturating_sub(1), |source| usize::from(source.unit));
         let signed = context.signed.get(previous).copied().unwrap_or(false);
