@@ -489,6 +489,46 @@ fn a_saturated_result_is_never_negative_to_a_reader() {
     }
 }
 
+/// Where the colour is issued second, the condition does not count; where it is first, it does.
+#[test]
+fn a_color_cnd_behind_plus_takes_its_second_source() {
+    let text = |pair: &str| format!("ps.1.1\ntex t0\ntex t1\nmov r0, v0\n{pair}");
+    let pixel =
+        Pixel { diffuse: [10, 20, 30, 40], textures: [[50; 4], [60; 4], [0; 4], [0; 4]], ..Pixel::of(&mut Choices(1)) };
+    for (pair, red) in [
+        ("mov r1.a, v0\n+ cnd r0.rgb, r0.a, t0, t1", 50),
+        ("cnd r0.rgb, r0.a, t0, t1\n+ mov r1.a, v0", 60),
+        ("cnd r0.rgb, r0.a, t0, t1", 60),
+    ] {
+        let text = text(pair);
+        let warned = parse(&text).unwrap().warnings.iter().any(|warning| warning.code == "NB0908");
+        assert_eq!(warned, red == 50, "{text}");
+        let shown = run::<i32>(&lowered(&text, Profile::Nv2a).combiners, Profile::Nv2a, &pixel);
+        assert_eq!(shown[0], red, "{text}");
+    }
+}
+
+/// A constant of both signs: two products where there is room, else a register, which keeps it.
+#[test]
+fn constants_of_both_signs() {
+    for (body, stages) in [
+        ("mov r0, c0", 1),
+        ("mul r0, c0, v0", 1),
+        ("mov r0, v0\nadd r0, r0, c0\nmad r0, r0, v0, -c0\ndp3 r0, r0, c0", 5),
+        ("mov r0, v0\nadd r0.a, r0, c0\nadd r0, r0, c1", 3),
+        ("mov r0, v0\nadd r0, r0, -c1", 2),
+    ] {
+        let text = format!("ps.1.1\ndef c0, 1, -1, 0.5, -0.5\ndef c1, -1, -1, 0, 0.5\n{body}");
+        assert_eq!(lowered(&text, Profile::Nv2a).combiners.stages.len(), stages, "{text}");
+    }
+    // No such constant is read through an unsigned byte, nor is a register taken that is read later.
+    let text = "ps.1.1\ndef c0, 1, -1, 0.5, -0.5\ntex t0\ntex t1\ntex t2\ntex t3\nmov r1, v0\nadd r0, c0, v1\n\
+                mad r0, r0, t0, t1\nmad r0, r0, t2, t3\nmad r0, r0, r1, v0\nadd r0, r0, v1";
+    let program = parse(text).unwrap().program;
+    let refused = lower(&program, &Context::new(Profile::Nv2a));
+    assert!(refused.is_ok_and(|lowered| lowered.combiners.stages.len() == 7));
+}
+
 #[test]
 fn pairs_share_a_stage_and_its_constants() {
     let text = "ps.1.1\ndef c0, 1, 0.5, 0, 1\ndef c1, 0, 0, 1, 0.5\ndef c2, 0, 1, 0, 0.25\n\
