@@ -1,10 +1,11 @@
 //! What reading a pixel program costs: a two-stage program as text and as register words, as Direct3D texture stages and as the OpenGL texture
-//! environment.
+//! environment; a pixel shader of eight instructions.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group, criterion_main};
+use ninebit::program::pixel_shader;
 use ninebit::program::registers::{decode, encode};
 use ninebit::program::text::{parse, print};
 use ninebit::program::texture_environment::{self, BaseFormat, TextureEnvironment, Unit};
@@ -13,6 +14,20 @@ use ninebit::state::Profile;
 
 const STAGES: &str = include_str!("../vectors/scenes/programs/dot3.txt");
 const TEXT: &str = include_str!("../vectors/scenes/programs/lit.rc");
+
+const SHADER: &str = "ps.1.1
+tex t0 // normals
+tex t1
+tex t2
+dp3_sat r0, t0_bx2, v0_bx2
+dp3_sat r1, t0_bx2, v1_bx2
+mul r1.rgb, r1, r1
++ mul r1.a, r1, r1.b
+mad_x2_sat r0, r0, t1, c0
+lrp r0.rgb, t2.a, r0, t2
+mul r1, r1, r1
+mad r0, r1, 1-c1, r0
+";
 
 fn program(c: &mut Criterion) {
     let mut group = c.benchmark_group("program");
@@ -31,6 +46,12 @@ fn program(c: &mut Criterion) {
     let context = texture_environment::Context { profile: Profile::Nv10, textures, signed: [false; 4], fog: true };
     group.bench_function("lower texture environment", |b| {
         b.iter(|| texture_environment::lower(black_box(&environment), &context));
+    });
+    let context = pixel_shader::Context::new(Profile::Nv2a);
+    group.bench_function("read and lower a pixel shader", |b| {
+        b.iter(|| {
+            pixel_shader::parse(black_box(SHADER)).and_then(|parsed| pixel_shader::lower(&parsed.program, &context))
+        });
     });
     group.finish();
 }

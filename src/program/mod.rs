@@ -5,6 +5,7 @@
 //! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
 //!   (`docs/programs.md`). Both write each of their stages as equations over [arguments](cascade::Argument), and [`cascade`]
 //!   turns equations into general stages.
+//! * [`pixel_shader`]: Direct3D pixel shaders, version 1.1 (`docs/pixel-shader.md`).
 //! * [`legality`]: what the chip allows (CMB-12), the same for every language. A front end says where the parts of a program
 //!   stand ([`Places`]) and what its words are ([`Notation`](legality::Notation)).
 //!
@@ -13,6 +14,7 @@
 pub mod cascade;
 mod finding;
 pub mod legality;
+pub mod pixel_shader;
 mod place;
 pub mod registers;
 pub mod text;

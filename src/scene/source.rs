@@ -339,6 +339,12 @@ source! {
         bump_matrix: Numbers,
         bump_luminance: Numbers,
     }
+    struct PixelShader {
+        text: String,
+        file: String,
+        constants: Entries<'a, Color>,
+        bump: Entries<'a, BumpEnvironment<'a>>,
+    }
     struct TextureEnvironment { units: List<'a, EnvironmentUnit<'a>>, color_sum: bool }
     struct EnvironmentUnit {
         mode: Name<texture_environment::Mode>,

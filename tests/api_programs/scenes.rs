@@ -22,6 +22,7 @@ fn a_surface_in_every_notation_has_the_same_bytes() {
     }
     assert_eq!(words(&stages), definition);
     assert_eq!(words(&load("dot3-texture-environment")), definition);
+    assert_eq!(words(&load("dot3-pixel-shader")), definition);
 }
 
 #[test]
@@ -38,6 +39,37 @@ fn traces_and_explanations_show_both_sides() {
     let explanation = explanation_text(&environment.plan, &explain(&environment.scene, &environment.plan), None);
     let part = "texture unit 0: Combine RGB Dot3RgbaArb(SourceColor of Texture, SourceColor of Constant)";
     assert!(explanation.contains(part), "{explanation}");
+    let shader = load("dot3-pixel-shader");
+    let trace = trace_text(&shader.plan, &engine::trace(&shader.plan, 0, (64, 64), None).unwrap());
+    assert!(trace.contains("general stage 0 rgb: pixel shader: dp3_sat r0, t0_bx2, v1_bx2"), "{trace}");
+    let explanation = explanation_text(&shader.plan, &explain(&shader.scene, &shader.plan), None);
+    assert!(explanation.contains("general stage 1 alpha: pixel shader: mul r0, r0, v0"), "{explanation}");
+}
+
+#[test]
+fn a_pixel_shader_that_moves_coordinates() {
+    let text = |profile: &str, program: &str| {
+        format!(
+            "(version: 1, profile: {profile}, targets: [(name: \"f\", width: 2, height: 2)], textures: {{ \
+             \"offsets\": (source: Solid(width: 1, height: 1, color: (0, 0, 64, 255))), \
+             \"map\": (source: Ramp(width: 4, height: 1, from: (0, 0, 0), to: (255, 255, 255), axis: Horizontal)) }}, \
+             draws: [(vertices: Window([(position: (0, 0)), (position: (4, 0)), (position: (0, 4))]), \
+             textures: [\"offsets\", (texture: \"map\", min_filter: Nearest, mag_filter: Nearest)], \
+             program: PixelShader({program}))])"
+        )
+    };
+    let parse = |text: &str| scene::parse(text, Path::new("bump.ron"), &Limits::default());
+    let shader = |more: &str| format!("text: \"ps.1.1\ntex t0\ntexbem t1, t0\nmov r0, t1\", {more}");
+    let loaded = parse(&text("Nv2a", &shader("bump: { \"t1\": (matrix: (1, 0, 0, 1)) }")))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let [r, ..] = engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].rgba8()[0];
+    // Blue 64 is half a texture to the right: the third of four texels.
+    assert_eq!(r, 170);
+    assert_eq!(parse(&text("Nv2a", &shader(""))).unwrap_err().diagnostics[0].code, "NB0378");
+    let nv10 = parse(&text("Nv10", &shader("bump: { \"t1\": (matrix: (1, 0, 0, 1)) }"))).unwrap_err();
+    let finding = &nv10.diagnostics[0];
+    assert_eq!((finding.code, finding.message.as_str()), ("NB0340", "texbem needs the texture shader; nv10 has none"));
+    assert!(finding.notes[0].contains("AddSigned"), "{finding:?}");
 }
 
 #[test]

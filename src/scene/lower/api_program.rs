@@ -1,5 +1,6 @@
 //! Programs in the language of an API, which become combiners for each draw.
 
+use super::pixel_shader::ShaderProgram;
 use super::program_text::ProgramText;
 use super::texture::Textures;
 use super::unit::Units;
@@ -18,6 +19,8 @@ pub(super) enum ApiProgram {
     Stages(TextureStages, Option<ProgramText>),
     /// OpenGL.
     Environment(TextureEnvironment),
+    /// Direct3D, version 1.1 of pixel shaders.
+    Shader(Box<ShaderProgram>),
 }
 
 /// What of a draw the lowering depends on, or changes.
@@ -71,6 +74,7 @@ impl ApiProgram {
                     None => findings,
                 })
             }
+            ApiProgram::Shader(program) => program.lower(reader, units, textures, &mut shader, around, signed),
             ApiProgram::Environment(program) => {
                 let format = |unit: TextureUnit| textures.list.get(unit.texture).map(|texture| texture.format);
                 let formats = std::array::from_fn(|index| match units.shader[index].operation {

@@ -10,6 +10,7 @@ mod input;
 mod matrix;
 mod names;
 mod palette;
+mod pixel_shader;
 mod program;
 mod program_text;
 mod raster;
