@@ -198,7 +198,7 @@ pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vec<Vertex> {
     (0..mesh.positions.len()).map(vertex).collect()
 }
 
-fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
+pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
     let extend = |v: [f32; 3]| [v[0], v[1], v[2], 1.0];
     let position = mesh.positions[index];
     let toward = |light: &Light| match light {

@@ -6,6 +6,7 @@ mod color;
 mod combiner;
 mod draw;
 mod fog;
+mod geometry;
 mod input;
 mod matrix;
 mod names;
@@ -26,6 +27,7 @@ mod texture_stages;
 mod unit;
 mod unit_texture;
 mod vertex;
+mod vertex_program;
 
 use std::ops::Range;
 use std::path::Path;
