@@ -13,6 +13,7 @@ use std::ops::Range;
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::vertex::shader::VertexShader;
+pub use parser::parse;
 pub use print::print;
 
 /// A program and where its parts stand in the text.

@@ -29,8 +29,11 @@ pub(super) struct Parser<'t> {
     version: Option<Range<usize>>,
 }
 
-/// Reads the whole text.
-pub(super) fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
+/// Reads a program without a word about what it does: unwritten registers, too many slots and so on pass.
+///
+/// # Errors
+/// Everything that is no instruction, definition or version.
+pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let uncommented = uncomment(text, &mut findings);
     let written = Written {
