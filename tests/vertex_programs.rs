@@ -259,7 +259,10 @@ fn people_write_it_in_many_ways() {
         assert_eq!(accepted(other), plain, "{other}");
     }
     let table = accepted("mov a0.x, v1.x\nm4x4 oPos, v0, c[a0.x + 20]\nmov oD0, c[4+a0.x]\nmov oT0, c[a0.x]");
-    assert_eq!(print(&table), "vs.1.1\nmov a0.x, v1.x\nm4x4 oPos, v0, c[a0.x + 20]\nmov oD0, c[a0.x + 4]\nmov oT0, c[a0.x]\n");
+    assert_eq!(
+        print(&table),
+        "vs.1.1\nmov a0.x, v1.x\nm4x4 oPos, v0, c[a0.x + 20]\nmov oD0, c[a0.x + 4]\nmov oT0, c[a0.x]\n"
+    );
     let defined = accepted("vs.1.1\ndef c3, 0.5f, -1, 2e-3, .25\nmov oPos, c3");
     assert_eq!(defined.definitions, [(3, [0.5, -1.0, 0.002, 0.25])]);
     let fog = accepted("mov oPos, v0\nmov oFog, v0.z\nmov oPts.x, v0.w");
@@ -313,7 +316,9 @@ fn what_is_not_the_language_is_said() {
 #[test]
 fn unwritten_components_count_where_they_matter() {
     // The fourth component of a cross product in a basis of three is nobody's.
-    accepted("m3x3 r3, v8, c0\nm3x3 r5, v3, c0\nmul r0, r3.zxyw, r5.yzxw\nmad r4, r3.yzxw, r5.zxyw, -r0\ndp3 oD0.x, r4, c12\nmov oPos, v0");
+    accepted(
+        "m3x3 r3, v8, c0\nm3x3 r5, v3, c0\nmul r0, r3.zxyw, r5.yzxw\nmad r4, r3.yzxw, r5.zxyw, -r0\ndp3 oD0.x, r4, c12\nmov oPos, v0",
+    );
     let found = refused("m3x3 r3, v8, c0\nmul r4, r3.yzxw, v3\nmov oD0, r4\nmov oPos, v0");
     assert_eq!(found.len(), 1);
     assert!(found[0].message.contains("r3.w"), "{found:?}");

@@ -265,6 +265,9 @@ source! {
     struct Viewport { x: f32, y: f32, width: f32, height: f32, near: f32, far: f32 }
     struct Grid { columns: u32, rows: u32, size: Numbers, repeat: Numbers }
     struct Sphere { slices: u32, stacks: u32, radius: f32, repeat: Numbers }
+    struct Torus { slices: u32, sides: u32, radius: f32, tube: f32, repeat: Numbers }
+    struct Cylinder { slices: u32, stacks: u32, radius: f32, height: f32, caps: bool, repeat: Numbers }
+    struct Triangles { vertices: VertexList, indices: Vec<u32> }
     struct LightVector { position: Numbers, direction: Numbers, space: Word }
     struct HalfVector { position: Numbers, direction: Numbers, viewer: Numbers, space: Word }
     struct Frustum { left: f32, right: f32, bottom: f32, top: f32, near: f32, far: f32 }

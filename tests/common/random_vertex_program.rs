@@ -39,6 +39,8 @@ pub fn instruction() -> impl Strategy<Value = Instruction> {
 pub fn shader() -> impl Strategy<Value = VertexShader> {
     let number = prop_oneof![Just(0.5_f32), Just(-0.0), -1e6_f32..1e6, Just(1e-30), Just(3e38)];
     let definitions = prop::collection::btree_map(0..CONSTANTS, prop::array::uniform4(number), 0..4);
-    (definitions, prop::collection::vec(instruction(), 0..20))
-        .prop_map(|(definitions, instructions)| VertexShader { definitions: definitions.into_iter().collect(), instructions })
+    (definitions, prop::collection::vec(instruction(), 0..20)).prop_map(|(definitions, instructions)| VertexShader {
+        definitions: definitions.into_iter().collect(),
+        instructions,
+    })
 }

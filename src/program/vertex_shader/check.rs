@@ -59,7 +59,13 @@ fn addresses(
         if matches!(source.register, SourceRegister::Constant { relative: true, .. }) && !*addressed {
             *addressed = true;
             let message = "a0.x is read before anything writes it";
-            findings.push(finding("NB0383", place.clone(), message, "not written yet", "write it first: `mov a0.x, v1.x`"));
+            findings.push(finding(
+                "NB0383",
+                place.clone(),
+                message,
+                "not written yet",
+                "write it first: `mov a0.x, v1.x`",
+            ));
         }
     }
     if instruction.destination.register == DestinationRegister::Address {
@@ -121,7 +127,13 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
     }
     if letter == 'v' && rows > 1 {
         let help = "move the rows into temporaries first; each of its dot products reads one register v";
-        findings.push(finding("NB0382", places.sources[1].clone(), "rows of a matrix in inputs", "several inputs", help));
+        findings.push(finding(
+            "NB0382",
+            places.sources[1].clone(),
+            "rows of a matrix in inputs",
+            "several inputs",
+            help,
+        ));
     }
     let DestinationRegister::Temporary(to) = instruction.destination.register else { return };
     let overwritten = vector.register == SourceRegister::Temporary(to)
@@ -149,7 +161,8 @@ fn ports(instruction: &Instruction, places: &InstructionPlaces, findings: &mut V
         match &first[port] {
             None => first[port] = Some((source.register, place.clone())),
             Some((known, at)) if *known != source.register => {
-                let message = format!("`{}` reads two {what}; vs.1.1 reads one for each instruction", instruction.opcode.word());
+                let message =
+                    format!("`{}` reads two {what}; vs.1.1 reads one for each instruction", instruction.opcode.word());
                 let help = format!("move one of them into a temporary before: `mov r11, {letter}...`");
                 let found = finding("NB0382", place.clone(), message, "the second", help);
                 findings.push(found.related(at.clone(), "the first"));
@@ -168,10 +181,14 @@ fn scalar(instruction: &Instruction, places: &InstructionPlaces, findings: &mut 
     let word = instruction.opcode.word();
     let taken = letters([source.swizzle[3]]);
     findings.push(
-        Diagnostic::warning("NB0907", places.sources[0].clone(), format!("`{word}` reads one component, which is not named"))
-            .label(format!("taken as .{taken}"))
-            .rule("VTX-1")
-            .help(format!("write `.{taken}` or another component behind the register")),
+        Diagnostic::warning(
+            "NB0907",
+            places.sources[0].clone(),
+            format!("`{word}` reads one component, which is not named"),
+        )
+        .label(format!("taken as .{taken}"))
+        .rule("VTX-1")
+        .help(format!("write `.{taken}` or another component behind the register")),
     );
 }
 
@@ -180,7 +197,8 @@ fn overlaps(written: &Written, findings: &mut Vec<Diagnostic>) {
     let shader = &written.shader;
     // For each constant the base of the matrix that it is a row of, and where that is read.
     let mut row_of: Vec<Option<(usize, Range<usize>)>> = vec![None; CONSTANTS];
-    let constant = |instruction: &Instruction, n: usize| match instruction.sources.get(n).map(|source| source.register) {
+    let constant = |instruction: &Instruction, n: usize| match instruction.sources.get(n).map(|source| source.register)
+    {
         Some(SourceRegister::Constant { index, relative: false }) => Some(index),
         _ => None,
     };

@@ -36,12 +36,8 @@ pub(super) struct Parser<'t> {
 pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
     let mut findings = Vec::new();
     let uncommented = uncomment(text, &mut findings);
-    let written = Written {
-        shader: VertexShader::default(),
-        places: Vec::new(),
-        definitions: Vec::new(),
-        warnings: Vec::new(),
-    };
+    let written =
+        Written { shader: VertexShader::default(), places: Vec::new(), definitions: Vec::new(), warnings: Vec::new() };
     let mut parser = Parser { text: &uncommented.text, findings, written, version: None };
     for comment in &uncommented.behind_semicolons {
         parser.hidden(text, comment);
@@ -89,7 +85,13 @@ impl Parser<'_> {
             word => format!("`{word}`"),
         };
         let message = format!("expected {what}, found {found}");
-        self.refuse("NB0108", place, &message, "not an instruction from here", "write lines such as `mul r0.xyz, r1, c4.x`")
+        self.refuse(
+            "NB0108",
+            place,
+            &message,
+            "not an instruction from here",
+            "write lines such as `mul r0.xyz, r1, c4.x`",
+        )
     }
 
     /// Records an instruction that a semicolon makes a comment.
@@ -125,7 +127,13 @@ impl Parser<'_> {
         }
         if lower == "dcl" || lower.starts_with("dcl_") {
             let help = "leave the line out, and name the attribute in the scene: `inputs: (v0: Position, v3: Normal)`";
-            return Err(self.refuse("NB0108", place, "declarations are not part of vs.1.1 here", "a declaration", help));
+            return Err(self.refuse(
+                "NB0108",
+                place,
+                "declarations are not part of vs.1.1 here",
+                "a declaration",
+                help,
+            ));
         }
         let Some(opcode) = opcode(&word) else { return Err(self.unknown(scanner, place, &word)) };
         self.instruction(scanner, opcode, place)
@@ -159,7 +167,13 @@ impl Parser<'_> {
     fn definition(&mut self, scanner: &mut Scanner<'_>, word: Range<usize>) -> Read<()> {
         let (source, place) = operand::source(self, scanner)?;
         let SourceRegister::Constant { index, relative: false } = source.register else {
-            return Err(self.refuse("NB0380", place, "`def` defines a constant", "not one", "write `def c0, 0, 0, 0, 1`"));
+            return Err(self.refuse(
+                "NB0380",
+                place,
+                "`def` defines a constant",
+                "not one",
+                "write `def c0, 0, 0, 0, 1`",
+            ));
         };
         let mut values = Vec::new();
         while scanner.sign(',').is_some() {

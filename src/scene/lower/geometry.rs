@@ -92,12 +92,9 @@ fn beside_program(
 ) -> Option<Diagnostic> {
     if sets {
         let message = "coordinates are generated or multiplied beside a vertex program";
-        return Some(
-            Diagnostic::error("NB0389", draw.clone(), message)
-                .label("in this draw")
-                .rule("VTX-3")
-                .help("the program takes the place of `texgen` and `texture_matrices`: compute in it what goes to oT0 to oT3"),
-        );
+        return Some(Diagnostic::error("NB0389", draw.clone(), message).label("in this draw").rule("VTX-3").help(
+            "the program takes the place of `texgen` and `texture_matrices`: compute in it what goes to oT0 to oT3",
+        ));
     }
     fog.function.as_ref()?;
     let finding = |message: &str, label: &str, help: &str| {
@@ -109,7 +106,11 @@ fn beside_program(
     }
     if !program.writes_fog {
         let help = "write it there: `mov oFog.x, r0.w`";
-        return finding("fog with a mode reads the coordinate in oFog, which nothing writes", "needs the coordinate", help);
+        return finding(
+            "fog with a mode reads the coordinate in oFog, which nothing writes",
+            "needs the coordinate",
+            help,
+        );
     }
     None
 }
@@ -226,7 +227,15 @@ fn matrix_geometry<'a>(
         );
         return None;
     }
-    Some(Geometry { positions: Positions::Clip(viewport), vertices, spans, triangles, objects, model_view, program: None })
+    Some(Geometry {
+        positions: Positions::Clip(viewport),
+        vertices,
+        spans,
+        triangles,
+        objects,
+        model_view,
+        program: None,
+    })
 }
 
 /// Listed vertices as the vertex side takes them.

@@ -9,6 +9,7 @@ mod fog;
 mod geometry;
 mod input;
 mod matrix;
+mod mesh;
 mod names;
 mod palette;
 mod program;

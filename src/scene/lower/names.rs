@@ -170,7 +170,7 @@ impl<'a> Names<'a> {
         });
         names.meshes.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
-            attribute::generate(reader, raw).map(Rc::new)
+            mesh::mesh(reader, &names, raw).map(Rc::new)
         });
         names.programs.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
@@ -207,7 +207,7 @@ impl<'a> Names<'a> {
         if raw.is_text() {
             self.meshes.get(reader, raw, &|_, _, _, _| None, 0)
         } else {
-            attribute::generate(reader, raw).map(Rc::new)
+            mesh::mesh(reader, self, raw).map(Rc::new)
         }
     }
 

@@ -131,7 +131,12 @@ fn given<'a>(
         }
         (None, Some(raw)) => {
             let mesh = names.mesh(reader, raw)?;
-            Some(Given { spans: VertexSpans::All(reader.span(raw)), objects: Vec::new(), vertices: Vec::new(), mesh: Some(mesh) })
+            Some(Given {
+                spans: VertexSpans::All(reader.span(raw)),
+                objects: Vec::new(),
+                vertices: Vec::new(),
+                mesh: Some(mesh),
+            })
         }
         (both, _) => {
             let (code, message) = match both {
@@ -205,7 +210,8 @@ impl Registers {
             return Some("oPos".to_owned());
         }
         let color = (0..2).find(|n| self.colors[*n] && outputs.colors[*n].iter().any(|value| value.is_nan()));
-        let set = (0..4).find(|n| self.coordinates[*n] && !outputs.coordinates[*n].iter().all(|value| value.is_finite()));
+        let set =
+            (0..4).find(|n| self.coordinates[*n] && !outputs.coordinates[*n].iter().all(|value| value.is_finite()));
         let fog = self.fog && !outputs.fog[0].is_finite();
         color.map(|n| format!("oD{n}")).or(set.map(|n| format!("oT{n}"))).or(fog.then(|| "oFog".to_owned()))
     }

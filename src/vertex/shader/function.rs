@@ -115,7 +115,10 @@ mod tests {
             assert_eq!(exponential(k as f32), exact, "{k}");
             assert_eq!(logarithm(exact), k as f32);
         }
-        assert_eq!([exponential(128.0), exponential(f32::INFINITY), exponential(-151.0)], [f32::INFINITY, f32::INFINITY, 0.0]);
+        assert_eq!(
+            [exponential(128.0), exponential(f32::INFINITY), exponential(-151.0)],
+            [f32::INFINITY, f32::INFINITY, 0.0]
+        );
         assert_eq!([logarithm(0.0), logarithm(f32::INFINITY)], [f32::NEG_INFINITY, f32::INFINITY]);
         assert!(exponential(f32::NAN).is_nan() && logarithm(f32::NAN).is_nan());
         assert_eq!([power(0.5, 2.0), power(3.0, 0.0), power(1.0, 127.0)], [0.25, 1.0, 1.0]);

@@ -54,7 +54,11 @@ pub(super) fn constants<'a>(
         if let Some((index, other)) = taken {
             reader.push(
                 Diagnostic::error("NB0388", place, format!("c{index} has a value already"))
-                    .label(if rows.len() == 1 { "again here".to_owned() } else { format!("c{first} to c{}", first + 3) })
+                    .label(if rows.len() == 1 {
+                        "again here".to_owned()
+                    } else {
+                        format!("c{first} to c{}", first + 3)
+                    })
                     .related(other, "first here")
                     .help("keep one of them; a matrix takes four constants, and `def` gives one its value as well"),
             );
@@ -80,7 +84,8 @@ fn compare(
     entries: &[(Range<usize>, usize, usize)],
 ) {
     let (read, any) = written.constants_read();
-    let unread: Vec<_> = entries.iter().filter(|(_, first, count)| read[*first..first + count].iter().all(Option::is_none)).collect();
+    let unread: Vec<_> =
+        entries.iter().filter(|(_, first, count)| read[*first..first + count].iter().all(Option::is_none)).collect();
     if any {
         return;
     }
