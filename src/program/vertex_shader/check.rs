@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::print::letters;
+use super::print::{letters, name};
 use super::{InstructionPlaces, Written, flow};
 use crate::diagnostic::Diagnostic;
 use crate::program::finding::finding;
@@ -10,9 +10,21 @@ use crate::vertex::shader::{
     CONSTANTS, DestinationRegister, INPUTS, Instruction, Opcode, SLOTS, SourceRegister, TEMPORARIES,
 };
 
-/// Errors and warnings, in the order of the text.
-pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
+/// What is wrong with instructions by themselves.
+pub(super) fn instructions(written: &Written) -> Vec<Diagnostic> {
     let mut findings = Vec::new();
+    for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
+        masks(instruction, places, &mut findings);
+        rows(instruction, places, &mut findings);
+        ports(instruction, places, &mut findings);
+        scalar(instruction, places, &mut findings);
+    }
+    findings
+}
+
+/// Errors and warnings about a program that could be read, in the order of the text.
+pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
+    let mut findings = instructions(written);
     let (mut slots, mut addressed) = (0, false);
     for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
         let before = slots;
@@ -27,10 +39,6 @@ pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
             ));
         }
         addresses(instruction, places, &mut addressed, &mut findings);
-        masks(instruction, places, &mut findings);
-        rows(instruction, places, &mut findings);
-        ports(instruction, places, &mut findings);
-        scalar(instruction, places, &mut findings);
     }
     flow::unwritten(written, &mut findings);
     overlaps(written, &mut findings);
@@ -153,9 +161,9 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
 fn ports(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Vec<Diagnostic>) {
     let mut first: [Option<(SourceRegister, Range<usize>)>; 2] = [None, None];
     for (source, place) in instruction.sources.iter().zip(&places.sources) {
-        let (port, what, letter) = match source.register {
-            SourceRegister::Input(_) => (0, "inputs", 'v'),
-            SourceRegister::Constant { .. } => (1, "constants", 'c'),
+        let (port, what) = match source.register {
+            SourceRegister::Input(_) => (0, "inputs"),
+            SourceRegister::Constant { .. } => (1, "constants"),
             SourceRegister::Temporary(_) => continue,
         };
         match &first[port] {
@@ -163,7 +171,7 @@ fn ports(instruction: &Instruction, places: &InstructionPlaces, findings: &mut V
             Some((known, at)) if *known != source.register => {
                 let message =
                     format!("`{}` reads two {what}; vs.1.1 reads one for each instruction", instruction.opcode.word());
-                let help = format!("move one of them into a temporary before: `mov r11, {letter}...`");
+                let help = format!("move one of them into a temporary before: `mov r11, {}`", name(source.register));
                 let found = finding("NB0382", place.clone(), message, "the second", help);
                 findings.push(found.related(at.clone(), "the first"));
             }

@@ -45,9 +45,12 @@ pub struct InstructionPlaces {
 /// # Errors
 /// Everything that is wrong with it, warnings left out.
 pub fn read(text: &str) -> Result<Written, Vec<Diagnostic>> {
-    let mut written = parser::parse(text)?;
-    let (errors, warnings): (Vec<_>, Vec<_>) =
-        check::check(&written).into_iter().partition(|finding| finding.severity == Severity::Error);
+    let (mut written, mut errors) = parser::lines(text);
+    let findings = if errors.is_empty() { check::check(&written) } else { check::instructions(&written) };
+    let (found, warnings): (Vec<_>, Vec<_>) =
+        findings.into_iter().partition(|finding| finding.severity == Severity::Error);
+    errors.extend(found);
+    errors.sort_by_key(Diagnostic::order);
     written.warnings = warnings;
     if errors.is_empty() { Ok(written) } else { Err(errors) }
 }

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::parser::{GivenUp, Parser, Read};
 use super::scanner::Scanner;
+use crate::diagnostic::shorten;
 use crate::spelling::closest;
 use crate::vertex::shader::{
     CONSTANTS, COORDINATES, Destination, DestinationRegister, INPUTS, Source, SourceRegister, TEMPORARIES,
@@ -111,7 +112,7 @@ fn register(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Registe
     }
     let number = digits.parse::<usize>().unwrap_or(usize::MAX);
     if *count > 0 && number >= *count {
-        let message = format!("there is no register {word}: vs.1.1 has {count} {what} here");
+        let message = format!("there is no register {}: vs.1.1 has {count} {what} here", shorten(&word));
         let help = match *count {
             1 => format!("write {written}0"),
             count => format!("write {written}0 to {written}{}", count - 1),
@@ -138,7 +139,7 @@ fn unknown(parser: &mut Parser<'_>, word: &str, place: Range<usize>) -> GivenUp 
         Some(name) => format!("did you mean `{name}`? Registers: {ALL}"),
         None => format!("registers: {ALL}"),
     };
-    parser.refuse("NB0204", place, &format!("there is no register `{word}`"), "not known", &help)
+    parser.refuse("NB0204", place, &format!("there is no register `{}`", shorten(word)), "not known", &help)
 }
 
 /// Reads `[a0.x + 4]`, `[4 + a0.x]` or `[4]`.
@@ -228,5 +229,5 @@ fn letters(parser: &mut Parser<'_>, word: &str, place: Range<usize>, what: &str,
     } else {
         format!("write {help}")
     };
-    parser.refuse("NB0384", place, &format!("`.{word}` is not {what}"), "these components", &help)
+    parser.refuse("NB0384", place, &format!("`.{}` is not {what}", shorten(word)), "these components", &help)
 }

@@ -34,6 +34,12 @@ pub(super) struct Parser<'t> {
 /// # Errors
 /// Everything that is no instruction, definition or version.
 pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
+    let (written, findings) = lines(text);
+    if findings.is_empty() { Ok(written) } else { Err(findings) }
+}
+
+/// Every line that can be read, and what is wrong with the others.
+pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
     let mut findings = Vec::new();
     let uncommented = uncomment(text, &mut findings);
     let written =
@@ -56,7 +62,7 @@ pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
         }
     }
     parser.findings.sort_by_key(Diagnostic::order);
-    if parser.findings.is_empty() { Ok(parser.written) } else { Err(parser.findings) }
+    (parser.written, parser.findings)
 }
 
 fn opcode(word: &str) -> Option<Opcode> {
@@ -73,7 +79,7 @@ impl Parser<'_> {
         label: &str,
         help: &str,
     ) -> GivenUp {
-        self.findings.push(finding(code, place, shorten(message), label, help));
+        self.findings.push(finding(code, place, message, label, help));
         GivenUp
     }
 
@@ -82,7 +88,7 @@ impl Parser<'_> {
         let place = scanner.next();
         let found = match scanner.text(&place) {
             "" => "the end of the line".to_owned(),
-            word => format!("`{word}`"),
+            word => format!("`{}`", shorten(word)),
         };
         let message = format!("expected {what}, found {found}");
         self.refuse(
@@ -249,6 +255,6 @@ impl Parser<'_> {
                 None => format!("vs.1.1 has {}, and def", list.join(", ")),
             }
         };
-        self.refuse("NB0204", place, &format!("there is no instruction `{word}`"), "not known", &help)
+        self.refuse("NB0204", place, &format!("there is no instruction `{}`", shorten(word)), "not known", &help)
     }
 }

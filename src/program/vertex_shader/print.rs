@@ -43,15 +43,20 @@ fn destination(destination: &Destination) -> String {
     format!("{name}.{}", letters((0..4).filter(|k| destination.mask >> k & 1 != 0)))
 }
 
-fn source(source: &Source) -> String {
-    let sign = if source.negate { "-" } else { "" };
-    let name = match source.register {
+/// A register that is read.
+pub(super) fn name(register: SourceRegister) -> String {
+    match register {
         SourceRegister::Input(index) => format!("v{index}"),
         SourceRegister::Temporary(index) => format!("r{index}"),
         SourceRegister::Constant { index, relative: false } => format!("c{index}"),
         SourceRegister::Constant { index: 0, relative: true } => "c[a0.x]".to_owned(),
         SourceRegister::Constant { index, relative: true } => format!("c[a0.x + {index}]"),
-    };
+    }
+}
+
+fn source(source: &Source) -> String {
+    let sign = if source.negate { "-" } else { "" };
+    let name = name(source.register);
     if source.swizzle == [0, 1, 2, 3] {
         return format!("{sign}{name}");
     }
