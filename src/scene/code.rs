@@ -136,6 +136,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0905", "warning: a texture of a unit that the texture shader does not sample"),
     ("NB0906", "warning: a constant of a vertex program with two meanings"),
     ("NB0907", "warning: a vertex program reads one component and does not name it"),
+    ("NB0908", "warning: an instruction of a vertex program in a comment"),
 ];
 
 /// What a code means; `None` if there is no such code.

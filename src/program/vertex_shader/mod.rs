@@ -51,6 +51,7 @@ pub fn read(text: &str) -> Result<Written, Vec<Diagnostic>> {
         findings.into_iter().partition(|finding| finding.severity == Severity::Error);
     errors.extend(found);
     errors.sort_by_key(Diagnostic::order);
-    written.warnings = warnings;
+    written.warnings.extend(warnings);
+    written.warnings.sort_by_key(Diagnostic::order);
     if errors.is_empty() { Ok(written) } else { Err(errors) }
 }

@@ -100,8 +100,9 @@ impl Parser<'_> {
         )
     }
 
-    /// Records an instruction that a semicolon makes a comment.
+    /// Warns of an instruction that a semicolon behind another one makes a comment.
     fn hidden(&mut self, text: &str, comment: &Range<usize>) {
+        let before = self.text[..comment.start - 1].rsplit('\n').next().unwrap_or("");
         let mut scanner = Scanner::new(text, comment.clone());
         let word = scanner.word();
         let operand = scanner.word();
@@ -111,10 +112,13 @@ impl Parser<'_> {
         };
         let instruction = opcode(scanner.text(&word)).is_some() && register(scanner.text(&operand));
         let rest = scanner.remaining();
-        if instruction && scanner.text(&rest).contains(',') {
+        if !before.trim().is_empty() && instruction && scanner.text(&rest).contains(',') {
             let message = "an instruction behind a semicolon, which begins a comment";
-            let help = "write each instruction in a line of its own";
-            self.findings.push(finding("NB0108", word.start..comment.end, message, "would be left out", help));
+            self.written.warnings.push(
+                Diagnostic::warning("NB0908", word.start..rest.end, message)
+                    .label("left out")
+                    .help("write each instruction in a line of its own"),
+            );
         }
     }
 

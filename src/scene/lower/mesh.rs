@@ -1,5 +1,7 @@
 //! Meshes: generated, listed, from files.
 
+use std::rc::Rc;
+
 use super::names::Names;
 use super::program_text::ProgramText;
 use super::*;
@@ -9,7 +11,11 @@ use crate::scene::raw::Numbers;
 const KINDS: &[&str] = &["Grid", "Sphere", "Torus", "Cylinder", "Triangles", "Wavefront"];
 
 /// A mesh from its description.
-pub(super) fn mesh<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Mesh> {
+pub(super) fn mesh<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::MeshSource>,
+) -> Option<Rc<Mesh>> {
     let (kind, rest) = reader.variant(raw, "mesh", KINDS)?;
     let made = match KINDS[kind] {
         "Grid" => grid(reader, rest),
@@ -17,13 +23,13 @@ pub(super) fn mesh<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a,
         "Torus" => torus(reader, rest),
         "Cylinder" => cylinder(reader, rest),
         "Triangles" => Ok(triangles(reader, names, rest)),
-        _ => Ok(wavefront(reader, names, rest)),
+        _ => return wavefront(reader, names, rest),
     };
     match made {
         Ok(mesh) => {
             let mesh = mesh?;
             if mesh.positions.len() <= reader.limits.vertices {
-                return Some(mesh);
+                return Some(Rc::new(mesh));
             }
             let place = reader.span(raw);
             reader.push(vertex::too_many(place, mesh.positions.len(), reader.limits.vertices));
@@ -161,16 +167,23 @@ fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
     Some(mesh::mesh(&surface))
 }
 
-fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Mesh> {
+/// A file is read once, however many draws name it.
+fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Rc<Mesh>> {
     let opening = reader.range(text.get(..1).unwrap_or(text));
     let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
     let raw = reader.required(&fields.file, "file", "mesh", opening)?;
-    let file = ProgramText::file_up_to(reader, names, &raw, reader.limits.mesh_file_bytes)?;
-    match mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices) {
-        Ok(surface) => Some(mesh::mesh(&surface)),
+    let name = reader.read(&raw)?;
+    if let Some(known) = names.mesh_files.borrow().get(&name) {
+        return known.clone();
+    }
+    let file = ProgramText::file_up_to(reader, names, &raw, reader.limits.mesh_file_bytes);
+    let mesh = file.and_then(|file| match mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices) {
+        Ok(surface) => Some(Rc::new(mesh::mesh(&surface))),
         Err(findings) => {
             findings.into_iter().for_each(|finding| reader.push(file.place(finding)));
             None
         }
-    }
+    });
+    names.mesh_files.borrow_mut().insert(name, mesh.clone());
+    mesh
 }

@@ -13,7 +13,7 @@ use crate::program::vertex_shader::{self, Written, print};
 use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Viewport};
 use crate::vertex::ObjectVertex;
 use crate::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
-use inputs::Given;
+use inputs::{Given, Input};
 
 /// Runs the program over the vertices. `None` once the reason that it cannot be run has been recorded.
 pub(super) fn geometry<'a>(
@@ -25,7 +25,6 @@ pub(super) fn geometry<'a>(
 ) -> Option<Geometry> {
     let opening = reader.range(text.get(..1).unwrap_or(text));
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
-    let errors = reader.errors;
     let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
     let mut viewport = viewport(reader, &fields.viewport, size);
     if clip_depth(reader, &fields.clip_depth) {
@@ -36,12 +35,12 @@ pub(super) fn geometry<'a>(
     let constants = constants::constants(reader, names, &fields.constants, program.as_ref());
     let (given, (written, text)) = (given?, program?);
     let sources = inputs::sources(reader, names, &fields.inputs, &given, (&written, &text));
-    if reader.errors > errors {
+    if reader.errors > 0 {
+        // The scene is refused anyway: a program over a large mesh is not run for nothing, draw after draw.
         return None;
     }
-    let inputs = sources.into_iter().map(|source| inputs::values(&source, &given)).collect::<Vec<_>>();
     let spans = given.spans.clone();
-    let (vertices, objects) = run(reader, &written.shader, &constants, &inputs, &given)?;
+    let (vertices, objects) = run(reader, &written.shader, &constants, &sources, &given)?;
     Some(Geometry {
         positions: Positions::Clip(viewport),
         vertices,
@@ -158,7 +157,7 @@ fn run(
     reader: &mut Reader<'_>,
     shader: &VertexShader,
     constants: &Constants,
-    inputs: &[Vec<[f32; 4]>],
+    sources: &[Input],
     given: &Given,
 ) -> Option<(Vec<Vertex>, Vec<ObjectVertex>)> {
     let written = Registers::of(shader);
@@ -166,8 +165,8 @@ fn run(
     let (mut vertices, mut objects) = (Vec::with_capacity(count), Vec::with_capacity(count));
     for index in 0..count {
         let mut registers: Inputs = [[0.0; 4]; crate::vertex::shader::INPUTS];
-        for (register, values) in registers.iter_mut().zip(inputs) {
-            *register = values.get(index).copied().unwrap_or_default();
+        for (register, source) in registers.iter_mut().zip(sources) {
+            *register = inputs::value(source, given, index);
         }
         let outputs = evaluate(shader, constants, &registers);
         if let Some(what) = written.not_finite(&outputs) {

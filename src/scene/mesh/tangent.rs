@@ -58,9 +58,12 @@ fn unit(v: Vector, scale: f64) -> Option<Vector> {
 /// What a triangle says of its surface.
 struct Face {
     corners: [usize; 3],
-    /// Twice its area long.
+    /// How much it counts at each corner: the sine of its angle there over the lengths of both edges. For points of a sphere their mean
+    /// normal is then the sphere's, and how a flat polygon is cut makes no difference.
+    weights: [f64; 3],
+    /// Of unit length.
     normal: Vector,
-    /// Along s, and how much it counts; `None` where the texture has no direction.
+    /// Along s, of unit length; `None` where the texture has no direction.
     tangent: Option<Vector>,
     /// The texture is seen from behind.
     mirrored: bool,
@@ -76,6 +79,10 @@ fn face(surface: &Surface, corners: [usize; 3]) -> Option<Face> {
     if area <= longest * 1e-9 {
         return None;
     }
+    let third = minus(c, b);
+    let [ab, ac, bc] = [first, second, third].map(|edge| dot(edge, edge));
+    // A sliver may have two corners at one place.
+    let weights = [ab * ac, ab * bc, ac * bc].map(|squares| if squares > 0.0 { area / squares } else { 0.0 });
     let [a, b, c] = corners.map(|corner| surface.texture_coordinates[corner].map(f64::from));
     let ([s1, t1], [s2, t2]) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
     let turn = s1 * t2 - s2 * t1;
@@ -85,7 +92,7 @@ fn face(surface: &Surface, corners: [usize; 3]) -> Option<Face> {
     let largest = s1.abs().max(s2.abs()) * t1.abs().max(t2.abs());
     let direction = unit(scaled(along, turn.signum()), 0.0).filter(|_| turn.abs() > largest * 1e-9);
     // t grows downward: a texture seen from its front turns clockwise in s and t.
-    Some(Face { corners, normal, tangent: direction.map(|tangent| scaled(tangent, area)), mirrored: turn > 0.0 })
+    Some(Face { corners, weights, normal: scaled(normal, 1.0 / area), tangent: direction, mirrored: turn > 0.0 })
 }
 
 /// The part of a coordinate that a repeated texture depends on.
@@ -115,8 +122,8 @@ pub fn mesh(surface: &Surface) -> Mesh {
     };
     for face in faces.iter().flatten() {
         let Some(tangent) = face.tangent else { continue };
-        for corner in face.corners {
-            add(sums.entry(key(corner, face.mirrored)).or_default(), tangent);
+        for (corner, weight) in face.corners.into_iter().zip(face.weights) {
+            add(sums.entry(key(corner, face.mirrored)).or_default(), scaled(tangent, weight));
         }
     }
     let mut mesh = Mesh { indices, ..Mesh::default() };
@@ -133,12 +140,12 @@ pub fn mesh(surface: &Surface) -> Mesh {
     mesh
 }
 
-/// Unit normals: as given, else the mean of the triangles at the same place, each as large as it counts.
+/// Unit normals: as given, else the weighted mean of the triangles at the same place.
 fn normals(surface: &Surface, faces: &[Option<Face>]) -> Vec<[f32; 3]> {
     let mut sums: HashMap<[u32; 3], Vector> = HashMap::new();
     for face in faces.iter().flatten() {
-        for corner in face.corners {
-            add(sums.entry(bits(surface.positions[corner])).or_default(), face.normal);
+        for (corner, weight) in face.corners.into_iter().zip(face.weights) {
+            add(sums.entry(bits(surface.positions[corner])).or_default(), scaled(face.normal, weight));
         }
     }
     let places = surface.positions.iter().zip(&surface.normals);

@@ -57,19 +57,6 @@ const FIELDS: &[(&str, Field)] = &[
     ("TextureCoordinates3", Field::Coordinates(3)),
 ];
 
-const WORDS: &[&str] = &[
-    "Position",
-    "Normal",
-    "Diffuse",
-    "Specular",
-    "FogCoordinate",
-    "TextureCoordinates",
-    "TextureCoordinates0",
-    "TextureCoordinates1",
-    "TextureCoordinates2",
-    "TextureCoordinates3",
-];
-
 /// What registers hold unless something is written: the numbers of Direct3D's fixed vertices.
 fn usual(register: usize, mesh: bool) -> Option<Input> {
     let (source, field) = match (register, mesh) {
@@ -153,39 +140,35 @@ fn input<'a>(
     match FIELDS.iter().find(|(word, _)| *word == head && rest.is_empty()) {
         Some((_, field)) => Some(Input::Field(*field)),
         None => {
-            reader.unknown_variant(raw, "vertex attribute", WORDS);
+            let words: Vec<&'static str> = FIELDS.iter().map(|(word, _)| *word).collect();
+            reader.unknown_variant(raw, "vertex attribute", &words);
             None
         }
     }
 }
 
-/// The values of a register for all vertices; none if nothing reads it.
-pub(super) fn values(input: &Input, given: &Given) -> Vec<[f32; 4]> {
-    let extended = |[x, y, z]: [f32; 3]| [x, y, z, 1.0];
+/// What a register holds at a vertex.
+pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
+    let field = match (input, &given.mesh) {
+        (Input::Unread, _) => return [0.0; 4],
+        (Input::Attribute(source), Some(mesh)) => return attribute::evaluate(mesh, index, source),
+        // The same for all: other attributes need a mesh.
+        (Input::Attribute(source), None) => {
+            return if let Source::Coordinates(values) = source { *values } else { [0.0; 4] };
+        }
+        (Input::Field(field), _) => field,
+    };
+    let (Some(vertex), Some(object)) = (given.vertices.get(index), given.objects.get(index)) else { return [0.0; 4] };
     let color = |color: VertexColor| match color {
         VertexColor::Bytes(bytes) => bytes.map(|byte| f32::from(byte) / 255.0),
         VertexColor::Floats(floats) => floats,
     };
-    match (input, &given.mesh) {
-        (Input::Unread, _) => Vec::new(),
-        (Input::Attribute(source), Some(mesh)) => {
-            (0..given.count()).map(|index| attribute::evaluate(mesh, index, source)).collect()
-        }
-        // The same for all.
-        (Input::Attribute(Source::Coordinates(values)), None) => vec![*values; given.count()],
-        (Input::Attribute(_), None) => Vec::new(),
-        (Input::Field(field), _) => given
-            .vertices
-            .iter()
-            .zip(&given.objects)
-            .map(|(vertex, object)| match field {
-                Field::Position => object.position,
-                Field::Normal => extended(object.normal),
-                Field::Diffuse => color(vertex.diffuse),
-                Field::Specular => color(vertex.specular),
-                Field::FogCoordinate => [object.fog_coordinate, 0.0, 0.0, 1.0],
-                Field::Coordinates(set) => vertex.texture_coordinates[*set],
-            })
-            .collect(),
+    match field {
+        Field::Position => object.position,
+        Field::Normal => [object.normal[0], object.normal[1], object.normal[2], 1.0],
+        Field::Diffuse => color(vertex.diffuse),
+        Field::Specular => color(vertex.specular),
+        Field::FogCoordinate => [object.fog_coordinate, 0.0, 0.0, 1.0],
+        Field::Coordinates(set) => vertex.texture_coordinates[*set],
     }
 }
