@@ -15,7 +15,7 @@ const FAMILIES: &[(&str, &str, usize, &str)] = &[
     ("v", "v", INPUTS, "inputs"),
     ("r", "r", TEMPORARIES, "temporaries"),
     ("c", "c", CONSTANTS, "constants"),
-    ("a", "a", 1, "address registers"),
+    ("a", "a", 1, "address register"),
     ("opos", "oPos", 0, "position"),
     ("ofog", "oFog", 0, "fog factor"),
     ("opts", "oPts", 0, "point size"),
@@ -112,7 +112,8 @@ fn register(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Registe
     }
     let number = digits.parse::<usize>().unwrap_or(usize::MAX);
     if *count > 0 && number >= *count {
-        let message = format!("there is no register {}: vs.1.1 has {count} {what} here", shorten(&word));
+        let have = if *count == 1 { "there is one".to_owned() } else { format!("there are {count}") };
+        let message = format!("there is no register {}: {have} {what}", shorten(&word));
         let help = match *count {
             1 => format!("write {written}0"),
             count => format!("write {written}0 to {written}{}", count - 1),

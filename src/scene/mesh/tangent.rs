@@ -274,13 +274,13 @@ mod tests {
             let (delta1, delta2) = (f64::from(coordinates[2][0] - coordinates[1][0]), f64::from(coordinates[0][0] - coordinates[1][0]));
             let mut direction_v = scaled(vec1, delta2);
             add(&mut direction_v, scaled(vec2, -delta1));
-            let direction_v = unit(direction_v, 0.0).unwrap();
+            let direction_v = unit(direction_v, 0.0).expect("a direction");
             let surface = Surface {
                 positions, normals: vec![[0.0; 3]; 3], texture_coordinates: coordinates.to_vec(), indices: vec![0, 1, 2],
             };
             let mesh = mesh(&surface);
             check(&mesh)?;
-            let direction_u = unit(cross(direction_v, wide(mesh.normals[0])), 0.0).unwrap();
+            let direction_u = unit(cross(direction_v, wide(mesh.normals[0])), 0.0).expect("a direction");
             let parallel = |a: [f32; 3], b: Vector| (dot(wide(a), b).abs() - 1.0).abs() < 1e-3;
             prop_assert!(parallel(mesh.tangents[0], direction_u) && parallel(mesh.binormals[0], direction_v));
             // And with the signs of the texture: s grows along the tangent, t against the binormal.

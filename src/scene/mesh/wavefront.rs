@@ -27,7 +27,7 @@ pub fn read(text: &str, vertices: usize, indices: usize) -> Result<Surface, Vec<
         let content = line.split('#').next().unwrap_or("");
         if let Err(finding) = file.line(at, content) {
             let ends = ["NB0603", "NB0609"].contains(&finding.code);
-            findings.push(finding);
+            findings.push(*finding);
             if ends || findings.len() >= MOST_FINDINGS {
                 break;
             }
@@ -51,10 +51,15 @@ struct File {
     surface: Surface,
 }
 
-type Found<T> = Result<T, Diagnostic>;
+type Found<T> = Result<T, Box<Diagnostic>>;
 
-fn refused(place: Range<usize>, message: impl Into<String>, help: &str) -> Diagnostic {
-    Diagnostic::error("NB0236", place, message).label("in this line").help(help)
+fn refused(place: Range<usize>, message: impl Into<String>, help: &str) -> Box<Diagnostic> {
+    Box::new(Diagnostic::error("NB0236", place, message).label("in this line").help(help))
+}
+
+fn too_many(code: &'static str, place: Range<usize>, message: String) -> Box<Diagnostic> {
+    let help = "`ninebit limits` prints what is allowed";
+    Box::new(Diagnostic::error(code, place, message).label("too many from here").help(help))
 }
 
 impl File {
@@ -108,9 +113,7 @@ impl File {
         }
         if self.surface.indices.len() + 3 * (corners.len() - 2) > self.limits.1 {
             let message = format!("more than {} indices in a mesh", self.limits.1);
-            return Err(Diagnostic::error("NB0609", place, message)
-                .label("too many from here")
-                .help("`ninebit limits` prints what is allowed"));
+            return Err(too_many("NB0609", place, message));
         }
         for pair in corners[1..].windows(2) {
             self.surface.indices.extend([corners[0], pair[0], pair[1]]);
@@ -152,9 +155,7 @@ impl File {
         let number = surface.positions.len();
         if number >= self.limits.0 {
             let message = format!("more than {} vertices in a mesh", self.limits.0);
-            return Err(Diagnostic::error("NB0603", place, message)
-                .label("too many from here")
-                .help("`ninebit limits` prints what is allowed"));
+            return Err(too_many("NB0603", place, message));
         }
         surface.positions.push(position.map_or([0.0; 3], |index| self.positions[index]));
         surface.texture_coordinates.push(coordinates.map_or([0.0; 2], |index| self.coordinates[index]));
