@@ -84,6 +84,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0363", "a number of stages in a register word that the chip does not take"),
     ("NB0364", "something that a combiner program has once, given twice"),
     ("NB0380", "a register of a vertex program where it cannot be read or written"),
+    ("NB0381", "a matrix that a vertex program reads from another row than its first"),
     ("NB0382", "two constants or two inputs in an instruction of a vertex program"),
     ("NB0383", "a register of a vertex program that is read before it is written"),
     ("NB0384", "components that an instruction of a vertex program does not have or take"),

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::scene::raw::{Entries, Numbers, Tuple};
-use crate::vertex::shader::CONSTANTS;
+use crate::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
 
 /// A constant's value as the scene gives it: one register or the four rows of a matrix.
 enum Value {
@@ -72,6 +72,7 @@ pub(super) fn constants<'a>(
     }
     if let Some(program) = program {
         compare(reader, program, &given, &entries);
+        meanings(reader, program, &entries);
     }
     constants
 }
@@ -117,6 +118,44 @@ fn compare(
                 .label("the vertex program does not read it")
                 .help("remove it, or check its number"),
         );
+    }
+}
+
+/// Matrices of the scene that the program reads from another row than the first, or as vectors.
+fn meanings(
+    reader: &mut Reader<'_>,
+    (written, text): &(Written, ProgramText),
+    entries: &[(Range<usize>, usize, usize)],
+) {
+    let matrices: Vec<_> = entries.iter().filter(|(_, _, count)| *count > 1).collect();
+    for (instruction, places) in written.shader.instructions.iter().zip(&written.places) {
+        for (n, source) in instruction.sources.iter().enumerate() {
+            let SourceRegister::Constant { index, relative: false } = source.register else { continue };
+            let word = instruction.opcode.word();
+            let rows = instruction.opcode.matrix().filter(|_| n == 1).map(|(rows, _)| rows);
+            let read = index..index + rows.unwrap_or(1);
+            let overlaps =
+                |(_, first, count): &&&(Range<usize>, usize, usize)| read.start < first + count && *first < read.end;
+            let Some((_, first, _)) = matrices.iter().find(overlaps) else { continue };
+            let finding = match rows {
+                Some(_) if index == *first => continue,
+                Some(_) => {
+                    let message = format!("`{word}` reads a matrix from c{index}, and the scene has one at c{first}");
+                    Diagnostic::error("NB0381", places.sources[n].clone(), message).label("begins between its rows")
+                }
+                None if matches!(instruction.opcode, Opcode::Dp3 | Opcode::Dp4) && !source.negate => continue,
+                // Said already: the program itself reads it both ways.
+                None if written.warnings.iter().any(|known| known.span.as_ref() == Some(&places.sources[n])) => {
+                    continue;
+                }
+                None => {
+                    let message = format!("c{index} is a vector here and a row of the scene's matrix at c{first}");
+                    Diagnostic::warning("NB0906", places.sources[n].clone(), message).label("another meaning")
+                }
+            };
+            let note = format!("the scene's matrix fills c{first} to c{}", first + 3);
+            reader.push(text.place(finding.note(note).help("check the number: a matrix takes four constants")));
+        }
     }
 }
 
