@@ -75,4 +75,7 @@ fn stored_textures_are_what_the_generators_make() {
     let small = hemisphere::normals(&hemisphere::Options { size: 128, ..hemisphere::Options::default() });
     let stored = load(&scenes_folder().join("texture-shader/hemisphere-normal.png"), &ImageLimits::default()).unwrap();
     assert!(stored == small, "ninebit generate hemisphere-normals --size 128");
+    let normal = normal_map::from_height(&height_field::rocks(64, 3), &normal_map::Options::default());
+    let stored = load(&scenes_folder().join("programs/rocks-normal.png"), &ImageLimits::default()).unwrap();
+    assert!(stored == normal, "ninebit generate normal-map of height-rocks --size 64 --seed 3");
 }

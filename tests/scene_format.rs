@@ -55,6 +55,7 @@ fn the_document_names_every_limit_field_and_word() {
         "(version: 1, profile: Nv2a, draws: [(x: 1)])",
         "(version: 1, profile: Nv2a, draws: [(vertices: Window([(x: 1)]))])",
         "(version: 1, profile: Nv2a, draws: [(vertices: Matrix(x: 1))])",
+        "(version: 1, profile: Nv2a, draws: [(vertices: Program(x: 1))])",
         "(version: 1, profile: Nv2a, draws: [(textures: [(x: 1)])])",
         "(version: 1, profile: Nv2a, draws: [(fog: (x: 1))])",
         "(version: 1, profile: Nv2a, draws: [(topology: x)])",

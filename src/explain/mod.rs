@@ -19,6 +19,7 @@ use crate::program::text::words::register;
 use crate::rop::surface;
 use crate::state::{
     Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, StageOrigin, TEXTURE_UNITS, TextureKind,
+    VertexProgram,
 };
 use crate::texture::unit::PlannedUnit;
 
@@ -29,6 +30,8 @@ pub struct DrawExplanation {
     pub name: String,
     /// Name of its target.
     pub target: String,
+    /// The vertex program that made its vertices, and how many there are.
+    pub vertex_program: Option<(VertexProgram, usize)>,
     /// Its pixel program in the combiner language, whole.
     pub program: String,
     /// What each general stage of it was written as in the language of an API; empty if it was written for the combiners.
@@ -48,6 +51,7 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
         .map(|(draw, planned)| DrawExplanation {
             name: planned.name.clone(),
             target: plan.targets[planned.target].name.clone(),
+            vertex_program: draw.vertex_program.clone().map(|program| (program, draw.vertices.len())),
             program: print(&draw.combiners),
             program_origin: draw.program_origin.clone(),
             equations: equations(scene, plan, planned),

@@ -252,6 +252,7 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         color_mask: if c.once_in(5) { std::array::from_fn(|_| c.below(3) != 0) } else { [true; 4] },
         combiners: combiners(c, profile),
         program_origin: vec![],
+        vertex_program: None,
     }
 }
 

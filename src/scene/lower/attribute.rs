@@ -1,4 +1,4 @@
-//! Generated meshes, and what of a mesh goes into the vertices.
+//! What of a mesh goes into the vertices.
 #![allow(
     clippy::float_arithmetic,
     reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
@@ -7,54 +7,9 @@
 use super::matrix::{dot, normalize, subtract};
 use super::names::Names;
 use super::*;
-use crate::scene::mesh::{self, Mesh};
+use crate::scene::mesh::Mesh;
 use crate::scene::raw::Numbers;
 use crate::state::{Vertex, VertexColor};
-
-/// A mesh from its description.
-pub(super) fn generate<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Mesh> {
-    let (kind, rest) = reader.variant(raw, "mesh", &["Grid", "Sphere"])?;
-    let opening = reader.range(rest.get(..1).unwrap_or(rest));
-    let count = |reader: &mut Reader<'a>, field: &Option<Raw<'a, u32>>, name: &str, owner: &str| {
-        reader.required(field, name, owner, opening.clone()).and_then(|raw| reader.read(&raw))
-    };
-    let pair = |reader: &mut Reader<'a>, field: &Option<Raw<'a, Numbers>>, name: &str, default: [f32; 2]| match field {
-        Some(raw) => reader.numbers(raw, name, 2, 2, [0.0; 4]).map(|[a, b, ..]| [a, b]),
-        None => Some(default),
-    };
-    let mesh = if kind == 0 {
-        let grid = reader.read(&Raw::<source::Grid<'a>>::new(rest))?;
-        let columns = count(reader, &grid.columns, "columns", "grid");
-        let rows = count(reader, &grid.rows, "rows", "grid");
-        let size = pair(reader, &grid.size, "the size of a grid", [2.0, 2.0]);
-        let repeat = pair(reader, &grid.repeat, "the repeat of a texture", [1.0, 1.0]);
-        mesh::grid(columns?, rows?, size?, repeat?)
-    } else {
-        let sphere = reader.read(&Raw::<source::Sphere<'a>>::new(rest))?;
-        let slices = count(reader, &sphere.slices, "slices", "sphere");
-        let stacks = count(reader, &sphere.stacks, "stacks", "sphere");
-        let radius = match &sphere.radius {
-            Some(raw) => reader.finite(raw),
-            None => Some(1.0),
-        };
-        let repeat = pair(reader, &sphere.repeat, "the repeat of a texture", [1.0, 1.0]);
-        mesh::sphere(slices?, stacks?, radius?, repeat?)
-    };
-    match mesh {
-        Ok(mesh) if mesh.positions.len() <= reader.limits.vertices => Some(mesh),
-        Ok(mesh) => {
-            let place = reader.span(raw);
-            reader.push(vertex::too_many(place, mesh.positions.len(), reader.limits.vertices));
-            None
-        }
-        Err(error) => {
-            let code = if matches!(error, mesh::MeshError::TooFine { .. }) { "NB0603" } else { "NB0206" };
-            let place = reader.span(raw);
-            reader.push(Diagnostic::error(code, place, error.to_string()).label("this mesh"));
-            None
-        }
-    }
-}
 
 /// What of a mesh goes into one output of its vertices.
 pub(super) enum Source {
@@ -198,7 +153,7 @@ pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vec<Vertex> {
     (0..mesh.positions.len()).map(vertex).collect()
 }
 
-fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
+pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
     let extend = |v: [f32; 3]| [v[0], v[1], v[2], 1.0];
     let position = mesh.positions[index];
     let toward = |light: &Light| match light {

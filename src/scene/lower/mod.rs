@@ -6,8 +6,10 @@ mod color;
 mod combiner;
 mod draw;
 mod fog;
+mod geometry;
 mod input;
 mod matrix;
+mod mesh;
 mod names;
 mod palette;
 mod pixel_shader;
@@ -27,6 +29,7 @@ mod texture_stages;
 mod unit;
 mod unit_texture;
 mod vertex;
+mod vertex_program;
 
 use std::ops::Range;
 use std::path::Path;
