@@ -13,9 +13,9 @@ use crate::state::{
     Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
     Topology, VertexColor, Viewport,
 };
-use crate::vertex::fog::{FogSource, vertex_factor};
+use crate::vertex::fog::{FogEvaluation, FogSource, vertex_factor};
 use crate::vertex::texgen::CoordinateSet;
-use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows};
+use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 
 /// Reads the draws, with their places.
 pub(super) fn draws<'a>(
@@ -102,6 +102,7 @@ fn vertex_side(
     geometry: &mut Geometry,
     sets: &Option<[CoordinateSet; 4]>,
     fog: &fog::FogFields,
+    viewer: Viewer,
     draw: &Range<usize>,
 ) -> bool {
     if sets.is_none() && fog.function.is_none() {
@@ -119,14 +120,14 @@ fn vertex_side(
     }
     let model_view = ModelView::new(&geometry.model_view);
     for (index, (vertex, object)) in geometry.vertices.iter_mut().zip(&geometry.objects).enumerate() {
-        let eye = EyeVertex::new(object, &model_view);
+        let eye = EyeVertex::new(object, &model_view, viewer);
         if let Some(sets) = sets {
             let given = vertex.texture_coordinates;
             vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
         }
         if let Some(function) = &fog.function {
-            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye);
-            if reader.profile == Profile::Nv10 && vertex.fog.is_finite() {
+            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye, vertex.position);
+            if fog.evaluation == FogEvaluation::PerVertex && vertex.fog.is_finite() {
                 vertex.fog = vertex_factor(function, vertex.fog);
             }
         }
@@ -167,13 +168,14 @@ fn draw<'a>(
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
     let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
+    let viewer = fields.viewer.as_ref().and_then(|raw| texgen::viewer(reader, raw)).unwrap_or(Viewer::Local);
     let fog = fog::fog(reader, names, &fields.fog);
     let mut units = unit::units(reader, names, textures, &fields.textures);
     shader::shader(reader, textures, &mut units, &fields.texture_shader);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
     let topology = reader.name_or(&fields.topology, Topology::Triangles);
     let mut around = Around {
-        fog: fog.state(reader.profile).enabled,
+        fog: fog.state().enabled,
         shader: fields.texture_shader.is_some(),
         generators: fields.texgen.is_some(),
         sets,
@@ -190,7 +192,7 @@ fn draw<'a>(
         None => (combiner::default_program(), [None, None, None, None]),
     };
     if let Some(made) = &mut geometry
-        && !vertex_side(reader, made, &around.sets, &fog, &header.place)
+        && !vertex_side(reader, made, &around.sets, &fog, viewer, &header.place)
     {
         geometry = None;
     }
@@ -207,7 +209,7 @@ fn draw<'a>(
         cull: reader.name_or(&fields.cull, Cull::None),
         front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
         scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
-        fog: fog.state(reader.profile),
+        fog: fog.state(),
         textures: units.bound,
         texture_shader,
         combiners,
@@ -382,10 +384,12 @@ fn matrix_geometry<'a>(
             let outputs = outputs(reader, names, &fields);
             let mesh = mesh?;
             let vertices = attribute::vertices(&mesh, &outputs);
+            let dimensions = outputs.dimensions();
             let object = |(vertex, normal): (&crate::state::Vertex, &[f32; 3])| ObjectVertex {
                 position: vertex.position,
                 normal: *normal,
                 fog_coordinate: 0.0,
+                dimensions,
             };
             let objects = vertices.iter().zip(&mesh.normals).map(object).collect();
             (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()), objects)
@@ -426,6 +430,7 @@ fn listed(data: &vertex::VertexData) -> Vec<ObjectVertex> {
         position: vertex.position,
         normal: extra.normal,
         fog_coordinate: extra.fog_coordinate,
+        dimensions: extra.dimensions,
     };
     data.vertices.iter().zip(&data.extras).map(object).collect()
 }
