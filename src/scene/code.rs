@@ -123,6 +123,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0903", "warning: a register is read before anything defines it"),
     ("NB0904", "warning: a target is sampled before anything is drawn into it"),
     ("NB0905", "warning: a texture of a unit that the texture shader does not sample"),
+    ("NB0906", "warning: more bits than the chip looks at"),
 ];
 
 /// What a code means; `None` if there is no such code.

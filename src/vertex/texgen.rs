@@ -229,7 +229,10 @@ mod tests {
         assert_eq!(of(4, 4, false), [0.5, 0.4, 0.2, 1.0]);
         assert_eq!(of(4, 3, true), [0.5, 0.4, 0.2, 0.2]);
         // Without a matrix it is the identity.
-        assert_eq!(StageTransform { count: 3, projected: true }.of([0.8, 0.2, 9.0, 9.0], 2, None), [0.8, 0.2, 1.0, 1.0]);
+        assert_eq!(
+            StageTransform { count: 3, projected: true }.of([0.8, 0.2, 9.0, 9.0], 2, None),
+            [0.8, 0.2, 1.0, 1.0]
+        );
     }
 
     #[test]

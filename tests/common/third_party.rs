@@ -61,7 +61,8 @@ pub fn run(kind: &Kind, problem: impl Fn(&Value, &str) -> Option<String>) {
 
 /// Reads a scene; a finding is a problem.
 pub fn load(text: &str) -> Result<Loaded, String> {
-    scene::parse(text, Path::new("case.ron"), &Limits::default()).map_err(|error| format!("{}\n{text}", error.render(false)))
+    scene::parse(text, Path::new("case.ron"), &Limits::default())
+        .map_err(|error| format!("{}\n{text}", error.render(false)))
 }
 
 /// What a scene shows in a pixel of its first target.

@@ -19,7 +19,11 @@ fn transposed(rows: [[f64; 4]; 4]) -> String {
 #[test]
 fn every_case_of_texture_coordinates() {
     run(&Kind { file: "texture-coordinates", name: "texcoord" }, |case, profile| {
-        if case["expected_st"].is_array() { flags(case, profile) } else { differs(case, indexed(&case["inputs"], profile)) }
+        if case["expected_st"].is_array() {
+            flags(case, profile)
+        } else {
+            differs(case, indexed(&case["inputs"], profile))
+        }
     });
 }
 
@@ -30,11 +34,16 @@ fn flags(case: &Value, profile: &str) -> Option<String> {
     let count = ["Disable", "Count1", "Count2", "Count3", "Count4"][inputs["count"].as_u64().unwrap() as usize];
     let flags = if inputs["projected"] == true { format!("({count}, Projected)") } else { count.to_owned() };
     assert_eq!(inputs["matrix"], "anti-identity (output k = input 3-k)");
-    let matrix = transposed(std::array::from_fn(|row| std::array::from_fn(|column| f64::from(u8::from(row + column == 3)))));
+    let matrix =
+        transposed(std::array::from_fn(|row| std::array::from_fn(|column| f64::from(u8::from(row + column == 3)))));
     let quad = quad(1.0, 1.0, [0; 4].map(|_| format!("t0: {given}")));
     let mut place = [0.0; 2];
-    for (axis, (sides, name)) in [("width: 256, height: 1", "Horizontal"), ("width: 1, height: 256", "Vertical")].into_iter().enumerate() {
-        let head = format!("textures: {{ \"t\": (source: Ramp({sides}, from: (0, 0, 0), to: (255, 255, 255), axis: {name})) }},");
+    for (axis, (sides, name)) in
+        [("width: 256, height: 1", "Horizontal"), ("width: 1, height: 256", "Vertical")].into_iter().enumerate()
+    {
+        let head = format!(
+            "textures: {{ \"t\": (source: Ramp({sides}, from: (0, 0, 0), to: (255, 255, 255), axis: {name})) }},"
+        );
         let draw = format!(
             "{quad}, textures: [(texture: \"t\", min_filter: Nearest)], texture_matrices: [{matrix}], program: TextureStages(stages: \
              [(color_op: SelectArg1, color_arg1: Texture, texture_transform_flags: {flags})])"
@@ -98,9 +107,11 @@ fn indexed(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     let quad = quad(640.0, 480.0, [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(|(x, y)| corner(x, y)));
     let [x, y] = [0, 1].map(|n| inputs["pixel"][n].as_u64().unwrap() as u32);
     let draw = format!(
-        "{quad}, scissor: (x: {x}, y: {y}, width: 1, height: 1), textures: [\"t0\", \"t1\"], {matrices} program: TextureStages(stages: [\
+        "{quad}, scissor: (x: {x}, y: {y}, width: 1, height: 1), textures: [{}], {matrices} program: TextureStages(stages: [\
          (color_op: SelectArg1, color_arg1: Texture, texture_coordinate_index: {first}), \
-         (color_op: Add, color_arg1: Texture, color_arg2: Current, texture_coordinate_index: {second}{flags})])"
+         (color_op: Add, color_arg1: Texture, color_arg2: Current, texture_coordinate_index: {second}{flags})])",
+        // Direct3D's samplers take the nearest texel unless they are told otherwise.
+        ["t0", "t1"].map(|name| format!("(texture: \"{name}\", min_filter: Nearest)")).join(", ")
     );
     let head = format!("textures: {{ {} }},", textures.join(", "));
     pixel(&scene(profile, "name: \"frame\"", &head, &draw), (x, y))

@@ -84,7 +84,14 @@ fn constant(inputs: &Value, profile: &str, opengl: bool) -> Result<[u8; 4], Stri
 }
 
 /// A z that grows from 0 at the left edge to 1 at the right, 640 pixels later.
-fn gradient(inputs: &Value, profile: &str, fog: &str, factors: [f64; 2], shade: &str, x: u32) -> Result<[u8; 4], String> {
+fn gradient(
+    inputs: &Value,
+    profile: &str,
+    fog: &str,
+    factors: [f64; 2],
+    shade: &str,
+    x: u32,
+) -> Result<[u8; 4], String> {
     let vertex = |x: &str, y: &str, z: f64, factor: f64| {
         format!("(position: ({x}, {y}, {z:?}), fog: {factor:?}, {})", color_of(inputs))
     };
@@ -133,7 +140,9 @@ fn transformed(inputs: &Value, profile: &str) -> Result<[u8; 4], String> {
     let corners = [(-1, -1), (1, -1), (1, 1), (-1, 1)];
     let vertices = if inputs["vertex"] == "RHW" {
         let w = 1.0 / number(&inputs["position_w"]);
-        let vertex = |(x, y): (i32, i32)| format!("(position: ({}, {}, {z:?}, {w:?}), {})", x.max(0), y.max(0), color_of(inputs));
+        let vertex = |(x, y): (i32, i32)| {
+            format!("(position: ({}, {}, {z:?}, {w:?}), {})", x.max(0), y.max(0), color_of(inputs))
+        };
         format!("Window([{}])", corners.map(vertex).join(", "))
     } else {
         let (along_z, w) = (number(&inputs["view_33"]), number(&inputs["view_44"]) * number(&inputs["proj_44"]));

@@ -26,7 +26,8 @@ fn every_case_of_blending() {
             "REVSUBTRACT" => "ReverseSubtract",
             name => named::<BlendEquation>(name),
         };
-        let [source, destination] = ["src", "dst"].map(|side| blend_factor(inputs[format!("{side}_factor")].as_str().unwrap()));
+        let [source, destination] =
+            ["src", "dst"].map(|side| blend_factor(inputs[format!("{side}_factor")].as_str().unwrap()));
         let constant = color_or(inputs, "constant", "(0, 0, 0, 0)");
         let format = if inputs["target_has_alpha"] == false { "X8R8G8B8O" } else { "A8R8G8B8" };
         let blend = format!(
@@ -37,7 +38,11 @@ fn every_case_of_blending() {
 }
 
 fn color_or(inputs: &Value, name: &str, default: &str) -> String {
-    if inputs[name].is_array() || inputs[format!("{name}_f")].is_array() { color(inputs, name) } else { default.to_owned() }
+    if inputs[name].is_array() || inputs[format!("{name}_f")].is_array() {
+        color(inputs, name)
+    } else {
+        default.to_owned()
+    }
 }
 
 #[test]

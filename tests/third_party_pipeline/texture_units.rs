@@ -48,7 +48,11 @@ fn every_case_of_addressing() {
             })
             .collect();
         let filter = if inputs["filter"] == "NEAREST" { "Nearest" } else { "Linear" };
-        let border = if profile == "Nv2a" { format!(", border_color: {BORDER:?}").replace(['[', ']'], "|") } else { String::new() };
+        let border = if profile == "Nv2a" {
+            format!(", border_color: {BORDER:?}").replace(['[', ']'], "|")
+        } else {
+            String::new()
+        };
         let border = border.replacen('|', "(", 1).replacen('|', ")", 1);
         let text = sampled(
             profile,
@@ -72,7 +76,8 @@ fn conditional(inputs: &Value) -> Result<[u8; 4], String> {
     let rows: Vec<String> = (0..size)
         .map(|y| {
             let edge = |n| n == 0 || n == size - 1;
-            let texels: Vec<&str> = (0..size).map(|x| if edge(x) || edge(y) { "ffff0000" } else { "ff0000ff" }).collect();
+            let texels: Vec<&str> =
+                (0..size).map(|x| if edge(x) || edge(y) { "ffff0000" } else { "ff0000ff" }).collect();
             format!("\"{}\"", texels.join(" "))
         })
         .collect();
@@ -119,8 +124,11 @@ fn every_case_of_cube_faces() {
                 return format!("Solid(width: 1, height: 1, color: {})", bytes(&inputs["face_colors"][name]));
             }
             // Of the face that is asked for; the others are of a third colour.
-            let [first, second] =
-                if case["expected_face"] == name { ["first", "second"].map(|n| hex(&inputs[n])) } else { ["ff101010".to_owned(), "ff101010".to_owned()] };
+            let [first, second] = if case["expected_face"] == name {
+                ["first", "second"].map(|n| hex(&inputs[n]))
+            } else {
+                ["ff101010".to_owned(), "ff101010".to_owned()]
+            };
             format!("Texels(width: 2, height: 2, rows: [\"{second} {first}\", \"{first} {first}\"])")
         });
         differs(case, pixel(&sampled(profile, &faces, "min_filter: Nearest", &direction), (0, 0)))
@@ -159,7 +167,8 @@ fn levels(profile: &str, texture: &str, unit: &str, lambda: f64) -> String {
         mips.join(", ")
     );
     let far = 4.0 * lambda.exp2() / 4.0;
-    let quad = quad(4.0, 4.0, [(0.0, 0.0), (far, 0.0), (far, far), (0.0, far)].map(|(s, t)| format!("t0: ({s:?}, {t:?})")));
+    let quad =
+        quad(4.0, 4.0, [(0.0, 0.0), (far, 0.0), (far, far), (0.0, far)].map(|(s, t)| format!("t0: ({s:?}, {t:?})")));
     let draw = format!("{quad}, textures: [(texture: \"t\", min_filter: Nearest, {unit})], {SHOWN}");
     scene(profile, "name: \"frame\", width: 4, height: 4", &head, &draw)
 }

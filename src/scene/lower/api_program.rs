@@ -123,9 +123,9 @@ fn generate(
         if around.generators {
             findings.push(
                 Diagnostic::error("NB0352", place.clone(), format!("{what} beside the draw's texgen"))
-                .label(label)
-                .rule("TSH-11")
-                .help("leave one of them out"),
+                    .label(label)
+                    .rule("TSH-11")
+                    .help("leave one of them out"),
             );
             continue;
         }

@@ -102,7 +102,8 @@ pub(super) fn source<'a>(
         return color::vertex_color(reader, names, &raw.as_other()).map(Source::Color);
     }
     if !color && raw.text.starts_with('(') {
-        return vertex::coordinates(reader, &raw.as_other()).map(|(values, written)| Source::Coordinates(values, written));
+        return vertex::coordinates(reader, &raw.as_other())
+            .map(|(values, written)| Source::Coordinates(values, written));
     }
     let (kind, rest) = reader.variant(raw, "mesh attribute", SOURCES)?;
     if kind < 5 && !rest.is_empty() {

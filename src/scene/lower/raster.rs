@@ -102,10 +102,14 @@ fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, u32>) -> Option<u8
     if u32::from(byte) != word {
         let place = reader.span(raw);
         reader.push(
-            Diagnostic::warning("NB0906", place, format!("an alpha reference has eight bits: {word:#x} counts as {byte}"))
-                .label("more than eight bits")
-                .rule("ROP-1")
-                .help(format!("write {byte} if that is what is meant")),
+            Diagnostic::warning(
+                "NB0906",
+                place,
+                format!("an alpha reference has eight bits: {word:#x} counts as {byte}"),
+            )
+            .label("more than eight bits")
+            .rule("ROP-1")
+            .help(format!("write {byte} if that is what is meant")),
         );
     }
     Some(byte)
