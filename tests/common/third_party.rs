@@ -2,6 +2,7 @@
 //! of known differences.
 //!
 //! `NINEBIT_CASES=FILE` runs another file of the same form instead; of one that names kinds, those of the test.
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "each test uses a part; a test fails by panicking")]
 
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;

@@ -2,7 +2,7 @@
 //! the magnitude of z in eye space. OpenGL's is that of the eye plane.
 
 use super::third_party::{Kind, bytes, differs, pixel, run};
-use super::{number, quad, scene};
+use super::{number, scene};
 use serde_json::Value;
 
 /// The function and what it is a function of.
