@@ -56,7 +56,8 @@ pub struct Lowered {
 /// Everything that the chip, or this version, has no form for.
 pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let active = program.stages.iter().take_while(|stage| stage.color.operation.value != Operation::Disable).count();
-    let mut walk = Walk { program, context, active, findings: Vec::new(), units: Default::default() };
+    let transforms = program.stages.iter().any(|stage| !stage.transform_flags.place.is_empty());
+    let mut walk = Walk { program, context, active, transforms, findings: Vec::new(), units: Default::default() };
     let mut cascade = Cascade::new(context.profile, context.signed);
     for (index, stage) in program.stages.iter().take(active).enumerate() {
         walk.coordinates(index, stage);
@@ -106,6 +107,8 @@ struct Walk<'p> {
     context: &'p Context,
     /// Stages before the first disabled one.
     active: usize,
+    /// Some stage says how texture matrices apply: to the others, too, as the API has it.
+    transforms: bool,
     findings: Vec<Diagnostic>,
     units: [UnitChange; TEXTURE_UNITS],
 }
@@ -235,10 +238,10 @@ impl Walk<'_> {
                 "write 0 (D3DTTFF_DISABLE) to 4 (D3DTTFF_COUNT4), with 256 (D3DTTFF_PROJECTED) or without",
             ));
         } else if let Some(unit) = self.units.get_mut(index)
-            && !place.is_empty()
+            && self.transforms
         {
             let value = StageTransform { count: count as usize, projected };
-            unit.transform = Some(At { value, place: place.clone() });
+            unit.transform = Some(At { value, place: written([place, &stage.place]) });
         }
     }
 

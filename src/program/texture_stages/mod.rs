@@ -125,8 +125,8 @@ pub struct TextureStage {
     pub constant: [u8; 4],
     /// TEXCOORDINDEX; `None`: as the texture unit says.
     pub coordinate_index: Option<At<CoordinateIndex>>,
-    /// TEXTURETRANSFORMFLAGS: a count 0 to 4, and [`PROJECTED`]. Where it is not written the draw's texture matrices apply as they do to
-    /// other programs.
+    /// TEXTURETRANSFORMFLAGS: a count 0 to 4, and [`PROJECTED`]. Where no stage writes them the draw's texture matrices apply as they
+    /// do to other programs.
     pub transform_flags: At<u32>,
     /// BUMPENVMAT00, 01, 10, 11.
     pub bump_matrix: [f32; 4],
