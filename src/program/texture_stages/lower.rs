@@ -241,7 +241,7 @@ impl Walk<'_> {
             && self.transforms
         {
             let value = StageTransform { count: count as usize, projected };
-            unit.transform = Some(At { value, place: written([place, &stage.place]) });
+            unit.transform = Some(At { value, place: place.clone() });
         }
     }
 

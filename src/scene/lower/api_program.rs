@@ -121,6 +121,10 @@ fn generate(
         };
         let Some((what, label, place)) = made else { continue };
         if around.generators {
+            // Flags that another stage has brought in: it has been complained of.
+            if place.is_empty() {
+                continue;
+            }
             findings.push(
                 Diagnostic::error("NB0352", place.clone(), format!("{what} beside the draw's texgen"))
                     .label(label)
