@@ -2,7 +2,13 @@
 //! of known differences.
 //!
 //! `NINEBIT_CASES=FILE` runs another file of the same form instead; of one that names kinds, those of the test.
-#![allow(dead_code, unreachable_pub, clippy::unwrap_used, reason = "each test uses a part; a test fails by panicking")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    clippy::unwrap_used,
+    clippy::float_arithmetic,
+    reason = "each test uses a part; a test fails by panicking; tolerances are floats"
+)]
 
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
