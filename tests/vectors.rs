@@ -10,8 +10,8 @@ use ninebit::vectors::pack::{self, Options};
 use ninebit::vectors::read::parse;
 use ninebit::vectors::table::{Contents, Writer};
 use ninebit::vectors::unit::{Conditions, alternatives};
+use ninebit::vectors::units;
 use ninebit::vectors::view::View;
-use ninebit::vectors::{Unit, units};
 
 fn options(units: &[&str]) -> Options {
     let units = units.iter().map(|name| units::by_name(name).unwrap()).collect();

@@ -153,6 +153,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0911", "warning: a constant of a vertex program with two meanings"),
     ("NB0912", "warning: a vertex program reads one component and does not name it"),
     ("NB0913", "warning: an instruction of a vertex program in a comment"),
+    ("NB0914", "warning: more bits than the chip looks at"),
 ];
 
 /// What a code means; `None` if there is no such code.

@@ -11,7 +11,7 @@ use super::split;
 use crate::program::texture_environment;
 use crate::program::texture_stages::{Operation, ResultArgument};
 use crate::state;
-use crate::vertex::fog::FogSource;
+use crate::vertex::fog::{FogEvaluation, FogSource};
 
 /// What a value of a type looks like, for "expected ...".
 pub(super) trait Expected<'a>: Sized {
@@ -126,6 +126,9 @@ pub(super) struct FinalInput;
 pub(super) struct Output;
 /// An argument of a texture stage.
 pub(super) struct StageArgument;
+
+/// `Count3`, or `(Count3, Projected)`.
+pub(super) struct TransformFlags;
 /// A word without further meaning to the types: one of a few.
 pub(super) struct Word;
 
@@ -167,6 +170,7 @@ source! {
         mips: List<'a, ImageSource>,
         palette: String,
         border: bool,
+        first_level: u32,
     }
     struct RawFile { file: String, width: u32, height: u32 }
     struct Faces {
@@ -206,6 +210,7 @@ source! {
         logic_op: Reserved,
         texture_shader: List<'a, ShaderStage>,
         texgen: List<'a, CoordinateSource>,
+        viewer: Word,
         texture_matrices: List<'a, Matrix>,
         truth: Reserved,
     }
@@ -282,6 +287,7 @@ source! {
         end: f32,
         parameters: Numbers,
         coordinate_source: Name<FogSource>,
+        evaluation: Name<FogEvaluation>,
     }
     struct CoordinateSet { input: u32, s: Generator, t: Generator, r: Generator, q: Generator }
     struct Emboss { light: Numbers, scale: Numbers }
@@ -368,7 +374,7 @@ source! {
         result_arg: Name<ResultArgument>,
         constant: Color,
         texture_coordinate_index: Word,
-        texture_transform_flags: Word,
+        texture_transform_flags: TransformFlags,
         bump_matrix: Numbers,
         bump_luminance: Numbers,
     }

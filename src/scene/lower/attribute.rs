@@ -15,8 +15,8 @@ use crate::state::{Vertex, VertexColor};
 pub(super) enum Source {
     /// The same for all.
     Color(VertexColor),
-    /// The same for all.
-    Coordinates([f32; 4]),
+    /// The same for all, and how many are written.
+    Coordinates([f32; 4], usize),
     Position,
     Normal,
     Tangent,
@@ -57,7 +57,8 @@ pub(super) fn source<'a>(
         return color::vertex_color(reader, names, &raw.as_other()).map(Source::Color);
     }
     if !color && raw.text.starts_with('(') {
-        return vertex::coordinates(reader, &raw.as_other()).map(Source::Coordinates);
+        return vertex::coordinates(reader, &raw.as_other())
+            .map(|(values, written)| Source::Coordinates(values, written));
     }
     let (kind, rest) = reader.variant(raw, "mesh attribute", SOURCES)?;
     if kind < 5 && !rest.is_empty() {
@@ -131,6 +132,19 @@ pub(super) struct Outputs {
     pub(super) coordinates: [Source; 4],
 }
 
+impl Outputs {
+    /// How many components each coordinate set has: vectors of a mesh three, texture coordinates two.
+    pub(super) fn dimensions(&self) -> [usize; 4] {
+        [0, 1, 2, 3].map(|set| match &self.coordinates[set] {
+            Source::Coordinates(_, written) => *written,
+            Source::TextureCoordinates => 2,
+            Source::Position | Source::Normal | Source::Tangent | Source::Binormal => 3,
+            Source::Light { .. } | Source::Half { .. } => 3,
+            Source::Color(_) => 4,
+        })
+    }
+}
+
 /// The vertices of a mesh; positions are left in object space.
 pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vec<Vertex> {
     let vertex = |index: usize| {
@@ -171,7 +185,7 @@ pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
     };
     match source {
         Source::Color(_) => [0.0, 0.0, 0.0, 1.0],
-        Source::Coordinates(values) => *values,
+        Source::Coordinates(values, _) => *values,
         Source::Position => extend(position),
         Source::Normal => extend(mesh.normals[index]),
         Source::Tangent => extend(mesh.tangents[index]),

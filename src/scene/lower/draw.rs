@@ -100,13 +100,15 @@ fn draw<'a>(
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
     let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
+    let viewer =
+        fields.viewer.as_ref().and_then(|raw| texgen::viewer(reader, raw)).unwrap_or(crate::vertex::Viewer::Local);
     let fog = fog::fog(reader, names, &fields.fog);
     let mut units = unit::units(reader, names, textures, &fields.textures);
     shader::shader(reader, textures, &mut units, &fields.texture_shader);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
     let topology = reader.name_or(&fields.topology, Topology::Triangles);
     let mut around = Around {
-        fog: fog.state(reader.profile).enabled,
+        fog: fog.state().enabled,
         shader: fields.texture_shader.is_some(),
         generators: fields.texgen.is_some(),
         sets,
@@ -123,7 +125,7 @@ fn draw<'a>(
         None => (combiner::default_program(), [None, None, None, None]),
     };
     if let Some(made) = &mut geometry
-        && !vertex_side(reader, made, &around.sets, &fog, &header.place)
+        && !vertex_side(reader, made, &around.sets, &fog, viewer, &header.place)
     {
         geometry = None;
     }
@@ -140,7 +142,7 @@ fn draw<'a>(
         cull: reader.name_or(&fields.cull, Cull::None),
         front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
         scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
-        fog: fog.state(reader.profile),
+        fog: fog.state(),
         textures: units.bound,
         texture_shader,
         combiners,

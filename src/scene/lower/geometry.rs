@@ -5,9 +5,9 @@ use super::names::Names;
 use super::target::Targets;
 use super::*;
 use crate::state::{Positions, VertexColor, VertexProgram, Viewport};
-use crate::vertex::fog::{FogSource, vertex_factor};
+use crate::vertex::fog::{FogEvaluation, FogSource, vertex_factor};
 use crate::vertex::texgen::CoordinateSet;
-use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows};
+use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 
 /// The vertices of a draw as they were described.
 pub(super) struct Geometry {
@@ -29,6 +29,7 @@ pub(super) fn vertex_side(
     geometry: &mut Geometry,
     sets: &Option<[CoordinateSet; 4]>,
     fog: &fog::FogFields,
+    viewer: Viewer,
     draw: &Range<usize>,
 ) -> bool {
     if sets.is_none() && fog.function.is_none() {
@@ -54,14 +55,14 @@ pub(super) fn vertex_side(
     }
     let model_view = ModelView::new(&geometry.model_view);
     for (index, (vertex, object)) in geometry.vertices.iter_mut().zip(&geometry.objects).enumerate() {
-        let eye = EyeVertex::new(object, &model_view);
+        let eye = EyeVertex::new(object, &model_view, viewer);
         if let Some(sets) = sets {
             let given = vertex.texture_coordinates;
             vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
         }
         if let Some(function) = &fog.function {
-            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye);
-            if reader.profile == Profile::Nv10 && vertex.fog.is_finite() {
+            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye, vertex.position);
+            if fog.evaluation == FogEvaluation::PerVertex && vertex.fog.is_finite() {
                 vertex.fog = vertex_factor(function, vertex.fog);
             }
         }
@@ -100,11 +101,11 @@ fn beside_program(
     let finding = |message: &str, label: &str, help: &str| {
         Some(Diagnostic::error("NB0389", fog.place.clone(), message).label(label).rule("VTX-3").help(help))
     };
-    if fog.source != FogSource::Vertex {
-        let help = "leave `coordinate_source` out, and write the coordinate to oFog";
+    if matches!(fog.source, FogSource::EyePlane | FogSource::EyePlaneAbsolute | FogSource::EyeRadial) {
+        let help = "take `coordinate_source: Depth` or `W`, or leave it out and write the coordinate to oFog";
         return finding("behind a vertex program there is no eye space", "needs it for this fog", help);
     }
-    if !program.writes_fog {
+    if fog.source == FogSource::Vertex && !program.writes_fog {
         let help = "write it there: `mov oFog.x, r0.w`";
         return finding(
             "fog with a mode reads the coordinate in oFog, which nothing writes",
@@ -192,10 +193,12 @@ fn matrix_geometry<'a>(
             let outputs = outputs(reader, names, &fields);
             let mesh = mesh?;
             let vertices = attribute::vertices(&mesh, &outputs);
+            let dimensions = outputs.dimensions();
             let object = |(vertex, normal): (&crate::state::Vertex, &[f32; 3])| ObjectVertex {
                 position: vertex.position,
                 normal: *normal,
                 fog_coordinate: 0.0,
+                dimensions,
             };
             let objects = vertices.iter().zip(&mesh.normals).map(object).collect();
             (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()), objects)
@@ -244,6 +247,7 @@ pub(super) fn listed(data: &vertex::VertexData) -> Vec<ObjectVertex> {
         position: vertex.position,
         normal: extra.normal,
         fog_coordinate: extra.fog_coordinate,
+        dimensions: extra.dimensions,
     };
     data.vertices.iter().zip(&data.extras).map(object).collect()
 }

@@ -89,10 +89,30 @@ fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>)
     let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let function = reader.required(&fields.function, "function", "alpha test", opening);
     let reference = match &fields.reference {
-        Some(raw) => reader.whole(raw, "an alpha reference", 0..=255),
+        Some(raw) => alpha_reference(reader, raw),
         None => Some(0),
     };
-    Some(AlphaTest { function: reader.name(&function?)?, reference: reference? as u8 })
+    Some(AlphaTest { function: reader.name(&function?)?, reference: reference? })
+}
+
+/// The low eight bits of a number: APIs hold it in a word of 32.
+fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, u32>) -> Option<u8> {
+    let word = reader.read(raw)?;
+    let byte = word as u8;
+    if u32::from(byte) != word {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::warning(
+                "NB0914",
+                place,
+                format!("an alpha reference has eight bits: {word:#x} counts as {byte}"),
+            )
+            .label("more than eight bits")
+            .rule("ROP-1")
+            .help(format!("write {byte} if that is what is meant")),
+        );
+    }
+    Some(byte)
 }
 
 fn depth_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthTest<'a>>) -> Option<DepthTest> {

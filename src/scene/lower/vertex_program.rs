@@ -181,7 +181,7 @@ fn run(
         }
         vertices.push(written.vertex(&outputs));
         let fog_coordinate = outputs.fog[0];
-        objects.push(ObjectVertex { position: outputs.position, normal: [0.0; 3], fog_coordinate });
+        objects.push(ObjectVertex { position: outputs.position, normal: [0.0; 3], fog_coordinate, dimensions: [4; 4] });
     }
     Some((vertices, objects))
 }

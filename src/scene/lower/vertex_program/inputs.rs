@@ -154,7 +154,7 @@ pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
         (Input::Attribute(source), Some(mesh)) => return attribute::evaluate(mesh, index, source),
         // The same for all: other attributes need a mesh.
         (Input::Attribute(source), None) => {
-            return if let Source::Coordinates(values) = source { *values } else { [0.0; 4] };
+            return if let Source::Coordinates(values, _) = source { *values } else { [0.0; 4] };
         }
         (Input::Field(field), _) => field,
     };
