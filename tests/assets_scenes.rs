@@ -1,11 +1,10 @@
 //! Every scene under `vectors/scenes` shows what is expected, and its generated textures are what the generators make.
 //!
-//! `BLESS=1 cargo test --test assets_scenes` rewrites the expectations, but for those that come from a capture; look at the pictures
+//! `BLESS=1 cargo test --test suite assets_scenes` rewrites the expectations, but for those that come from a capture; look at the pictures
 //! and at the difference before committing.
 #![allow(clippy::unwrap_used, unreachable_pub, reason = "a test fails by panicking, and shares a file with others")]
 
-#[path = "common/scene_files.rs"]
-mod scene_files;
+use crate::scene_files;
 
 use std::path::{Path, PathBuf};
 

@@ -16,8 +16,7 @@ mod raster_operations;
 mod shading;
 #[path = "third_party_pipeline/texture_units.rs"]
 mod texture_units;
-#[path = "common/third_party.rs"]
-mod third_party;
+use crate::third_party;
 
 use serde_json::Value;
 

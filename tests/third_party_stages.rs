@@ -4,8 +4,7 @@
 //! See `common/third_party.rs` for how they are run.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/third_party.rs"]
-mod third_party;
+use crate::third_party;
 
 use ninebit::program::texture_environment::{EnvironmentSource, Function, Mode};
 use ninebit::program::texture_stages::{ArgumentSource, Operation};

@@ -1,8 +1,7 @@
 //! Vertex programs: the text reads, prints and is refused as documented; every instruction against one written here.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-#[path = "common/random_vertex_program.rs"]
-mod random_vertex_program;
+use crate::random_vertex_program;
 
 use ninebit::diagnostic::Diagnostic;
 use ninebit::program::vertex_shader::{parse, print, read};
