@@ -319,7 +319,7 @@ source! {
     struct CullFragment { s: Word, t: Word, r: Word, q: Word }
     struct BumpEnvironment { matrix: Numbers, luminance: Numbers }
     struct ConstantEye { eye: Numbers }
-    struct AlphaTest { function: Name<state::CompareFunction>, reference: u32 }
+    struct AlphaTest { function: Name<state::CompareFunction>, reference: Word }
     struct DepthTest { function: Name<state::CompareFunction>, write: bool }
     struct Blend {
         equation: Name<state::BlendEquation>,

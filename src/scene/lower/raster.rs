@@ -3,7 +3,8 @@
 use super::names::Names;
 use super::target::Targets;
 use super::*;
-use crate::scene::raw::Tuple;
+use crate::number::convert::constant;
+use crate::scene::raw::{Numbers, Tuple};
 use crate::state::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle, SurfaceFormat,
 };
@@ -95,9 +96,21 @@ fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>)
     Some(AlphaTest { function: reader.name(&function?)?, reference: reference? })
 }
 
-/// The low eight bits of a number: APIs hold it in a word of 32.
-fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, u32>) -> Option<u8> {
-    let word = reader.read(raw)?;
+/// `Float(0.5)`, or the low eight bits of a number: APIs hold either, the number in a word of 32.
+fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<u8> {
+    if let ("Float", rest) = raw.split() {
+        let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1, 1, [0.0; 4])?;
+        return Some(constant(value));
+    }
+    let Some(word) = reader.attempt::<u32>(raw.text) else {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0205", place, format!("expected an alpha reference, found `{}`", shorten(raw.text)))
+                .label("wrong kind of value")
+                .help("write a byte, `128`, or a float, `Float(0.5)`"),
+        );
+        return None;
+    };
     let byte = word as u8;
     if u32::from(byte) != word {
         let place = reader.span(raw);
