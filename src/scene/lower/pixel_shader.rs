@@ -8,7 +8,7 @@ use super::texture::Textures;
 use super::unit::Units;
 use super::*;
 use crate::program::pixel_shader::{self, Bump, CONSTANTS, Context, PixelShader, UnitUse};
-use crate::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS, VertexColor};
+use crate::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS};
 
 /// A shader, where its bytes stand, and what the API sets beside it.
 pub(super) struct ShaderProgram {
@@ -30,7 +30,7 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
         let fields = reader.read(&Raw::<source::PixelShader<'a>>::new(text))?;
         for entry in reader.table("constant", &fields.constants) {
             if let Some(index) = register(reader, &entry.name, entry.place, 'c', CONSTANTS, "constant") {
-                constants[index] = color::vertex_color(reader, names, &entry.value).map(floats);
+                constants[index] = color::vertex_color(reader, names, &entry.value).map(color::floats);
             }
         }
         for entry in reader.table("bump state", &fields.bump) {
@@ -98,15 +98,6 @@ fn register(
         );
     }
     index
-}
-
-/// NUM-0 backwards: n / 255, which is that byte again as a constant.
-fn floats(color: VertexColor) -> [f32; 4] {
-    #[allow(clippy::float_arithmetic, reason = "bytes of a scene as the API's floats")]
-    match color {
-        VertexColor::Floats(floats) => floats,
-        VertexColor::Bytes(bytes) => bytes.map(|byte| f32::from(byte) / 255.0),
-    }
 }
 
 fn bump<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BumpEnvironment<'a>>) -> Option<Bump> {
