@@ -195,7 +195,7 @@ fn alpha_references_of_every_form() {
     ] {
         let loaded = draw("Nv10", "", &format!("alpha_test: (function: Less, reference: {written})"));
         assert_eq!(loaded.scene.draws[0].alpha_test.unwrap().reference, byte, "{written}");
-        assert_eq!(loaded.warnings.iter().any(|warning| warning.code == "NB0906"), warns, "{written}");
+        assert_eq!(loaded.warnings.iter().any(|warning| warning.code == "NB0914"), warns, "{written}");
     }
 }
 
