@@ -22,8 +22,9 @@ fn a_surface_in_every_notation_has_the_same_bytes() {
         assert_eq!(load(name).scene.draws[0].combiners, stages.scene.draws[0].combiners, "{name}");
     }
     assert_eq!(words(&stages), definition);
-    assert_eq!(words(&load("dot3-texture-environment")), definition);
-    assert_eq!(words(&load("dot3-pixel-shader")), definition);
+    for name in ["texture-environment", "combiner-text", "pixel-shader", "register-words"] {
+        assert_eq!(words(&load(&format!("dot3-{name}"))), definition, "{name}");
+    }
 }
 
 #[test]
