@@ -59,7 +59,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     clock.lap("load");
     let (frames, statistics) = {
         let progress = Progress::new("rendering", context.color);
-        let options = RenderOptions { threads: arguments.threads };
+        let options = RenderOptions { threads: arguments.threads, ..RenderOptions::default() };
         engine::render_counted(&plan, &options, &|done, total| progress.report(done as u64, total as u64))
     };
     clock.lap("render");
