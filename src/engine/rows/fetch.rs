@@ -46,7 +46,11 @@ pub(super) fn sample(
     rows: &mut [Row],
 ) {
     let Workspace { entries, along, down, upper, lower, channels } = work;
-    address(table, u, v, entries, along, down);
+    if table.axes[0].repeats() && table.axes[1].repeats() {
+        address::<false>(&table.axes, u, v, entries, along, down);
+    } else {
+        address::<true>(&table.axes, u, v, entries, along, down);
+    }
     if let Some(faces) = faces {
         for (entry, face) in entries.iter_mut().zip(faces) {
             *entry += *face * table.face;
@@ -92,26 +96,21 @@ fn entry(axis: &Axis, coordinate: i32, limits: bool) -> (i32, u32) {
 }
 
 #[inline(always)]
-fn address(
-    table: &Table,
+fn address<const LIMITS: bool>(
+    [columns, rows]: &[Axis; 2],
     u: &Numbers<i32>,
     v: &Numbers<i32>,
     entries: &mut [u32; BLOCK],
     along: &mut [u32; BLOCK],
     down: &mut [u32; BLOCK],
 ) {
-    let [columns, rows] = table.axes;
-    let pitch = columns.count;
-    let mut each = |limits: bool| {
-        for ((((entry_out, along), down), u), v) in
-            entries.iter_mut().zip(along.iter_mut()).zip(down.iter_mut()).zip(u).zip(v)
-        {
-            let ((x, wx), (y, wy)) = (entry(&columns, *u, limits), entry(&rows, *v, limits));
-            *entry_out = (y * pitch + x) as u32;
-            (*along, *down) = (wx, wy);
-        }
-    };
-    if columns.repeats() && rows.repeats() { each(false) } else { each(true) }
+    let (columns, rows) = (*columns, *rows);
+    for n in 0..BLOCK {
+        let ((x, wx), (y, wy)) = (entry(&columns, u[n], LIMITS), entry(&rows, v[n], LIMITS));
+        entries[n] = (y * columns.count + x) as u32;
+        along[n] = wx;
+        down[n] = wy;
+    }
 }
 
 /// The texels of both rows of the footprint. One length serves both, so that one comparison does.
@@ -145,11 +144,11 @@ fn filter<const COUNT: usize>(
     alpha: &mut [i16; BLOCK],
 ) {
     for n in 0..BLOCK {
-        let texels = [upper[n][0], upper[n][1], lower[n][0], lower[n][1]];
-        let even = bilinear(texels.map(|t| Two(t & 0x00ff_00ff)), along[n], down[n], |v| v);
+        let ([a, b], [c, d]) = (upper[n], lower[n]);
+        let even = bilinear([first(a), first(b), first(c), first(d)], along[n], down[n], |v| v);
         red[n] = (even.0 & 255) as i16;
         if COUNT > 1 {
-            let odd = bilinear(texels.map(|t| Two(t >> 8 & 0x00ff_00ff)), along[n], down[n], |v| v);
+            let odd = bilinear([first(a >> 8), first(b >> 8), first(c >> 8), first(d >> 8)], along[n], down[n], |v| v);
             green[n] = (odd.0 & 255) as i16;
             blue[n] = (even.0 >> 16) as i16;
             if COUNT > 3 {
@@ -157,6 +156,12 @@ fn filter<const COUNT: usize>(
             }
         }
     }
+}
+
+/// R and B of a texel; of one shifted by 8, G and A.
+#[inline(always)]
+fn first(texel: u32) -> Two {
+    Two(texel & 0x00ff_00ff)
 }
 
 #[inline(always)]

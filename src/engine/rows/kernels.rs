@@ -4,7 +4,7 @@ use super::BLOCK;
 use super::graph::{MOST, Node, Value};
 use crate::combiner::final_combiner::product;
 use crate::combiner::general::{self, dot_product};
-use crate::combiner::mapping::{expand_normal, map, unsigned_identity};
+use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
 use crate::number::{Factor, Lane, Narrow, Sum};
 use crate::rop::blend;
 use crate::state::{Bias, BlendEquation, InputMapping, MuxSelect, Policies, RegisterFloor, Scale};
@@ -42,7 +42,7 @@ impl Row {
 #[inline(always)]
 pub(super) fn mapped(mapping: InputMapping, x: i16) -> i16 {
     // Halves, which are even under the default policies.
-    (map([i32::from(x)], mapping, &Policies::DEFAULT)[0].0 >> 1) as i16
+    (map_one(i32::from(x), mapping, &Policies::DEFAULT).0 >> 1) as i16
 }
 
 /// NUM-2.
@@ -78,7 +78,7 @@ fn sum<const N: usize>(rows: [&[i16; BLOCK]; N], n: usize) -> i16 {
 /// ROP-2 of one channel, not yet clamped.
 #[inline(always)]
 fn difference([a, b, c, d]: [i16; 4]) -> i16 {
-    let [a, b, c, d] = [a, b, c, d].map(i32::from);
+    let (a, b, c, d) = (i32::from(a), i32::from(b), i32::from(c), i32::from(d));
     blend::equation(BlendEquation::Subtract, a, c, b, d) as i16
 }
 
@@ -91,7 +91,9 @@ fn signed(negated: bool, s: i16) -> i16 {
 
 #[inline(always)]
 fn unsigned_dot(a: [i16; 3], b: [i16; 3]) -> i16 {
-    let [a, b] = [a, b].map(|v| v.map(|x| expand_normal(Narrow(x))));
+    // Written out: `map` on arrays is not always inlined, and what is not inlined lacks the caller's instruction set.
+    let a = [expand_normal(Narrow(a[0])), expand_normal(Narrow(a[1])), expand_normal(Narrow(a[2]))];
+    let b = [expand_normal(Narrow(b[0])), expand_normal(Narrow(b[1])), expand_normal(Narrow(b[2]))];
     unsigned_identity(dot_product(a, b).rounded()).0
 }
 

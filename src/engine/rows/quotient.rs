@@ -56,12 +56,6 @@ pub(super) fn multiply_add<const FMA: bool>(a: f64, b: f64, c: f64) -> f64 {
 }
 
 impl Line {
-    /// The line as it is `x` columns further on.
-    #[inline(always)]
-    pub(super) fn moved<const FMA: bool>(self, x: f64) -> Line {
-        Line { c: multiply_add::<FMA>(self.x, x, self.c), ..self }
-    }
-
     /// Minus so many times another.
     #[inline(always)]
     pub(super) fn less(self, times: f64, other: Line) -> Line {
@@ -73,6 +67,20 @@ impl Line {
         let value = multiply_add::<FMA>(self.x, x, self.c);
         if ROW { value } else { multiply_add::<FMA>(self.y, y, value) }
     }
+}
+
+/// The nearest whole number, and as its sign bit whether it is further away than the limit.
+#[inline(always)]
+fn nearest(q: f64, limit: f64) -> (i32, u64) {
+    let t = q + MAGIC;
+    (t.to_bits() as i32, (limit - (q - (t - MAGIC)).abs()).to_bits())
+}
+
+/// The same in single precision.
+#[inline(always)]
+fn nearest_32(q: f32, limit: f32) -> (i32, u32) {
+    let t = q + MAGIC_32;
+    (t.to_bits().wrapping_sub(MAGIC_32.to_bits()) as i32, (limit - (q - (t - MAGIC_32)).abs()).to_bits())
 }
 
 /// Two quotients whose floors are wanted; half the denominator has been subtracted, so that the nearest whole number is the floor. Says
@@ -91,13 +99,11 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     for (((first, second), x), y) in first.iter_mut().zip(second).zip(at.x).zip(at.y) {
         let (x, y) = (f64::from((*x).min(at.last)), f64::from(*y));
         let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
-        for (n, out) in [(0, first), (1, second)] {
-            let q = numerators[n].at::<FMA, ROW>(x, y) * r;
-            let t = q + MAGIC;
-            *out = t.to_bits() as i32;
-            // The sign bit of what is left of the limit.
-            close[n] |= (limits[n] - (q - (t - MAGIC)).abs()).to_bits();
-        }
+        let one = nearest(numerators[0].at::<FMA, ROW>(x, y) * r, limits[0]);
+        let other = nearest(numerators[1].at::<FMA, ROW>(x, y) * r, limits[1]);
+        (*first, *second) = (one.0, other.0);
+        close[0] |= one.1;
+        close[1] |= other.1;
     }
     close.map(|bits| bits >> 63 == 1)
 }
@@ -112,20 +118,18 @@ pub(super) fn estimate_weights<const FMA: bool>(
     first: &mut [i32],
     second: &mut [i32],
 ) -> bool {
-    let fused = |a: f32, b: f32, c: f32| if FMA { a.mul_add(b, c) } else { a * b + c };
-    let single = |line: Line| (line.c as f32, line.x as f32);
-    let (denominator, numerators) = (single(denominator), numerators.map(single));
+    let at_x = |line: (f32, f32), x: f32| if FMA { line.1.mul_add(x, line.0) } else { line.1 * x + line.0 };
+    let denominator = (denominator.c as f32, denominator.x as f32);
+    let numerators = numerators.map(|line| (line.c as f32, line.x as f32));
     let limit = (0.5 - margin) as f32;
     let mut close = 0_u32;
     for ((first, second), x) in first.iter_mut().zip(second).zip(at.x) {
         let x = (*x).min(at.last) as f32;
-        let r = 1.0 / fused(denominator.1, x, denominator.0);
-        for (n, out) in [(0, first), (1, second)] {
-            let q = fused(numerators[n].1, x, numerators[n].0) * r;
-            let t = q + MAGIC_32;
-            *out = t.to_bits().wrapping_sub(MAGIC_32.to_bits()) as i32;
-            close |= (limit - (q - (t - MAGIC_32)).abs()).to_bits();
-        }
+        let r = 1.0 / at_x(denominator, x);
+        let one = nearest_32(at_x(numerators[0], x) * r, limit);
+        let other = nearest_32(at_x(numerators[1], x) * r, limit);
+        (*first, *second) = (one.0, other.0);
+        close |= one.1 | other.1;
     }
     close >> 31 == 1
 }
@@ -165,27 +169,27 @@ pub(super) fn settle<const ROW: bool>(
     whole: &mut [i32],
 ) {
     if let Some(shift) = small {
-        let (n, d) = (numerator.low(shift), denominator.low(shift));
+        let ([n, n_x, n_y], [d, d_x, d_y]) = (numerator.low(shift), denominator.low(shift));
         for (((value, whole), x), y) in values.iter_mut().zip(whole).zip(at.x).zip(at.y) {
             let x = (*x).min(at.last);
-            let line = |[c, along, down]: [i32; 3]| {
-                let value = c.wrapping_add(along.wrapping_mul(x));
-                if ROW { value } else { value.wrapping_add(down.wrapping_mul(*y)) }
-            };
-            let d = line(d);
-            let rest = line(n).wrapping_sub(value.wrapping_mul(d));
+            let (mut n, mut d) = (n.wrapping_add(n_x.wrapping_mul(x)), d.wrapping_add(d_x.wrapping_mul(x)));
+            if !ROW {
+                (n, d) = (n.wrapping_add(n_y.wrapping_mul(*y)), d.wrapping_add(d_y.wrapping_mul(*y)));
+            }
+            let rest = n.wrapping_sub(value.wrapping_mul(d));
             *value += i32::from(rest >= d) - i32::from(rest < 0);
             *whole = i32::from((rest == 0) | (rest == d) | (rest == d.wrapping_neg()));
         }
     } else {
         for (((value, whole), x), y) in values.iter_mut().zip(whole).zip(at.x).zip(at.y) {
             let (x, y) = (i64::from((*x).min(at.last)), i64::from(*y));
-            let line = |line: Exact| {
-                let value = line.c.wrapping_add(line.x.wrapping_mul(x));
-                if ROW { value } else { value.wrapping_add(line.y.wrapping_mul(y)) }
-            };
-            let d = line(denominator);
-            let rest = line(numerator).wrapping_sub(i64::from(*value).wrapping_mul(d));
+            let mut n = numerator.c.wrapping_add(numerator.x.wrapping_mul(x));
+            let mut d = denominator.c.wrapping_add(denominator.x.wrapping_mul(x));
+            if !ROW {
+                n = n.wrapping_add(numerator.y.wrapping_mul(y));
+                d = d.wrapping_add(denominator.y.wrapping_mul(y));
+            }
+            let rest = n.wrapping_sub(i64::from(*value).wrapping_mul(d));
             *value += i32::from(rest >= d) - i32::from(rest < 0);
             *whole = i32::from((rest == 0) | (rest == d) | (rest == d.wrapping_neg()));
         }
