@@ -17,7 +17,6 @@ pub(super) struct Workspace {
     down: [u32; BLOCK],
     upper: [[u32; 2]; BLOCK],
     lower: [[u32; 2]; BLOCK],
-    channels: [[i16; BLOCK]; 4],
 }
 
 impl Default for Workspace {
@@ -28,7 +27,6 @@ impl Default for Workspace {
             down: [0; BLOCK],
             upper: [[0; 2]; BLOCK],
             lower: [[0; 2]; BLOCK],
-            channels: [[0; BLOCK]; 4],
         }
     }
 }
@@ -45,7 +43,7 @@ pub(super) fn sample(
     work: &mut Workspace,
     rows: &mut [Row],
 ) {
-    let Workspace { entries, along, down, upper, lower, channels } = work;
+    let Workspace { entries, along, down, upper, lower } = work;
     if table.axes[0].repeats() && table.axes[1].repeats() {
         address::<false>(&table.axes, u, v, entries, along, down);
     } else {
@@ -56,12 +54,15 @@ pub(super) fn sample(
             *entry += *face * table.face;
         }
     }
-    let [red, green, blue, alpha] = channels;
     let kind = wanted.iter().rposition(Option::is_some).unwrap_or(0);
+    // What nobody wants goes to the first rows.
+    let slot = |n: usize| wanted[n].map_or(n, usize::from);
+    let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
+    let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     match &table.texels {
         Texels::Single(texels) => {
-            for (entry, along) in entries.iter().zip(along.iter_mut()) {
-                *along = texels[*entry as usize];
+            for n in 0..BLOCK {
+                along[n] = texels[entries[n] as usize];
             }
             unpack(along, red, green, blue, alpha);
         }
@@ -74,16 +75,12 @@ pub(super) fn sample(
             }
         }
     }
-    for ((channel, signed), wanted) in channels.iter().zip(signed).zip(wanted) {
-        let Some(wanted) = wanted else { continue };
-        let row = &mut rows[usize::from(wanted)].0;
+    for (n, signed) in signed.into_iter().enumerate() {
         if signed {
             // TEX-18: the 128 that the table added is taken off again.
-            for (out, biased) in row.iter_mut().zip(channel) {
-                *out = (i32::from(*biased) - 128).signed_texel() as i16;
+            for out in rows[slot(n)].block_mut() {
+                *out = (i32::from(*out) - 128).signed_texel() as i16;
             }
-        } else {
-            row[..BLOCK].copy_from_slice(channel);
         }
     }
 }

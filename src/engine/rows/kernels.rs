@@ -32,9 +32,12 @@ impl Row {
         block
     }
 
+    /// The same, to be written.
     #[inline(always)]
-    fn set(&mut self, values: &[i16; BLOCK]) {
-        self.0[..BLOCK].copy_from_slice(values);
+    pub(super) fn block_mut(&mut self) -> &mut [i16; BLOCK] {
+        let (block, _) = self.0.split_at_mut(BLOCK);
+        // As long as it says.
+        block.try_into().unwrap_or_else(|_| unreachable!("a row is longer than a block"))
     }
 }
 
@@ -97,26 +100,24 @@ fn unsigned_dot(a: [i16; 3], b: [i16; 3]) -> i16 {
     unsigned_identity(dot_product(a, b).rounded()).0
 }
 
-/// A loop over the block. The result lies apart from the operands, so that the compiler need not ask whether they meet.
+/// A loop over the block. As a parameter of its own the result is known not to overlap the operands.
 #[inline(always)]
-fn each(f: impl Fn(usize) -> i16) -> [i16; BLOCK] {
-    let mut out = [0; BLOCK];
-    for (n, out) in out.iter_mut().enumerate() {
-        *out = f(n);
+fn each(out: &mut [i16; BLOCK], f: impl Fn(usize) -> i16) {
+    for n in 0..BLOCK {
+        out[n] = f(n);
     }
-    out
 }
 
 /// A mapping of a row; `mapping` is a constant where this is called, so that the loop holds one text.
 #[inline(always)]
-fn map_row(mapping: InputMapping, v: &[i16; BLOCK]) -> [i16; BLOCK] {
-    each(|n| mapped(mapping, v[n]))
+fn map_row(mapping: InputMapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
+    each(out, |n| mapped(mapping, v[n]))
 }
 
 /// CMB-9 and NUM-3 of a row; `bias` and `scale` likewise.
 #[inline(always)]
-fn finish_row(bias: Bias, scale: Scale, v: &[i16; BLOCK]) -> [i16; BLOCK] {
-    each(|n| finished(v[n], bias, scale))
+fn finish_row(bias: Bias, scale: Scale, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
+    each(out, |n| finished(v[n], bias, scale))
 }
 
 /// Computes the row of a node from rows before it.
@@ -124,94 +125,94 @@ fn finish_row(bias: Bias, scale: Scale, v: &[i16; BLOCK]) -> [i16; BLOCK] {
 pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
     let (before, after) = rows.split_at_mut(at);
     let Some(out) = after.first_mut() else { return };
+    let out = out.block_mut();
     let row = |v: Value| before[usize::from(v.0)].block();
     match *node {
         // Filled before.
         Node::Constant(_) | Node::Input(_) => {}
         Node::Map(mapping, v) => {
             let v = row(v);
-            let values = match mapping {
-                InputMapping::UnsignedIdentity => map_row(InputMapping::UnsignedIdentity, v),
-                InputMapping::UnsignedInvert => map_row(InputMapping::UnsignedInvert, v),
-                InputMapping::ExpandNormal => map_row(InputMapping::ExpandNormal, v),
-                InputMapping::ExpandNegate => map_row(InputMapping::ExpandNegate, v),
-                InputMapping::HalfBiasNormal => map_row(InputMapping::HalfBiasNormal, v),
-                InputMapping::HalfBiasNegate => map_row(InputMapping::HalfBiasNegate, v),
-                InputMapping::SignedIdentity => *v,
-                InputMapping::SignedNegate => map_row(InputMapping::SignedNegate, v),
-            };
-            out.set(&values);
+            match mapping {
+                InputMapping::UnsignedIdentity => map_row(InputMapping::UnsignedIdentity, v, out),
+                InputMapping::UnsignedInvert => map_row(InputMapping::UnsignedInvert, v, out),
+                InputMapping::ExpandNormal => map_row(InputMapping::ExpandNormal, v, out),
+                InputMapping::ExpandNegate => map_row(InputMapping::ExpandNegate, v, out),
+                InputMapping::HalfBiasNormal => map_row(InputMapping::HalfBiasNormal, v, out),
+                InputMapping::HalfBiasNegate => map_row(InputMapping::HalfBiasNegate, v, out),
+                InputMapping::SignedIdentity => out.copy_from_slice(v),
+                InputMapping::SignedNegate => map_row(InputMapping::SignedNegate, v, out),
+            }
         }
         Node::Sum(pairs) => {
             let all: [&[i16; BLOCK]; 2 * MOST] = pairs.values.map(|v| if usize::from(v.0) < at { row(v) } else { &ZEROS });
             let [a, b, c, d, e, f, g, h, ..] = all;
-            let values = match pairs.count {
-                1 => each(|n| product(a[n], b[n])),
-                2 => each(|n| sum([a, b, c, d], n)),
-                3 => each(|n| dot_product([a[n], c[n], e[n]], [b[n], d[n], f[n]]).rounded()),
-                4 => each(|n| sum([a, b, c, d, e, f, g, h], n)),
-                _ => each(|n| sum(all, n)),
-            };
-            out.set(&values);
+            match pairs.count {
+                1 => each(out, |n| product(a[n], b[n])),
+                2 => each(out, |n| sum([a, b, c, d], n)),
+                3 => each(out, |n| dot_product([a[n], c[n], e[n]], [b[n], d[n], f[n]]).rounded()),
+                4 => each(out, |n| sum([a, b, c, d, e, f, g, h], n)),
+                _ => each(out, |n| sum(all, n)),
+            }
         }
         Node::Difference(v) => {
             let [a, b, c, d] = v.map(row);
-            out.set(&each(|n| difference([a[n], b[n], c[n], d[n]])));
+            each(out, |n| difference([a[n], b[n], c[n], d[n]]));
         }
         Node::UnsignedDot(v) => {
             let [a, b, c, d, e, f] = v.map(row);
-            out.set(&each(|n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]])));
+            each(out, |n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]]));
         }
         Node::Output(bias, scale, v) => {
             let v = row(v);
-            let values = match (bias, scale) {
-                (Bias::None, Scale::One) => finish_row(Bias::None, Scale::One, v),
-                (Bias::None, Scale::Two) => finish_row(Bias::None, Scale::Two, v),
-                (Bias::None, Scale::Four) => finish_row(Bias::None, Scale::Four, v),
-                (Bias::None, Scale::Half) => finish_row(Bias::None, Scale::Half, v),
-                (Bias::NegativeHalf, Scale::One) => finish_row(Bias::NegativeHalf, Scale::One, v),
-                (Bias::NegativeHalf, Scale::Two) => finish_row(Bias::NegativeHalf, Scale::Two, v),
+            match (bias, scale) {
+                (Bias::None, Scale::One) => finish_row(Bias::None, Scale::One, v, out),
+                (Bias::None, Scale::Two) => finish_row(Bias::None, Scale::Two, v, out),
+                (Bias::None, Scale::Four) => finish_row(Bias::None, Scale::Four, v, out),
+                (Bias::None, Scale::Half) => finish_row(Bias::None, Scale::Half, v, out),
+                (Bias::NegativeHalf, Scale::One) => finish_row(Bias::NegativeHalf, Scale::One, v, out),
+                (Bias::NegativeHalf, Scale::Two) => finish_row(Bias::NegativeHalf, Scale::Two, v, out),
                 // Not legal (CMB-9), and so never asked for.
-                (Bias::NegativeHalf, other) => finish_row(Bias::NegativeHalf, other, v),
-            };
-            out.set(&values);
+                (Bias::NegativeHalf, other) => finish_row(Bias::NegativeHalf, other, v, out),
+            }
         }
         Node::Select(mux, v) => {
             let [by, cd, ab] = v.map(row);
-            let values = match mux {
-                MuxSelect::Msb => each(|n| if takes_cd(by[n], MuxSelect::Msb) { cd[n] } else { ab[n] }),
-                MuxSelect::Lsb => each(|n| if takes_cd(by[n], MuxSelect::Lsb) { cd[n] } else { ab[n] }),
-            };
-            out.set(&values);
+            match mux {
+                MuxSelect::Msb => each(out, |n| if takes_cd(by[n], MuxSelect::Msb) { cd[n] } else { ab[n] }),
+                MuxSelect::Lsb => each(out, |n| if takes_cd(by[n], MuxSelect::Lsb) { cd[n] } else { ab[n] }),
+            }
         }
         Node::Add(a, b) => {
             let (a, b) = (row(a), row(b));
-            out.set(&each(|n| a[n] + b[n]));
+            each(out, |n| a[n] + b[n]);
         }
         Node::Minus(a, b) => {
             let (a, b) = (row(a), row(b));
-            out.set(&each(|n| a[n] - b[n]));
+            each(out, |n| a[n] - b[n]);
         }
         Node::Least(a, b) => {
             let (a, b) = (row(a), row(b));
-            out.set(&each(|n| a[n].min(b[n])));
+            each(out, |n| a[n].min(b[n]));
         }
         Node::Greatest(a, b) => {
             let (a, b) = (row(a), row(b));
-            out.set(&each(|n| a[n].max(b[n])));
+            each(out, |n| a[n].max(b[n]));
         }
         Node::Clamp(v) => {
             let v = row(v);
-            out.set(&each(|n| v[n].clamp(0, 255)));
+            each(out, |n| v[n].clamp(0, 255));
         }
         Node::Truncate(bits, v) => {
             let v = row(v);
-            out.set(&each(|n| i32::from(v[n]).truncated(bits) as i16));
+            each(out, |n| i32::from(v[n]).truncated(bits) as i16);
         }
         Node::Signed(negated, v) => {
             let v = row(v);
-            let values = if negated { each(|n| signed(true, v[n])) } else { each(|n| signed(false, v[n])) };
-            out.set(&values);
+            if negated {
+                each(out, |n| signed(true, v[n]));
+            } else {
+                each(out, |n| signed(false, v[n]));
+            }
         }
     }
 }

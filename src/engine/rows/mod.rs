@@ -42,6 +42,9 @@ use table::{Key, Table};
 /// Pixels of a block.
 pub(crate) const BLOCK: usize = 128;
 
+/// Rows that take what nobody reads: one for each channel of a texel.
+const SPARE: usize = 4;
+
 /// A unit that rows sample.
 #[derive(Clone, Debug)]
 pub(crate) struct Sampler {
@@ -84,6 +87,8 @@ pub(crate) struct Compiled {
     reads_surface: bool,
     /// Fragments can be dropped.
     drops: bool,
+    /// Some of what the surface holds stays: bits that are not written, or dropped fragments.
+    merges: bool,
 }
 
 /// A plan compiled to rows.
@@ -149,13 +154,15 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         pixel_by_pixel: false,
         reads_surface: false,
         drops: false,
+        merges: false,
     };
     emit(&built, draw, &mut compiled);
     let kills = draw.shader.as_ref().is_some_and(crate::texture::stage::PlannedShader::kills);
     compiled.drops = kills || draw.alpha_test.is_some() || draw.depth_test.is_some();
     let whole = surface::write_mask(draw.surface, [true; 4]);
     let reads = compiled.destination.iter().any(Option::is_some);
-    compiled.reads_surface = reads || compiled.drops || draw.write_mask != whole;
+    compiled.merges = compiled.drops || draw.write_mask != whole;
+    compiled.reads_surface = reads || compiled.merges;
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
     compiled.pixel_by_pixel = compiled.samples_pixels || compiled.fog.is_some() || draw.depth_test.is_some();
@@ -212,8 +219,8 @@ fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut Compiled) {
     for n in (0..count).rev().filter(|n| reached[*n]).collect::<Vec<_>>() {
         mark(n, built, &mut reached);
     }
-    // Row 0 is there for what nobody reads.
-    compiled.rows.push(Row::of(0));
+    // The first rows are there for what nobody reads.
+    compiled.rows.resize(SPARE, Row::of(0));
     let mut row_of = vec![0_u16; count];
     for n in (0..count).filter(|n| reached[*n]) {
         let row = compiled.rows.len() as u16;

@@ -71,7 +71,7 @@ impl Line {
 
 /// The nearest whole number, and as its sign bit whether it is further away than the limit.
 #[inline(always)]
-fn nearest(q: f64, limit: f64) -> (i32, u64) {
+pub(super) fn nearest(q: f64, limit: f64) -> (i32, u64) {
     let t = q + MAGIC;
     (t.to_bits() as i32, (limit - (q - (t - MAGIC)).abs()).to_bits())
 }

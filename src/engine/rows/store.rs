@@ -11,33 +11,58 @@ use crate::state::{CompareFunction, SurfaceFormat};
 pub(super) fn read(draw: &PlannedDraw, compiled: &Compiled, words: &[u32; BLOCK], rows: &mut [Row]) {
     for channel in 0..4 {
         let Some(row) = compiled.destination[channel] else { continue };
-        let out = &mut rows[usize::from(row)].0;
-        by_format(draw.surface, |format| {
-            for (out, word) in out.iter_mut().zip(words) {
-                *out = i16::from(surface::read(format, *word)[channel]);
-            }
-        });
+        let out = rows[usize::from(row)].block_mut();
+        match channel {
+            0 => read_channel::<0>(draw.surface, words, out),
+            1 => read_channel::<1>(draw.surface, words, out),
+            2 => read_channel::<2>(draw.surface, words, out),
+            _ => read_channel::<3>(draw.surface, words, out),
+        }
     }
 }
 
-/// Runs a text with a format that is a constant in it, so that loops over pixels hold one format's bits only.
+/// The commonest formats as constants: loops that hold one format's bits only.
 #[inline(always)]
-fn by_format(format: SurfaceFormat, mut run: impl FnMut(SurfaceFormat)) {
+fn read_channel<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
     match format {
-        SurfaceFormat::A8R8G8B8 => run(SurfaceFormat::A8R8G8B8),
-        other => run(other),
+        SurfaceFormat::A8R8G8B8 => read_as::<CHANNEL>(SurfaceFormat::A8R8G8B8, words, out),
+        SurfaceFormat::R5G6B5 => read_as::<CHANNEL>(SurfaceFormat::R5G6B5, words, out),
+        other => read_as::<CHANNEL>(other, words, out),
+    }
+}
+
+#[inline(always)]
+fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
+    for (out, word) in out.iter_mut().zip(words) {
+        *out = i16::from(surface::read(format, *word)[CHANNEL]);
     }
 }
 
 /// The stored rows as words.
 #[inline(always)]
 pub(super) fn pack(draw: &PlannedDraw, compiled: &Compiled, rows: &[Row], words: &mut [u32; BLOCK]) {
-    let [r, g, b, a] = compiled.stored.map(|row| rows[usize::from(row)].block());
-    by_format(draw.surface, |format| {
-        for n in 0..BLOCK {
-            words[n] = surface::pack(format, [r[n] as u8, g[n] as u8, b[n] as u8, a[n] as u8]);
-        }
-    });
+    let row = |channel: usize| rows[usize::from(compiled.stored[channel])].block();
+    let (r, g, b, a) = (row(0), row(1), row(2), row(3));
+    match draw.surface {
+        SurfaceFormat::A8R8G8B8 => pack_as(SurfaceFormat::A8R8G8B8, r, g, b, a, words),
+        SurfaceFormat::X8R8G8B8O => pack_as(SurfaceFormat::X8R8G8B8O, r, g, b, a, words),
+        SurfaceFormat::R5G6B5 => pack_as(SurfaceFormat::R5G6B5, r, g, b, a, words),
+        other => pack_as(other, r, g, b, a, words),
+    }
+}
+
+#[inline(always)]
+fn pack_as(
+    format: SurfaceFormat,
+    r: &[i16; BLOCK],
+    g: &[i16; BLOCK],
+    b: &[i16; BLOCK],
+    a: &[i16; BLOCK],
+    words: &mut [u32; BLOCK],
+) {
+    for n in 0..BLOCK {
+        words[n] = surface::pack(format, [r[n] as u8, g[n] as u8, b[n] as u8, a[n] as u8]);
+    }
 }
 
 /// ROP-6, and what was there where a fragment was dropped.

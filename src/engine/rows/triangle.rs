@@ -5,7 +5,7 @@ use super::fetch::Numbers;
 use super::kernels::{LANES, Row, STEP};
 use super::planes::Plane;
 use super::quotient::{
-    COARSEST, Line, Positions, SLACK, SLACK_32, break_ties, estimate_two, estimate_weights, multiply_add, settle,
+    COARSEST, Line, Positions, SLACK, SLACK_32, break_ties, estimate_two, estimate_weights, nearest, settle,
 };
 use super::{Compiled, Sampler};
 use crate::combiner::registers::Registers;
@@ -17,7 +17,7 @@ use crate::texture::unit::Image;
 use crate::trace::Silent;
 
 /// A unit's linear functions.
-enum Planes {
+pub(super) enum Planes {
     /// u and v over D.
     Plane([Plane; 2]),
     /// A direction.
@@ -51,6 +51,7 @@ pub(super) struct Varying {
     /// The texture shader lets the pixel live.
     pub(super) alive: Numbers<bool>,
     weights: [Numbers<i32>; 2],
+    narrow: [Numbers<u16>; 2],
     whole: [Numbers<i32>; 2],
 }
 
@@ -62,6 +63,7 @@ impl Default for Varying {
             depth: [0; LANES],
             alive: [true; LANES],
             weights: [[0; LANES]; 2],
+            narrow: [[0; LANES]; 2],
             whole: [[0; LANES]; 2],
         }
     }
@@ -78,6 +80,8 @@ pub(super) struct Piece<'a> {
     pub(super) count: usize,
     /// The lane of the first.
     pub(super) lane: usize,
+    /// Columns and rows that none of them is further away from it.
+    pub(super) extent: (i32, i32),
 }
 
 impl Piece<'_> {
@@ -98,7 +102,8 @@ pub(super) fn whole_steps(count: usize) -> usize {
 }
 
 impl<'a> Setup<'a> {
-    pub(super) fn new(context: TriangleContext<'a>, compiled: &Compiled) -> Setup<'a> {
+    /// `samplers` is a place to put things; [`given_back`](Self::given_back) returns it.
+    pub(super) fn new(context: TriangleContext<'a>, compiled: &Compiled, mut samplers: Vec<Planes>) -> Setup<'a> {
         let triangle = &context.triangle;
         let p = triangle.p;
         let varies = |slots: &[Option<u16>; 4], colors: &[[u8; 4]; 3]| {
@@ -107,7 +112,7 @@ impl<'a> Setup<'a> {
         let weighted =
             varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
         let plane = |g: [i64; 3]| Plane::new(triangle, g);
-        let mut samplers: Vec<Planes> = Vec::with_capacity(compiled.samplers.len());
+        samplers.clear();
         for (n, sampler) in compiled.samplers.iter().enumerate() {
             let coordinates = &context.coordinates[sampler.unit];
             let earlier = compiled.samplers[..n].iter().position(|other| {
@@ -131,6 +136,11 @@ impl<'a> Setup<'a> {
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
         }
+    }
+
+    /// What [`new`](Self::new) was given.
+    pub(super) fn given_back(self) -> Vec<Planes> {
+        self.samplers
     }
 
     /// Everything that varies, for a piece. `ROW`: its pixels are on one row, one beside the other.
@@ -177,8 +187,11 @@ impl<'a> Setup<'a> {
         }
         if let Some(planes) = &self.weights {
             self.weights::<FMA, ROW>(piece, planes, (&e, &real), denominator, &bounds, varying);
+            for n in 0..2 {
+                narrow(&varying.weights[n][piece.lanes()], &mut varying.narrow[n][piece.lanes()]);
+            }
         }
-        let [w0, w2] = &varying.weights;
+        let [w0, w2] = &varying.narrow;
         let sets = [(&compiled.primary, &self.context.primary), (&compiled.secondary, &self.context.secondary)];
         for (slots, colors) in sets {
             for channel in 0..4 {
@@ -205,12 +218,7 @@ impl<'a> Setup<'a> {
             let (low, high) = if denominator.c < end { (denominator.c, end) } else { (end, denominator.c) };
             return Bounds { ratio: high / low, columns: f64::from(piece.at.last), rows: 0.0 };
         }
-        let (mut columns, mut rows) = (0, 0);
-        for n in 0..piece.count {
-            columns = columns.max(piece.at.x[n].abs());
-            rows = rows.max(piece.at.y[n].abs());
-        }
-        let (columns, rows) = (f64::from(columns), f64::from(rows));
+        let (columns, rows) = (f64::from(piece.extent.0), f64::from(piece.extent.1));
         let p = self.context.triangle.p;
         let least = p[0].min(p[1]).min(p[2]) as f64 * self.context.triangle.doubled_area as f64;
         Bounds { ratio: self.denominator.terms(e, columns, rows) / least, columns, rows }
@@ -387,11 +395,19 @@ fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
     sample.coordinate(&plane.g).value as i32 - bias
 }
 
+/// Weights in 16 bits.
+#[inline(always)]
+fn narrow(wide: &[i32], out: &mut [u16]) {
+    for (out, wide) in out.iter_mut().zip(wide) {
+        *out = *wide as u16;
+    }
+}
+
 /// INT-2 of a channel.
 #[inline(always)]
-fn color(corners: [u16; 3], w0: &[i32], w2: &[i32], out: &mut [i16]) {
+fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
     for ((out, w0), w2) in out.iter_mut().zip(w0).zip(w2) {
-        *out = interpolate::color(corners, *w0 as u16, *w2 as u16) as i16;
+        *out = interpolate::color(corners, *w0, *w2) as i16;
     }
 }
 
@@ -406,7 +422,6 @@ fn direction<const FMA: bool, const ROW: bool>(
     numbers: &mut [Numbers<i32>; 2],
     faces: &mut Numbers<u32>,
 ) -> bool {
-    const MAGIC: f64 = 6_755_399_441_055_744.0;
     let lines = [0, 1, 2].map(|n: usize| planes[n].line(e));
     let terms = [0, 1, 2].map(|n: usize| planes[n].terms(e, bounds.columns, bounds.rows));
     let error = (terms[0] + terms[1] + terms[2]) * SLACK;
@@ -419,39 +434,28 @@ fn direction<const FMA: bool, const ROW: bool>(
     let mut close = 0_u64;
     for ((((u, v), face), x), y) in u.iter_mut().zip(v).zip(faces).zip(at.x).zip(at.y) {
         let (column, row) = (f64::from((*x).min(at.last)), f64::from(*y));
-        let value = |n: usize| {
-            let line: Line = lines[n];
-            let value = multiply_add::<FMA>(line.x, column, line.c);
-            if ROW { value } else { multiply_add::<FMA>(line.y, row, value) }
-        };
-        let (x, y, z) = (value(0), value(1), value(2));
+        let x = lines[0].at::<FMA, ROW>(column, row);
+        let y = lines[1].at::<FMA, ROW>(column, row);
+        let z = lines[2].at::<FMA, ROW>(column, row);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
         let on_x = (ax >= ay) & (ax >= az);
         let on_y = !on_x & (ay >= az);
-        let (magnitude, major) = if on_x {
-            (ax, x)
-        } else if on_y {
-            (ay, y)
-        } else {
-            (az, z)
-        };
+        let magnitude = if on_x { ax } else if on_y { ay } else { az };
+        let major = if on_x { x } else if on_y { y } else { z };
         let negative = major < 0.0;
         let other = if on_x { -z } else { x };
         let s = if negative & !on_y { -other } else { other };
-        let t = match (on_y, negative) {
-            (true, true) => -z,
-            (true, false) => z,
-            (false, _) => -y,
-        };
+        let t = if on_y { if negative { -z } else { z } } else { -y };
         *face = u32::from(on_y) * 2 + u32::from(!on_x & !on_y) * 4 + u32::from(negative);
         let r = size / magnitude;
         let slack = 0.5 - 4.0 * error * r;
-        let apart = |a: f64, b: f64| ((a - b).abs() - error).to_bits();
-        let (p, q) = ((s + magnitude) * r - offset, (t + magnitude) * r - offset);
-        let (rounded_p, rounded_q) = (p + MAGIC, q + MAGIC);
-        (*u, *v) = (rounded_p.to_bits() as i32, rounded_q.to_bits() as i32);
-        close |= apart(ax, ay) | apart(ax, az) | apart(ay, az);
-        close |= (slack - (p - (rounded_p - MAGIC)).abs()).to_bits() | (slack - (q - (rounded_q - MAGIC)).abs()).to_bits();
+        let (p, p_close) = nearest((s + magnitude) * r - offset, slack);
+        let (q, q_close) = nearest((t + magnitude) * r - offset, slack);
+        (*u, *v) = (p, q);
+        close |= p_close | q_close;
+        close |= ((ax - ay).abs() - error).to_bits();
+        close |= ((ax - az).abs() - error).to_bits();
+        close |= ((ay - az).abs() - error).to_bits();
     }
     close >> 63 == 0
 }
