@@ -2,7 +2,12 @@
 //! instruction set and the threads.
 //!
 //! `NINEBIT_ENGINE_SCENES` says how many random scenes, `NINEBIT_ENGINE_SEED` which.
-#![allow(clippy::unwrap_used, unreachable_pub, missing_docs, reason = "a test fails by panicking, and shares files with others")]
+#![allow(
+    clippy::unwrap_used,
+    unreachable_pub,
+    missing_docs,
+    reason = "a test fails by panicking, and shares files with others"
+)]
 
 #[path = "common/random_scene.rs"]
 mod random_scene;
@@ -29,7 +34,9 @@ fn difference(got: &Frames, expected: &Frames) -> Option<String> {
             if let Some(at) = differing.clone().next() {
                 let (x, y) = (at as u32 % width, at as u32 / width);
                 let (got, expected, count) = (got[at], expected[at], differing.count());
-                return Some(format!("target {target} ({x}, {y}): {what} {got:#010x}, scalar {expected:#010x}; {count} differ"));
+                return Some(format!(
+                    "target {target} ({x}, {y}): {what} {got:#010x}, scalar {expected:#010x}; {count} differ"
+                ));
             }
         }
     }

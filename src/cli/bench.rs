@@ -115,7 +115,11 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             },
         });
     }
-    let text = if arguments.json { serde_json::to_string_pretty(&document).unwrap_or_default() + "\n" } else { text(&document) };
+    let text = if arguments.json {
+        serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
+    } else {
+        text(&document)
+    };
     Ok(write_stdout(text.as_bytes())?)
 }
 

@@ -101,9 +101,10 @@ impl<'a> Renderer<'a> {
         let pool = (options.threads != 1)
             .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok())
             .flatten();
-        let isa = options.isa.filter(|isa| isa.is_available()).unwrap_or_else(|| {
-            if options.isa.is_some() { Isa::Baseline } else { Isa::best() }
-        });
+        let isa = options
+            .isa
+            .filter(|isa| isa.is_available())
+            .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
         let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan)).flatten();
         let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
         Renderer { plan, rows, isa, threads, pool }
@@ -238,7 +239,5 @@ fn draw(
 /// Runs one draw by the definition, on one thread.
 pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
     let planned = &plan.draws[index];
-    draw(plan, index, BAND, frames, None, &|textures, band| {
-        walk::draw(plan, planned, textures, band, &mut Silent).0
-    });
+    draw(plan, index, BAND, frames, None, &|textures, band| walk::draw(plan, planned, textures, band, &mut Silent).0);
 }

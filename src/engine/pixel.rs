@@ -31,7 +31,7 @@ pub(crate) struct TriangleContext<'a> {
     pub(super) secondary: [[u8; 4]; 3],
     pub(super) coordinates: [Option<Coordinates>; 4],
     /// Of the texture shader, where there is one; units have none of their own then.
-    shader: Option<ShaderSetup>,
+    shader: Option<Box<ShaderSetup>>,
     /// None where the fog register's alpha is not read, or fog is off.
     fog: Option<FogPlane>,
     pub(crate) z: [i64; 3],
@@ -82,7 +82,8 @@ impl<'a> TriangleContext<'a> {
             ShadeModel::Flat => [&all[provoking as usize]; 3],
         };
         let mut coordinates = [None; 4];
-        let shader = draw.shader.as_ref().map(|shader| ShaderSetup::new(shader, &draw.units, &triangle, vertices));
+        let shader =
+            draw.shader.as_ref().map(|shader| Box::new(ShaderSetup::new(shader, &draw.units, &triangle, vertices)));
         for unit in draw.units.iter().filter(|_| shader.is_none()) {
             let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
             coordinates[unit.index] = Some(Coordinates::new(&triangle, sets, unit));
@@ -212,7 +213,12 @@ impl<'a> TriangleContext<'a> {
     }
 
     /// The fog register: its colour, and in alpha the factor (NUM-6), 255 with fog off (CMB-13).
-    pub(super) fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
+    pub(super) fn load_fog<L: Lane, O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        registers: &mut Registers<L>,
+        observer: &mut O,
+    ) {
         let draw = self.draw;
         let [r, g, b] = draw.fog.color.map(L::byte);
         let factor = if let Some(plane) = &self.fog {

@@ -92,6 +92,8 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>) -> u64 {
         } else {
             for j in rows.0..rows.1 {
                 let (mut i, end) = triangle.span(j, columns);
+                // Where rows of lanes begin, so that no step lies across two cache lines.
+                block.used = whole_steps(block.used);
                 while i < end {
                     if block.used == BLOCK {
                         flush(job, &mut block, band);
@@ -119,22 +121,22 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>) -> u64 {
 }
 
 /// Most columns and rows of the box of a small triangle. It covers half of the box and its diagonal: a block holds it.
-const SIDE: i64 = 12;
+pub(super) const SIDE: i64 = 12;
 
 /// Whether a triangle is handled as one piece instead of row by row.
 #[inline(always)]
-fn is_small(triangle: &Triangle) -> bool {
+pub(super) fn is_small(triangle: &Triangle) -> bool {
     triangle.rows.1 - triangle.rows.0 <= SIDE && triangle.columns.1 - triangle.columns.0 <= SIDE
 }
 
 /// The pixels of a small triangle.
-struct Patch {
+pub(super) struct Patch {
     /// Column and row of the first pixel.
-    first: (i64, i64),
+    pub(super) first: (i64, i64),
     /// Where the others lie from it; past the end the last one again.
-    x: [i32; kernels::LANES],
-    y: [i32; kernels::LANES],
-    count: usize,
+    pub(super) x: [i32; kernels::LANES],
+    pub(super) y: [i32; kernels::LANES],
+    pub(super) count: usize,
     /// Row, first column and number of the pixels of each row.
     runs: [(i64, i64, usize); SIDE as usize],
     filled: usize,
@@ -143,7 +145,7 @@ struct Patch {
 impl Patch {
     /// RAS-3 for a box of pixels, a row at a time. Edge functions of small triangles fit in 32 bits.
     #[inline(always)]
-    fn of(triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) -> Patch {
+    pub(super) fn of(triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) -> Patch {
         let mut patch = Patch {
             first: (0, 0),
             x: [0; kernels::LANES],

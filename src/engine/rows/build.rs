@@ -255,13 +255,7 @@ fn unsigned(v: Value, invert: bool, graph: &mut Graph) -> Value {
     }
 }
 
-fn read(
-    from: &FinalInput,
-    channel: usize,
-    registers: &Registers,
-    specials: &Specials,
-    graph: &mut Graph,
-) -> Value {
+fn read(from: &FinalInput, channel: usize, registers: &Registers, specials: &Specials, graph: &mut Graph) -> Value {
     let source = match from.component {
         Component::Rgb => channel,
         Component::Blue => 2,

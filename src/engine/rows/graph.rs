@@ -228,11 +228,7 @@ impl Graph {
 
     /// The other factor where one is 1.0: 255 a, divided by 255, loses nothing.
     fn times_one(&self, (a, b): (Value, Value)) -> Option<Value> {
-        if self.is(a, 255) {
-            Some(b)
-        } else {
-            self.is(b, 255).then_some(a)
-        }
+        if self.is(a, 255) { Some(b) } else { self.is(b, 255).then_some(a) }
     }
 
     fn product_range(&self, a: Value, b: Value) -> (i32, i32) {

@@ -144,7 +144,8 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
             }
         }
         Node::Sum(pairs) => {
-            let all: [&[i16; BLOCK]; 2 * MOST] = pairs.values.map(|v| if usize::from(v.0) < at { row(v) } else { &ZEROS });
+            let all: [&[i16; BLOCK]; 2 * MOST] =
+                pairs.values.map(|v| if usize::from(v.0) < at { row(v) } else { &ZEROS });
             let [a, b, c, d, e, f, g, h, ..] = all;
             match pairs.count {
                 1 => each(out, |n| product(a[n], b[n])),
@@ -177,9 +178,11 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
         }
         Node::Select(mux, v) => {
             let [by, cd, ab] = v.map(row);
+            // Both are read, whichever is taken.
+            let choose = |takes_cd: bool, cd: i16, ab: i16| if takes_cd { cd } else { ab };
             match mux {
-                MuxSelect::Msb => each(out, |n| if takes_cd(by[n], MuxSelect::Msb) { cd[n] } else { ab[n] }),
-                MuxSelect::Lsb => each(out, |n| if takes_cd(by[n], MuxSelect::Lsb) { cd[n] } else { ab[n] }),
+                MuxSelect::Msb => each(out, |n| choose(takes_cd(by[n], MuxSelect::Msb), cd[n], ab[n])),
+                MuxSelect::Lsb => each(out, |n| choose(takes_cd(by[n], MuxSelect::Lsb), cd[n], ab[n])),
             }
         }
         Node::Add(a, b) => {

@@ -15,6 +15,8 @@
 
 mod band;
 mod build;
+#[cfg(test)]
+mod dense;
 mod fetch;
 mod graph;
 pub(crate) mod isa;

@@ -24,7 +24,8 @@ pub(super) struct Plane {
 impl Plane {
     pub(super) fn new(triangle: &Triangle, g: [i64; 3]) -> Plane {
         let slope = |a: &[i64; 3]| {
-            let bits = |n: &[i64; 3]| 64 - (n[0].unsigned_abs() | n[1].unsigned_abs() | n[2].unsigned_abs()).leading_zeros();
+            let bits =
+                |n: &[i64; 3]| 64 - (n[0].unsigned_abs() | n[1].unsigned_abs() | n[2].unsigned_abs()).leading_zeros();
             if bits(&g) + bits(a) <= 60 {
                 let sum = g[0] * a[0] + g[1] * a[1] + g[2] * a[2];
                 (sum as f64, sum)

@@ -25,15 +25,9 @@ impl Axis {
     /// TEX-7 of `n` texels. `None`: a period that is no power of two.
     fn new(mode: AddressMode, n: u32, border_texels: bool) -> Option<Axis> {
         let n = n as i32;
-        let limited = |first: i32, last: i32| Axis {
-            low: first << 8,
-            high: last << 8,
-            first,
-            mask: -1,
-            count: last - first + 1,
-        };
-        let periodic =
-            |count: i32| Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: count - 1, count };
+        let limited =
+            |first: i32, last: i32| Axis { low: first << 8, high: last << 8, first, mask: -1, count: last - first + 1 };
+        let periodic = |count: i32| Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: count - 1, count };
         let beyond = BORDER_TEXELS as i32;
         match mode {
             AddressMode::Wrap if n.count_ones() == 1 => Some(periodic(n)),
@@ -142,11 +136,7 @@ impl Table {
             }
         }
         let face = columns.count * (rows.count + i32::from(linear));
-        Table {
-            axes,
-            face: face as u32,
-            texels: if linear { Texels::Pairs(pairs) } else { Texels::Single(single) },
-        }
+        Table { axes, face: face as u32, texels: if linear { Texels::Pairs(pairs) } else { Texels::Single(single) } }
     }
 }
 
@@ -173,7 +163,11 @@ mod tests {
                     // Where the limits changed the weight, both texels are the same.
                     let next = at(axis.first + entry + 1);
                     let (weight, wanted) = (limited & 255, f & 255);
-                    assert!(weight == wanted && next == at((f >> 8) + 1) || weight == 0 && at(f >> 8) == at((f >> 8) + 1) || f == limited);
+                    assert!(
+                        weight == wanted && next == at((f >> 8) + 1)
+                            || weight == 0 && at(f >> 8) == at((f >> 8) + 1)
+                            || f == limited
+                    );
                 }
             }
         }

@@ -50,7 +50,8 @@ pub(super) struct Varying {
     pub(super) depth: Numbers<u32>,
     /// The texture shader lets the pixel live.
     pub(super) alive: Numbers<bool>,
-    weights: [Numbers<i32>; 2],
+    /// W0 and W2.
+    pub(super) weights: [Numbers<i32>; 2],
     narrow: [Numbers<u16>; 2],
     whole: [Numbers<i32>; 2],
 }
@@ -109,8 +110,7 @@ impl<'a> Setup<'a> {
         let varies = |slots: &[Option<u16>; 4], colors: &[[u8; 4]; 3]| {
             (0..4).any(|n| slots[n].is_some() && (colors[0][n] != colors[1][n] || colors[1][n] != colors[2][n]))
         };
-        let weighted =
-            varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
+        let weighted = varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
         let plane = |g: [i64; 3]| Plane::new(triangle, g);
         samplers.clear();
         for (n, sampler) in compiled.samplers.iter().enumerate() {
@@ -162,7 +162,16 @@ impl<'a> Setup<'a> {
             match planes {
                 Planes::Plane(planes) => {
                     let numbers = &mut varying.coordinates[n];
-                    self.coordinates::<FMA, ROW>(piece, sampler, planes, (&e, &real), denominator, &bounds, numbers, &mut varying.whole);
+                    self.coordinates::<FMA, ROW>(
+                        piece,
+                        sampler,
+                        planes,
+                        (&e, &real),
+                        denominator,
+                        &bounds,
+                        numbers,
+                        &mut varying.whole,
+                    );
                 }
                 Planes::Direction(planes) => {
                     let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
@@ -257,7 +266,8 @@ impl<'a> Setup<'a> {
         if !(margins[0] < COARSEST && margins[1] < COARSEST) {
             for n in 0..piece.count {
                 let sample = self.sample(piece, n);
-                (u[n], v[n]) = (defined_coordinate(&sample, &planes[0], bias), defined_coordinate(&sample, &planes[1], bias));
+                (u[n], v[n]) =
+                    (defined_coordinate(&sample, &planes[0], bias), defined_coordinate(&sample, &planes[1], bias));
             }
             return;
         }
@@ -430,28 +440,49 @@ fn direction<const FMA: bool, const ROW: bool>(
     let lanes = piece.lanes();
     let [u, v] = numbers;
     let (u, v, faces) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut faces[lanes]);
-    let at = piece.at;
+    directions::<FMA, ROW>(piece.at, lines, (error, size, offset), u, v, faces)
+}
+
+/// The loop of [`direction`], with the error of a component, half of the size in 1/256 texel, and what is taken off a coordinate.
+#[inline(always)]
+fn directions<const FMA: bool, const ROW: bool>(
+    at: Positions<'_>,
+    lines: [Line; 3],
+    (error, size, offset): (f64, f64, f64),
+    u: &mut [i32],
+    v: &mut [i32],
+    faces: &mut [u32],
+) -> bool {
     let mut close = 0_u64;
-    for ((((u, v), face), x), y) in u.iter_mut().zip(v).zip(faces).zip(at.x).zip(at.y) {
-        let (column, row) = (f64::from((*x).min(at.last)), f64::from(*y));
+    let lanes = u.len();
+    let (v, faces, columns, rows) = (&mut v[..lanes], &mut faces[..lanes], &at.x[..lanes], &at.y[..lanes]);
+    for n in 0..lanes {
+        let (column, row) = (f64::from(columns[n].min(at.last)), f64::from(rows[n]));
         let x = lines[0].at::<FMA, ROW>(column, row);
         let y = lines[1].at::<FMA, ROW>(column, row);
         let z = lines[2].at::<FMA, ROW>(column, row);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
         let on_x = (ax >= ay) & (ax >= az);
         let on_y = !on_x & (ay >= az);
-        let magnitude = if on_x { ax } else if on_y { ay } else { az };
-        let major = if on_x { x } else if on_y { y } else { z };
+        // One choice at a time: nested ones would become branches.
+        let (magnitude, major) = (if on_y { ay } else { az }, if on_y { y } else { z });
+        let (magnitude, major) = (if on_x { ax } else { magnitude }, if on_x { x } else { major });
         let negative = major < 0.0;
         let other = if on_x { -z } else { x };
-        let s = if negative & !on_y { -other } else { other };
-        let t = if on_y { if negative { -z } else { z } } else { -y };
-        *face = u32::from(on_y) * 2 + u32::from(!on_x & !on_y) * 4 + u32::from(negative);
+        let turned = if negative { -other } else { other };
+        let s = if on_y { other } else { turned };
+        let upright = if negative { -z } else { z };
+        let t = if on_y { upright } else { -y };
+        // The face's number, as a float among floats.
+        let axis = if on_y { 2.0 } else { 4.0 };
+        let axis = if on_x { 0.0 } else { axis };
+        let face = if negative { axis + 1.0 } else { axis };
         let r = size / magnitude;
         let slack = 0.5 - 4.0 * error * r;
         let (p, p_close) = nearest((s + magnitude) * r - offset, slack);
         let (q, q_close) = nearest((t + magnitude) * r - offset, slack);
-        (*u, *v) = (p, q);
+        (u[n], v[n]) = (p, q);
+        faces[n] = nearest(face, 0.5).0 as u32;
         close |= p_close | q_close;
         close |= ((ax - ay).abs() - error).to_bits();
         close |= ((ax - az).abs() - error).to_bits();
