@@ -50,6 +50,13 @@ fn rnd255(n: i32) -> i32 {
     (n * 257 + (n >> 8) + 32646) >> 16
 }
 
+/// NUM-2 of a product of two bytes, within 16 bits.
+#[inline(always)]
+pub fn byte_product(a: i16, b: i16) -> i16 {
+    let t = a as u16 * b as u16 + 128;
+    ((t + (t >> 8)) >> 8) as i16
+}
+
 #[inline(always)]
 fn saturate(v: i16, floor: RegisterFloor) -> i16 {
     match floor {
@@ -225,6 +232,15 @@ mod tests {
     fn division_free_rounding_is_exact() {
         for n in -400_000..=400_000_i32 {
             assert_eq!(rnd255(n), (2 * n + 255).div_euclid(510), "{n}");
+        }
+    }
+
+    #[test]
+    fn products_of_bytes_are_exact() {
+        for a in 0..=255_i16 {
+            for b in 0..=255 {
+                assert_eq!(byte_product(a, b), rnd255(i32::from(a) * i32::from(b)) as i16);
+            }
         }
     }
 

@@ -23,7 +23,7 @@ mod real;
 mod scalar;
 mod strands;
 
-pub use block::{Halved, Narrow, Quarter, Two};
+pub use block::{Halved, Narrow, Quarter, Two, byte_product};
 pub use paired::{Paired, PairedFactor, PairedSum};
 pub use scalar::{Halves, Quarters};
 pub use strands::{STRANDS, Strands};

@@ -196,7 +196,7 @@ fn compare<const FMA: bool, const ROW: bool>(
 
 #[test]
 fn rows_interpolate_what_the_definition_does() {
-    let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(400_000_u64);
+    let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let (mut pixels, mut patches, mut round) = (0, 0, 0_u64);
     while pixels < wanted {
@@ -221,7 +221,7 @@ fn rows_interpolate_what_the_definition_does() {
                 let at = quotient::Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
                 let extent = (SIDE as i32, SIDE as i32);
                 let piece = Piece { first: patch.first, at, count: patch.count, lane: 0, extent };
-                if round % 8 == 0 {
+                if round.is_multiple_of(4) {
                     compare::<true, false>(&setup, &compiled, piece, &mut varying, &mut rows);
                 } else {
                     compare::<false, false>(&setup, &compiled, piece, &mut varying, &mut rows);
@@ -238,7 +238,7 @@ fn rows_interpolate_what_the_definition_does() {
                         let (last, zeros) = (count as i32 - 1, [0; super::kernels::LANES]);
                         let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };
                         let piece = Piece { first: (i, j), at, count, lane: 0, extent: (last, 0) };
-                        if round % 8 == 0 {
+                        if round.is_multiple_of(4) {
                             compare::<true, true>(&setup, &compiled, piece, &mut varying, &mut rows);
                         } else {
                             compare::<false, true>(&setup, &compiled, piece, &mut varying, &mut rows);

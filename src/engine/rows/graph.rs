@@ -48,6 +48,8 @@ pub(super) enum Node {
     Map(InputMapping, Value),
     /// NUM-2 of a sum of products, not saturated.
     Sum(Pairs),
+    /// NUM-2 of a product of two bytes.
+    Bytes(Value, Value),
     /// NUM-2 of a difference of two products.
     Difference([Value; 4]),
     /// CMB-8 of two vectors that are still to be expanded (CMB-3), read as unsigned.
@@ -84,7 +86,9 @@ impl Node {
             Node::Difference(v) => v.to_vec(),
             Node::UnsignedDot(v) => v.to_vec(),
             Node::Select(_, v) => v.to_vec(),
-            Node::Add(a, b) | Node::Minus(a, b) | Node::Least(a, b) | Node::Greatest(a, b) => vec![*a, *b],
+            Node::Bytes(a, b) | Node::Add(a, b) | Node::Minus(a, b) | Node::Least(a, b) | Node::Greatest(a, b) => {
+                vec![*a, *b]
+            }
         }
     }
 
@@ -103,6 +107,7 @@ impl Node {
             Node::UnsignedDot(v) => Node::UnsignedDot(v.map(name)),
             Node::Output(bias, scale, v) => Node::Output(bias, scale, name(v)),
             Node::Select(mux, v) => Node::Select(mux, v.map(name)),
+            Node::Bytes(a, b) => Node::Bytes(name(a), name(b)),
             Node::Add(a, b) => Node::Add(name(a), name(b)),
             Node::Minus(a, b) => Node::Minus(name(a), name(b)),
             Node::Least(a, b) => Node::Least(name(a), name(b)),
@@ -204,6 +209,12 @@ impl Graph {
             [one] => {
                 if let Some(v) = self.times_one(one) {
                     return v;
+                }
+                let (a, b) = (one.0.min(one.1), one.0.max(one.1));
+                let bytes = [a, b].into_iter().all(|v| self.range(v).0 >= 0 && self.range(v).1 <= 255);
+                if bytes {
+                    let ends = self.product_range(a, b);
+                    return self.add(Node::Bytes(a, b), (kernels::rounded(ends.0), kernels::rounded(ends.1)));
                 }
             }
             [one, other] => {

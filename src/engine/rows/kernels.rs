@@ -5,7 +5,7 @@ use super::graph::{MOST, Node, Value};
 use crate::combiner::final_combiner::product;
 use crate::combiner::general::{self, dot_product};
 use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
-use crate::number::{Factor, Lane, Narrow, Sum};
+use crate::number::{Factor, Lane, Narrow, Sum, byte_product};
 use crate::rop::blend;
 use crate::state::{Bias, BlendEquation, InputMapping, MuxSelect, Policies, RegisterFloor, Scale};
 
@@ -154,6 +154,10 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
                 4 => each(out, |n| sum([a, b, c, d, e, f, g, h], n)),
                 _ => each(out, |n| sum(all, n)),
             }
+        }
+        Node::Bytes(a, b) => {
+            let (a, b) = (row(a), row(b));
+            each(out, |n| byte_product(a[n], b[n]));
         }
         Node::Difference(v) => {
             let [a, b, c, d] = v.map(row);

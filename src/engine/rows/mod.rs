@@ -47,6 +47,12 @@ pub(crate) const BLOCK: usize = 128;
 /// Rows that take what nobody reads: one for each channel of a texel.
 const SPARE: usize = 4;
 
+/// Decoding so many texels costs no more than sampling a pixel by the definition.
+const PAYS: u64 = 8;
+
+/// Most entries of all tables, of eight bytes at most.
+const MOST_ENTRIES: u64 = 1 << 25;
+
 /// A unit that rows sample.
 #[derive(Clone, Debug)]
 pub(crate) struct Sampler {
@@ -180,7 +186,9 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
         let key = Key::of(unit);
         let texture = &plan.textures[unit.state.texture];
         let known = tables.iter().find(|(other, _)| *other == key).map(|(_, table)| Arc::clone(table));
-        if known.is_none() && table::size(unit, &axes) > 4 * pixels {
+        let size = table::size(unit, &axes);
+        let held: u64 = tables.iter().map(|(_, table)| table.entries()).sum();
+        if known.is_none() && (size > PAYS * pixels || size + held > MOST_ENTRIES) {
             return None;
         }
         let table = match (&texture.image, known) {

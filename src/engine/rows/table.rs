@@ -107,6 +107,14 @@ pub(super) fn size(unit: &PlannedUnit, axes: &[Axis; 2]) -> u64 {
 }
 
 impl Table {
+    /// How much it holds.
+    pub(super) fn entries(&self) -> u64 {
+        match &self.texels {
+            Texels::Single(texels) => texels.len() as u64,
+            Texels::Pairs(texels) => texels.len() as u64,
+        }
+    }
+
     /// Decodes level 0 of a unit.
     pub(super) fn new(unit: &PlannedUnit, axes: [Axis; 2], image: &Image<'_, i32>) -> Table {
         let faces: &[Face] = if unit.kind == TextureKind::Cube { Face::ALL } else { &[Face::PositiveX] };
@@ -163,11 +171,9 @@ mod tests {
                     // Where the limits changed the weight, both texels are the same.
                     let next = at(axis.first + entry + 1);
                     let (weight, wanted) = (limited & 255, f & 255);
-                    assert!(
-                        weight == wanted && next == at((f >> 8) + 1)
-                            || weight == 0 && at(f >> 8) == at((f >> 8) + 1)
-                            || f == limited
-                    );
+                    let same = weight == wanted && next == at((f >> 8) + 1);
+                    let alone = weight == 0 && at(f >> 8) == at((f >> 8) + 1);
+                    assert!(same || alone, "{mode:?} {n} {f}");
                 }
             }
         }

@@ -123,8 +123,8 @@ impl<'a> Setup<'a> {
             });
             samplers.push(match coordinates {
                 _ if earlier.is_some() => Planes::Same(earlier.unwrap_or(0)),
-                Some(Coordinates::Plane(g)) => Planes::Plane(g.map(plane)),
-                Some(Coordinates::Direction(g)) => Planes::Direction(g.map(plane)),
+                Some(Coordinates::Plane(g)) => Planes::Plane([plane(g[0]), plane(g[1])]),
+                Some(Coordinates::Direction(g)) => Planes::Direction([plane(g[0]), plane(g[1]), plane(g[2])]),
                 _ => Planes::Other,
             });
         }
