@@ -3,6 +3,7 @@
 //!
 //! `NINEBIT_ENGINE_SCENES` says how many random scenes, `NINEBIT_ENGINE_SEED` which.
 #![allow(
+    clippy::float_arithmetic,
     clippy::unwrap_used,
     unreachable_pub,
     missing_docs,

@@ -45,7 +45,9 @@ impl Random {
 /// Tiny, slivers, far beyond the frame, one w, few-valued w and coordinates, steep w, one texel a pixel, and round right triangles, whose
 /// weights and coordinates are full of ties.
 fn triangle(r: &mut Random) -> [Vertex; 3] {
-    let kind = r.below(9);
+    // Half of them are tiny: they have few pixels each.
+    let kind = r.below(18);
+    let kind = if kind < 9 { kind } else { 0 };
     let aligned = r.below(3) == 0;
     let (cx, cy) = (r.unit() * WIDTH as f32, r.unit() * HEIGHT as f32);
     let lean = [r.unit() - 0.5, r.unit() - 0.5, r.unit()];
