@@ -87,6 +87,7 @@ fn scene(perspective: bool) -> Scene {
         texture_shader: [0, 1, 2, 3].map(|n| ShaderStage::conventional(n, n == 0)),
         combiners: dot3(),
         program_origin: vec![],
+        vertex_program: None,
         alpha_test: None,
         depth_test: None,
         blend: None,

@@ -66,6 +66,7 @@
 //!     texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, false)),
 //!     combiners: Combiners { stages: vec![idle], mux_select: MuxSelect::Msb, final_combiner },
 //!     program_origin: vec![],
+//!     vertex_program: None,
 //!     alpha_test: None,
 //!     depth_test: None,
 //!     blend: None,
@@ -111,4 +112,5 @@ mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;
+pub mod vectors;
 pub mod vertex;

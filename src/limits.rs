@@ -23,8 +23,10 @@ pub struct Limits {
     pub texture_bytes: u64,
     /// Bytes of one image file.
     pub image_file_bytes: u64,
-    /// Bytes of the text of one pixel program.
+    /// Bytes of the text of one program.
     pub program_bytes: u64,
+    /// Bytes of one mesh file.
+    pub mesh_file_bytes: u64,
     /// Draws.
     pub draws: usize,
     /// Vertices of all draws together.
@@ -46,6 +48,7 @@ impl Default for Limits {
             texture_bytes: 256 << 20,
             image_file_bytes: 64 << 20,
             program_bytes: 64 << 10,
+            mesh_file_bytes: 32 << 20,
             draws: 4096,
             vertices: 1 << 20,
             indices: 6 << 20,
@@ -65,7 +68,8 @@ pub fn table(limits: &Limits) -> Vec<(&'static str, u64, &'static str)> {
         ("texture_side", u64::from(limits.texture_side), "texels along a side of a texture"),
         ("texture_bytes", limits.texture_bytes, "bytes of all textures decoded, four a texel"),
         ("image_file_bytes", limits.image_file_bytes, "bytes of one image file"),
-        ("program_bytes", limits.program_bytes, "bytes of the text of one pixel program"),
+        ("program_bytes", limits.program_bytes, "bytes of the text of one program"),
+        ("mesh_file_bytes", limits.mesh_file_bytes, "bytes of one mesh file"),
         ("draws", limits.draws as u64, "draws"),
         ("vertices", limits.vertices as u64, "vertices of all draws"),
         ("indices", limits.indices as u64, "indices of all draws"),

@@ -4,7 +4,7 @@
 //! rename, the old file is untouched and the temporary one is removed.
 
 use std::ffi::OsStr;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
@@ -114,6 +114,14 @@ impl Destination {
 /// # Errors
 /// The place is a folder, a read-only file, its folder is missing or not writable, the disk is full.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    write_file_with(path, |out| out.write_all(bytes))
+}
+
+/// [`write_file`] of what `fill` writes; returns what it returns.
+///
+/// # Errors
+/// As [`write_file`].
+pub fn write_file_with<T>(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> Result<T, OutputError> {
     let refused = |error: io::Error| OutputError::Write { path: path.to_path_buf(), source: error };
     let existing = path.metadata().ok();
     if existing.as_ref().is_some_and(std::fs::Metadata::is_dir) {
@@ -123,7 +131,7 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
         return std::fs::OpenOptions::new()
             .write(true)
             .open(path)
-            .and_then(|mut device| device.write_all(bytes))
+            .and_then(|mut device| fill(&mut device))
             .map_err(refused);
     }
     if existing.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
@@ -147,10 +155,13 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
         builder.permissions(permissions);
     }
     let mut temporary = builder.tempfile_in(folder).map_err(temporary_refused)?;
-    temporary.write_all(bytes).map_err(temporary_refused)?;
+    let mut buffered = BufWriter::new(&mut temporary);
+    let result = fill(&mut buffered).map_err(temporary_refused)?;
+    buffered.flush().map_err(temporary_refused)?;
+    drop(buffered);
     temporary.as_file().sync_all().map_err(refused)?;
     temporary.persist(&place).map_err(|error| refused(error.error))?;
-    Ok(())
+    Ok(result)
 }
 
 /// The temporary file's errors name a file that the user has never heard of: what is said is their kind.

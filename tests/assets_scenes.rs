@@ -1,11 +1,10 @@
 //! Every scene under `vectors/scenes` shows what is expected, and its generated textures are what the generators make.
 //!
-//! `BLESS=1 cargo test --test assets_scenes` rewrites the expectations, but for those that come from a capture; look at the pictures
+//! `BLESS=1 cargo test --test suite assets_scenes` rewrites the expectations, but for those that come from a capture; look at the pictures
 //! and at the difference before committing.
 #![allow(clippy::unwrap_used, unreachable_pub, reason = "a test fails by panicking, and shares a file with others")]
 
-#[path = "common/scene_files.rs"]
-mod scene_files;
+use crate::scene_files;
 
 use std::path::{Path, PathBuf};
 
@@ -75,4 +74,7 @@ fn stored_textures_are_what_the_generators_make() {
     let small = hemisphere::normals(&hemisphere::Options { size: 128, ..hemisphere::Options::default() });
     let stored = load(&scenes_folder().join("texture-shader/hemisphere-normal.png"), &ImageLimits::default()).unwrap();
     assert!(stored == small, "ninebit generate hemisphere-normals --size 128");
+    let normal = normal_map::from_height(&height_field::rocks(64, 3), &normal_map::Options::default());
+    let stored = load(&scenes_folder().join("programs/rocks-normal.png"), &ImageLimits::default()).unwrap();
+    assert!(stored == normal, "ninebit generate normal-map of height-rocks --size 64 --seed 3");
 }

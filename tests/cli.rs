@@ -1,8 +1,7 @@
 //! The program as it is used: exit statuses, what goes to stdout and what to stderr.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/bench.rs"]
-mod bench;
+use crate::bench;
 
 use std::fs;
 use std::path::Path;

@@ -1,8 +1,7 @@
 //! `ninebit compare` as it is used.
 #![allow(clippy::unwrap_used, missing_docs, unreachable_pub, dead_code, reason = "a test fails by panicking")]
 
-#[path = "common/bench.rs"]
-mod bench;
+use crate::bench;
 
 use bench::Bench;
 use std::fs;

@@ -1,10 +1,8 @@
 //! `ninebit texture` as it is used.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/bench.rs"]
-mod bench;
-#[path = "common/dds.rs"]
-mod dds;
+use crate::bench;
+use crate::dds;
 
 use bench::Bench;
 use dds::File;

@@ -1,10 +1,8 @@
 //! The combiner language: what is printed reads back, what is read prints in one form, garbage is refused.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-#[path = "common/random_program.rs"]
-mod random_program;
-#[path = "common/random_scene.rs"]
-mod random_scene;
+use crate::random_program;
+use crate::random_scene;
 
 use std::path::Path;
 

@@ -1,8 +1,7 @@
 //! The comparison with the ideal: what it says agrees with the trace, adds up, and stays within the stated bounds.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-#[path = "common/random_scene.rs"]
-mod random_scene;
+use crate::random_scene;
 
 use ninebit::compare::{CompareOptions, Comparison, Mode, compare};
 use ninebit::engine::{RenderOptions, render, trace};

@@ -1,8 +1,7 @@
 //! DDS files: what they become, and what is said of those that lie.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/dds.rs"]
-mod dds;
+use crate::dds;
 
 use dds::*;
 use ninebit::scene::dds::{Dds, decode};

@@ -1,8 +1,7 @@
 //! `ninebit diff`: the comparison against a naive one, and the command.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/bench.rs"]
-mod bench;
+use crate::bench;
 
 use bench::{Bench, Run};
 use ninebit::diff::{Options, compare};

@@ -1,8 +1,7 @@
 //! What the pages on commands show is what the commands print.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/bench.rs"]
-mod bench;
+use crate::bench;
 
 use bench::Bench;
 use std::fs;

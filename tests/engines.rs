@@ -2,18 +2,7 @@
 //! instruction set and the threads.
 //!
 //! `NINEBIT_ENGINE_SCENES` says how many random scenes, `NINEBIT_ENGINE_SEED` which.
-#![allow(
-    clippy::float_arithmetic,
-    clippy::unwrap_used,
-    unreachable_pub,
-    missing_docs,
-    reason = "a test fails by panicking, and shares files with others"
-)]
-
-#[path = "common/random_scene.rs"]
-mod random_scene;
-#[path = "common/scene_files.rs"]
-mod scene_files;
+use crate::{random_scene, scene_files};
 
 use ninebit::engine::{Engine, Isa, RenderOptions, render};
 use ninebit::frame::Frames;

@@ -1,8 +1,7 @@
 //! The plan in words: what it predicts is what a run counts, and what it leaves out cannot be seen.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-#[path = "common/random_scene.rs"]
-mod random_scene;
+use crate::random_scene;
 
 use ninebit::engine::{RenderOptions, count, render};
 use ninebit::explain::explain;
@@ -164,4 +163,38 @@ fn equations_are_in_the_extensions_terms() {
     ] {
         assert!(text.contains(line), "`{line}` is not in\n{text}");
     }
+}
+
+#[test]
+fn fog_is_a_function_of_what_it_says() {
+    for (fog, expected) in [
+        ("", vec!["fog.a = smooth(vertices): factors"]),
+        ("mode: Linear, start: 0, end: 4", vec!["fog.rgb = (7, 8, 9)/255", "fog.a = 2 + -0.25 d - 1, limited"]),
+        ("mode: LinearAbs, parameters: (1, 0.5)", vec!["fog.a = |1 + 0.5 d - 1|, limited"]),
+        ("mode: Exp, parameters: (1.5, -0.5)", vec!["fog.a = 1.5 + 2^(16 * -0.5 d) - 3/2, limited"]),
+        ("mode: Exp2Abs, parameters: (1.5, -0.5)", vec!["fog.a = |1.5 + 2^(-32 * (-0.5 d)^2) - 3/2|, limited"]),
+        ("mode: Exp, evaluation: PerVertex", vec!["fog.a = smooth(vertices): factors"]),
+    ] {
+        let scene = quad(&format!("fog: (color: (7, 8, 9), {fog}),"));
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        let text = explain(&scene, &plan)[0].equations.join("\n");
+        assert!(expected.iter().all(|line| text.contains(line)), "{expected:?} is not in\n{text}");
+    }
+}
+
+/// Three dot products of five operations each, and a reflection of eighteen.
+#[test]
+fn the_dot_unit_is_counted() {
+    let text = "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 4, height: 4)], textures: { \
+         \"n\": (source: Solid(width: 1, height: 1, color: (128, 128, 255))), \"sky\": (source: Faces(\
+         positive_x: Solid(width: 1, height: 1, color: (1, 1, 1)), negative_x: Solid(width: 1, height: 1, color: (1, 1, 1)), \
+         positive_y: Solid(width: 1, height: 1, color: (1, 1, 1)), negative_y: Solid(width: 1, height: 1, color: (1, 1, 1)), \
+         positive_z: Solid(width: 1, height: 1, color: (1, 1, 1)), negative_z: Solid(width: 1, height: 1, color: (1, 1, 1)))) }, \
+         draws: [(vertices: Window([(position: (0, 0)), (position: (4, 0)), (position: (4, 4)), (position: (0, 4))]), topology: Quads, \
+         textures: [\"n\", Unbound, Unbound, \"sky\"], texture_shader: [Sample, (operation: DotProduct, previous: 0), \
+         (operation: DotProduct, previous: 0), (operation: DotReflectConstantEye(eye: (0, 0, 1)), previous: 0)], \
+         program: Combiners(stages: [()], final_combiner: (d: Texture3)))])";
+    let loaded = scene::parse(text, Path::new("sky.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    check("sky", &loaded.scene, &loaded.plan);
+    assert_eq!(count(&loaded.plan)[0].work[Work::Dots as usize], 16 * (3 * 5 + 18));
 }

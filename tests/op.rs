@@ -1,8 +1,7 @@
 //! `ninebit op`: worked examples, tables, and what is refused.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/bench.rs"]
-mod bench;
+use crate::bench;
 
 use bench::Bench;
 use serde_json::Value;

@@ -55,6 +55,7 @@ fn the_document_names_every_limit_field_and_word() {
         "(version: 1, profile: Nv2a, draws: [(x: 1)])",
         "(version: 1, profile: Nv2a, draws: [(vertices: Window([(x: 1)]))])",
         "(version: 1, profile: Nv2a, draws: [(vertices: Matrix(x: 1))])",
+        "(version: 1, profile: Nv2a, draws: [(vertices: Program(x: 1))])",
         "(version: 1, profile: Nv2a, draws: [(textures: [(x: 1)])])",
         "(version: 1, profile: Nv2a, draws: [(fog: (x: 1))])",
         "(version: 1, profile: Nv2a, draws: [(topology: x)])",
@@ -180,6 +181,22 @@ fn targets_and_raster_operations() {
     assert_eq!((draw.fog.enabled, draw.fog.color), (true, [1, 2, 3]));
     let scissor = draw.scissor.unwrap();
     assert_eq!((scissor.x, scissor.y, scissor.width, scissor.height), (1, 0, 2, 3));
+}
+
+/// Bytes, floats, and words of which the low eight bits count.
+#[test]
+fn alpha_references_of_every_form() {
+    for (written, byte, warns) in [
+        ("7", 7, false),
+        ("0x190", 0x90, true),
+        ("Float(0.5)", 128, false),
+        ("Float(-1)", 0, false),
+        ("Float(2.0)", 255, false),
+    ] {
+        let loaded = draw("Nv10", "", &format!("alpha_test: (function: Less, reference: {written})"));
+        assert_eq!(loaded.scene.draws[0].alpha_test.unwrap().reference, byte, "{written}");
+        assert_eq!(loaded.warnings.iter().any(|warning| warning.code == "NB0914"), warns, "{written}");
+    }
 }
 
 #[test]

@@ -1,8 +1,7 @@
 //! What textures of a scene become, by kind, source, levels and palette.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-#[path = "common/dds.rs"]
-mod dds;
+use crate::dds;
 
 use dds::File;
 use ninebit::engine::{self, RenderOptions};

@@ -1,78 +1,31 @@
 //! Cases of public test suites for Direct3D texture stages and the OpenGL texture environment, brought through the front end whole: a scene
 //! text for each, drawn, one pixel looked at within the suite's own tolerance.
 //!
-//! `NINEBIT_CASES=FILE` runs another file of the same form instead.
-#![allow(
-    clippy::unwrap_used,
-    clippy::float_arithmetic,
-    reason = "a test fails by panicking; colours of suites are floats"
-)]
+//! See `common/third_party.rs` for how they are run.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use ninebit::engine::{self, RenderOptions};
-use ninebit::limits::Limits;
+use crate::third_party;
+
 use ninebit::program::texture_environment::{EnvironmentSource, Function, Mode};
 use ninebit::program::texture_stages::{ArgumentSource, Operation};
-use ninebit::scene;
-use ninebit::state::Named;
 use serde_json::Value;
-use std::fs;
-use std::path::Path;
-
-/// The list of cases that this model gives otherwise, with the reason: `docs/known-differences.md`.
-fn listed() -> String {
-    fs::read_to_string("docs/known-differences.md").unwrap()
-}
-
-fn cases(file: &str) -> Vec<Value> {
-    let text = fs::read_to_string(file).unwrap();
-    let mut document: Value = serde_json::from_str(&text).unwrap();
-    let Value::Array(cases) = document["cases"].take() else { panic!("{file} has no cases") };
-    cases
-}
+use third_party::{Kind, blend_factor, bytes, differs, floats, named, pixel, run};
 
 #[test]
 fn every_case_of_texture_stages() {
-    run("vectors/third-party/texture-stages.json", stages_scene);
+    run_all(&Kind { file: "texture-stages", name: "tss" }, stages_scene);
 }
 
 #[test]
 fn every_case_of_the_texture_environment() {
-    run("vectors/third-party/texture-environment.json", environment_scene);
+    run_all(&Kind { file: "texture-environment", name: "texenv" }, environment_scene);
 }
 
-fn run(file: &str, text_of: fn(&Value, &str) -> String) {
-    let kept = listed();
-    let cases = cases(file);
-    let (mut wrong, mut excepted) = (Vec::new(), 0);
-    for case in &cases {
-        let id = case["id"].as_str().unwrap();
-        let profile = if case["profile"] == "nv10" { "Nv10" } else { "Nv2a" };
+fn run_all(kind: &Kind, text_of: fn(&Value, &str) -> String) {
+    run(kind, |case, profile| {
         let text = text_of(&case["inputs"], profile);
-        let problem = differs(case, &text);
-        match (problem, kept.contains(&format!("`{id}`"))) {
-            (None, false) => {}
-            (Some(_), true) => excepted += 1,
-            (None, true) => wrong.push(format!("{id} is listed as different and is not")),
-            (Some(problem), false) => wrong.push(format!("{id}: {problem}\n{text}")),
-        }
-    }
-    let total = cases.len();
-    assert!(wrong.is_empty(), "{} of {total} are wrong:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(20 * excepted <= total, "{excepted} of {total} are excepted");
-}
-
-/// What is wrong with the pixel, if anything.
-fn differs(case: &Value, text: &str) -> Option<String> {
-    let loaded = match scene::parse(text, Path::new("case.ron"), &Limits::default()) {
-        Ok(loaded) => loaded,
-        Err(error) => return Some(error.render(false)),
-    };
-    let frames = engine::render(&loaded.plan, &RenderOptions::default());
-    let shown = frames.surfaces[0].rgba8()[0];
-    let tolerance = case["tolerance"].as_f64().unwrap();
-    let expected = case["expected"].as_array().unwrap();
-    let off = (0..4).any(|n| expected[n].as_f64().is_some_and(|value| (value - f64::from(shown[n])).abs() > tolerance));
-    off.then(|| format!("{shown:?}, not {expected:?} within {tolerance}"))
+        differs(case, pixel(&text, (0, 0))).map(|problem| format!("{problem}\n{text}"))
+    });
 }
 
 /// One quad over one pixel.
@@ -101,38 +54,8 @@ fn scene_text(profile: &str, textures: &[(usize, String)], diffuse: &str, specul
     )
 }
 
-fn bytes(value: &Value) -> String {
-    let parts: Vec<String> = value.as_array().unwrap().iter().map(Value::to_string).collect();
-    format!("({})", parts.join(", "))
-}
-
-/// A colour of floats as a scene's.
-fn floats(value: &Value) -> String {
-    format!("Float{}", bytes(value))
-}
-
-fn folded(name: &str) -> String {
-    name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
-}
-
-/// The name of an enumeration that a suite spells in capitals.
-fn named<T: Named>(name: &str) -> &'static str {
-    let found = T::NAMES.iter().find(|known| folded(known) == folded(name));
-    found.unwrap_or_else(|| panic!("{name} is not in {:?}", T::NAMES))
-}
-
-fn factor(name: &str) -> &'static str {
-    match folded(name).as_str() {
-        "srcalpha" => "SourceAlpha",
-        "invsrcalpha" | "oneminussrcalpha" => "OneMinusSourceAlpha",
-        "one" => "One",
-        "zero" => "Zero",
-        other => panic!("{other}"),
-    }
-}
-
 fn blend(value: &Value, destination: &str) -> String {
-    let [source, target] = ["src", "dst"].map(|side| factor(value[side].as_str().unwrap()));
+    let [source, target] = ["src", "dst"].map(|side| blend_factor(value[side].as_str().unwrap()));
     format!("blend: (equation: Add, source: {source}, destination: {target}), CLEAR{destination}")
 }
 

@@ -1,10 +1,8 @@
 //! Traces: a stored word follows from the numbers of its trace alone, and equals what the engine stores.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-#[path = "common/random_scene.rs"]
-mod random_scene;
-#[path = "common/recompute.rs"]
-mod recompute;
+use crate::random_scene;
+use crate::recompute;
 
 use ninebit::engine::{self, RenderOptions, TraceError};
 use ninebit::plan::{Plan, PlanOptions};

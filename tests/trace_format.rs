@@ -2,12 +2,9 @@
 //! of the operations is enough to recompute a trace under any policy.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-#[path = "common/random_scene.rs"]
-mod random_scene;
-#[path = "common/recompute.rs"]
-mod recompute;
-#[path = "common/scene_files.rs"]
-mod scene_files;
+use crate::random_scene;
+use crate::recompute;
+use crate::scene_files;
 
 use ninebit::engine;
 use ninebit::limits::Limits;

@@ -41,6 +41,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         // The name could be anything: not in a comment that it would end.
         let name: String = draw.name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         out.push_str(&format!("// draw {number} `{name}`\n"));
+        if let Some(program) = &draw.vertex_program {
+            let counts = format!("{} instructions, {} slots", program.instructions, program.slots);
+            out.push_str(&format!("// its vertices come from a vertex program: {counts}\n"));
+        }
         match arguments.to {
             Form::Combiners => out.push_str(&text::print(&draw.combiners)),
             Form::Registers => {

@@ -19,6 +19,7 @@ mod scene;
 mod terminal;
 mod texture;
 mod trace;
+mod vectors;
 
 use std::ffi::OsString;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -69,6 +70,9 @@ enum Command {
     Op(op::Command),
     /// Describe a texture, or write what a texture unit reads of it
     Texture(texture::Arguments),
+    /// Conformance vectors: tables of what the units of the chip yield
+    #[command(subcommand)]
+    Vectors(vectors::Command),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -127,6 +131,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Diff(arguments) => diff::run(&arguments, context),
         Command::Op(command) => op::run(&command, context),
         Command::Texture(arguments) => texture::run(&arguments, context),
+        Command::Vectors(command) => vectors::run(&command),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Bench(arguments) => bench::run(&arguments, context),

@@ -319,7 +319,12 @@ fn channels<L: Lane, const N: usize>(input: &CombinerInput, registers: &Register
 
 /// CMB-8 with its alternative. Only RGB portions have dot products, so there are three channels.
 #[inline(always)]
-fn dot<L: Lane, O: Observer>(a: &[L::Mapped], b: &[L::Mapped], policies: &Policies, observer: &mut O) -> L::Full {
+pub(crate) fn dot<L: Lane, O: Observer>(
+    a: &[L::Mapped],
+    b: &[L::Mapped],
+    policies: &Policies,
+    observer: &mut O,
+) -> L::Full {
     let ([a0, a1, a2], [b0, b1, b2]) = (a, b) else { return L::ZERO.widened() };
     let (a, b) = ([*a0, *a1, *a2], [*b0, *b1, *b2]);
     match policies.dot_rounding {
@@ -334,7 +339,7 @@ fn dot<L: Lane, O: Observer>(a: &[L::Mapped], b: &[L::Mapped], policies: &Polici
 
 /// CMB-7, or CMB-10 where `takes_cd` is given: the third output before bias and scale.
 #[inline(always)]
-fn third<L: Lane, O: Observer>(
+pub(crate) fn third<L: Lane, O: Observer>(
     [ab, cd]: [L::Full; 2],
     rules: Option<[Rule; 2]>,
     takes_cd: Option<bool>,
@@ -356,7 +361,7 @@ fn third<L: Lane, O: Observer>(
 
 /// CMB-9 with its alternative.
 #[inline(always)]
-fn finish<L: Lane, O: Observer>(
+pub(crate) fn finish<L: Lane, O: Observer>(
     raw: L::Full,
     portion: &Portion,
     rule: Option<Rule>,

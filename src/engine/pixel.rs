@@ -201,8 +201,18 @@ impl<'a> TriangleContext<'a> {
                 corners.map(|c| c[0])
             };
             if O::ON {
+                let output =
+                    draw.vertex_program.then_some(if register == Register::PrimaryColor { "oD0" } else { "oD1" });
                 for channel in (0..4).filter(|c| live >> c & 1 != 0) {
-                    reports::color(name, channel, sources, corners[channel], &weights, value[channel], observer);
+                    reports::color(
+                        name,
+                        channel,
+                        (sources, output),
+                        corners[channel],
+                        &weights,
+                        value[channel],
+                        observer,
+                    );
                 }
             }
             registers.load(register, value);

@@ -91,11 +91,12 @@ pub(super) fn weights<O: Observer>(
     );
 }
 
-/// One interpolated channel, and the vertices' bytes that it comes from.
+/// One interpolated channel, and the vertices' bytes that it comes from. `output`: the register of the vertex program that they come
+/// from.
 pub(super) fn color<L: Lane, O: Observer>(
     register: &str,
     channel: usize,
-    sources: [&VertexColor; 3],
+    (sources, output): ([&VertexColor; 3], Option<&str>),
     corners: [L; 3],
     weights: &[Settled; 2],
     value: L,
@@ -107,7 +108,10 @@ pub(super) fn color<L: Lane, O: Observer>(
         let corner = format!("vertex{k}.{name}");
         let (rule, note) = match sources[k] {
             VertexColor::Bytes(_) => ("INT-2", None),
-            VertexColor::Floats(floats) => ("NUM-4", Some(format!("from {}", floats[channel]))),
+            VertexColor::Floats(floats) => {
+                let given = output.map(|output| format!("{output}.{} = ", ["x", "y", "z", "w"][channel]));
+                ("NUM-4", Some(format!("from {}{}", given.unwrap_or_default(), floats[channel])))
+            }
         };
         observer.step(report::register_step(INTERPOLATION, rule, corner.clone(), corners[k]).note(note));
         inputs.push(report::register(corner, corners[k]));

@@ -2,8 +2,9 @@
 
 use crate::combiner::general::PlannedPortion;
 use crate::plan::PlannedDraw;
-use crate::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, SumRounding};
-use crate::texture::stage::PlannedShader;
+use crate::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, ShaderOperation, SumRounding};
+use crate::texture::dot::{DOT_OPERATIONS, REFLECTION_OPERATIONS};
+use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
 use crate::trace::Work;
 
@@ -67,6 +68,9 @@ fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
         add(Work::Texels, texels);
         add(Work::Lerps, lerps);
     }
+    if let Some(shader) = &planned.shader {
+        add(Work::Dots, shader.stages.iter().map(dot_unit).sum());
+    }
     for stage in &planned.stages {
         for (portion, channels) in [(&stage.rgb, 3), (&stage.alpha, 1)] {
             let (products, roundings) = portion_cost(portion, channels, policies);
@@ -103,6 +107,16 @@ fn unit_cost(unit: &PlannedUnit) -> (u64, u64) {
         _ => (texels, lerps),
     };
     (magnified.0.max(minified.0), magnified.1.max(minified.1))
+}
+
+/// What the dot unit does for a stage: its own dot product, and a reflection if something is sampled in its direction.
+fn dot_unit(stage: &PlannedShaderStage) -> u64 {
+    let reflects = matches!(
+        stage.state.operation,
+        ShaderOperation::DotReflectSpecular | ShaderOperation::DotReflectConstantEye { .. }
+    );
+    let product = if stage.dots { DOT_OPERATIONS } else { 0 };
+    product + if reflects && stage.live != 0 { REFLECTION_OPERATIONS } else { 0 }
 }
 
 /// Products and roundings of a portion of three channels or one.

@@ -18,7 +18,8 @@ use crate::program::text::print;
 use crate::program::text::words::register;
 use crate::rop::surface;
 use crate::state::{
-    Blend, CompareFunction, Draw, MipFilter, Named, Register, Scene, StageOrigin, TEXTURE_UNITS, TextureKind,
+    Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, StageOrigin, TEXTURE_UNITS,
+    TextureKind, VertexProgram,
 };
 use crate::texture::unit::PlannedUnit;
 
@@ -29,6 +30,8 @@ pub struct DrawExplanation {
     pub name: String,
     /// Name of its target.
     pub target: String,
+    /// The vertex program that made its vertices, and how many there are.
+    pub vertex_program: Option<(VertexProgram, usize)>,
     /// Its pixel program in the combiner language, whole.
     pub program: String,
     /// What each general stage of it was written as in the language of an API; empty if it was written for the combiners.
@@ -48,6 +51,7 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
         .map(|(draw, planned)| DrawExplanation {
             name: planned.name.clone(),
             target: plan.targets[planned.target].name.clone(),
+            vertex_program: draw.vertex_program.clone().map(|program| (program, draw.vertices.len())),
             program: print(&draw.combiners),
             program_origin: draw.program_origin.clone(),
             equations: equations(scene, plan, planned),
@@ -83,6 +87,7 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
             lines.push(format!("{}.{} = {how}(vertices)", register(of), channels(live)));
         }
     }
+    lines.extend(fog(planned));
     for stage in &planned.stages {
         lines.extend(equation::stage(stage, planned.mux_select));
     }
@@ -98,6 +103,34 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
     if planned.write_mask != 0 {
         let target = &plan.targets[planned.target];
         lines.push(format!("store {} to `{}`, {}", channels(planned.written), target.name, target.format.name()));
+    }
+    lines
+}
+
+/// The fog register, as far as it is read: what its factor is a function of.
+fn fog(planned: &PlannedDraw) -> Vec<String> {
+    let mut lines = Vec::new();
+    let colors = channels(planned.fog_channels & 7);
+    if !colors.is_empty() {
+        let [r, g, b] = planned.fog.color;
+        lines.push(format!("fog.{colors} = ({r}, {g}, {b})/255"));
+    }
+    if planned.fog_channels & 8 != 0 {
+        let factor = match planned.fog.function {
+            _ if !planned.fog.enabled => "1: fog is off".to_string(),
+            None => "smooth(vertices): factors".to_string(),
+            Some(FogFunction { mode, p0, p1 }) => {
+                let f = match mode {
+                    FogMode::Linear | FogMode::LinearAbs => format!("{p0} + {p1} d - 1"),
+                    FogMode::Exp | FogMode::ExpAbs => format!("{p0} + 2^(16 * {p1} d) - 3/2"),
+                    FogMode::Exp2 | FogMode::Exp2Abs => format!("{p0} + 2^(-32 * ({p1} d)^2) - 3/2"),
+                };
+                let magnitude = matches!(mode, FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs);
+                let f = if magnitude { format!("|{f}|") } else { f };
+                format!("{f}, limited to 0..1, d being the pixel's fog coordinate")
+            }
+        };
+        lines.push(format!("fog.a = {factor}"));
     }
     lines
 }

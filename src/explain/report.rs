@@ -3,7 +3,7 @@
 use super::{Cost, DrawExplanation};
 use crate::engine::DrawCounts;
 use crate::plan::Plan;
-use crate::state::Named;
+use crate::state::{Named, Profile};
 use crate::trace::Work;
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -21,6 +21,17 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
     writeln!(out, "profile {}, {} draw{plural}", plan.profile.name(), draws.len())?;
     for (number, draw) in draws.iter().enumerate() {
         writeln!(out, "\ndraw {number} `{}` to `{}`", draw.name, draw.target)?;
+        if let Some((program, vertices)) = &draw.vertex_program {
+            let slots = format!("{} instructions, {} slots", program.instructions, program.slots);
+            let who = match plan.profile {
+                Profile::Nv10 => ", run by the driver: the chip has no vertex programs",
+                Profile::Nv2a => "",
+            };
+            writeln!(out, "  vertex program: {slots}, for each of {vertices} vertices{who}")?;
+            for line in program.text.lines() {
+                writeln!(out, "    {line}")?;
+            }
+        }
         writeln!(out, "  program:")?;
         for line in draw.program.lines() {
             writeln!(out, "    {line}")?;
@@ -95,6 +106,11 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
             });
             if !draw.program_origin.is_empty() {
                 value["program_origin"] = crate::report::origins(&draw.program_origin);
+            }
+            if let Some((program, vertices)) = &draw.vertex_program {
+                value["vertex_program"] = json!({
+                    "text": program.text, "instructions": program.instructions, "slots": program.slots, "vertices": vertices,
+                });
             }
             if let Some(counts) = counted.map(|all| &all[number]) {
                 value["counted"] = json!({

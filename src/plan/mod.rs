@@ -110,6 +110,8 @@ pub struct PlannedDraw {
     pub stages: Vec<PlannedStage>,
     /// What each general stage of the state was written as; may be empty.
     pub program_origin: Vec<StageOrigin>,
+    /// The vertices were made by a vertex program.
+    pub vertex_program: bool,
     /// Mux bit.
     pub mux_select: MuxSelect,
     /// Final combiner.
@@ -334,6 +336,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
         undefined: liveness.undefined,
         stages: liveness.stages,
         program_origin: draw.program_origin.clone(),
+        vertex_program: draw.vertex_program.is_some(),
         mux_select: draw.combiners.mux_select,
         final_combiner: liveness.final_combiner,
         alpha_test,

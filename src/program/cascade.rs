@@ -380,15 +380,7 @@ impl Cascade {
             self.constants.len() - 1
         });
         if index == 2 && found.is_none() {
-            let (message, help) = match self.profile {
-                Profile::Nv10 => (
-                    "this program needs 3 constant colours; Nv10 has 2",
-                    "make two of them equal, or pass one in as the vertex's specular colour; profile Nv2a has two a stage",
-                ),
-                Profile::Nv2a => ("this stage needs 3 constant colours; it has 2", "make two of them equal"),
-            };
-            let error = finding("NB0351", place.clone(), message, "the third is read here", help);
-            self.findings.push(error.rule("CMB-12"));
+            self.findings.push(too_many_constants(self.profile, place.clone()));
         }
         if index == 0 { Register::ConstantColor0 } else { Register::ConstantColor1 }
     }
@@ -408,21 +400,7 @@ impl Cascade {
         }
         let (needed, most) = (self.stages.len(), self.profile.general_stages());
         if let Some(place) = self.places.get(most) {
-            let help = match self.profile {
-                Profile::Nv10 if needed <= Profile::Nv2a.general_stages() => {
-                    "use fewer stages, draw in two passes with `blend`, or write `profile: Nv2a`, which has 8"
-                }
-                _ => "use fewer stages, or draw in two passes with `blend`",
-            };
-            let chip = format!("{:?}", self.profile).to_lowercase();
-            let error = finding(
-                "NB0350",
-                place.clone(),
-                format!("this {what} needs {needed} general stages; {chip} has {most}"),
-                "the first too many",
-                help,
-            );
-            self.findings.push(error.rule("CMB-12"));
+            self.findings.push(too_many_stages(self.profile, needed, place.clone(), what));
         }
         if !self.findings.is_empty() {
             return Err(self.findings);
@@ -439,13 +417,38 @@ impl Cascade {
     }
 }
 
-fn one(alpha: bool) -> CombinerInput {
+/// The finding that a program needs more general stages than the chip has; `what` is what users call the program.
+pub(super) fn too_many_stages(profile: Profile, needed: usize, place: Range<usize>, what: &str) -> Diagnostic {
+    let help = match profile {
+        Profile::Nv10 if needed <= Profile::Nv2a.general_stages() => {
+            "use fewer stages, draw in two passes with `blend`, or write `profile: Nv2a`, which has 8"
+        }
+        _ => "use fewer stages, or draw in two passes with `blend`",
+    };
+    let (chip, most) = (format!("{profile:?}").to_lowercase(), profile.general_stages());
+    let message = format!("this {what} needs {needed} general stages; {chip} has {most}");
+    finding("NB0350", place, message, "the first too many", help).rule("CMB-12")
+}
+
+/// The finding that there is no constant register left.
+pub(super) fn too_many_constants(profile: Profile, place: Range<usize>) -> Diagnostic {
+    let (message, help) = match profile {
+        Profile::Nv10 => (
+            "this program needs 3 constant colours; Nv10 has 2",
+            "make two of them equal, or pass one in as the vertex's specular colour; profile Nv2a has two a stage",
+        ),
+        Profile::Nv2a => ("this stage needs 3 constant colours; it has 2", "make two of them equal"),
+    };
+    finding("NB0351", place, message, "the third is read here", help).rule("CMB-12")
+}
+
+pub(super) fn one(alpha: bool) -> CombinerInput {
     let component = if alpha { Component::Alpha } else { Component::Rgb };
     CombinerInput { mapping: InputMapping::UnsignedInvert, ..CombinerInput::zero(component) }
 }
 
 /// The colour, perhaps with the secondary colour added: alone in D, or blended with the fog colour by A.
-fn final_combiner(end: End, alpha_is_blue: bool, constants: [[u8; 4]; 2]) -> FinalCombiner {
+pub(super) fn final_combiner(end: End, alpha_is_blue: bool, constants: [[u8; 4]; 2]) -> FinalCombiner {
     let input = |register, component| FinalInput { register, component, invert: false };
     let zero = FinalInput::zero(Component::Rgb);
     let color = if end.specular { FinalRegister::Spare0PlusSecondary } else { FinalRegister::Spare0 };

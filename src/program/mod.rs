@@ -1,10 +1,12 @@
-//! Pixel programs in the languages that people have them in; each becomes the same [`Combiners`](crate::state::Combiners).
+//! Programs in the languages that people have them in. Pixel programs of each become the same [`Combiners`](crate::state::Combiners).
 //!
 //! * [`text`]: general stages and final combiner as statements, read and printed (`docs/combiner-language.md`).
 //! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
 //! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
 //!   (`docs/programs.md`). Both write each of their stages as equations over [arguments](cascade::Argument), and [`cascade`]
 //!   turns equations into general stages.
+//! * [`pixel_shader`]: Direct3D pixel shaders, version 1.1 (`docs/pixel-shader.md`).
+//! * [`vertex_shader`]: vertex programs in the assembler language vs.1.1 (`docs/vertex-shader.md`).
 //! * [`legality`]: what the chip allows (CMB-12), the same for every language. A front end says where the parts of a program
 //!   stand ([`Places`]) and what its words are ([`Notation`](legality::Notation)).
 //!
@@ -13,11 +15,13 @@
 pub mod cascade;
 mod finding;
 pub mod legality;
+pub mod pixel_shader;
 mod place;
 pub mod registers;
 pub mod text;
 pub mod texture_environment;
 pub mod texture_stages;
+pub mod vertex_shader;
 
 pub use finding::At;
 pub use place::{Part, Place, Places};

@@ -12,7 +12,15 @@
     reason = "vertices are floats in the chip's programming model; the order of operations is fixed"
 )]
 
+mod round;
+mod tangent;
+mod wavefront;
+
 use thiserror::Error;
+
+pub use round::{cylinder, torus};
+pub use tangent::{Surface, mesh};
+pub use wavefront::read as wavefront;
 
 /// The most vertices that a mesh here may have.
 pub const MAXIMUM_VERTICES: u32 = 1 << 20;
@@ -230,7 +238,7 @@ mod tests {
     }
 
     /// Frames are orthonormal and right-handed, triangles face outward, indices are in range.
-    fn check(mesh: &Mesh) {
+    pub(super) fn check(mesh: &Mesh) {
         let vertices = mesh.positions.len();
         assert_eq!(
             [mesh.normals.len(), mesh.tangents.len(), mesh.binormals.len(), mesh.texture_coordinates.len()],

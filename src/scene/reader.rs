@@ -175,13 +175,25 @@ impl<'a> Reader<'a> {
         most: usize,
         defaults: [f32; 4],
     ) -> Option<[f32; 4]> {
+        self.numbers_written(raw, what, least, most, defaults).map(|(values, _)| values)
+    }
+
+    /// The same, and how many are written.
+    pub(super) fn numbers_written(
+        &mut self,
+        raw: &Raw<'a, Numbers>,
+        what: &str,
+        least: usize,
+        most: usize,
+        defaults: [f32; 4],
+    ) -> Option<([f32; 4], usize)> {
         if let Some(numbers) = Numbers::split(raw.text).or_else(|| self.attempt(raw.text))
             && (least..=most).contains(&numbers.count)
             && numbers.values.iter().all(|value| value.is_finite())
         {
             let mut values = defaults;
             values[..numbers.count].copy_from_slice(&numbers.values[..numbers.count]);
-            return Some(values);
+            return Some((values, numbers.count));
         }
         // Something is wrong: read it again, number by number, to find out which.
         let parts = self.read(&raw.as_other::<Tuple<'a, f32>>())?.0;

@@ -11,7 +11,7 @@ use super::split;
 use crate::program::texture_environment;
 use crate::program::texture_stages::{Operation, ResultArgument};
 use crate::state;
-use crate::vertex::fog::FogSource;
+use crate::vertex::fog::{FogEvaluation, FogSource};
 
 /// What a value of a type looks like, for "expected ...".
 pub(super) trait Expected<'a>: Sized {
@@ -94,7 +94,7 @@ pub(super) struct Color;
 pub(super) struct Matrix;
 /// A mesh, or a name.
 pub(super) struct MeshSource;
-/// `Window(...)`, `Matrix(...)`.
+/// `Window(...)`, `Matrix(...)`, `Program(...)`.
 pub(super) struct VertexSource;
 /// A list of vertices, or a name.
 pub(super) struct VertexList;
@@ -112,6 +112,8 @@ pub(super) struct ShaderStage;
 pub(super) struct ShaderOperation;
 /// What of a mesh goes into a vertex.
 pub(super) struct Attribute;
+/// A constant of a vertex program: numbers, `Matrix(...)`, `Color(...)`.
+pub(super) struct ShaderConstant;
 /// How a coordinate set is made: `(s: ..., t: ...)`, a word, or `None`.
 pub(super) struct CoordinateSource;
 /// Where a component of a coordinate set comes from.
@@ -124,6 +126,9 @@ pub(super) struct FinalInput;
 pub(super) struct Output;
 /// An argument of a texture stage.
 pub(super) struct StageArgument;
+
+/// `Count3`, or `(Count3, Projected)`.
+pub(super) struct TransformFlags;
 /// A word without further meaning to the types: one of a few.
 pub(super) struct Word;
 
@@ -165,6 +170,7 @@ source! {
         mips: List<'a, ImageSource>,
         palette: String,
         border: bool,
+        first_level: u32,
     }
     struct RawFile { file: String, width: u32, height: u32 }
     struct Faces {
@@ -204,6 +210,7 @@ source! {
         logic_op: Reserved,
         texture_shader: List<'a, ShaderStage>,
         texgen: List<'a, CoordinateSource>,
+        viewer: Word,
         texture_matrices: List<'a, Matrix>,
         truth: Reserved,
     }
@@ -232,9 +239,40 @@ source! {
         t2: Attribute,
         t3: Attribute,
     }
+    struct ProgramVertices {
+        text: String,
+        file: String,
+        constants: Entries<'a, ShaderConstant>,
+        inputs: ShaderInputs<'a>,
+        viewport: Viewport<'a>,
+        clip_depth: Word,
+        vertices: VertexList,
+        mesh: MeshSource,
+    }
+    struct ShaderInputs {
+        v0: Attribute,
+        v1: Attribute,
+        v2: Attribute,
+        v3: Attribute,
+        v4: Attribute,
+        v5: Attribute,
+        v6: Attribute,
+        v7: Attribute,
+        v8: Attribute,
+        v9: Attribute,
+        v10: Attribute,
+        v11: Attribute,
+        v12: Attribute,
+        v13: Attribute,
+        v14: Attribute,
+        v15: Attribute,
+    }
     struct Viewport { x: f32, y: f32, width: f32, height: f32, near: f32, far: f32 }
     struct Grid { columns: u32, rows: u32, size: Numbers, repeat: Numbers }
     struct Sphere { slices: u32, stacks: u32, radius: f32, repeat: Numbers }
+    struct Torus { slices: u32, sides: u32, radius: f32, tube: f32, repeat: Numbers }
+    struct Cylinder { slices: u32, stacks: u32, radius: f32, height: f32, caps: bool, repeat: Numbers }
+    struct Triangles { vertices: VertexList, indices: Vec<u32> }
     struct LightVector { position: Numbers, direction: Numbers, space: Word }
     struct HalfVector { position: Numbers, direction: Numbers, viewer: Numbers, space: Word }
     struct Frustum { left: f32, right: f32, bottom: f32, top: f32, near: f32, far: f32 }
@@ -249,6 +287,7 @@ source! {
         end: f32,
         parameters: Numbers,
         coordinate_source: Name<FogSource>,
+        evaluation: Name<FogEvaluation>,
     }
     struct CoordinateSet { input: u32, s: Generator, t: Generator, r: Generator, q: Generator }
     struct Emboss { light: Numbers, scale: Numbers }
@@ -280,7 +319,7 @@ source! {
     struct CullFragment { s: Word, t: Word, r: Word, q: Word }
     struct BumpEnvironment { matrix: Numbers, luminance: Numbers }
     struct ConstantEye { eye: Numbers }
-    struct AlphaTest { function: Name<state::CompareFunction>, reference: u32 }
+    struct AlphaTest { function: Name<state::CompareFunction>, reference: Word }
     struct DepthTest { function: Name<state::CompareFunction>, write: bool }
     struct Blend {
         equation: Name<state::BlendEquation>,
@@ -335,9 +374,15 @@ source! {
         result_arg: Name<ResultArgument>,
         constant: Color,
         texture_coordinate_index: Word,
-        texture_transform_flags: Word,
+        texture_transform_flags: TransformFlags,
         bump_matrix: Numbers,
         bump_luminance: Numbers,
+    }
+    struct PixelShader {
+        text: String,
+        file: String,
+        constants: Entries<'a, Color>,
+        bump: Entries<'a, BumpEnvironment<'a>>,
     }
     struct TextureEnvironment { units: List<'a, EnvironmentUnit<'a>>, color_sum: bool }
     struct EnvironmentUnit {
@@ -382,5 +427,13 @@ source! {
         invert_spare0: bool,
         invert_secondary: bool,
         constants: Tuple<'a, Color>,
+    }
+}
+
+impl<'a> ShaderInputs<'a> {
+    /// By their numbers.
+    pub(super) fn list(self) -> [Option<Raw<'a, Attribute>>; 16] {
+        let ShaderInputs { v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15 } = self;
+        [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15]
     }
 }

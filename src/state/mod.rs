@@ -24,7 +24,7 @@ pub use policy::{
 };
 pub use primitive::{
     Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology, Vertex,
-    VertexColor, Viewport,
+    VertexColor, VertexProgram, Viewport,
 };
 pub use rop::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthBuffer, DepthFormat, DepthTest, SurfaceFormat,
@@ -119,6 +119,8 @@ pub struct Draw {
     pub combiners: Combiners,
     /// What each general stage was written as; empty if the program was written for the combiners.
     pub program_origin: Vec<StageOrigin>,
+    /// The vertex program that made the vertices, if one did.
+    pub vertex_program: Option<VertexProgram>,
     /// Alpha test (ROP-1). `None`: every fragment passes.
     pub alpha_test: Option<AlphaTest>,
     /// Depth test (DEP-1, DEP-2). `None`: neither test nor write.

@@ -121,6 +121,19 @@ impl Default for Vertex {
     }
 }
 
+/// What is known of the vertex program that made the vertices of a draw. They are there already: it is for people to look at.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VertexProgram {
+    /// In its language, without comments.
+    pub text: String,
+    /// How many instructions it has.
+    pub instructions: usize,
+    /// How many instruction slots they take.
+    pub slots: usize,
+    /// It writes oFog.
+    pub writes_fog: bool,
+}
+
 named! {
     /// The curve of a [`FogFunction`] (INT-5).
     pub enum FogMode {

@@ -13,7 +13,7 @@ use crate::number::{Lane, convert};
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;
 use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, Vertex};
-use crate::trace::{Decision, Observer, Rule, Silent};
+use crate::trace::{Decision, Observer, Rule, Silent, Work};
 
 /// A texture shader with everything that it looks at.
 #[derive(Debug)]
@@ -238,6 +238,7 @@ impl<L: Lane> Chain<'_, L> {
         let coordinates = [0, 1, 2].map(|n| at.sample.attribute(&attributes[n]).rounded_f32());
         let vector = dot::remap(mapping, color.bytes);
         let products = dot::products(coordinates, vector);
+        observer.count(Work::Dots, dot::DOT_OPERATIONS);
         let mut dot = Dot { fixed: dot::sum(products), real: 0.0 };
         if Self::wants_real::<O>() {
             let [s, t, r, _] = self.real_coordinates(index, at.sample);
@@ -278,6 +279,7 @@ impl<L: Lane> Chain<'_, L> {
                 let normal = self.normal(at, state, observer);
                 let (eye, real_eye) = self.eye(index, at.sample, observer);
                 let fixed = dot::reflect(normal.map(|d| d.fixed), eye);
+                observer.count(Work::Dots, dot::REFLECTION_OPERATIONS);
                 let reflected = || dot::reflect(normal.map(|d| d.real), real_eye);
                 if O::ON {
                     let constant = matches!(operation, ShaderOperation::DotReflectConstantEye { .. });

@@ -76,6 +76,12 @@ pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
     entries[0] * blue_green[0] + entries[1] * blue_green[1]
 }
 
+/// Products and sums of a dot product.
+pub const DOT_OPERATIONS: u64 = 5;
+
+/// Products, sums and quotients of a reflection: two dot products, a scale, and a product and a difference for each component.
+pub const REFLECTION_OPERATIONS: u64 = 2 * DOT_OPERATIONS + 2 + 6;
+
 /// TSH-5: a reflection, with what it is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reflection<N> {

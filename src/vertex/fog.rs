@@ -18,16 +18,31 @@ named! {
         EyePlaneAbsolute,
         /// The distance from the viewer.
         EyeRadial,
+        /// z as it leaves the vertex side, before any division; of window vertices their depth. Direct3D's z fog.
+        Depth,
+        /// w as it leaves the vertex side. Direct3D's w fog.
+        W,
+    }
+}
+named! {
+    /// Where a fog function is evaluated.
+    pub enum FogEvaluation {
+        /// At each vertex; the factors are interpolated (INT-5n). Direct3D's vertex fog.
+        PerVertex,
+        /// At each pixel (INT-5), on nv2a alone. Direct3D's table fog.
+        PerPixel,
     }
 }
 
-/// The fog coordinate of a vertex.
-pub fn coordinate(source: FogSource, vertex: &EyeVertex<'_>) -> f32 {
+/// The fog coordinate of a vertex that leaves the vertex side at `position`: in clip space, or of window vertices as given.
+pub fn coordinate(source: FogSource, vertex: &EyeVertex<'_>, position: [f32; 4]) -> f32 {
     match source {
         FogSource::Vertex => vertex.object.fog_coordinate,
         FogSource::EyePlane => vertex.point()[2],
         FogSource::EyePlaneAbsolute => vertex.point()[2].abs(),
         FogSource::EyeRadial => length(vertex.point()),
+        FogSource::Depth => position[2],
+        FogSource::W => position[3],
     }
 }
 
@@ -37,13 +52,17 @@ const EXPONENTIAL: f32 = 11.090_355;
 /// 2 sqrt(ln 256): e^(-x^2) is 2^(-32 (x / this)^2).
 const SQUARED: f32 = 4.709_64;
 
-/// Fog that falls from 1 at `start` to 0 at `end` in a straight line. Without any distance between them it is 1 before `end` and 0
-/// from there on. `None`: the parameters are not finite.
-pub fn linear(mode: FogMode, start: f32, end: f32) -> Option<FogFunction> {
+/// Fog that falls from 1 at `start` to 0 at `end` in a straight line. Without any distance between them it is, of pixels, 1 before `end`
+/// and 0 from there on; of vertices 0 everywhere. `None`: the parameters are not finite.
+pub fn linear(mode: FogMode, start: f32, end: f32, evaluation: FogEvaluation) -> Option<FogFunction> {
     // (end - d) 2^40 - 1: the step is less than 2^-39 wide.
     const STEEP: f32 = 1_099_511_627_776.0;
     let distance = end - start;
-    let (p0, p1) = if start == end { (end * STEEP, -STEEP) } else { (2.0 + start / distance, -1.0 / distance) };
+    let (p0, p1) = match evaluation {
+        _ if start != end => (2.0 + start / distance, -1.0 / distance),
+        FogEvaluation::PerVertex => (1.0, 0.0),
+        FogEvaluation::PerPixel => (end * STEEP, -STEEP),
+    };
     (distance.is_finite() && p0.is_finite() && p1.is_finite()).then_some(FogFunction { mode, p0, p1 })
 }
 
@@ -84,7 +103,7 @@ mod tests {
         ) {
             let mode = FogMode::ALL[mode];
             let function = if matches!(mode, FogMode::Linear | FogMode::LinearAbs) {
-                linear(mode, start, start + span).expect("finite")
+                linear(mode, start, start + span, FogEvaluation::PerVertex).expect("finite")
             } else {
                 exponential(mode, density)
             };
@@ -105,15 +124,19 @@ mod tests {
     #[test]
     fn no_distance_is_a_wall() {
         for end in [0.0, 0.1, 50.0, -3.0, 1e9] {
-            let function = linear(FogMode::Linear, end, end).expect("finite");
-            let factors = [end - 0.01 - end.abs() * 1e-6, end, end + 0.01].map(|d| vertex_factor(&function, d));
+            let function = |evaluation| linear(FogMode::Linear, end, end, evaluation).expect("finite");
+            let around = [end - 0.01 - end.abs() * 1e-6, end, end + 0.01];
+            let factors = around.map(|d| vertex_factor(&function(FogEvaluation::PerPixel), d));
             assert_eq!(factors, [1.0, 0.0, 0.0], "{end}");
+            let factors = around.map(|d| vertex_factor(&function(FogEvaluation::PerVertex), d));
+            assert_eq!(factors, [0.0; 3], "{end}");
         }
-        assert_eq!(linear(FogMode::Linear, 0.0, 1e-45), None);
-        assert_eq!(linear(FogMode::Linear, 3e38, -3e38), None);
-        assert_eq!(linear(FogMode::Linear, 1e30, 1e30), None);
+        let of_pixels = |start, end| linear(FogMode::Linear, start, end, FogEvaluation::PerPixel);
+        assert_eq!(of_pixels(0.0, 1e-45), None);
+        assert_eq!(of_pixels(3e38, -3e38), None);
+        assert_eq!(of_pixels(1e30, 1e30), None);
         // The other way round is fog that lifts.
-        let lifting = linear(FogMode::Linear, 24.0, 16.0).expect("finite");
+        let lifting = of_pixels(24.0, 16.0).expect("finite");
         assert_eq!([0.0, 16.0, 20.0, 24.0, 30.0].map(|d| vertex_factor(&lifting, d)), [0.0, 0.0, 0.5, 1.0, 1.0]);
     }
 }

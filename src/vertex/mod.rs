@@ -6,6 +6,7 @@
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule; set-up quantises afterwards")]
 
 pub mod fog;
+pub mod shader;
 pub mod texgen;
 mod vector;
 
@@ -28,6 +29,22 @@ pub struct ObjectVertex {
     pub normal: [f32; 3],
     /// Given fog coordinate.
     pub fog_coordinate: f32,
+    /// How many components each coordinate set was given with, 1 to 4; 4 for one that was not given.
+    pub dimensions: [usize; 4],
+}
+
+/// Where lines of sight start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Viewer {
+    /// At the origin of eye space: each vertex has its own.
+    Local,
+    /// Far away: all run in this direction, which need not be of unit length.
+    Infinite([f32; 3]),
+}
+
+impl Viewer {
+    /// Far away, looking along -z as OpenGL's viewer does.
+    pub const FAR: Viewer = Viewer::Infinite([0.0, 0.0, -1.0]);
 }
 
 /// From object space to eye space: the viewer at the origin.
@@ -70,14 +87,17 @@ pub struct EyeVertex<'a> {
     pub position: [f32; 4],
     /// Normal, of unit length or zero.
     pub normal: [f32; 3],
+    /// Who sees it.
+    pub viewer: Viewer,
 }
 
 impl<'a> EyeVertex<'a> {
     /// Takes a vertex to eye space.
-    pub fn new(object: &'a ObjectVertex, model_view: &'a ModelView) -> Self {
+    pub fn new(object: &'a ObjectVertex, model_view: &'a ModelView, viewer: Viewer) -> Self {
         EyeVertex {
             object,
             model_view,
+            viewer,
             position: transform(&model_view.position, object.position),
             normal: model_view.direction(object.normal),
         }
@@ -89,10 +109,18 @@ impl<'a> EyeVertex<'a> {
         if w == 0.0 { [x, y, z] } else { [x / w, y / w, z / w] }
     }
 
+    /// The direction in which the viewer sees the vertex, of unit length or zero.
+    fn line_of_sight(&self) -> [f32; 3] {
+        match self.viewer {
+            Viewer::Local => unit(self.point()),
+            Viewer::Infinite(direction) => unit(direction),
+        }
+    }
+
     /// The viewer's line of sight to the vertex mirrored at its normal, of unit length: u - 2 n (n u). Zero at the viewer's place; the
     /// line of sight itself where the normal is zero.
     pub fn reflection(&self) -> [f32; 3] {
-        let (u, n) = (unit(self.point()), self.normal);
+        let (u, n) = (self.line_of_sight(), self.normal);
         let along = 2.0 * dot3(n, u);
         std::array::from_fn(|k| u[k] - n[k] * along)
     }
@@ -144,10 +172,11 @@ mod tests {
 
         #[test]
         fn reflection_is_a_mirror(p in vector(), n in vector()) {
-            let object = ObjectVertex { position: [p[0], p[1], p[2], 1.0], normal: n, fog_coordinate: 0.0 };
+            let position = [p[0], p[1], p[2], 1.0];
+            let object = ObjectVertex { position, normal: n, fog_coordinate: 0.0, dimensions: [4; 4] };
             let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
             let view = ModelView::new(&identity);
-            let vertex = EyeVertex::new(&object, &view);
+            let vertex = EyeVertex::new(&object, &view, Viewer::Local);
             let r = vertex.reflection();
             prop_assume!(dot(wide(p), wide(p)) > 1e-3 && dot(wide(n), wide(n)) > 1e-3);
             // As long as the line of sight, in its plane with the normal, leaving the surface as steeply as it came.
@@ -159,6 +188,18 @@ mod tests {
             // Mirrored once more it is the line of sight: the eye stands where the mirror image of the reflection goes.
             let back = [0, 1, 2].map(|k| r[k] - 2.0 * n[k] * dot(r, n));
             prop_assert!((0..3).all(|k| (back[k] - u[k]).abs() < 1e-5));
+        }
+
+        /// A viewer far away sees every vertex as a local one sees what lies straight ahead.
+        #[test]
+        fn from_far_away_all_lines_of_sight_are_one(p in vector(), ahead in vector(), n in vector()) {
+            prop_assume!(dot(wide(ahead), wide(ahead)) > 1e-3);
+            let identity = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+            let view = ModelView::new(&identity);
+            let at = |p: [f32; 3]| ObjectVertex { position: [p[0], p[1], p[2], 1.0], normal: n, fog_coordinate: 0.0, dimensions: [4; 4] };
+            let (there, straight_ahead) = (at(p), at(ahead));
+            let far = EyeVertex::new(&there, &view, Viewer::Infinite(ahead)).reflection();
+            prop_assert_eq!(far, EyeVertex::new(&straight_ahead, &view, Viewer::Local).reflection());
         }
     }
 }

@@ -40,12 +40,23 @@ pub struct CoordinateSet {
     pub emboss: Option<Emboss>,
     /// Applied at the end.
     pub matrix: Option<Rows>,
+    /// How the matrix is applied, by Direct3D's rules; `None`: to all four components.
+    pub transform: Option<StageTransform>,
+}
+
+/// D3DTSS_TEXTURETRANSFORMFLAGS.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StageTransform {
+    /// COUNT2 to COUNT4: the matrix is applied, and so many components count. 0 and 1 leave it out.
+    pub count: usize,
+    /// PROJECTED: the coordinates are divided by the last component that counts.
+    pub projected: bool,
 }
 
 impl CoordinateSet {
     /// Set number `index` as it was given.
     pub fn given(index: usize) -> CoordinateSet {
-        CoordinateSet { input: index, generators: [None; 4], emboss: None, matrix: None }
+        CoordinateSet { input: index, generators: [None; 4], emboss: None, matrix: None, transform: None }
     }
 
     /// The set of a vertex whose given sets are `given`.
@@ -57,10 +68,39 @@ impl CoordinateSet {
                 Some(generator) => generate(generator, component, vertex),
             }),
         };
-        match &self.matrix {
-            Some(matrix) => multiplied(matrix, coordinates, profile),
-            None => coordinates,
+        match (&self.transform, &self.matrix) {
+            (Some(transform), matrix) => {
+                // Generated coordinates have four components, the last of which is 1.
+                let made = self.generators.iter().any(Option::is_some);
+                let [s, t, r, _] = coordinates;
+                let (coordinates, dimensions) =
+                    if made { ([s, t, r, 1.0], 4) } else { (coordinates, vertex.object.dimensions[self.input]) };
+                transform.of(coordinates, dimensions, matrix.as_ref())
+            }
+            (None, Some(matrix)) => multiplied(matrix, coordinates, profile),
+            (None, None) => coordinates,
         }
+    }
+}
+
+impl StageTransform {
+    /// What becomes of coordinates of which `dimensions` components were given. Before a matrix the first that was not is 1; the others, and
+    /// all of them without a matrix, are 0. q becomes the divisor: 1 unless projected, and of coordinates without a matrix the last that
+    /// was given.
+    fn of(&self, coordinates: [f32; 4], dimensions: usize, matrix: Option<&Rows>) -> [f32; 4] {
+        let transformed = self.count >= 2;
+        let input: [f32; 4] = std::array::from_fn(|n| match n {
+            _ if n < dimensions => coordinates[n],
+            _ if n == dimensions && transformed => 1.0,
+            _ => 0.0,
+        });
+        let (result, last) = match matrix.filter(|_| transformed) {
+            Some(matrix) => (super::transform(matrix, input), self.count),
+            None if transformed => (input, self.count),
+            None => (input, dimensions),
+        };
+        let divisor = result.get(last.saturating_sub(1)).copied().unwrap_or(1.0);
+        [result[0], result[1], result[2], if self.projected { divisor } else { 1.0 }]
     }
 }
 
@@ -102,7 +142,7 @@ fn multiplied(matrix: &Rows, coordinates: [f32; 4], profile: Profile) -> [f32; 4
 
 #[cfg(test)]
 mod tests {
-    use super::super::{ModelView, ObjectVertex};
+    use super::super::{ModelView, ObjectVertex, Viewer};
     use super::*;
     use proptest::prelude::*;
 
@@ -115,9 +155,9 @@ mod tests {
     }
 
     fn at(set: &CoordinateSet, view: &Rows, position: [f32; 4], normal: [f32; 3], profile: Profile) -> [f32; 4] {
-        let object = ObjectVertex { position, normal, fog_coordinate: 0.0 };
+        let object = ObjectVertex { position, normal, fog_coordinate: 0.0, dimensions: [4; 4] };
         let view = ModelView::new(view);
-        set.at(&EyeVertex::new(&object, &view), &GIVEN, profile)
+        set.at(&EyeVertex::new(&object, &view, Viewer::Local), &GIVEN, profile)
     }
 
     #[test]
@@ -165,6 +205,34 @@ mod tests {
         // s' = 2 * 3 + 6 = 12; q' = 3 + 6, or 12 + 6.
         assert_eq!(at(&made, &IDENTITY, [0.0; 4], [0.0; 3], Profile::Nv2a), [12.0, 4.0, 5.0, 9.0]);
         assert_eq!(at(&made, &IDENTITY, [0.0; 4], [0.0; 3], Profile::Nv10), [12.0, 4.0, 5.0, 18.0]);
+    }
+
+    /// The table of Direct3D's flags over one to four given components, with a matrix that turns their order round.
+    #[test]
+    fn flags_count_and_project() {
+        let matrix = [[0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [1.0, 0.0, 0.0, 0.0]];
+        let of = |given: usize, count, projected| {
+            let transform = StageTransform { count, projected };
+            transform.of([0.8, 0.2, 0.4, 0.5], given, Some(&matrix))
+        };
+        // Left out: 0 and 1 are alike, and the last that was given divides.
+        for count in [0, 1] {
+            assert_eq!(of(1, count, false), [0.8, 0.0, 0.0, 1.0]);
+            assert_eq!(of(1, count, true), [0.8, 0.0, 0.0, 0.8]);
+            assert_eq!(of(3, count, true), [0.8, 0.2, 0.4, 0.4]);
+            assert_eq!(of(4, count, true), [0.8, 0.2, 0.4, 0.5]);
+        }
+        assert_eq!(of(1, 2, false), [0.0, 0.0, 1.0, 1.0]);
+        assert_eq!(of(2, 2, true), [0.0, 1.0, 0.2, 1.0]);
+        assert_eq!(of(2, 3, true), [0.0, 1.0, 0.2, 0.2]);
+        assert_eq!(of(3, 4, true), [1.0, 0.4, 0.2, 0.8]);
+        assert_eq!(of(4, 4, false), [0.5, 0.4, 0.2, 1.0]);
+        assert_eq!(of(4, 3, true), [0.5, 0.4, 0.2, 0.2]);
+        // Without a matrix it is the identity.
+        assert_eq!(
+            StageTransform { count: 3, projected: true }.of([0.8, 0.2, 9.0, 9.0], 2, None),
+            [0.8, 0.2, 1.0, 1.0]
+        );
     }
 
     #[test]

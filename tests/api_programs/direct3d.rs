@@ -4,22 +4,35 @@ use super::Choices;
 use super::run::{Pixel, agrees, run};
 use ninebit::program::At;
 use ninebit::program::texture_stages::{
-    ArgumentSource, Context, Half, Operation, ResultArgument, StageArgument, TextureStage, TextureStages, lower,
+    ArgumentSource, Context, Half, Operation, ResultArgument, STAGES, StageArgument, TextureStage, TextureStages, lower,
 };
 use ninebit::state::{Combiners, Named, Profile, ShaderOperation};
 use proptest::prelude::*;
 
-/// A random argument.
-fn argument(choices: &mut Choices) -> At<StageArgument> {
-    let source = choices.of(ArgumentSource::ALL);
+/// A random argument of a stage, which has a texture or not.
+fn argument(choices: &mut Choices, texture: bool) -> At<StageArgument> {
+    let source = match choices.of(ArgumentSource::ALL) {
+        ArgumentSource::Texture if !texture => ArgumentSource::Temp,
+        source => source,
+    };
     let [complement, alpha_replicate] = [0, 1].map(|_| choices.below(4) == 0);
     At::default_of(StageArgument { source, complement, alpha_replicate })
 }
 
-fn half(choices: &mut Choices, alpha: bool) -> Half {
+/// Stage `index` of which the first four have textures.
+fn half(choices: &mut Choices, index: usize, alpha: bool) -> Half {
+    let units = Profile::Nv2a.texture_units();
+    let possible = |op: &Operation| match op {
+        Operation::PreModulate | Operation::BumpEnvMap | Operation::BumpEnvMapLuminance => index + 1 < units,
+        Operation::BlendTextureAlpha | Operation::BlendTextureAlphaPM => index < units,
+        _ => true,
+    };
     let operations: Vec<Operation> =
-        Operation::ALL.iter().copied().filter(|op| !(alpha && op.is_color_only())).collect();
-    Half { operation: At::default_of(choices.of(&operations)), arguments: std::array::from_fn(|_| argument(choices)) }
+        Operation::ALL.iter().copied().filter(|op| !(alpha && op.is_color_only()) && possible(op)).collect();
+    Half {
+        operation: At::default_of(choices.of(&operations)),
+        arguments: std::array::from_fn(|_| argument(choices, index < units)),
+    }
 }
 
 /// A random cascade.
@@ -27,8 +40,8 @@ pub(super) fn stages(choices: &mut Choices, most: usize) -> TextureStages {
     let count = 1 + choices.below(most);
     let stages = (0..count)
         .map(|index| TextureStage {
-            color: half(choices, false),
-            alpha: half(choices, true),
+            color: half(choices, index, false),
+            alpha: half(choices, index, true),
             result: if choices.below(4) == 0 { ResultArgument::Temp } else { ResultArgument::Current },
             constant: choices.color(),
             ..TextureStage::initial(index)
@@ -40,7 +53,10 @@ pub(super) fn stages(choices: &mut Choices, most: usize) -> TextureStages {
 /// The API's result.
 fn reference(program: &TextureStages, context: &Context, pixel: &Pixel) -> [f64; 4] {
     let white = [1.0; 4];
-    let texture = |unit: usize| if context.bound[unit] { Pixel::real(pixel.textures[unit]) } else { white };
+    let texture = |unit: usize| match context.bound.get(unit) {
+        Some(true) => Pixel::real(pixel.textures[unit]),
+        _ => white,
+    };
     let factor = Pixel::real(program.texture_factor);
     let diffuse = Pixel::real(pixel.diffuse);
     let (mut current, mut temp) = (diffuse, [0.0; 4]);
@@ -142,7 +158,8 @@ proptest! {
         let mut choices = Choices(seed);
         let profile = if nv10 { Profile::Nv10 } else { Profile::Nv2a };
         let context = context(&mut choices, profile);
-        let program = stages(&mut choices, profile.texture_units());
+        // Nv10 has room for two stages, Nv2a for all that the API has.
+        let program = stages(&mut choices, if nv10 { 2 } else { STAGES });
         match lower(&program, &context) {
             Ok(lowered) => {
                 prop_assert!(lowered.combiners.stages.len() <= profile.general_stages());

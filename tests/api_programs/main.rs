@@ -1,4 +1,4 @@
-//! Programs of APIs, against the formulas of the APIs: Direct3D texture stages and the OpenGL texture environment.
+//! Programs of APIs, against the formulas of the APIs: Direct3D texture stages and pixel shaders, and the OpenGL texture environment.
 //!
 //! The formulas stand here a second time, in float64 and from the APIs' own text, and know nothing of combiners.
 #![allow(
@@ -10,6 +10,7 @@
 mod direct3d;
 mod opengl;
 mod pasted;
+mod pixel_shader;
 mod run;
 mod scenes;
 

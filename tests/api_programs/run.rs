@@ -69,13 +69,14 @@ pub(crate) fn run<L: Lane>(combiners: &Combiners, profile: Profile, pixel: &Pixe
     final_combiner::run(&state, profile, &policies, &mut registers, &mut Silent)
 }
 
-/// How far, in 255ths, the integers of the fragment can be from the real numbers: from what each rule rounds.
-pub(crate) fn bound(combiners: &Combiners) -> [f64; 2] {
+/// How far, in 255ths, the integers of the fragment can be from the real numbers: from what each rule rounds. `least`: 1 where negative
+/// results are read, whose limits are -256 and -255.
+pub(crate) fn bound(combiners: &Combiners, least: f64) -> [f64; 2] {
     // Of every register: colour, alpha. What the pixel brings is exact.
     let mut errors = [[0.0_f64; 2]; 12];
     for stage in &combiners.stages {
-        let [rgb, alpha] =
-            [(&stage.rgb, 0), (&stage.alpha, 1)].map(|(portion, half)| portion_bound(portion, half, &errors));
+        let [rgb, alpha] = [(&stage.rgb, 0), (&stage.alpha, 1)]
+            .map(|(portion, half)| portion_bound(portion, half, &errors).max(least));
         for (portion, half, bound) in [(&stage.rgb, 0, rgb), (&stage.alpha, 1, alpha)] {
             for output in [portion.ab_output, portion.cd_output, portion.sum_output] {
                 errors[output as usize][half] = bound;
@@ -124,7 +125,7 @@ fn portion_bound(portion: &Portion, half: usize, errors: &[[f64; 2]; 12]) -> f64
 pub(crate) fn agrees(combiners: &Combiners, profile: Profile, pixel: &Pixel, expected: [f64; 4]) -> Result<(), String> {
     let ideal = run::<f64>(combiners, profile, pixel);
     let fixed = run::<i32>(combiners, profile, pixel);
-    let [rgb, alpha] = bound(combiners);
+    let [rgb, alpha] = bound(combiners, 0.0);
     for channel in 0..4 {
         let off = (ideal[channel] / 255.0 - expected[channel]).abs();
         if off > 1e-12 {

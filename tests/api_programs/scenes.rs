@@ -5,6 +5,7 @@ use ninebit::explain::{explain, explanation_text};
 use ninebit::limits::Limits;
 use ninebit::report::{trace_json, trace_text};
 use ninebit::scene::{self, Loaded};
+use ninebit::state::TextureImage;
 use std::path::Path;
 
 fn load(name: &str) -> Loaded {
@@ -22,6 +23,7 @@ fn a_surface_in_every_notation_has_the_same_bytes() {
     }
     assert_eq!(words(&stages), definition);
     assert_eq!(words(&load("dot3-texture-environment")), definition);
+    assert_eq!(words(&load("dot3-pixel-shader")), definition);
 }
 
 #[test]
@@ -38,6 +40,37 @@ fn traces_and_explanations_show_both_sides() {
     let explanation = explanation_text(&environment.plan, &explain(&environment.scene, &environment.plan), None);
     let part = "texture unit 0: Combine RGB Dot3RgbaArb(SourceColor of Texture, SourceColor of Constant)";
     assert!(explanation.contains(part), "{explanation}");
+    let shader = load("dot3-pixel-shader");
+    let trace = trace_text(&shader.plan, &engine::trace(&shader.plan, 0, (64, 64), None).unwrap());
+    assert!(trace.contains("general stage 0 rgb: pixel shader: dp3_sat r0, t0_bx2, v1_bx2"), "{trace}");
+    let explanation = explanation_text(&shader.plan, &explain(&shader.scene, &shader.plan), None);
+    assert!(explanation.contains("general stage 1 alpha: pixel shader: mul r0, r0, v0"), "{explanation}");
+}
+
+#[test]
+fn a_pixel_shader_that_moves_coordinates() {
+    let text = |profile: &str, program: &str| {
+        format!(
+            "(version: 1, profile: {profile}, targets: [(name: \"f\", width: 2, height: 2)], textures: {{ \
+             \"offsets\": (source: Solid(width: 1, height: 1, color: (0, 0, 64, 255))), \
+             \"map\": (source: Ramp(width: 4, height: 1, from: (0, 0, 0), to: (255, 255, 255), axis: Horizontal)) }}, \
+             draws: [(vertices: Window([(position: (0, 0)), (position: (4, 0)), (position: (0, 4))]), \
+             textures: [\"offsets\", (texture: \"map\", min_filter: Nearest, mag_filter: Nearest)], \
+             program: PixelShader({program}))])"
+        )
+    };
+    let parse = |text: &str| scene::parse(text, Path::new("bump.ron"), &Limits::default());
+    let shader = |more: &str| format!("text: \"ps.1.1\ntex t0\ntexbem t1, t0\nmov r0, t1\", {more}");
+    let loaded = parse(&text("Nv2a", &shader("bump: { \"t1\": (matrix: (1, 0, 0, 1)) }")))
+        .unwrap_or_else(|error| panic!("{error}"));
+    let [r, ..] = engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].rgba8()[0];
+    // Blue 64 is half a texture to the right: the third of four texels.
+    assert_eq!(r, 170);
+    assert_eq!(parse(&text("Nv2a", &shader(""))).unwrap_err().diagnostics[0].code, "NB0378");
+    let nv10 = parse(&text("Nv10", &shader("bump: { \"t1\": (matrix: (1, 0, 0, 1)) }"))).unwrap_err();
+    let finding = &nv10.diagnostics[0];
+    assert_eq!((finding.code, finding.message.as_str()), ("NB0340", "texbem needs the texture shader; nv10 has none"));
+    assert!(finding.notes[0].contains("AddSigned"), "{finding:?}");
 }
 
 #[test]
@@ -81,4 +114,97 @@ fn camera_space_coordinates_take_a_set_that_nothing_reads() {
     assert_eq!([0, 1].map(|unit| draw.texture_shader[unit].coordinate_set), [1, 0]);
     assert_eq!(draw.vertices[0].texture_coordinates[1], [0.0, 0.0, 0.0, 1.0]);
     assert_eq!(parse(&text("texgen: [CameraSpacePosition],")).unwrap_err().diagnostics[0].code, "NB0352");
+}
+
+/// A quad over 8 x 8 pixels with these fields of its draw, drawn.
+fn drawn(profile: &str, textures: &str, vertex: &str, fields: &str) -> (Loaded, Vec<[u8; 4]>) {
+    let corner = |x: i32, y: i32| format!("(position: ({x}, {y}, {}), {vertex})", f64::from(x) / 8.0);
+    let text = format!(
+        "(version: 1, profile: {profile}, targets: [(name: \"f\", width: 8, height: 8)], textures: {{ {textures} }}, draws: [\
+         (topology: Quads, vertices: Window([{}, {}, {}, {}]), {fields})])",
+        corner(0, 0),
+        corner(8, 0),
+        corner(8, 8),
+        corner(0, 8)
+    );
+    let loaded =
+        scene::parse(&text, Path::new("quad.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let shown = engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].rgba8();
+    (loaded, shown)
+}
+
+const CHECKS: &str =
+    "\"t\": (source: Checker(width: 8, height: 8, colors: ((255, 200, 100), (0, 10, 20))), levels: All)";
+
+/// The matrix is the stage's, not the set's: one set, two matrices, and a stage that takes it as it is.
+#[test]
+fn stages_read_one_set_through_their_own_matrices() {
+    let (loaded, _) = drawn(
+        "Nv2a",
+        CHECKS,
+        "t0: (0.25, 0.5)",
+        "textures: [\"t\", \"t\", \"t\"], texture_matrices: [Scale(2, 4, 1), Rows((1, 0, 3, 0), (0, 1, 5, 0), (0, 0, 1, 0), (0, 0, 0, 1)), \
+         Scale(9, 9, 9)], program: TextureStages(stages: [(texture_transform_flags: Count2), \
+         (color_op: Add, texture_coordinate_index: 0, texture_transform_flags: Count2), (color_op: Add, texture_coordinate_index: 0)])",
+    );
+    let draw = &loaded.scene.draws[0];
+    let of = |unit: usize| draw.vertices[0].texture_coordinates[draw.texture_shader[unit].coordinate_set];
+    // A matrix meets (s, t, 1, 0), so that its third column moves.
+    assert_eq!(of(0), [0.5, 2.0, 1.0, 1.0]);
+    assert_eq!(of(1), [3.25, 5.5, 1.0, 1.0]);
+    assert_eq!(of(2), [0.25, 0.5, 0.0, 1.0]);
+    // Where no stage has flags the matrix of the set applies.
+    let (loaded, _) = drawn(
+        "Nv2a",
+        CHECKS,
+        "t0: (0.25, 0.5)",
+        "textures: [\"t\"], texture_matrices: [Scale(2, 4, 1)], program: TextureStages(stages: [()])",
+    );
+    assert_eq!(loaded.scene.draws[0].vertices[0].texture_coordinates[0], [0.5, 2.0, 0.0, 1.0]);
+}
+
+/// Fog of vertices is the same on both chips, and straight where fog of pixels is not.
+#[test]
+fn fog_of_vertices_and_of_pixels() {
+    let fog = |profile, more: &str| {
+        let fields = format!("fog: (color: (255, 255, 255), mode: Exp, density: 4, coordinate_source: Depth{more})");
+        drawn(profile, "", "diffuse: (0, 0, 0)", &fields).1
+    };
+    let vertices = fog("Nv2a", ", evaluation: PerVertex");
+    assert_eq!(vertices, fog("Nv10", ""));
+    let pixels = fog("Nv2a", "");
+    assert_ne!(vertices, pixels);
+    // Half-way between e^0 and e^-4, and e^-2 of the middle.
+    let [[middle, ..], [of_pixel, ..]] = [vertices[4], pixels[4]];
+    assert!((middle as i32 - 141).abs() < 5 && (of_pixel as i32 - 227).abs() < 5, "{middle} {of_pixel}");
+}
+
+/// A texture that begins with level 1 is the texture of level 1 and what follows.
+#[test]
+fn first_levels_are_left_out() {
+    let (whole, _) = drawn("Nv2a", CHECKS, "t0: (0.25, 0.5)", "textures: [\"t\"]");
+    let later = CHECKS.replace("levels: All", "levels: All, first_level: 1");
+    let (later, _) = drawn("Nv2a", &later, "t0: (0.25, 0.5)", "textures: [\"t\"]");
+    let texels = |loaded: &Loaded| match &loaded.scene.textures[0].image {
+        TextureImage::Texels(texels) => (texels.width, texels.height, texels.levels, texels.words.clone()),
+        TextureImage::Target { .. } => panic!("texels were given"),
+    };
+    let ((width, height, levels, words), rest) = (texels(&whole), texels(&later));
+    assert_eq!((width, height, levels), (8, 8, 4));
+    assert_eq!((rest.0, rest.1, rest.2, &rest.3[..]), (4, 4, 3, &words[64..]));
+}
+
+/// From far away a flat mirror shows one place, from near by one after the other.
+#[test]
+fn a_viewer_far_away_sees_one_reflection() {
+    let places = |viewer: &str| {
+        let fields = format!("textures: [\"t\"], texgen: [CameraSpaceReflectionVector], {viewer}");
+        let (loaded, _) = drawn("Nv2a", CHECKS, "normal: (0, 0, 1)", &fields);
+        [0, 2].map(|vertex: usize| loaded.scene.draws[0].vertices[vertex].texture_coordinates[0])
+    };
+    let [first, last] = places("");
+    assert_ne!(first, last);
+    assert_eq!(places("viewer: Local"), [first, last]);
+    assert_eq!(places("viewer: Infinite"), [[0.0, 0.0, 1.0, 1.0]; 2]);
+    assert_eq!(places("viewer: Infinite(0, 0, 2)"), [[0.0, 0.0, -1.0, 1.0]; 2]);
 }

@@ -52,6 +52,7 @@ pub fn draw(topology: Topology, vertices: Vec<Vertex>) -> Draw {
         texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, false)),
         combiners: shows(FinalRegister::PrimaryColor),
         program_origin: vec![],
+        vertex_program: None,
         alpha_test: None,
         depth_test: None,
         blend: None,

@@ -207,8 +207,12 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
     let styles: CoordinateStyles = std::array::from_fn(|_| c.below(16));
     let (textures, texture_shader) = texture::units(&mut c.part(UNITS), given, &usable, &styles);
     let topology: Topology = c.any();
-    let (vertices, positions) = vertices(&mut vertex_tape, topology, surface, &styles);
-    let fog = fog(c, profile);
+    let (mut vertices, positions) = vertices(&mut vertex_tape, topology, surface, &styles);
+    let (fog, beyond) = fog(c, profile);
+    if let Some((index, coordinate)) = beyond {
+        let count = vertices.len();
+        vertices[index as usize % count].fog = coordinate;
+    }
     let mut indices: Vec<u32> = (0..vertices.len() as u32).collect();
     if c.once_in(8) {
         for index in &mut indices {
@@ -252,10 +256,12 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         color_mask: if c.once_in(5) { std::array::from_fn(|_| c.below(3) != 0) } else { [true; 4] },
         combiners: combiners(c, profile),
         program_origin: vec![],
+        vertex_program: None,
     }
 }
 
-fn fog(c: &mut Choices<'_>, profile: Profile) -> Fog {
+/// Fog, and now and then a vertex whose coordinate is not finite.
+fn fog(c: &mut Choices<'_>, profile: Profile) -> (Fog, Option<(u32, f32)>) {
     let mut c = c.part(16);
     let (enabled, color) = (c.once_in(2), [c.byte(), c.byte(), c.byte()]);
     let possible = FOG_FUNCTIONS && profile == Profile::Nv2a;
@@ -273,7 +279,9 @@ fn fog(c: &mut Choices<'_>, profile: Profile) -> Fog {
             _ => c.pick(&[-0.125, -1.0, 0.25, 0.0, -0.090_168_44, 1e-9]),
         },
     });
-    Fog { enabled, color, function }
+    let beyond = (function.is_some() && c.once_in(16))
+        .then(|| (c.word(), c.pick(&[f32::INFINITY, f32::NEG_INFINITY, f32::NAN])));
+    (Fog { enabled, color, function }, beyond)
 }
 
 // ---- geometry ----

@@ -2,7 +2,7 @@
 
 use super::raster::{Sample, Setup};
 use super::real::{bits, factor_byte, floor_div, floor_sum, shift, split};
-use super::tally::count_named;
+use super::tally::{count, count_named};
 use ninebit::state::{FogFunction, FogMode};
 use std::sync::OnceLock;
 
@@ -24,10 +24,24 @@ pub fn factor(setup: &Setup, sample: &Sample, function: Option<FogFunction>) -> 
         }
         Some(function) => {
             count_named(function.mode);
-            in_4096ths(function, coordinate(setup, sample))
+            let given = setup.vertices.iter().map(|vertex| vertex.fog).chain([function.p0, function.p1]);
+            if given.into_iter().any(|number| !number.is_finite()) {
+                count("fog", "not finite");
+                without_a_coordinate(function.mode)
+            } else {
+                in_4096ths(function, coordinate(setup, sample))
+            }
         }
     };
     factor_byte(v.clamp(0, 4096))
+}
+
+/// INT-5: what something that is not finite gives: no fog in three of the modes.
+fn without_a_coordinate(mode: FogMode) -> i128 {
+    match mode {
+        FogMode::Linear | FogMode::LinearAbs | FogMode::Exp => 4096,
+        FogMode::ExpAbs | FogMode::Exp2 | FogMode::Exp2Abs => 0,
+    }
 }
 
 /// INT-5: the fog coordinate cut to 24 significant bits, as m 2^e.

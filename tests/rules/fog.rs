@@ -6,8 +6,8 @@ use ninebit::number::convert::factor_byte;
 use ninebit::raster::fog::FogPlane;
 use ninebit::state::{FogFunction, FogMode, Profile};
 use ninebit::vertex::fog::vertex_factor;
-use ninebit::vertex::texgen::{CoordinateSet, Generator};
-use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows};
+use ninebit::vertex::texgen::{CoordinateSet, Generator, StageTransform};
+use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 
 #[test]
 fn examples_of_fog() {
@@ -48,15 +48,21 @@ fn examples_of_the_vertex_side() {
         "TSH-11",
         "p' = (0, 3, -4, 1): without a normal r = (0, 0.6, -0.8); with n = (0, 0, 1) r = (0, 0.6, 0.8), m = 3.795, the sphere \
          map is (0.5, 0.658). M with rows (2, 0, 0, 1) and (1, 0, 0, 1) for s and q takes (3, 4, 5, 6) to s' = 12 and q' = 9, \
-         on nv10 q' = 18.",
+         on nv10 q' = 18. With an infinite viewer r = (0, 0, 1). With COUNT3 and PROJECTED that M takes (3, 4), then (3, 4, 1, 0), \
+         to (6, 4, 1, 1).",
     );
     const IDENTITY: Rows = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
     let view = ModelView::new(&IDENTITY);
-    let object = |normal| ObjectVertex { position: [0.0, 3.0, -4.0, 1.0], normal, fog_coordinate: 0.0 };
+    let object =
+        |normal| ObjectVertex { position: [0.0, 3.0, -4.0, 1.0], normal, fog_coordinate: 0.0, dimensions: [2; 4] };
     let (bare, facing) = (object([0.0; 3]), object([0.0, 0.0, 1.0]));
     let tenths = |r: [f32; 3]| r.map(|c| (10.0 * c).round());
-    tsh11.gives("r without a normal", tenths(EyeVertex::new(&bare, &view).reflection()), [0.0, 6.0, -8.0]);
-    let vertex = EyeVertex::new(&facing, &view);
+    tsh11.gives(
+        "r without a normal",
+        tenths(EyeVertex::new(&bare, &view, Viewer::Local).reflection()),
+        [0.0, 6.0, -8.0],
+    );
+    let vertex = EyeVertex::new(&facing, &view, Viewer::Local);
     tsh11.gives("r", tenths(vertex.reflection()), [0.0, 6.0, 8.0]);
     tsh11.shows("m", 2.0 * (0.36_f64 + 1.8 * 1.8).sqrt(), 3, "3.795");
     let given = [[3.0, 4.0, 5.0, 6.0]; 4];
@@ -67,4 +73,9 @@ fn examples_of_the_vertex_side() {
     let moved = CoordinateSet { matrix: Some(rows), ..CoordinateSet::given(0) };
     tsh11.gives("M t", moved.at(&vertex, &given, Profile::Nv2a), [12.0, 4.0, 5.0, 9.0]);
     tsh11.gives("M t on nv10", moved.at(&vertex, &given, Profile::Nv10), [12.0, 4.0, 5.0, 18.0]);
+    let far = EyeVertex::new(&facing, &view, Viewer::FAR);
+    tsh11.gives("r from far away", tenths(far.reflection()), [0.0, 0.0, 10.0]);
+    let transform = Some(StageTransform { count: 3, projected: true });
+    let projected = CoordinateSet { transform, ..moved };
+    tsh11.gives("COUNT3, PROJECTED", projected.at(&vertex, &given, Profile::Nv2a), [6.0, 4.0, 1.0, 1.0]);
 }

@@ -18,3 +18,4 @@ mod texture_formats;
 mod texture_levels;
 mod texture_shader;
 mod texture_units;
+mod vertex;

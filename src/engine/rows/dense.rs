@@ -131,6 +131,7 @@ fn scene(vertices: Vec<Vertex>, filter: Filter) -> Scene {
         fog: Fog { enabled: false, color: [0; 3], function: None },
         textures: [unit(0), unit(1), None, None],
         texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, unit < 2)),
+        vertex_program: None,
         combiners: Combiners {
             stages: vec![stage],
             mux_select: MuxSelect::Msb,

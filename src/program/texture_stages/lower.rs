@@ -3,12 +3,15 @@
 use std::ops::Range;
 
 use super::operation::Surroundings;
-use super::{ArgumentSource, Generation, Half, Operation, ResultArgument, StageArgument, TextureStage, TextureStages};
+use super::{
+    ArgumentSource, Generation, Half, Operation, PROJECTED, ResultArgument, StageArgument, TextureStage, TextureStages,
+};
 use crate::diagnostic::Diagnostic;
 use crate::program::At;
 use crate::program::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
 use crate::program::finding::finding;
 use crate::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
+use crate::vertex::texgen::StageTransform;
 
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,6 +33,8 @@ pub struct UnitChange {
     pub coordinate_set: Option<usize>,
     /// Its coordinates are made on the vertex side.
     pub generation: Option<At<Generation>>,
+    /// How the draw's texture matrix of the stage's number applies to them, if the stage says so.
+    pub transform: Option<At<StageTransform>>,
     /// Its texture shader operation, with the place of the stage operation that asks for it. It reads the unit before.
     pub operation: Option<At<ShaderOperation>>,
 }
@@ -51,7 +56,8 @@ pub struct Lowered {
 /// Everything that the chip, or this version, has no form for.
 pub fn lower(program: &TextureStages, context: &Context) -> Result<Lowered, Vec<Diagnostic>> {
     let active = program.stages.iter().take_while(|stage| stage.color.operation.value != Operation::Disable).count();
-    let mut walk = Walk { program, context, active, findings: Vec::new(), units: Default::default() };
+    let transforms = program.stages.iter().any(|stage| !stage.transform_flags.place.is_empty());
+    let mut walk = Walk { program, context, active, transforms, findings: Vec::new(), units: Default::default() };
     let mut cascade = Cascade::new(context.profile, context.signed);
     for (index, stage) in program.stages.iter().take(active).enumerate() {
         walk.coordinates(index, stage);
@@ -101,6 +107,8 @@ struct Walk<'p> {
     context: &'p Context,
     /// Stages before the first disabled one.
     active: usize,
+    /// Some stage says how texture matrices apply: to the others, too, as the API has it.
+    transforms: bool,
     findings: Vec<Diagnostic>,
     units: [UnitChange; TEXTURE_UNITS],
 }
@@ -219,14 +227,21 @@ impl Walk<'_> {
                 unit.coordinate_set = Some(at.value.set as usize);
             }
         }
-        if stage.transform_flags.value != 0 {
+        let At { value: flags, place } = &stage.transform_flags;
+        let (count, projected) = (flags & !PROJECTED, flags & PROJECTED != 0);
+        if count > 4 {
             self.findings.push(finding(
-                "NB0401",
-                stage.transform_flags.place.clone(),
-                "not built yet: texture coordinate transforms in texture stages",
-                "reserved for a later version",
-                "write D3DTTFF_DISABLE, and the draw's `texture_matrices: [...]`",
+                "NB0206",
+                place.clone(),
+                format!("there are no transform flags {flags:#x}"),
+                "out of range",
+                "write 0 (D3DTTFF_DISABLE) to 4 (D3DTTFF_COUNT4), with 256 (D3DTTFF_PROJECTED) or without",
             ));
+        } else if let Some(unit) = self.units.get_mut(index)
+            && self.transforms
+        {
+            let value = StageTransform { count: count as usize, projected };
+            unit.transform = Some(At { value, place: place.clone() });
         }
     }
 

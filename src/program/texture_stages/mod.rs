@@ -16,6 +16,9 @@ pub use lower::{Context, Lowered, UnitChange, lower};
 pub use operation::Operation;
 pub use text::parse;
 
+/// D3DTTFF_PROJECTED.
+pub const PROJECTED: u32 = 256;
+
 /// Stages that the API has.
 pub const STAGES: usize = 8;
 
@@ -122,7 +125,8 @@ pub struct TextureStage {
     pub constant: [u8; 4],
     /// TEXCOORDINDEX; `None`: as the texture unit says.
     pub coordinate_index: Option<At<CoordinateIndex>>,
-    /// TEXTURETRANSFORMFLAGS.
+    /// TEXTURETRANSFORMFLAGS: a count 0 to 4, and [`PROJECTED`]. Where no stage writes them the draw's texture matrices apply as they
+    /// do to other programs.
     pub transform_flags: At<u32>,
     /// BUMPENVMAT00, 01, 10, 11.
     pub bump_matrix: [f32; 4],

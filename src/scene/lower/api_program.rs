@@ -1,5 +1,6 @@
 //! Programs in the language of an API, which become combiners for each draw.
 
+use super::pixel_shader::ShaderProgram;
 use super::program_text::ProgramText;
 use super::texture::Textures;
 use super::unit::Units;
@@ -18,6 +19,8 @@ pub(super) enum ApiProgram {
     Stages(TextureStages, Option<ProgramText>),
     /// OpenGL.
     Environment(TextureEnvironment),
+    /// Direct3D, version 1.1 of pixel shaders.
+    Shader(Box<ShaderProgram>),
 }
 
 /// What of a draw the lowering depends on, or changes.
@@ -71,6 +74,7 @@ impl ApiProgram {
                     None => findings,
                 })
             }
+            ApiProgram::Shader(program) => program.lower(reader, units, textures, &mut shader, around, signed),
             ApiProgram::Environment(program) => {
                 let format = |unit: TextureUnit| textures.list.get(unit.texture).map(|texture| texture.format);
                 let formats = std::array::from_fn(|index| match units.shader[index].operation {
@@ -96,8 +100,8 @@ impl ApiProgram {
     }
 }
 
-/// Coordinate sets of the units: chosen, or made. A made one takes the set of the unit's number if no other unit reads that as it was
-/// given, or else one that none reads.
+/// Coordinate sets of the units: chosen, or made of generators or a stage's transform. A made one takes the set of the unit's number if no
+/// other unit reads that as it was given, or else one that none reads.
 fn generate(
     changes: &[stages::UnitChange; TEXTURE_UNITS],
     profile: Profile,
@@ -108,32 +112,42 @@ fn generate(
     let mut taken = [false; 4];
     for (stage, change) in shader.iter_mut().zip(changes) {
         stage.coordinate_set = change.coordinate_set.unwrap_or(stage.coordinate_set);
-        if change.generation.is_none() && stage.operation != ShaderOperation::None {
+        if change.generation.is_none() && change.transform.is_none() && stage.operation != ShaderOperation::None {
             taken[stage.coordinate_set] = true;
         }
     }
+    let written = around.sets;
     for (index, change) in changes.iter().enumerate() {
-        let Some(made) = &change.generation else { continue };
+        let made = match (&change.generation, &change.transform) {
+            (Some(made), _) => Some((made.value.name(), "generates coordinates as well", &made.place)),
+            (None, Some(made)) => Some(("a transform of coordinates", "makes coordinates as well", &made.place)),
+            (None, None) => None,
+        };
+        let Some((what, label, place)) = made else { continue };
         if around.generators {
+            // Flags that another stage has brought in: it has been complained of.
+            if place.is_empty() {
+                continue;
+            }
             findings.push(
-                Diagnostic::error(
-                    "NB0352",
-                    made.place.clone(),
-                    format!("{} beside the draw's texgen", made.value.name()),
-                )
-                .label("generates coordinates as well")
-                .rule("TSH-11")
-                .help("leave one of them out"),
+                Diagnostic::error("NB0352", place.clone(), format!("{what} beside the draw's texgen"))
+                    .label(label)
+                    .rule("TSH-11")
+                    .help("leave one of them out"),
             );
             continue;
         }
         let free = std::iter::once(index).chain(0..profile.texture_units()).find(|set| !taken[*set]);
         let Some(set) = free else { continue };
         taken[set] = true;
-        shader[index].coordinate_set = set;
+        let input = std::mem::replace(&mut shader[index].coordinate_set, set);
         let sets = around.sets.get_or_insert_with(|| [0, 1, 2, 3].map(CoordinateSet::given));
-        let matrix = sets[index].matrix;
-        sets[set] = CoordinateSet { generators: texgen::whole(made.value), matrix, ..CoordinateSet::given(set) };
+        sets[set] = CoordinateSet {
+            generators: change.generation.as_ref().map_or([None; 4], |made| texgen::whole(made.value)),
+            matrix: written.and_then(|sets| sets[index].matrix),
+            transform: change.transform.as_ref().map(|made| made.value),
+            ..CoordinateSet::given(input)
+        };
     }
 }
 

@@ -1,4 +1,4 @@
-//! Generated meshes, and what of a mesh goes into the vertices.
+//! What of a mesh goes into the vertices.
 #![allow(
     clippy::float_arithmetic,
     reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
@@ -7,61 +7,16 @@
 use super::matrix::{dot, normalize, subtract};
 use super::names::Names;
 use super::*;
-use crate::scene::mesh::{self, Mesh};
+use crate::scene::mesh::Mesh;
 use crate::scene::raw::Numbers;
 use crate::state::{Vertex, VertexColor};
-
-/// A mesh from its description.
-pub(super) fn generate<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Mesh> {
-    let (kind, rest) = reader.variant(raw, "mesh", &["Grid", "Sphere"])?;
-    let opening = reader.range(rest.get(..1).unwrap_or(rest));
-    let count = |reader: &mut Reader<'a>, field: &Option<Raw<'a, u32>>, name: &str, owner: &str| {
-        reader.required(field, name, owner, opening.clone()).and_then(|raw| reader.read(&raw))
-    };
-    let pair = |reader: &mut Reader<'a>, field: &Option<Raw<'a, Numbers>>, name: &str, default: [f32; 2]| match field {
-        Some(raw) => reader.numbers(raw, name, 2, 2, [0.0; 4]).map(|[a, b, ..]| [a, b]),
-        None => Some(default),
-    };
-    let mesh = if kind == 0 {
-        let grid = reader.read(&Raw::<source::Grid<'a>>::new(rest))?;
-        let columns = count(reader, &grid.columns, "columns", "grid");
-        let rows = count(reader, &grid.rows, "rows", "grid");
-        let size = pair(reader, &grid.size, "the size of a grid", [2.0, 2.0]);
-        let repeat = pair(reader, &grid.repeat, "the repeat of a texture", [1.0, 1.0]);
-        mesh::grid(columns?, rows?, size?, repeat?)
-    } else {
-        let sphere = reader.read(&Raw::<source::Sphere<'a>>::new(rest))?;
-        let slices = count(reader, &sphere.slices, "slices", "sphere");
-        let stacks = count(reader, &sphere.stacks, "stacks", "sphere");
-        let radius = match &sphere.radius {
-            Some(raw) => reader.finite(raw),
-            None => Some(1.0),
-        };
-        let repeat = pair(reader, &sphere.repeat, "the repeat of a texture", [1.0, 1.0]);
-        mesh::sphere(slices?, stacks?, radius?, repeat?)
-    };
-    match mesh {
-        Ok(mesh) if mesh.positions.len() <= reader.limits.vertices => Some(mesh),
-        Ok(mesh) => {
-            let place = reader.span(raw);
-            reader.push(vertex::too_many(place, mesh.positions.len(), reader.limits.vertices));
-            None
-        }
-        Err(error) => {
-            let code = if matches!(error, mesh::MeshError::TooFine { .. }) { "NB0603" } else { "NB0206" };
-            let place = reader.span(raw);
-            reader.push(Diagnostic::error(code, place, error.to_string()).label("this mesh"));
-            None
-        }
-    }
-}
 
 /// What of a mesh goes into one output of its vertices.
 pub(super) enum Source {
     /// The same for all.
     Color(VertexColor),
-    /// The same for all.
-    Coordinates([f32; 4]),
+    /// The same for all, and how many are written.
+    Coordinates([f32; 4], usize),
     Position,
     Normal,
     Tangent,
@@ -102,7 +57,8 @@ pub(super) fn source<'a>(
         return color::vertex_color(reader, names, &raw.as_other()).map(Source::Color);
     }
     if !color && raw.text.starts_with('(') {
-        return vertex::coordinates(reader, &raw.as_other()).map(Source::Coordinates);
+        return vertex::coordinates(reader, &raw.as_other())
+            .map(|(values, written)| Source::Coordinates(values, written));
     }
     let (kind, rest) = reader.variant(raw, "mesh attribute", SOURCES)?;
     if kind < 5 && !rest.is_empty() {
@@ -176,6 +132,19 @@ pub(super) struct Outputs {
     pub(super) coordinates: [Source; 4],
 }
 
+impl Outputs {
+    /// How many components each coordinate set has: vectors of a mesh three, texture coordinates two.
+    pub(super) fn dimensions(&self) -> [usize; 4] {
+        [0, 1, 2, 3].map(|set| match &self.coordinates[set] {
+            Source::Coordinates(_, written) => *written,
+            Source::TextureCoordinates => 2,
+            Source::Position | Source::Normal | Source::Tangent | Source::Binormal => 3,
+            Source::Light { .. } | Source::Half { .. } => 3,
+            Source::Color(_) => 4,
+        })
+    }
+}
+
 /// The vertices of a mesh; positions are left in object space.
 pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vec<Vertex> {
     let vertex = |index: usize| {
@@ -198,7 +167,7 @@ pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vec<Vertex> {
     (0..mesh.positions.len()).map(vertex).collect()
 }
 
-fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
+pub(super) fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
     let extend = |v: [f32; 3]| [v[0], v[1], v[2], 1.0];
     let position = mesh.positions[index];
     let toward = |light: &Light| match light {
@@ -216,7 +185,7 @@ fn evaluate(mesh: &Mesh, index: usize, source: &Source) -> [f32; 4] {
     };
     match source {
         Source::Color(_) => [0.0, 0.0, 0.0, 1.0],
-        Source::Coordinates(values) => *values,
+        Source::Coordinates(values, _) => *values,
         Source::Position => extend(position),
         Source::Normal => extend(mesh.normals[index]),
         Source::Tangent => extend(mesh.tangents[index]),

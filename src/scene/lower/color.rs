@@ -66,6 +66,14 @@ fn byte(value: f32) -> u8 {
     (255.0 * f64::from(value.clamp(0.0, 1.0)) + 0.5).floor() as u8
 }
 
+/// A colour as floats: of a byte n / 255, which NUM-0 makes the same byte again.
+pub(super) fn floats(color: VertexColor) -> [f32; 4] {
+    match color {
+        VertexColor::Floats(floats) => floats,
+        VertexColor::Bytes(bytes) => bytes.map(|byte| f32::from(byte) / 255.0),
+    }
+}
+
 /// A colour that is not a name.
 pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
     let (head, rest) = raw.split();

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::api_program::Around;
-use super::attribute::{Outputs, Source};
+use super::geometry::{geometry, vertex_side};
 use super::names::Names;
 use super::program::Program;
 use super::target::Targets;
@@ -11,11 +11,8 @@ use super::texture::Textures;
 use super::*;
 use crate::state::{
     Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
-    Topology, VertexColor, Viewport,
+    Topology,
 };
-use crate::vertex::fog::{FogSource, vertex_factor};
-use crate::vertex::texgen::CoordinateSet;
-use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows};
 
 /// Reads the draws, with their places.
 pub(super) fn draws<'a>(
@@ -84,70 +81,6 @@ struct Header {
     opening: Range<usize>,
 }
 
-/// The vertices of a draw as they were described.
-struct Geometry {
-    positions: Positions,
-    vertices: Vec<crate::state::Vertex>,
-    spans: VertexSpans,
-    /// Of a mesh.
-    triangles: Option<Vec<u32>>,
-    /// What generated coordinates and fog start from.
-    objects: Vec<ObjectVertex>,
-    model_view: Rows,
-}
-
-/// Generated texture coordinates, texture matrices and fog, into the vertices. False once a finding has been recorded.
-fn vertex_side(
-    reader: &mut Reader<'_>,
-    geometry: &mut Geometry,
-    sets: &Option<[CoordinateSet; 4]>,
-    fog: &fog::FogFields,
-    draw: &Range<usize>,
-) -> bool {
-    if sets.is_none() && fog.function.is_none() {
-        return true;
-    }
-    let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone() };
-    if let (Some(_), FogSource::Vertex, Some(_)) = (&fog.function, fog.source, &geometry.triangles) {
-        reader.push(
-            Diagnostic::error("NB0222", fog.place.clone(), "the vertices of a mesh give no fog coordinates")
-                .label("needs them from the vertices")
-                .rule("INT-5")
-                .help("add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices"),
-        );
-        return false;
-    }
-    let model_view = ModelView::new(&geometry.model_view);
-    for (index, (vertex, object)) in geometry.vertices.iter_mut().zip(&geometry.objects).enumerate() {
-        let eye = EyeVertex::new(object, &model_view);
-        if let Some(sets) = sets {
-            let given = vertex.texture_coordinates;
-            vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
-        }
-        if let Some(function) = &fog.function {
-            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye);
-            if reader.profile == Profile::Nv10 && vertex.fog.is_finite() {
-                vertex.fog = vertex_factor(function, vertex.fog);
-            }
-        }
-        let what = if !vertex.fog.is_finite() {
-            "the fog coordinate"
-        } else if !vertex.texture_coordinates.iter().flatten().all(|c| c.is_finite()) {
-            "a texture coordinate"
-        } else {
-            continue;
-        };
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
-                .label("beyond all numbers")
-                .rule("TSH-11")
-                .help("use smaller numbers in the matrices, in the planes or in the position"),
-        );
-        return false;
-    }
-    true
-}
-
 #[expect(clippy::too_many_arguments, reason = "a draw can refer to everything")]
 fn draw<'a>(
     reader: &mut Reader<'a>,
@@ -167,13 +100,15 @@ fn draw<'a>(
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
     let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
+    let viewer =
+        fields.viewer.as_ref().and_then(|raw| texgen::viewer(reader, raw)).unwrap_or(crate::vertex::Viewer::Local);
     let fog = fog::fog(reader, names, &fields.fog);
     let mut units = unit::units(reader, names, textures, &fields.textures);
     shader::shader(reader, textures, &mut units, &fields.texture_shader);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
     let topology = reader.name_or(&fields.topology, Topology::Triangles);
     let mut around = Around {
-        fog: fog.state(reader.profile).enabled,
+        fog: fog.state().enabled,
         shader: fields.texture_shader.is_some(),
         generators: fields.texgen.is_some(),
         sets,
@@ -190,7 +125,7 @@ fn draw<'a>(
         None => (combiner::default_program(), [None, None, None, None]),
     };
     if let Some(made) = &mut geometry
-        && !vertex_side(reader, made, &around.sets, &fog, &header.place)
+        && !vertex_side(reader, made, &around.sets, &fog, viewer, &header.place)
     {
         geometry = None;
     }
@@ -207,11 +142,12 @@ fn draw<'a>(
         cull: reader.name_or(&fields.cull, Cull::None),
         front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
         scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
-        fog: fog.state(reader.profile),
+        fog: fog.state(),
         textures: units.bound,
         texture_shader,
         combiners,
         program_origin,
+        vertex_program: None,
         alpha_test: None,
         depth_test: None,
         blend: None,
@@ -238,6 +174,7 @@ fn draw<'a>(
     let geometry = geometry?;
     draw.positions = geometry.positions;
     draw.vertices = geometry.vertices;
+    draw.vertex_program = geometry.program;
     draw.indices = indices(reader, fields, geometry.triangles, draw.vertices.len(), topology)?;
     target?;
     budget.take(reader, &draw, &header.place)?;
@@ -301,186 +238,6 @@ fn feedback(
             .help("draws happen in the order of the text: put the one that fills this target first"),
         );
     }
-}
-
-const SOURCES: &[&str] = &["Window", "Matrix", "Program"];
-
-fn geometry<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    target: usize,
-    raw: &Raw<'a, source::VertexSource>,
-) -> Option<Geometry> {
-    let (kind, rest) = reader.variant(raw, "vertex source", SOURCES)?;
-    match kind {
-        0 => {
-            let list = Raw::<crate::scene::raw::Tuple<'a, source::VertexList>>::new(rest);
-            let parts = reader.read(&list)?.0;
-            let [list] = parts[..] else {
-                reader.push(
-                    Diagnostic::error(
-                        "NB0211",
-                        reader.span(&list),
-                        "expected one list of vertices in these parentheses",
-                    )
-                    .label("here")
-                    .help("write `Window([(position: (10, 20)), ...])`"),
-                );
-                return None;
-            };
-            let data = names.vertices(reader, &list)?;
-            Some(Geometry {
-                positions: Positions::Window,
-                vertices: data.vertices.clone(),
-                spans: data.spans.clone(),
-                triangles: None,
-                objects: listed(&data),
-                model_view: matrix::IDENTITY,
-            })
-        }
-        1 => matrix_geometry(reader, names, targets, target, rest),
-        _ => {
-            reader.not_built(reader.range(&raw.text[.."Program".len()]), "vertex programs");
-            None
-        }
-    }
-}
-
-fn matrix_geometry<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    targets: &Targets,
-    target: usize,
-    text: &'a str,
-) -> Option<Geometry> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
-    let matrix = reader.required(&fields.matrix, "matrix", "vertex source", opening.clone());
-    let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
-    let model_view = match &fields.model_view {
-        Some(raw) => names.matrix(reader, raw),
-        None => Some(matrix::IDENTITY),
-    };
-    let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
-    let viewport = viewport(reader, &fields.viewport, size);
-    let (mut vertices, spans, triangles, objects) = match (&fields.vertices, &fields.mesh) {
-        (Some(raw), None) => {
-            let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
-            if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
-                reader.push(
-                    Diagnostic::error("NB0222", reader.span(output), "listed vertices have no mesh attributes")
-                        .label("needs a mesh")
-                        .help("write colours and texture coordinates in the vertices, or use `mesh: ...`"),
-                );
-            }
-            let data = names.vertices(reader, raw)?;
-            (data.vertices.clone(), data.spans.clone(), None, listed(&data))
-        }
-        (None, Some(raw)) => {
-            let mesh = names.mesh(reader, raw);
-            let outputs = outputs(reader, names, &fields);
-            let mesh = mesh?;
-            let vertices = attribute::vertices(&mesh, &outputs);
-            let object = |(vertex, normal): (&crate::state::Vertex, &[f32; 3])| ObjectVertex {
-                position: vertex.position,
-                normal: *normal,
-                fog_coordinate: 0.0,
-            };
-            let objects = vertices.iter().zip(&mesh.normals).map(object).collect();
-            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()), objects)
-        }
-        (both, _) => {
-            let (code, message) = match both {
-                Some(_) => ("NB0222", "either `vertices` or `mesh`, not both"),
-                None => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
-            };
-            reader.push(
-                Diagnostic::error(code, opening, message)
-                    .label("in here")
-                    .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`"),
-            );
-            return None;
-        }
-    };
-    let (matrix, model_view) = (matrix?, model_view?);
-    for vertex in &mut vertices {
-        vertex.position = crate::vertex::transform(&matrix, vertex.position);
-    }
-    if let Some(bad) = vertices.iter().position(|vertex| !vertex.position.iter().all(|value| value.is_finite())) {
-        let spans = DrawSpans { draw: opening, vertices: spans };
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(bad), format!("the matrix takes vertex {bad} beyond all numbers"))
-                .label("not finite after the matrix")
-                .rule("RAS-0")
-                .help("use smaller numbers in the matrix or in the position"),
-        );
-        return None;
-    }
-    Some(Geometry { positions: Positions::Clip(viewport), vertices, spans, triangles, objects, model_view })
-}
-
-/// Listed vertices as the vertex side takes them.
-fn listed(data: &vertex::VertexData) -> Vec<ObjectVertex> {
-    let object = |(vertex, extra): (&crate::state::Vertex, &vertex::Extra)| ObjectVertex {
-        position: vertex.position,
-        normal: extra.normal,
-        fog_coordinate: extra.fog_coordinate,
-    };
-    data.vertices.iter().zip(&data.extras).map(object).collect()
-}
-
-fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::MatrixVertices<'a>) -> Outputs {
-    let mut color = |field: &Option<Raw<'a, source::Attribute>>, default| {
-        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, true));
-        written.unwrap_or(Source::Color(VertexColor::Bytes(default)))
-    };
-    let (diffuse, specular) = (color(&fields.diffuse, [255; 4]), color(&fields.specular, [0; 4]));
-    let coordinates = [&fields.t0, &fields.t1, &fields.t2, &fields.t3].map(|field| {
-        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, false));
-        written.unwrap_or(Source::TextureCoordinates)
-    });
-    Outputs { diffuse, specular, coordinates }
-}
-
-fn viewport<'a>(
-    reader: &mut Reader<'a>,
-    raw: &Option<Raw<'a, source::Viewport<'a>>>,
-    (width, height): (u32, u32),
-) -> Viewport {
-    let mut viewport = Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, near: 0.0, far: 1.0 };
-    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return viewport };
-    for (field, slot, positive) in [
-        (&fields.x, &mut viewport.x, false),
-        (&fields.y, &mut viewport.y, false),
-        (&fields.width, &mut viewport.width, true),
-        (&fields.height, &mut viewport.height, true),
-        (&fields.near, &mut viewport.near, false),
-        (&fields.far, &mut viewport.far, false),
-    ] {
-        let Some(raw) = field else { continue };
-        let Some(value) = reader.finite(raw) else { continue };
-        if positive && value <= 0.0 {
-            reader.push(
-                Diagnostic::error("NB0206", reader.span(raw), "a viewport has a width and a height above 0")
-                    .label("out of range"),
-            );
-        }
-        *slot = value;
-    }
-    for (field, value) in [(&fields.near, viewport.near), (&fields.far, viewport.far)] {
-        if let Some(raw) = field
-            && !(0.0..=1.0).contains(&value)
-            && value.is_finite()
-        {
-            reader.push(
-                Diagnostic::error("NB0206", reader.span(raw), format!("a depth cannot be {value}"))
-                    .label("out of range")
-                    .help("write 0.0 (near) to 1.0 (far)"),
-            );
-        }
-    }
-    viewport
 }
 
 /// The indices: as written, of the mesh, or one for each vertex.

@@ -3,7 +3,7 @@
 use super::names::Names;
 use super::*;
 use crate::state::{Fog, FogFunction, FogMode, Named};
-use crate::vertex::fog::{FogSource, exponential, linear};
+use crate::vertex::fog::{FogEvaluation, FogSource, exponential, linear};
 
 /// Fog as it was written.
 pub(super) struct FogFields {
@@ -13,21 +13,34 @@ pub(super) struct FogFields {
     pub(super) function: Option<FogFunction>,
     /// Of the function's coordinate.
     pub(super) source: FogSource,
+    /// Where the function is evaluated.
+    pub(super) evaluation: FogEvaluation,
     /// Where the function stands in the text.
     pub(super) place: Range<usize>,
 }
 
 impl FogFields {
-    /// The state of the pixel pipe: on nv10 the vertices have been through the function (INT-5n).
-    pub(super) fn state(&self, profile: Profile) -> Fog {
-        let function = self.function.filter(|_| profile == Profile::Nv2a);
+    /// The state of the pixel pipe: evaluated at the vertices, the function is behind them (INT-5n).
+    pub(super) fn state(&self) -> Fog {
+        let function = self.function.filter(|_| self.evaluation == FogEvaluation::PerPixel);
         Fog { enabled: self.enabled, color: self.color, function }
     }
 }
 
 /// Reads the fog of a draw.
 pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<Raw<'a, source::Fog<'a>>>) -> FogFields {
-    let mut fog = FogFields { enabled: false, color: [0; 3], function: None, source: FogSource::Vertex, place: 0..0 };
+    let chip = match reader.profile {
+        Profile::Nv10 => FogEvaluation::PerVertex,
+        Profile::Nv2a => FogEvaluation::PerPixel,
+    };
+    let mut fog = FogFields {
+        enabled: false,
+        color: [0; 3],
+        function: None,
+        source: FogSource::Vertex,
+        evaluation: chip,
+        place: 0..0,
+    };
     let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return fog };
     fog.enabled = reader.or(&fields.enabled, true);
     let [r, g, b, _] = color::constant_or(reader, names, &fields.color, [0; 4]);
@@ -38,7 +51,8 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
         let given = given
             .next()
             .or_else(|| fields.parameters.as_ref().map(|raw| (reader.span(raw), "parameters")))
-            .or_else(|| fields.coordinate_source.as_ref().map(|raw| (reader.span(raw), "coordinate_source")));
+            .or_else(|| fields.coordinate_source.as_ref().map(|raw| (reader.span(raw), "coordinate_source")))
+            .or_else(|| fields.evaluation.as_ref().map(|raw| (reader.span(raw), "evaluation")));
         if let Some((place, name)) = given {
             reader.push(
                 Diagnostic::error("NB0223", place, format!("`{name}` says nothing without a `mode`"))
@@ -50,11 +64,18 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
     };
     fog.place = reader.span(raw);
     fog.source = reader.name_or(&fields.coordinate_source, FogSource::Vertex);
+    if let Some(raw) = &fields.evaluation {
+        let place = reader.span(raw);
+        fog.evaluation = reader.name(raw).unwrap_or(chip);
+        if fog.evaluation == FogEvaluation::PerPixel && reader.profile == Profile::Nv10 {
+            reader.push(target::only_nv2a("NB0324", place, "a fog function of each pixel", "INT-5n"));
+        }
+    }
     if let Some(mode) = reader.name(raw) {
         if mode == FogMode::LinearAbs && reader.profile == Profile::Nv10 {
             reader.push(target::only_nv2a("NB0324", fog.place.clone(), "fog mode LinearAbs", "INT-5n"));
         }
-        fog.function = function(reader, &fields, mode, &fog.place);
+        fog.function = function(reader, &fields, mode, fog.evaluation, &fog.place);
     }
     fog
 }
@@ -64,6 +85,7 @@ fn function<'a>(
     reader: &mut Reader<'a>,
     fields: &source::Fog<'a>,
     mode: FogMode,
+    evaluation: FogEvaluation,
     place: &Range<usize>,
 ) -> Option<FogFunction> {
     let straight = matches!(mode, FogMode::Linear | FogMode::LinearAbs);
@@ -98,7 +120,7 @@ fn function<'a>(
     };
     let function = if straight {
         let (start, end) = (number(&fields.start, 0.0), number(&fields.end, 1.0));
-        linear(mode, start?, end?)
+        linear(mode, start?, end?, evaluation)
     } else {
         Some(exponential(mode, number(&fields.density, 1.0)?))
     };

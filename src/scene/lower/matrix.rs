@@ -16,7 +16,7 @@ pub(super) const IDENTITY: Rows =
 const DEEPEST: usize = 16;
 
 const KINDS: &[&str] =
-    &["Identity", "Rows", "Product", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
+    &["Identity", "Rows", "Product", "Transpose", "Translate", "Scale", "Rotate", "Frustum", "Orthographic", "LookAt"];
 
 /// A matrix of a scene, by name or by value. Not a number anywhere in it is an error.
 pub(super) fn evaluate<'a>(
@@ -42,6 +42,7 @@ pub(super) fn evaluate<'a>(
         "Identity" => IDENTITY,
         "Rows" => rows(reader, &Raw::new(rest))?,
         "Product" => product(reader, table, &Raw::new(rest), depth)?,
+        "Transpose" => transpose(reader, table, &Raw::new(rest), depth)?,
         "Translate" => {
             let [x, y, z, _] = vector(reader, rest, "a translation", 3)?;
             [[1.0, 0.0, 0.0, x], [0.0, 1.0, 0.0, y], [0.0, 0.0, 1.0, z], [0.0, 0.0, 0.0, 1.0]]
@@ -103,6 +104,25 @@ fn product<'a>(
         result = if index == 0 { factor } else { multiply(&result, &factor) };
     }
     Some(result)
+}
+
+/// One matrix, its rows as columns.
+fn transpose<'a>(
+    reader: &mut Reader<'a>,
+    table: &Table<'a, source::Matrix, Rows>,
+    raw: &Raw<'a, Tuple<'a, source::Matrix>>,
+    depth: usize,
+) -> Option<Rows> {
+    let [part] = reader.read(raw)?.0[..] else {
+        reader.push(
+            Diagnostic::error("NB0211", reader.span(raw), "one matrix is transposed at a time")
+                .label("here")
+                .help("write `Transpose(\"world\")`"),
+        );
+        return None;
+    };
+    let matrix = evaluate(reader, table, &part, depth + 1)?;
+    Some(std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row])))
 }
 
 fn multiply(a: &Rows, b: &Rows) -> Rows {

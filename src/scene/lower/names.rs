@@ -132,6 +132,8 @@ pub(super) fn unused(what: &str, name: &str, place: Range<usize>) -> Diagnostic 
 pub(super) struct Names<'a> {
     /// Where the files lie that programs name.
     pub(super) folder: PathBuf,
+    /// Mesh files that have been read, by their names; `None`: one that cannot be, which has been recorded.
+    pub(super) mesh_files: RefCell<HashMap<String, Option<Rc<Mesh>>>>,
     colors: Table<'a, source::Color, VertexColor>,
     matrices: Table<'a, source::Matrix, Rows>,
     vertices: Table<'a, source::VertexList, Rc<VertexData>>,
@@ -155,6 +157,7 @@ impl<'a> Names<'a> {
         }
         let names = Names {
             folder: folder.to_path_buf(),
+            mesh_files: RefCell::default(),
             colors: table!(colors, "colour"),
             matrices: table!(matrices, "matrix"),
             vertices: table!(vertices, "vertex list"),
@@ -170,7 +173,7 @@ impl<'a> Names<'a> {
         });
         names.meshes.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
-            attribute::generate(reader, raw).map(Rc::new)
+            mesh::mesh(reader, &names, raw)
         });
         names.programs.evaluate_all(reader, &|reader, _, raw, _| {
             value(reader, raw)?;
@@ -204,11 +207,7 @@ impl<'a> Names<'a> {
     }
 
     pub(super) fn mesh(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Rc<Mesh>> {
-        if raw.is_text() {
-            self.meshes.get(reader, raw, &|_, _, _, _| None, 0)
-        } else {
-            attribute::generate(reader, raw).map(Rc::new)
-        }
+        if raw.is_text() { self.meshes.get(reader, raw, &|_, _, _, _| None, 0) } else { mesh::mesh(reader, self, raw) }
     }
 
     pub(super) fn program(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Program>) -> Option<Rc<Program>> {

@@ -52,13 +52,10 @@ pub(super) fn program<'a>(
                 }
             }
         }
-        5 => {
+        4 => return pixel_shader::pixel_shader(reader, names, rest).map(Program::Api),
+        _ => {
             let (combiners, places) = register_words::register_words(reader, rest)?;
             judge(reader, combiners, &places, &Words, None)
-        }
-        _ => {
-            reader.not_built(reader.range(&raw.text[..KINDS[kind].len()]), "pixel shader text");
-            return None;
         }
     };
     (reader.errors == errors).then_some(Program::Combiners(data))

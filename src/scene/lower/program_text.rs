@@ -41,7 +41,17 @@ impl ProgramText {
 
     /// A text in a file. `None` once the reason that it cannot be read has been recorded.
     pub(super) fn file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<Self> {
-        named(reader, names, raw)
+        named(reader, names, raw, reader.limits.program_bytes)
+    }
+
+    /// The same of a file of at most `most` bytes.
+    pub(super) fn file_up_to<'a>(
+        reader: &mut Reader<'a>,
+        names: &Names<'a>,
+        raw: &Raw<'a, String>,
+        most: u64,
+    ) -> Option<Self> {
+        named(reader, names, raw, most)
     }
 
     fn within_limit(self, reader: &mut Reader<'_>) -> Option<Self> {
@@ -80,7 +90,7 @@ impl ProgramText {
 }
 
 fn too_large(place: Range<usize>, most: u64) -> Diagnostic {
-    Diagnostic::error("NB0610", place, format!("this program has more than {most} bytes"))
+    Diagnostic::error("NB0610", place, format!("this text has more than {most} bytes"))
         .label("too large")
         .help("`ninebit limits` prints what is allowed")
 }
@@ -159,10 +169,10 @@ fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
     let opening = reader.range(text.get(..1).unwrap_or(text));
     let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
     let raw = reader.required(&fields.file, "file", "program", opening)?;
-    named(reader, names, &raw)
+    named(reader, names, &raw, reader.limits.program_bytes)
 }
 
-fn named<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<ProgramText> {
+fn named<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>, most: u64) -> Option<ProgramText> {
     let name = reader.read(raw)?;
     let named = reader.span(raw);
     let refuse = |code, message: String, help: &str| {
@@ -175,7 +185,6 @@ fn named<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) 
             return None;
         }
     };
-    let most = reader.limits.program_bytes;
     let bytes = match bytes(path, most) {
         Ok(bytes) => bytes,
         Err(error) => {

@@ -3,7 +3,8 @@
 use super::names::Names;
 use super::target::Targets;
 use super::*;
-use crate::scene::raw::Tuple;
+use crate::number::convert::constant;
+use crate::scene::raw::{Numbers, Tuple};
 use crate::state::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle, SurfaceFormat,
 };
@@ -89,10 +90,42 @@ fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>)
     let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let function = reader.required(&fields.function, "function", "alpha test", opening);
     let reference = match &fields.reference {
-        Some(raw) => reader.whole(raw, "an alpha reference", 0..=255),
+        Some(raw) => alpha_reference(reader, raw),
         None => Some(0),
     };
-    Some(AlphaTest { function: reader.name(&function?)?, reference: reference? as u8 })
+    Some(AlphaTest { function: reader.name(&function?)?, reference: reference? })
+}
+
+/// `Float(0.5)`, or the low eight bits of a number: APIs hold either, the number in a word of 32.
+fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<u8> {
+    if let ("Float", rest) = raw.split() {
+        let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1, 1, [0.0; 4])?;
+        return Some(constant(value));
+    }
+    let Some(word) = reader.attempt::<u32>(raw.text) else {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0205", place, format!("expected an alpha reference, found `{}`", shorten(raw.text)))
+                .label("wrong kind of value")
+                .help("write a byte, `128`, or a float, `Float(0.5)`"),
+        );
+        return None;
+    };
+    let byte = word as u8;
+    if u32::from(byte) != word {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::warning(
+                "NB0914",
+                place,
+                format!("an alpha reference has eight bits: {word:#x} counts as {byte}"),
+            )
+            .label("more than eight bits")
+            .rule("ROP-1")
+            .help(format!("write {byte} if that is what is meant")),
+        );
+    }
+    Some(byte)
 }
 
 fn depth_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthTest<'a>>) -> Option<DepthTest> {

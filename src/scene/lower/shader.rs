@@ -265,21 +265,26 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
     wanted.is_none()
 }
 
-/// Whether the texture that a stage samples is there, and of a kind that fits.
-fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: usize, places: &Places) {
+/// The kinds of texture that an operation samples.
+pub(super) fn kinds(operation: &ShaderOperation) -> &'static [TextureKind] {
     use ShaderOperation as Op;
-    let operation = units.shader[index].operation;
-    if !operation.samples() {
-        return;
-    }
-    let name = operation.name();
-    let fits: &[TextureKind] = match operation {
+    match operation {
         Op::BumpEnvironment { .. } | Op::DependentAlphaRed | Op::DependentGreenBlue | Op::DotProduct2D => {
             &[TextureKind::TwoDimensional, TextureKind::Rectangle]
         }
         Op::Sample => TextureKind::ALL,
         _ => &[TextureKind::Cube],
-    };
+    }
+}
+
+/// Whether the texture that a stage samples is there, and of a kind that fits.
+fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: usize, places: &Places) {
+    let operation = units.shader[index].operation;
+    if !operation.samples() {
+        return;
+    }
+    let name = operation.name();
+    let fits = kinds(&operation);
     let Some(unit) = units.bound[index] else {
         if units.places[index].is_empty() {
             reader.push(

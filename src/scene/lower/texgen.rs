@@ -5,6 +5,7 @@ use super::*;
 use crate::program::texture_stages::Generation;
 use crate::scene::raw::Numbers;
 use crate::state::TEXTURE_UNITS;
+use crate::vertex::Viewer;
 use crate::vertex::texgen::{CoordinateSet, Emboss, Generator};
 
 /// Words for whole sets, as Direct3D 7 has them.
@@ -83,6 +84,24 @@ fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, ind
         }
     }
     Some(set)
+}
+
+/// `Local`, `Infinite`, or `Infinite(x, y, z)`.
+pub(super) fn viewer<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Viewer> {
+    const VIEWERS: &[&str] = &["Local", "Infinite"];
+    let (word, rest) = reader.variant(raw, "viewer", VIEWERS)?;
+    match (word, rest) {
+        (0, "") => Some(Viewer::Local),
+        (0, _) => {
+            reader.unknown_variant(raw, "viewer", VIEWERS);
+            None
+        }
+        (_, "") => Some(Viewer::FAR),
+        (_, rest) => {
+            let [x, y, z, _] = reader.numbers(&Raw::<Numbers>::new(rest), "a line of sight", 3, 3, [0.0; 4])?;
+            Some(Viewer::Infinite([x, y, z]))
+        }
+    }
 }
 
 /// Generators of a whole set.

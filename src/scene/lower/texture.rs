@@ -158,6 +158,12 @@ fn texture<'a>(
         }
         let levels = given.faces.first().map_or(1, |levels| levels.len() as u32);
         legal::levels(reader, kind, levels, given.place.clone())?;
+        let first = match &fields.first_level {
+            Some(raw) => texture_levels::first(reader, &mut given, raw)?,
+            None => 0,
+        };
+        let levels = levels - first;
+        let [width, height] = [width, height].map(|side| (side >> first).max(1));
         let format = given.format;
         let words: Vec<u32> = given.faces.into_iter().flatten().flatten().collect();
         let texels = Texels { width, height, levels, border, words: words.into() };
@@ -265,6 +271,7 @@ fn of_target<'a>(
         (kind == TextureKind::Cube).then(|| (place.clone(), "face of a cube map")),
         fields.levels.as_ref().map(|raw| (reader.span(raw), "level of several")),
         fields.mips.as_ref().map(|raw| (reader.span(raw), "level of several")),
+        fields.first_level.as_ref().map(|raw| (reader.span(raw), "level of several")),
         fields.border.as_ref().map(|raw| (reader.span(raw), "texture with border texels")),
     ];
     if let Some((place, what)) = extra.into_iter().flatten().next() {

@@ -186,3 +186,23 @@ pub(super) fn listed<'a>(
     }
     complete.then_some(())
 }
+
+/// Leaves out the levels before `first_level`. Its number, below that of the levels there are.
+pub(super) fn first<'a>(reader: &mut Reader<'a>, given: &mut Given, raw: &Raw<'a, u32>) -> Option<u32> {
+    let number = reader.read(raw)?;
+    let levels = given.faces.first().map_or(1, Vec::len);
+    if number as usize >= levels {
+        let place = reader.span(raw);
+        reader.push(
+            Diagnostic::error("NB0230", place, format!("there is no level {number} to begin with"))
+                .label(if levels == 1 { "one level".to_owned() } else { format!("levels 0 to {}", levels - 1) })
+                .rule("TEX-9")
+                .help("`levels: All` makes levels down to 1 x 1"),
+        );
+        return None;
+    }
+    for levels in &mut given.faces {
+        levels.drain(..number as usize);
+    }
+    Some(number)
+}

@@ -6,7 +6,8 @@ use super::program_text::ProgramText;
 use super::*;
 use crate::program::At;
 use crate::program::texture_stages::{
-    self, ArgumentSource, CoordinateIndex, Generation, Half, STAGES, StageArgument, TextureStage, TextureStages,
+    self, ArgumentSource, CoordinateIndex, Generation, Half, PROJECTED, STAGES, StageArgument, TextureStage,
+    TextureStages,
 };
 use crate::scene::raw::Tuple;
 use crate::state::Named;
@@ -124,7 +125,23 @@ fn argument<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StageArgument>) -
     Some(argument)
 }
 
-const TRANSFORMS: &[&str] = &["Disable", "Count1", "Count2", "Count3", "Count4", "Projected"];
+const TRANSFORMS: &[&str] = &["Disable", "Count1", "Count2", "Count3", "Count4"];
+
+/// `Count3`, or `(Count3, Projected)`.
+fn transform_flags<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::TransformFlags>) -> Option<u32> {
+    let (head, rest) = raw.split();
+    if !head.is_empty() || !rest.starts_with('(') {
+        return reader.variant(raw, "transform flag", TRANSFORMS).map(|(count, _)| count as u32);
+    }
+    let list = reader.read(&raw.as_other::<Tuple<'a, source::Word>>())?.0;
+    let [count, projected] = &list[..] else {
+        reader.unknown_variant(raw, "transform flag", TRANSFORMS);
+        return None;
+    };
+    let (count, _) = reader.variant(count, "transform flag", TRANSFORMS)?;
+    reader.variant(projected, "transform flag beside a count", &["Projected"])?;
+    Some(count as u32 | PROJECTED)
+}
 
 fn coordinates<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {
     if let Some(raw) = &fields.texture_coordinate_index {
@@ -139,8 +156,8 @@ fn coordinates<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, s
         stage.coordinate_index = value.map(|value| At { value, place });
     }
     if let Some(raw) = &fields.texture_transform_flags
-        && let Some((index, _)) = reader.variant(raw, "transform flag", TRANSFORMS)
+        && let Some(value) = transform_flags(reader, raw)
     {
-        stage.transform_flags = At { value: index as u32, place: reader.span(raw) };
+        stage.transform_flags = At { value, place: reader.span(raw) };
     }
 }

@@ -14,10 +14,18 @@ pub(super) struct VertexData {
 }
 
 /// What only the vertex side looks at.
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy)]
 pub(super) struct Extra {
     pub(super) normal: [f32; 3],
     pub(super) fog_coordinate: f32,
+    /// Components of each coordinate set as written; 4 for one that is not.
+    pub(super) dimensions: [usize; 4],
+}
+
+impl Default for Extra {
+    fn default() -> Self {
+        Extra { normal: [0.0; 3], fog_coordinate: 0.0, dimensions: [4; 4] }
+    }
 }
 
 /// Reads a list of vertices. Findings do not end it: the list keeps its length, so that indices can be checked.
@@ -82,19 +90,20 @@ fn vertex<'a>(
     {
         extra.normal = [x, y, z];
     }
-    for (set, field) in vertex.texture_coordinates.iter_mut().zip([&fields.t0, &fields.t1, &fields.t2, &fields.t3]) {
+    for (set, field) in [&fields.t0, &fields.t1, &fields.t2, &fields.t3].into_iter().enumerate() {
         if let Some(raw) = field
-            && let Some(values) = coordinates(reader, raw)
+            && let Some((values, written)) = coordinates(reader, raw)
         {
-            *set = values;
+            vertex.texture_coordinates[set] = values;
+            extra.dimensions[set] = written;
         }
     }
     Some((vertex, extra))
 }
 
-/// One to four texture coordinates s, t, r, q.
-pub(super) fn coordinates<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>) -> Option<[f32; 4]> {
-    reader.numbers(raw, "a set of texture coordinates", 1, 4, [0.0, 0.0, 0.0, 1.0])
+/// One to four texture coordinates s, t, r, q, and how many are written.
+pub(super) fn coordinates<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>) -> Option<([f32; 4], usize)> {
+    reader.numbers_written(raw, "a set of texture coordinates", 1, 4, [0.0, 0.0, 0.0, 1.0])
 }
 
 fn fog_factor<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, f32>) -> Option<f32> {

@@ -1,0 +1,75 @@
+//! `ninebit vectors`.
+
+mod check;
+mod diff;
+mod export;
+mod list;
+
+use clap::Subcommand;
+use ninebit::state::{Named, Profile};
+use ninebit::vectors::cases::Level;
+use ninebit::vectors::error::VectorError;
+use ninebit::vectors::{Unit, units};
+
+use super::exit::{Exit, Failure, Report};
+
+/// Conformance vectors: what the units of the chip yield, as tables.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// List the units, what each does, and the rules behind it
+    List(list::Arguments),
+    /// Write the tables of some or all units into a folder
+    Export(export::Arguments),
+    /// Check a pack: whole, unchanged, and every row as the model has it
+    ///
+    /// Exit status 0: it is; 1: the model says something else of some rows; 3: the pack is not valid; 4: a file is missing.
+    Check(check::Arguments),
+    /// Compare two packs row by row
+    ///
+    /// Rows are found by their ids. Exit status 0: the packs have the same rows; 1: they differ.
+    Diff(diff::Arguments),
+}
+
+/// Runs one of them.
+pub(crate) fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::List(arguments) => list::run(arguments),
+        Command::Export(arguments) => export::run(arguments),
+        Command::Check(arguments) => check::run(arguments),
+        Command::Diff(arguments) => diff::run(arguments),
+    }
+}
+
+impl From<VectorError> for Failure {
+    fn from(error: VectorError) -> Self {
+        let exit = match error {
+            VectorError::Missing { .. } => Exit::Missing,
+            VectorError::Output(error) => return error.into(),
+            _ => Exit::Invalid,
+        };
+        let (code, message, help) = (Some(error.code()), error.to_string(), Some(error.help().to_owned()));
+        Failure { exit, report: Report::Message { code, message, help } }
+    }
+}
+
+/// Reads the name of a unit.
+fn unit(name: &str) -> Result<&'static dyn Unit, String> {
+    units::by_name(name).ok_or_else(|| {
+        let known: Vec<&str> = units::all().into_iter().map(Unit::name).collect();
+        format!("there is no such unit; the units are {}", known.join(", "))
+    })
+}
+
+/// Reads one of an enumeration's names, upper and lower case alike.
+fn named<T: Named>(name: &str) -> Result<T, String> {
+    let found = T::NAMES.iter().position(|known| known.eq_ignore_ascii_case(name));
+    found.map(|index| T::ALL[index]).ok_or_else(|| format!("not one of {}", T::NAMES.join(", ")))
+}
+
+fn profile(name: &str) -> Result<Profile, String> {
+    named(name)
+}
+
+fn level(name: &str) -> Result<Level, String> {
+    named(name)
+}

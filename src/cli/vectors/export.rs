@@ -1,0 +1,70 @@
+//! `ninebit vectors export`.
+
+use std::collections::HashSet;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use ninebit::output::write_stdout;
+use ninebit::state::{Named, Profile};
+use ninebit::vectors::cases::Level;
+use ninebit::vectors::pack::{self, Options};
+use ninebit::vectors::view::View;
+use ninebit::vectors::{Unit, units};
+
+use super::super::exit::Failure;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The folder of the pack; it is made, and files of an earlier export in it are replaced
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// The chip: nv10 or nv2a
+    #[arg(long, default_value = "nv2a", value_parser = super::profile)]
+    profile: Profile,
+    /// How many rows a unit has: L0 at most 1000, L1 60 000, L2 5 000 000
+    #[arg(long, default_value = "L0", value_parser = super::level)]
+    level: Level,
+    /// Of the random rows
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Only this unit; may be given several times
+    #[arg(long = "unit", value_name = "UNIT", value_parser = super::unit)]
+    units: Vec<&'static dyn Unit>,
+    /// Only rows that a policy changes: those to ask a real card first
+    #[arg(long)]
+    deciding: bool,
+    /// Also write a view: hex (packed words for $readmemh, with layouts for Verilog and C) or jsonl; may be given several times
+    #[arg(long = "view", value_name = "VIEW", value_parser = super::named::<View>)]
+    views: Vec<View>,
+}
+
+/// Writes a pack.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let profile = arguments.profile;
+    let mut chosen = if arguments.units.is_empty() { units::all() } else { arguments.units.clone() };
+    if let Some(unit) = arguments.units.iter().find(|unit| !unit.profiles().contains(&profile)) {
+        return Err(Failure::usage(
+            format!("{} has no unit `{}`", profile.name(), unit.name()),
+            "`ninebit vectors list` says which chips have a unit",
+        ));
+    }
+    chosen.retain(|unit| unit.profiles().contains(&profile));
+    let mut seen = HashSet::new();
+    chosen.retain(|unit| seen.insert(unit.name()));
+    let options = Options {
+        profile,
+        level: arguments.level,
+        seed: arguments.seed,
+        units: chosen,
+        deciding: arguments.deciding,
+        views: arguments.views.clone(),
+    };
+    let manifest = pack::export(&arguments.output, &options)?;
+    let mut text = String::new();
+    for file in manifest.files.iter().filter(|file| file.path.ends_with(".tsv")) {
+        let _ = writeln!(text, "{:<24}{:>9} rows {:>12} bytes", file.unit, file.rows, file.bytes);
+    }
+    let _ = writeln!(text, "root {}", manifest.root);
+    Ok(write_stdout(text.as_bytes())?)
+}

@@ -1,0 +1,217 @@
+//! From sources to inputs of a portion: which mapping reads x, and which reads -x.
+
+use super::constants::Pool;
+use super::lower::Lowering;
+use super::scratch::hardware;
+use super::{Bank, Modifier, Selector, Source};
+use crate::state::{CombinerInput, Component, InputMapping, Register};
+
+/// What has to happen in a stage before, so that an instruction fits one stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Need {
+    /// A register is limited to 0..1: `_sat` was left to its readers, and this one reads its negative.
+    Limit(Register),
+    /// A constant that one input cannot read is brought to a register.
+    Constant(u8),
+    /// The first source of `lrp` is computed by itself.
+    Factor(usize),
+    /// The blue of a register is copied to its alpha (nv10: a dot product).
+    Alpha(Register),
+    /// Nothing helps.
+    Refused,
+}
+
+/// Which part of a constant is meant: all of it, or what is positive or negative of it, the other channels 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Part {
+    Whole,
+    Positive,
+    Negative,
+}
+
+/// One factor of a product: x, or -x if `negate`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factor {
+    /// The input that reads x.
+    input: CombinerInput,
+    /// The mapping that reads -x.
+    negated: Option<InputMapping>,
+    negate: bool,
+    /// x is at least 0.
+    positive: bool,
+    /// What makes -x readable.
+    limit: Option<Register>,
+}
+
+impl Factor {
+    fn new(register: Register, component: Component, [mapping, negated]: [InputMapping; 2]) -> Factor {
+        let input = CombinerInput { register, component, mapping };
+        Factor { input, negated: Some(negated), negate: false, positive: false, limit: None }
+    }
+
+    /// One that is never negative and whose negative no mapping reads.
+    pub(super) fn unsigned(register: Register, component: Component, mapping: InputMapping) -> Factor {
+        Factor { negated: None, positive: true, ..Factor::new(register, component, [mapping; 2]) }
+    }
+
+    /// 1.
+    pub(super) fn one(alpha: bool) -> Factor {
+        let component = if alpha { Component::Alpha } else { Component::Rgb };
+        let mappings = [InputMapping::UnsignedInvert, InputMapping::ExpandNormal];
+        Factor { positive: true, ..Factor::new(Register::Zero, component, mappings) }
+    }
+
+    /// -x.
+    pub(super) fn minus(self) -> Factor {
+        Factor { negate: !self.negate, ..self }
+    }
+
+    /// 1 - x of one that is read by an unsigned mapping.
+    pub(super) fn complement(self) -> Factor {
+        let mapping = match self.input.mapping {
+            InputMapping::UnsignedInvert => InputMapping::UnsignedIdentity,
+            _ => InputMapping::UnsignedInvert,
+        };
+        Factor { input: CombinerInput { mapping, ..self.input }, ..self }
+    }
+}
+
+/// The two inputs of a product, and whether it is at least 0.
+pub(super) fn product(a: Factor, b: Factor) -> Result<([CombinerInput; 2], bool), Need> {
+    if a.negate == b.negate {
+        return Ok(([a.input, b.input], a.positive && b.positive));
+    }
+    // The sign goes to the factor that it is written at, if its mappings can; to 1 last of all, whose negative is inexact in integers.
+    let order = |factor: &Factor| match factor.negated {
+        None => None,
+        Some(_) if factor.negate => Some(0),
+        Some(_) if factor.input.register != Register::Zero => Some(1),
+        Some(_) => Some(2),
+    };
+    let negative =
+        |factor: Factor| CombinerInput { mapping: factor.negated.unwrap_or(factor.input.mapping), ..factor.input };
+    match (order(&a), order(&b)) {
+        (Some(first), second) if second.is_none_or(|second| first <= second) => Ok(([negative(a), b.input], false)),
+        (_, Some(_)) => Ok(([a.input, negative(b)], false)),
+        _ => Err(a.limit.or(b.limit).map_or(Need::Refused, Need::Limit)),
+    }
+}
+
+impl Lowering {
+    /// What reads a source in a portion. `unsigned`: as a weight, max(0, x).
+    pub(super) fn factor(
+        &self,
+        source: &Source,
+        alpha: bool,
+        unsigned: bool,
+        part: Part,
+        pool: &mut Pool,
+    ) -> Result<Factor, Need> {
+        let component = match (source.selector, alpha) {
+            (Selector::Alpha, _) | (Selector::All, true) => Component::Alpha,
+            (Selector::Blue, true) => Component::Blue,
+            (Selector::All | Selector::Blue, false) => Component::Rgb,
+        };
+        let factor = match hardware(source.register).or(self.held_constant(source.register)) {
+            Some(register) => self.of_register(register, component, alpha, source.modifier, unsigned),
+            None => self.of_constant(source, component, alpha, unsigned, part, pool)?,
+        };
+        Ok(if source.negate { factor.minus() } else { factor })
+    }
+
+    fn of_register(
+        &self,
+        register: Register,
+        component: Component,
+        alpha: bool,
+        modifier: Modifier,
+        unsigned: bool,
+    ) -> Factor {
+        let value = self.value(register);
+        let half = value.halves[usize::from(component == Component::Alpha)];
+        let component = match (component, alpha) {
+            (Component::Alpha, true) if value.alpha_is_blue => Component::Blue,
+            // A dot product has the same in all three channels.
+            (Component::Alpha, false) if value.alpha_is_blue => Component::Rgb,
+            (component, _) => component,
+        };
+        match modifier {
+            Modifier::Plain if half.limit => {
+                let factor = Factor::unsigned(register, component, InputMapping::UnsignedIdentity);
+                Factor { limit: Some(register), ..factor }
+            }
+            Modifier::Plain if unsigned => Factor::unsigned(register, component, InputMapping::UnsignedIdentity),
+            Modifier::Plain => {
+                let mappings = [InputMapping::SignedIdentity, InputMapping::SignedNegate];
+                Factor { positive: !half.negative, ..Factor::new(register, component, mappings) }
+            }
+            _ => modified(register, component, modifier),
+        }
+    }
+
+    fn of_constant(
+        &self,
+        source: &Source,
+        component: Component,
+        alpha: bool,
+        unsigned: bool,
+        part: Part,
+        pool: &mut Pool,
+    ) -> Result<Factor, Need> {
+        let index = source.register.index;
+        let [r, g, b, a] = self.constants.get(usize::from(index)).copied().unwrap_or_default();
+        let channels: &[i16] = match component {
+            Component::Rgb => &[r, g, b],
+            Component::Blue => &[b],
+            Component::Alpha => &[a],
+        };
+        // Every mapping but the signed ones takes max(0, x).
+        let signed = source.modifier == Modifier::Plain && !unsigned;
+        let negative = match part {
+            Part::Whole => signed && channels.iter().all(|c| *c <= 0) && channels.iter().any(|c| *c < 0),
+            Part::Positive => false,
+            Part::Negative => true,
+        };
+        if part == Part::Whole && signed && !negative && channels.iter().any(|c| *c < 0) {
+            return Err(Need::Constant(index));
+        }
+        let byte = |c: i16| if negative { -c } else { c }.clamp(0, 255) as u8;
+        let found = match (component, alpha) {
+            (Component::Rgb, _) => pool.color([r, g, b].map(byte)),
+            (Component::Blue, _) => pool.alpha(byte(b)),
+            (Component::Alpha, true) => pool.alpha(byte(a)),
+            (Component::Alpha, false) => pool.scalar(byte(a)),
+        };
+        let (register, component) = found.ok_or(Need::Constant(index))?;
+        let factor = match source.modifier {
+            Modifier::Plain if unsigned => Factor::unsigned(register, component, InputMapping::UnsignedIdentity),
+            Modifier::Plain => {
+                let mappings = [InputMapping::SignedIdentity, InputMapping::SignedNegate];
+                Factor { positive: true, ..Factor::new(register, component, mappings) }
+            }
+            modifier => modified(register, component, modifier),
+        };
+        Ok(if negative { factor.minus() } else { factor })
+    }
+
+    /// Whether a source is a constant that no single input reads: channels of both signs.
+    pub(super) fn is_mixed(&self, source: &Source, alpha: bool) -> bool {
+        let held = source.register.bank != Bank::Constant || self.held_constant(source.register).is_some();
+        let plain = source.modifier == Modifier::Plain && source.selector == Selector::All;
+        if held || alpha || !plain {
+            return false;
+        }
+        let constant = self.constants.get(usize::from(source.register.index)).copied().unwrap_or_default();
+        constant[..3].iter().any(|c| *c < 0) && constant[..3].iter().any(|c| *c > 0)
+    }
+}
+
+fn modified(register: Register, component: Component, modifier: Modifier) -> Factor {
+    let mappings = match modifier {
+        Modifier::Bias => [InputMapping::HalfBiasNormal, InputMapping::HalfBiasNegate],
+        Modifier::SignedScale => [InputMapping::ExpandNormal, InputMapping::ExpandNegate],
+        Modifier::Invert => return Factor::unsigned(register, component, InputMapping::UnsignedInvert),
+        Modifier::Plain => [InputMapping::SignedIdentity, InputMapping::SignedNegate],
+    };
+    Factor::new(register, component, mappings)
+}

@@ -1,0 +1,320 @@
+//! From text to instructions.
+
+use std::ops::Range;
+
+use super::lexer::{Kind, Token, tokens};
+use super::words::{self, Word};
+use super::*;
+use crate::diagnostic::shorten;
+use crate::program::finding::finding;
+use crate::spelling::closest;
+
+/// Findings beyond this many are not gathered.
+const MOST_FINDINGS: usize = 32;
+
+/// Reads the notation alone.
+pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
+    let program =
+        PixelShader { version: Version::Ps11, definitions: Vec::new(), textures: Vec::new(), arithmetic: Vec::new() };
+    let mut parser = Parser { text, tokens: tokens(text), at: 0, findings: Vec::new(), program };
+    if parser.version().is_some() {
+        while parser.at < parser.tokens.len() && parser.findings.len() < MOST_FINDINGS {
+            if parser.instruction().is_none() {
+                parser.recover();
+            }
+        }
+    }
+    (parser.program, parser.findings)
+}
+
+pub(super) struct Parser<'t> {
+    pub(super) text: &'t str,
+    pub(super) tokens: Vec<Token>,
+    pub(super) at: usize,
+    findings: Vec<Diagnostic>,
+    program: PixelShader,
+}
+
+/// A word in lower case, cut at its underscores, and where each piece stands.
+pub(super) struct Pieces {
+    pub(super) pieces: Vec<(String, Range<usize>)>,
+}
+
+impl<'t> Parser<'t> {
+    pub(super) fn kind(&self) -> Option<Kind> {
+        self.tokens.get(self.at).map(|token| token.kind)
+    }
+
+    pub(super) fn is(&self, sign: char) -> bool {
+        self.kind() == Some(Kind::Sign(sign))
+    }
+
+    pub(super) fn take(&mut self, sign: char) -> bool {
+        let found = self.is(sign);
+        self.at += usize::from(found);
+        found
+    }
+
+    /// Place of the token at hand; behind the last one, of the last one.
+    pub(super) fn place(&self) -> Range<usize> {
+        let token = self.tokens.get(self.at).or(self.tokens.last());
+        token.map_or(0..0, |token| token.place.clone())
+    }
+
+    pub(super) fn push(
+        &mut self,
+        code: &'static str,
+        place: Range<usize>,
+        message: String,
+        label: &str,
+        help: impl Into<String>,
+    ) {
+        self.findings.push(finding(code, place, message, label, help));
+    }
+
+    pub(super) fn expected<T>(&mut self, what: &str) -> Option<T> {
+        let place = self.place();
+        let (found, label) = match self.kind() {
+            None => ("the end of the text".to_owned(), "behind this"),
+            Some(_) => (format!("`{}`", shorten(&self.text[place.clone()])), "not expected here"),
+        };
+        let help = "an instruction is written `mad_x2_sat r0.rgb, t0_bx2, 1-v0.a, c0`";
+        self.push("NB0103", place, format!("expected {what}, found {found}"), label, help);
+        None
+    }
+
+    /// Skips to the next line, or to a `+`.
+    fn recover(&mut self) {
+        while self.at < self.tokens.len() {
+            self.at += 1;
+            if self.is('+') || self.tokens.get(self.at).is_some_and(|token| token.first) {
+                return;
+            }
+        }
+    }
+
+    /// The word at hand, taken.
+    pub(super) fn word(&mut self, what: &str) -> Option<Pieces> {
+        if self.kind() != Some(Kind::Word) {
+            return self.expected(what);
+        }
+        let place = self.place();
+        self.at += 1;
+        let mut start = place.start;
+        let pieces = self.text[place].split('_').map(|piece| {
+            let span = start..start + piece.len();
+            start = span.end + 1;
+            (piece.to_ascii_lowercase(), span)
+        });
+        Some(Pieces { pieces: pieces.collect() })
+    }
+
+    /// The version, if the text starts with one; without one it is 1.1. `None`: a version that is not read.
+    fn version(&mut self) -> Option<()> {
+        let place = self.place();
+        let word = match self.kind() {
+            Some(Kind::Word) => self.text[place.clone()].to_ascii_lowercase(),
+            None => return self.expected("a pixel shader"),
+            Some(_) => String::new(),
+        };
+        match words::version(&word) {
+            Some(Ok(version)) => {
+                self.at += 1;
+                self.program.version = version;
+            }
+            Some(Err(())) => {
+                let message = format!("`{}` is not read", shorten(&word));
+                let help = "this reads ps.1.0 and ps.1.1, and what ps.1.2 and ps.1.3 have in common with them";
+                self.push("NB0370", place, message, "another kind of shader", help);
+                return None;
+            }
+            None => {
+                let warning =
+                    Diagnostic::warning("NB0906", place, "this shader does not say its version: read as ps.1.1");
+                self.findings.push(warning.label("before this").help("write `ps.1.1` in the first line"));
+            }
+        }
+        Some(())
+    }
+
+    /// One instruction; `None` once the reason that it is none has been recorded.
+    fn instruction(&mut self) -> Option<()> {
+        let paired = self.take('+');
+        let start = self.at;
+        let Pieces { pieces } = self.word("an instruction")?;
+        let mut pieces = pieces.into_iter();
+        let (name, place) = pieces.next()?;
+        let Some(word) = words::find(&name) else {
+            return self.unknown(start, &name);
+        };
+        let modifiers: Vec<_> = pieces.collect();
+        if !matches!(word, Word::Arithmetic(_))
+            && let Some((modifier, span)) = modifiers.first()
+        {
+            let message = format!("{name} takes no `_{modifier}`");
+            let help = "scales and `_sat` belong to arithmetic instructions";
+            self.push("NB0371", span.clone(), message, "not here", help);
+        }
+        if paired && !matches!(word, Word::Arithmetic(_) | Word::Nothing) {
+            let message = format!("{name} cannot be issued together with another instruction");
+            let help = "leave the `+` out: only arithmetic instructions are paired";
+            self.push("NB0376", place.clone(), message, "no arithmetic instruction", help);
+        }
+        match word {
+            Word::Nothing => {}
+            Word::Define => self.definition()?,
+            Word::Texture(operation) => self.texture(operation, place)?,
+            Word::Arithmetic(operation) => {
+                let (scale, saturate) = self.scale(&name, &modifiers);
+                self.arithmetic(operation, scale, saturate, paired, place)?;
+            }
+        }
+        match self.tokens.get(self.at) {
+            Some(token) if token.kind == Kind::Sign(',') => self.too_many(&name, start),
+            Some(token) if !token.first && token.kind == Kind::Sign('.') => self.expected("the next instruction"),
+            _ => Some(()),
+        }
+    }
+
+    fn unknown(&mut self, token: usize, name: &str) -> Option<()> {
+        let place = self.tokens[token].place.clone();
+        if let Some((version, help)) = words::later(name) {
+            let message = format!("`{name}` is an instruction of ps.{version}, which ps.1.1 does not have");
+            self.push("NB0370", place, message, "not in this language", help);
+            return None;
+        }
+        if words::version(name).is_some() {
+            let message = "a version in the middle of a shader".to_owned();
+            self.push("NB0373", place, message, "belongs in the first line", "keep one shader in a text");
+            return None;
+        }
+        let help = match closest(name, words::names()) {
+            Some(known) => format!("did you mean `{known}`?"),
+            None => format!("instructions: {}", words::names().collect::<Vec<_>>().join(", ")),
+        };
+        self.push("NB0204", place, format!("there is no instruction `{}`", shorten(name)), "not known", help);
+        None
+    }
+
+    /// `_x2`, `_x4`, `_d2` and `_sat`, in any order.
+    fn scale(&mut self, name: &str, modifiers: &[(String, Range<usize>)]) -> (Scale, bool) {
+        let (mut scale, mut saturate) = (None, false);
+        for (modifier, place) in modifiers {
+            let found = words::SCALES.iter().find(|(known, _)| known == modifier);
+            let again = if found.is_some() { scale.is_some() } else { saturate };
+            match (modifier.as_str(), found) {
+                (_, Some((_, value))) => scale = Some(*value),
+                ("sat", None) => saturate = true,
+                _ => {
+                    let message = format!("there is no instruction modifier `_{}`", shorten(modifier));
+                    let help = format!("write `{name}_x2`, `_x4`, `_d2`, and `_sat` with any of them or alone");
+                    self.push("NB0204", place.clone(), message, "not known", help);
+                    continue;
+                }
+            }
+            if again {
+                let message = format!("`_{modifier}` beside another modifier of its kind");
+                self.push("NB0371", place.clone(), message, "one too many", "keep one scale and one `_sat`");
+            }
+        }
+        (scale.unwrap_or(Scale::One), saturate)
+    }
+
+    fn comma(&mut self, what: &str, start: usize, wanted: usize, found: usize) -> Option<()> {
+        if self.take(',') {
+            return Some(());
+        }
+        let next = self.tokens.get(self.at);
+        if next.is_none_or(|token| token.first || token.kind == Kind::Sign('+')) {
+            let token = self.tokens[start].place.clone();
+            let message = format!("{what} has {wanted} operands, not {found}");
+            self.push("NB0211", token, message, "this instruction", operands(what));
+            return None;
+        }
+        self.expected("`,`")
+    }
+
+    fn too_many(&mut self, what: &str, start: usize) -> Option<()> {
+        let place = self.place();
+        let first = self.tokens[start].place.clone();
+        let wanted = match words::find(what) {
+            Some(Word::Arithmetic(operation)) => 1 + operation.sources(),
+            Some(Word::Texture(operation)) => operation.operands(),
+            Some(Word::Define) => 5,
+            Some(Word::Nothing) | None => 0,
+        };
+        let message = format!("{what} has {wanted} operands, not more");
+        let finding = finding("NB0211", place, message, "one too many", operands(what));
+        self.findings.push(finding.related(first, "this instruction"));
+        None
+    }
+
+    fn definition(&mut self) -> Option<()> {
+        let start = self.at - 1;
+        let At { value: index, place } = self.plain_register(Bank::Constant, "def", "a constant")?;
+        let mut value = [0.0; 4];
+        for (n, slot) in value.iter_mut().enumerate() {
+            self.comma("def", start, 5, n + 1)?;
+            *slot = self.number()?;
+        }
+        self.program.definitions.push(Definition { index, value, place });
+        Some(())
+    }
+
+    fn texture(&mut self, operation: TextureOperation, place: Range<usize>) -> Option<()> {
+        let start = self.at - 1;
+        let name = operation.name();
+        let unit = self.plain_register(Bank::Texture, name, "a texture register")?;
+        let wanted = operation.operands();
+        let source = match operation.has_source() {
+            true => {
+                self.comma(name, start, wanted, 1)?;
+                Some(self.texture_source(operation)?)
+            }
+            false => None,
+        };
+        let eye = match operation {
+            TextureOperation::Texm3x3spec => {
+                self.comma(name, start, wanted, 2)?;
+                Some(self.plain_register(Bank::Constant, name, "the eye from a constant")?)
+            }
+            _ => None,
+        };
+        self.program.textures.push(TextureInstruction { operation, unit, source, eye, place });
+        Some(())
+    }
+
+    fn arithmetic(
+        &mut self,
+        operation: Operation,
+        scale: Scale,
+        saturate: bool,
+        paired: bool,
+        place: Range<usize>,
+    ) -> Option<()> {
+        let start = self.at - 1;
+        let target = self.target()?;
+        let mut sources = Vec::with_capacity(operation.sources());
+        while sources.len() < operation.sources() {
+            self.comma(operation.name(), start, 1 + operation.sources(), 1 + sources.len())?;
+            sources.push(self.source()?);
+        }
+        self.program.arithmetic.push(Arithmetic { operation, scale, saturate, target, sources, paired, place });
+        Some(())
+    }
+}
+
+/// How an instruction is written.
+fn operands(name: &str) -> String {
+    match words::find(name) {
+        Some(Word::Define) => "write `def c0, 1, 0.5, 0, 1`".to_owned(),
+        Some(Word::Arithmetic(operation)) => {
+            let sources = ["t0", "v0", "c0"][..operation.sources().min(3)].join(", ");
+            let sources = if operation == Operation::Cnd { "r0.a, t0, v0" } else { &sources };
+            format!("write `{name} r0, {sources}`")
+        }
+        Some(Word::Texture(TextureOperation::Texm3x3spec)) => format!("write `{name} t3, t0_bx2, c0`"),
+        Some(Word::Texture(operation)) if operation.has_source() => format!("write `{name} t1, t0`"),
+        _ => format!("write `{name} t0`"),
+    }
+}

@@ -1,0 +1,172 @@
+//! Stages that are added: what has to happen before an instruction fits one stage.
+
+use std::ops::Range;
+
+use super::constants::Pool;
+use super::factor::Need;
+use super::lower::{Lowering, TEXTURES, Written};
+use super::print;
+use super::scratch::{Set, free};
+use super::{Arithmetic, Operation};
+use crate::program::cascade::{one, too_many_constants};
+use crate::program::finding::finding;
+use crate::state::{CombinerInput, Component, InputMapping, Portion, Profile, Register, Scale, StageOrigin};
+
+impl Lowering {
+    /// A stage before the instruction. `None` once the reason has been recorded that nothing helps.
+    pub(super) fn prepare(&mut self, need: Need, slot: &[Arithmetic], live: Set, place: &Range<usize>) -> Option<()> {
+        let idle = |component| (Portion::idle(component), true);
+        let mut pool = if self.profile == Profile::Nv10 { self.pool } else { Pool::default() };
+        let ([rgb, alpha], what) = match need {
+            Need::Limit(register) => (
+                [self.limited(register, false), self.limited(register, true)],
+                format!("{} limited to 0..1", self.name(register)),
+            ),
+            Need::Alpha(register) => {
+                ([idle(Component::Rgb), self.copied_alpha(register)], format!("the alpha of {}", self.name(register)))
+            }
+            Need::Constant(index) => {
+                let register = self.scratch(live, place)?;
+                let constant = self.constants.get(usize::from(index)).copied().unwrap_or_default();
+                let halves = [false, true].map(|alpha| self.loaded(constant, alpha, register, &mut pool));
+                if let Some(slot) = self.held.constants.get_mut(usize::from(index)) {
+                    *slot = Some(register);
+                }
+                let [Some(rgb), Some(alpha)] = halves else {
+                    self.findings.push(too_many_constants(self.profile, place.clone()));
+                    return None;
+                };
+                ([rgb, alpha], format!("c{index}"))
+            }
+            Need::Factor(n) => {
+                let register = self.scratch(live, place)?;
+                let instruction = slot.get(n)?;
+                let source = instruction.sources.first()?;
+                let copy = Arithmetic {
+                    operation: Operation::Mov,
+                    scale: Scale::One,
+                    saturate: false,
+                    target: instruction.target.clone(),
+                    sources: vec![source.clone()],
+                    paired: false,
+                    place: place.clone(),
+                };
+                let mut halves = [idle(Component::Rgb), idle(Component::Alpha)];
+                for alpha in [true, false] {
+                    if instruction.target.value.mask.has(alpha) {
+                        match self.portion(&copy, n, alpha, &mut pool) {
+                            Ok((mut portion, positive)) => {
+                                for output in [&mut portion.ab_output, &mut portion.sum_output] {
+                                    *output = if *output == Register::Zero { *output } else { register };
+                                }
+                                halves[usize::from(alpha)] = (portion, positive);
+                            }
+                            Err(need) => return self.prepare(need, slot, live, place),
+                        }
+                    }
+                }
+                if let Some(slot) = self.held.factors.get_mut(n) {
+                    *slot = Some(register);
+                }
+                (halves, "the first source".to_owned())
+            }
+            Need::Refused => {
+                let message = "this instruction has no form in the register combiners";
+                let help = "write it with other modifiers, or in two instructions";
+                self.findings.push(finding("NB0379", place.clone(), message, "no form", help).rule("CMB-12"));
+                return None;
+            }
+        };
+        if self.profile == Profile::Nv10 {
+            self.pool = pool;
+        }
+        let instruction = self.described(slot);
+        let origin = format!("pixel shader: {what}{instruction}");
+        self.push(rgb, alpha, pool, StageOrigin { rgb: origin.clone(), alpha: origin }, place.clone());
+        Some(())
+    }
+
+    fn described(&self, slot: &[Arithmetic]) -> String {
+        slot.first().map_or(String::new(), |first| format!(", for {}", print::instruction(first)))
+    }
+
+    /// A constant of both signs, as the difference of two.
+    fn loaded(&self, constant: [i16; 4], alpha: bool, register: Register, pool: &mut Pool) -> Option<Written> {
+        let component = if alpha { Component::Alpha } else { Component::Rgb };
+        let [r, g, b, a] = constant;
+        let mut portion = Portion::idle(component);
+        let mut input = |sign: i16, mapping| {
+            let byte = |c: i16| (sign * c).clamp(0, 255) as u8;
+            let found = if alpha { pool.alpha(byte(a)) } else { pool.color([r, g, b].map(byte)) };
+            found.map(|(register, component)| CombinerInput { register, component, mapping })
+        };
+        portion.inputs[0] = input(1, InputMapping::SignedIdentity)?;
+        portion.inputs[1] = one(alpha);
+        portion.inputs[2] = input(-1, InputMapping::SignedNegate)?;
+        portion.inputs[3] = one(alpha);
+        portion.sum_output = register;
+        Some((portion, false))
+    }
+
+    fn scratch(&mut self, live: Set, place: &Range<usize>) -> Option<Register> {
+        let mut found = free(live, &self.held.taken, self.profile);
+        if found.is_none() {
+            // Constants can be brought again.
+            self.held.keep(|_| false);
+            found = free(live, &self.held.taken, self.profile);
+        }
+        match found {
+            Some(register) => self.held.taken.push(register),
+            None => self.no_register(place),
+        }
+        found
+    }
+
+    pub(super) fn no_register(&mut self, place: &Range<usize>) {
+        let message = "this instruction needs a register more than are free";
+        let help = "write it in two instructions, or read fewer texture registers after it";
+        self.findings.push(finding("NB0379", place.clone(), message, "for a value in between", help).rule("CMB-12"));
+    }
+
+    fn name(&self, register: Register) -> String {
+        let texture = TEXTURES.iter().position(|texture| *texture == register);
+        match (register, texture) {
+            (_, Some(unit)) => format!("t{unit}"),
+            (Register::Spare0, _) => "r0".to_owned(),
+            _ => "r1".to_owned(),
+        }
+    }
+
+    /// max(0, x) in the place of x, if that is still to be done.
+    fn limited(&self, register: Register, alpha: bool) -> Written {
+        let value = self.value(register);
+        if alpha && value.alpha_is_blue {
+            return self.copied_alpha(register);
+        }
+        let component = if alpha { Component::Alpha } else { Component::Rgb };
+        let mut portion = Portion::idle(component);
+        if value.halves[usize::from(alpha)].limit {
+            portion.inputs[0] = CombinerInput { register, component, mapping: InputMapping::UnsignedIdentity };
+            portion.inputs[1] = one(alpha);
+            portion.ab_output = register;
+        }
+        (portion, true)
+    }
+
+    /// Blue, as it is, into alpha.
+    pub(super) fn copied_alpha(&self, register: Register) -> Written {
+        let mut portion = Portion::idle(Component::Alpha);
+        portion.inputs[0] = CombinerInput {
+            register,
+            component: Component::Blue,
+            mapping: match self.value(register).halves[1].limit {
+                true => InputMapping::UnsignedIdentity,
+                false => InputMapping::SignedIdentity,
+            },
+        };
+        portion.inputs[1] = one(true);
+        portion.ab_output = register;
+        let half = self.value(register).halves[1];
+        (portion, half.limit || !half.negative)
+    }
+}

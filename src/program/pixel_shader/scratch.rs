@@ -1,0 +1,72 @@
+//! Which registers still hold something that is read later, and which are free to hold something in between.
+
+use super::{Arithmetic, Bank, PixelShader, ShaderRegister};
+use crate::state::{Profile, Register};
+
+/// The combiners' register of a register of the language; constants have none.
+pub(super) fn hardware(register: ShaderRegister) -> Option<Register> {
+    Some(match (register.bank, register.index) {
+        (Bank::Constant, _) => return None,
+        (Bank::Temporary, 0) => Register::Spare0,
+        (Bank::Temporary, _) => Register::Spare1,
+        (Bank::Color, 0) => Register::PrimaryColor,
+        (Bank::Color, _) => Register::SecondaryColor,
+        (Bank::Texture, 0) => Register::Texture0,
+        (Bank::Texture, 1) => Register::Texture1,
+        (Bank::Texture, 2) => Register::Texture2,
+        (Bank::Texture, _) => Register::Texture3,
+    })
+}
+
+/// A set of registers: bit n for register n.
+pub(super) type Set = u16;
+
+fn bit(register: Register) -> Set {
+    1 << register as usize
+}
+
+/// What must be kept when a slot begins, for each slot.
+pub(super) fn live(program: &PixelShader) -> Vec<Set> {
+    // The final combiner reads r0.
+    let mut live = bit(Register::Spare0);
+    let mut sets: Vec<Set> = program
+        .slots()
+        .rev()
+        .map(|slot| {
+            live = before(slot, live);
+            live
+        })
+        .collect();
+    sets.reverse();
+    sets
+}
+
+fn before(slot: &[Arithmetic], after: Set) -> Set {
+    // A register is written whole by one instruction, or by the two halves of a pair.
+    let mut written = [0; 2];
+    for instruction in slot {
+        let target = instruction.target.value;
+        let register = hardware(target.register).map_or(0, bit);
+        for (alpha, set) in [false, true].into_iter().zip(&mut written) {
+            *set |= if target.mask.has(alpha) { register } else { 0 };
+        }
+    }
+    let sources = slot.iter().flat_map(|instruction| &instruction.sources);
+    let read =
+        sources.filter_map(|source| hardware(source.value.register)).fold(0, |set, register| set | bit(register));
+    after & !(written[0] & written[1]) | read
+}
+
+/// Whether a register is in a set.
+pub(super) fn contains(set: Set, register: Register) -> bool {
+    set & bit(register) != 0
+}
+
+/// A register that is in none of the sets.
+pub(super) fn free(live: Set, taken: &[Register], profile: Profile) -> Option<Register> {
+    let both = [Register::Spare1, Register::Texture1, Register::Texture0, Register::PrimaryColor, Register::Spare0];
+    let nv2a = [Register::Texture3, Register::Texture2, Register::SecondaryColor];
+    let more: &[Register] = if profile == Profile::Nv2a { &nv2a } else { &[] };
+    let mut all = more.iter().chain(&both).copied();
+    all.find(|register| !contains(live, *register) && !taken.contains(register))
+}

@@ -1,0 +1,102 @@
+//! What is read before anything has written it, and what is read at all.
+
+use std::ops::Range;
+
+use super::Written;
+use super::print::letters;
+use crate::diagnostic::Diagnostic;
+use crate::program::finding::finding;
+use crate::vertex::shader::{CONSTANTS, DestinationRegister, INPUTS, Instruction, SourceRegister, TEMPORARIES};
+
+/// Components of each result that something later depends on, in the order of the instructions.
+fn needed(instructions: &[Instruction]) -> Vec<u8> {
+    let mut live = [0_u8; TEMPORARIES];
+    let mut needed = vec![0; instructions.len()];
+    for (instruction, needed) in instructions.iter().zip(&mut needed).rev() {
+        let mask = instruction.destination.mask;
+        *needed = mask;
+        if let DestinationRegister::Temporary(index) = instruction.destination.register {
+            *needed &= live[index];
+            live[index] &= !mask;
+        }
+        for (register, components, _) in temporaries(instruction, *needed) {
+            live[register] |= components;
+        }
+    }
+    needed
+}
+
+/// Temporaries that the components `needed` of the result are made of: number, components, number of the source.
+fn temporaries(instruction: &Instruction, needed: u8) -> Vec<(usize, u8, usize)> {
+    let mut read = Vec::new();
+    for (n, source) in instruction.sources.iter().enumerate() {
+        let SourceRegister::Temporary(index) = source.register else { continue };
+        let components = source.components(instruction.opcode.reads(n, needed));
+        match instruction.opcode.matrix() {
+            Some((rows, _)) if n == 1 => {
+                let rows = (0..rows).filter(|row| needed >> row & 1 != 0 && index + row < TEMPORARIES);
+                read.extend(rows.map(|row| (index + row, components, n)));
+            }
+            _ => read.push((index, components, n)),
+        }
+    }
+    read
+}
+
+/// Temporaries whose value nothing has written where a result that matters is made of it.
+pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
+    let mut known = [0_u8; TEMPORARIES];
+    let needed = needed(&written.shader.instructions);
+    for ((instruction, places), needed) in written.shader.instructions.iter().zip(&written.places).zip(needed) {
+        for (register, components, source) in temporaries(instruction, needed) {
+            let missing = components & !known[register];
+            if missing == 0 {
+                continue;
+            }
+            // Said once.
+            known[register] |= missing;
+            let letters = letters((0..4).filter(|k| missing >> k & 1 != 0));
+            findings.push(finding(
+                "NB0383",
+                places.sources[source].clone(),
+                format!("r{register}.{letters} is read before anything writes it"),
+                "not written yet",
+                format!("write r{register} first, or leave the component out of the swizzle or of the write mask"),
+            ));
+        }
+        if let DestinationRegister::Temporary(index) = instruction.destination.register {
+            known[index] |= instruction.destination.mask;
+        }
+    }
+}
+
+impl Written {
+    /// Constants that are read, with the first place that does; and whether an address chooses some.
+    pub fn constants_read(&self) -> ([Option<Range<usize>>; CONSTANTS], bool) {
+        let mut read: [Option<Range<usize>>; CONSTANTS] = std::array::from_fn(|_| None);
+        let mut any = false;
+        for (instruction, places) in self.shader.instructions.iter().zip(&self.places) {
+            for (n, (source, place)) in instruction.sources.iter().zip(&places.sources).enumerate() {
+                let SourceRegister::Constant { index, relative } = source.register else { continue };
+                any |= relative;
+                let rows = instruction.opcode.matrix().filter(|_| n == 1).map_or(1, |(rows, _)| rows);
+                for slot in read.iter_mut().skip(index).take(rows).filter(|slot| slot.is_none() && !relative) {
+                    *slot = Some(place.clone());
+                }
+            }
+        }
+        (read, any)
+    }
+
+    /// Inputs that are read, with the first place that does.
+    pub fn inputs_read(&self) -> [Option<Range<usize>>; INPUTS] {
+        let mut read: [Option<Range<usize>>; INPUTS] = std::array::from_fn(|_| None);
+        for (instruction, places) in self.shader.instructions.iter().zip(&self.places) {
+            for (source, place) in instruction.sources.iter().zip(&places.sources) {
+                let SourceRegister::Input(index) = source.register else { continue };
+                read[index].get_or_insert_with(|| place.clone());
+            }
+        }
+        read
+    }
+}

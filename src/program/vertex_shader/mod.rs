@@ -1,0 +1,57 @@
+//! Vertex programs in the assembler language vs.1.1 of Direct3D 8, read and printed (`docs/vertex-shader.md`).
+//!
+//! A program becomes [`VertexShader`]; what that computes stands in [`crate::vertex::shader`].
+
+mod check;
+mod flow;
+mod operand;
+mod parser;
+mod print;
+mod scanner;
+
+use std::ops::Range;
+
+use crate::diagnostic::{Diagnostic, Severity};
+use crate::vertex::shader::VertexShader;
+pub use parser::parse;
+pub use print::print;
+
+/// A program and where its parts stand in the text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Written {
+    /// The program.
+    pub shader: VertexShader,
+    /// Of each instruction.
+    pub places: Vec<InstructionPlaces>,
+    /// Of the number of each definition.
+    pub definitions: Vec<Range<usize>>,
+    /// What is allowed but probably not meant.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Where an instruction stands: bytes of the text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InstructionPlaces {
+    /// The word of the instruction.
+    pub opcode: Range<usize>,
+    /// What it writes.
+    pub destination: Range<usize>,
+    /// Each source.
+    pub sources: Vec<Range<usize>>,
+}
+
+/// Reads a program and checks everything that the text alone can tell.
+///
+/// # Errors
+/// Everything that is wrong with it, warnings left out.
+pub fn read(text: &str) -> Result<Written, Vec<Diagnostic>> {
+    let (mut written, mut errors) = parser::lines(text);
+    let findings = if errors.is_empty() { check::check(&written) } else { check::instructions(&written) };
+    let (found, warnings): (Vec<_>, Vec<_>) =
+        findings.into_iter().partition(|finding| finding.severity == Severity::Error);
+    errors.extend(found);
+    errors.sort_by_key(Diagnostic::order);
+    written.warnings.extend(warnings);
+    written.warnings.sort_by_key(Diagnostic::order);
+    if errors.is_empty() { Ok(written) } else { Err(errors) }
+}

@@ -1,0 +1,234 @@
+//! Operands: registers with their swizzles and write masks.
+
+use std::ops::Range;
+
+use super::parser::{GivenUp, Parser, Read};
+use super::scanner::Scanner;
+use crate::diagnostic::shorten;
+use crate::spelling::closest;
+use crate::vertex::shader::{
+    CONSTANTS, COORDINATES, Destination, DestinationRegister, INPUTS, Source, SourceRegister, TEMPORARIES,
+};
+
+/// Registers by their letters in lower case: how the documents write them, how many there are, what they are.
+const FAMILIES: &[(&str, &str, usize, &str)] = &[
+    ("v", "v", INPUTS, "inputs"),
+    ("r", "r", TEMPORARIES, "temporaries"),
+    ("c", "c", CONSTANTS, "constants"),
+    ("a", "a", 1, "address register"),
+    ("opos", "oPos", 0, "position"),
+    ("ofog", "oFog", 0, "fog factor"),
+    ("opts", "oPts", 0, "point size"),
+    ("od", "oD", 2, "colours"),
+    ("ot", "oT", COORDINATES, "sets of texture coordinates"),
+];
+
+const ALL: &str = "v0 to v15, r0 to r11, c0 to c95, a0, oPos, oD0, oD1, oT0 to oT3, oFog, oPts";
+
+/// Any register of the language.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Register {
+    Source(SourceRegister),
+    Destination(DestinationRegister),
+    /// `c[...]`: its brackets follow.
+    Constants,
+}
+
+/// Reads what an instruction writes.
+pub(super) fn destination(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Destination, Range<usize>)> {
+    let start = scanner.here();
+    if let Some(minus) = scanner.sign('-') {
+        let help = "negate the sources instead";
+        return Err(parser.refuse("NB0380", minus, "a result cannot be negated", "not before what is written", help));
+    }
+    let (found, place) = register(parser, scanner)?;
+    let register = match found {
+        Register::Destination(register) => register,
+        Register::Source(SourceRegister::Temporary(index)) => DestinationRegister::Temporary(index),
+        Register::Source(_) | Register::Constants => {
+            let name = scanner.text(&place).to_owned();
+            let message = format!("`{name}` cannot be written");
+            let help = "write to r0 to r11 or an output, such as oPos; `def` gives a constant its value";
+            return Err(parser.refuse("NB0380", place, &message, "only read", help));
+        }
+    };
+    let mask = match modifier(parser, scanner)? {
+        None => match register {
+            DestinationRegister::Address | DestinationRegister::Fog | DestinationRegister::PointSize => 1,
+            _ => 15,
+        },
+        Some(place) => mask(parser, scanner.text(&place), place.clone(), register)?,
+    };
+    Ok((Destination { register, mask }, start..end(scanner, start)))
+}
+
+/// Reads a source.
+pub(super) fn source(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Source, Range<usize>)> {
+    let start = scanner.here();
+    let negate = scanner.sign('-').is_some();
+    let (found, place) = register(parser, scanner)?;
+    let register = match found {
+        Register::Source(register) => register,
+        Register::Constants => relative(parser, scanner)?,
+        Register::Destination(register) => {
+            let name = scanner.text(&place).to_owned();
+            let help = match register {
+                DestinationRegister::Address => "use it in `c[a0.x + 4]`",
+                _ => "keep the value in a temporary, and move it to the output as well",
+            };
+            let message = format!("`{name}` cannot be read");
+            return Err(parser.refuse("NB0380", place, &message, "only written", help));
+        }
+    };
+    let swizzle = match modifier(parser, scanner)? {
+        None => [0, 1, 2, 3],
+        Some(place) => swizzle(parser, scanner.text(&place), place.clone())?,
+    };
+    Ok((Source { register, swizzle, negate }, start..end(scanner, start)))
+}
+
+/// Where what was read last ended.
+fn end(scanner: &Scanner<'_>, start: usize) -> usize {
+    let read = scanner.text(&(start..scanner.position()));
+    start + read.trim_end().len()
+}
+
+/// Reads the name of a register; `c[` up to the bracket.
+fn register(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Register, Range<usize>)> {
+    let place = scanner.word();
+    let word = scanner.text(&place).to_owned();
+    if word.is_empty() {
+        return Err(parser.expected(scanner, "a register"));
+    }
+    let lower = word.to_ascii_lowercase();
+    let letters = lower.trim_end_matches(|c: char| c.is_ascii_digit());
+    let digits = &lower[letters.len()..];
+    let Some((name, written, count, what)) = FAMILIES.iter().find(|(name, ..)| *name == letters) else {
+        return Err(unknown(parser, &word, place));
+    };
+    if digits.is_empty() != (*count == 0) {
+        let brackets = *name == "c" && scanner.clone().sign('[').is_some();
+        return if brackets { Ok((Register::Constants, place)) } else { Err(unknown(parser, &word, place)) };
+    }
+    let number = digits.parse::<usize>().unwrap_or(usize::MAX);
+    if *count > 0 && number >= *count {
+        let have = if *count == 1 { "there is one".to_owned() } else { format!("there are {count}") };
+        let message = format!("there is no register {}: {have} {what}", shorten(&word));
+        let help = match *count {
+            1 => format!("write {written}0"),
+            count => format!("write {written}0 to {written}{}", count - 1),
+        };
+        return Err(parser.refuse("NB0206", place, &message, "out of range", &help));
+    }
+    let register = match *name {
+        "v" => Register::Source(SourceRegister::Input(number)),
+        "r" => Register::Source(SourceRegister::Temporary(number)),
+        "c" => Register::Source(SourceRegister::Constant { index: number, relative: false }),
+        "a" => Register::Destination(DestinationRegister::Address),
+        "opos" => Register::Destination(DestinationRegister::Position),
+        "ofog" => Register::Destination(DestinationRegister::Fog),
+        "opts" => Register::Destination(DestinationRegister::PointSize),
+        "od" => Register::Destination(DestinationRegister::Color(number)),
+        _ => Register::Destination(DestinationRegister::Coordinates(number)),
+    };
+    Ok((register, place))
+}
+
+fn unknown(parser: &mut Parser<'_>, word: &str, place: Range<usize>) -> GivenUp {
+    let known = ["v0", "r0", "c0", "a0", "oPos", "oFog", "oPts", "oD0", "oD1", "oT0", "oT1", "oT2", "oT3"];
+    let help = match closest(word, known) {
+        Some(name) => format!("did you mean `{name}`? Registers: {ALL}"),
+        None => format!("registers: {ALL}"),
+    };
+    parser.refuse("NB0204", place, &format!("there is no register `{}`", shorten(word)), "not known", &help)
+}
+
+/// Reads `[a0.x + 4]`, `[4 + a0.x]` or `[4]`.
+fn relative(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<SourceRegister> {
+    let Some(open) = scanner.sign('[') else { return Err(parser.expected(scanner, "`[`")) };
+    let (mut relative, mut index) = (false, None);
+    loop {
+        let place = scanner.word();
+        let word = scanner.text(&place).to_ascii_lowercase();
+        if word == "a0" && !relative {
+            relative = true;
+            let component = match scanner.sign('.') {
+                Some(_) => scanner.word(),
+                None => place.clone(),
+            };
+            if !scanner.text(&component).eq_ignore_ascii_case("x") {
+                let message = "the address register is read as a0.x";
+                return Err(parser.refuse("NB0380", component, message, "has no other component", "write `a0.x`"));
+            }
+        } else if let (Ok(number), None) = (word.parse::<usize>(), index) {
+            if number >= CONSTANTS {
+                let message = format!("there is no constant c{number}");
+                return Err(parser.refuse("NB0206", place, &message, "out of range", "write 0 to 95"));
+            }
+            index = Some(number);
+        } else {
+            let message = "expected a0.x or a number in these brackets";
+            return Err(parser.refuse("NB0108", open, message, "opened here", "write `c[a0.x + 4]`"));
+        }
+        if scanner.sign(']').is_some() {
+            break;
+        }
+        if scanner.sign('+').is_none() {
+            return Err(parser.expected(scanner, "`+` or `]`"));
+        }
+    }
+    Ok(SourceRegister::Constant { index: index.unwrap_or(0), relative })
+}
+
+/// The letters behind a point, if there is one.
+fn modifier(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<Option<Range<usize>>> {
+    if scanner.sign('.').is_none() {
+        return Ok(None);
+    }
+    let place = scanner.word();
+    if place.is_empty() { Err(parser.expected(scanner, "components, such as `.xyz`")) } else { Ok(Some(place)) }
+}
+
+/// The number of a component.
+fn component(letter: char) -> Option<usize> {
+    "xyzw".find(letter.to_ascii_lowercase())
+}
+
+fn swizzle(parser: &mut Parser<'_>, word: &str, place: Range<usize>) -> Read<[usize; 4]> {
+    let components: Option<Vec<usize>> = word.chars().map(component).collect();
+    match components.as_deref() {
+        // Fewer than four: the last goes on.
+        Some(list @ [.., last]) if list.len() <= 4 => Ok(std::array::from_fn(|k| *list.get(k).unwrap_or(last))),
+        _ => Err(letters(parser, word, place, "a swizzle", "one to four of x, y, z, w, such as `.yzxw` or `.x`")),
+    }
+}
+
+fn mask(parser: &mut Parser<'_>, word: &str, place: Range<usize>, register: DestinationRegister) -> Read<u8> {
+    let components: Option<Vec<usize>> = word.chars().map(component).collect();
+    let ascending = |list: &[usize]| list.windows(2).all(|pair| pair[0] < pair[1]);
+    let Some(list) = components.filter(|list| !list.is_empty() && ascending(list)) else {
+        return Err(letters(parser, word, place, "a write mask", "some of x, y, z, w in this order, such as `.xyz`"));
+    };
+    let mask = list.iter().fold(0, |mask, k| mask | 1 << k);
+    let name = match register {
+        DestinationRegister::Address => "a0",
+        DestinationRegister::Fog => "oFog",
+        DestinationRegister::PointSize => "oPts",
+        _ => return Ok(mask),
+    };
+    if mask == 1 {
+        return Ok(mask);
+    }
+    let message = format!("{name} has one component");
+    Err(parser.refuse("NB0384", place, &message, "more than that", &format!("write `{name}.x`")))
+}
+
+fn letters(parser: &mut Parser<'_>, word: &str, place: Range<usize>, what: &str, help: &str) -> GivenUp {
+    let colors = word.chars().all(|c| "rgba".contains(c.to_ascii_lowercase()));
+    let help = if colors {
+        "components of vertex programs are x, y, z, w, in place of r, g, b, a".to_owned()
+    } else {
+        format!("write {help}")
+    };
+    parser.refuse("NB0384", place, &format!("`.{}` is not {what}", shorten(word)), "these components", &help)
+}

@@ -1,0 +1,264 @@
+//! Lines of the language, one after the other. What cannot be read is recorded and passed over, so that one run shows all.
+
+use std::ops::Range;
+
+use super::check::natural;
+use super::scanner::{Scanner, uncomment};
+use super::{InstructionPlaces, Written, operand};
+use crate::diagnostic::{Diagnostic, shorten};
+use crate::program::finding::finding;
+use crate::spelling::closest;
+use crate::vertex::shader::{Instruction, Opcode, SourceRegister, VertexShader};
+
+/// Findings beyond this many are not looked for.
+const MOST_FINDINGS: usize = 64;
+
+/// Instructions beyond this many are not read; no program so long is legal.
+const MOST_INSTRUCTIONS: usize = 1024;
+
+/// Why a line was given up: the reason has been recorded.
+pub(super) struct GivenUp;
+
+pub(super) type Read<T> = Result<T, GivenUp>;
+
+/// What is known while a program is read.
+pub(super) struct Parser<'t> {
+    text: &'t str,
+    findings: Vec<Diagnostic>,
+    written: Written,
+    version: Option<Range<usize>>,
+}
+
+/// Reads a program without a word about what it does: unwritten registers, too many slots and so on pass.
+///
+/// # Errors
+/// Everything that is no instruction, definition or version.
+pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
+    let (written, findings) = lines(text);
+    if findings.is_empty() { Ok(written) } else { Err(findings) }
+}
+
+/// Every line that can be read, and what is wrong with the others.
+pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
+    let mut findings = Vec::new();
+    let uncommented = uncomment(text, &mut findings);
+    let written =
+        Written { shader: VertexShader::default(), places: Vec::new(), definitions: Vec::new(), warnings: Vec::new() };
+    let mut parser = Parser { text: &uncommented.text, findings, written, version: None };
+    for comment in &uncommented.behind_semicolons {
+        parser.hidden(text, comment);
+    }
+    let mut start = 0;
+    for line in uncommented.text.split_inclusive('\n') {
+        let part = start..start + line.len();
+        start = part.end;
+        let full = parser.written.shader.instructions.len() >= MOST_INSTRUCTIONS;
+        if full || parser.findings.len() >= MOST_FINDINGS {
+            break;
+        }
+        let mut scanner = Scanner::new(&uncommented.text, part);
+        if !scanner.is_done() {
+            let _given_up = parser.line(&mut scanner).is_err();
+        }
+    }
+    parser.findings.sort_by_key(Diagnostic::order);
+    (parser.written, parser.findings)
+}
+
+fn opcode(word: &str) -> Option<Opcode> {
+    Opcode::ALL.iter().copied().find(|opcode| opcode.word().eq_ignore_ascii_case(word))
+}
+
+impl Parser<'_> {
+    /// Records an error and gives the line up.
+    pub(super) fn refuse(
+        &mut self,
+        code: &'static str,
+        place: Range<usize>,
+        message: &str,
+        label: &str,
+        help: &str,
+    ) -> GivenUp {
+        self.findings.push(finding(code, place, message, label, help));
+        GivenUp
+    }
+
+    /// Records that something else stands here.
+    pub(super) fn expected(&mut self, scanner: &mut Scanner<'_>, what: &str) -> GivenUp {
+        let place = scanner.next();
+        let found = match scanner.text(&place) {
+            "" => "the end of the line".to_owned(),
+            word => format!("`{}`", shorten(word)),
+        };
+        let message = format!("expected {what}, found {found}");
+        self.refuse(
+            "NB0108",
+            place,
+            &message,
+            "not an instruction from here",
+            "write lines such as `mul r0.xyz, r1, c4.x`",
+        )
+    }
+
+    /// Warns of an instruction that a semicolon behind another one makes a comment.
+    fn hidden(&mut self, text: &str, comment: &Range<usize>) {
+        let before = self.text[..comment.start - 1].rsplit('\n').next().unwrap_or("");
+        let mut scanner = Scanner::new(text, comment.clone());
+        let word = scanner.word();
+        let operand = scanner.word();
+        let register = |word: &str| {
+            let letters = word.trim_end_matches(|c: char| c.is_ascii_digit()).to_ascii_lowercase();
+            ["r", "opos", "od", "ot", "ofog", "opts"].contains(&letters.as_str())
+        };
+        let instruction = opcode(scanner.text(&word)).is_some() && register(scanner.text(&operand));
+        let rest = scanner.remaining();
+        if !before.trim().is_empty() && instruction && scanner.text(&rest).contains(',') {
+            let message = "an instruction behind a semicolon, which begins a comment";
+            self.written.warnings.push(
+                Diagnostic::warning("NB0913", word.start..rest.end, message)
+                    .label("left out")
+                    .help("write each instruction in a line of its own"),
+            );
+        }
+    }
+
+    fn line(&mut self, scanner: &mut Scanner<'_>) -> Read<()> {
+        let place = scanner.word();
+        let word = scanner.text(&place).to_owned();
+        let lower = word.to_ascii_lowercase();
+        if ["vs", "ps"].contains(&lower.as_str()) || lower.starts_with("vs_") || lower.starts_with("ps_") {
+            return self.version(scanner, place, &lower);
+        }
+        if lower == "def" {
+            return self.definition(scanner, place);
+        }
+        if lower == "nop" && scanner.is_done() {
+            return Ok(());
+        }
+        if lower == "dcl" || lower.starts_with("dcl_") {
+            let help = "leave the line out, and name the attribute in the scene: `inputs: (v0: Position, v3: Normal)`";
+            return Err(self.refuse(
+                "NB0108",
+                place,
+                "declarations are not part of vs.1.1 here",
+                "a declaration",
+                help,
+            ));
+        }
+        let Some(opcode) = opcode(&word) else { return Err(self.unknown(scanner, place, &word)) };
+        self.instruction(scanner, opcode, place)
+    }
+
+    fn version(&mut self, scanner: &mut Scanner<'_>, place: Range<usize>, word: &str) -> Read<()> {
+        let whole = place.start..scanner.remaining().end;
+        let written: String = self.text[whole.clone()].chars().filter(|c| !c.is_whitespace()).collect();
+        let written = written.to_ascii_lowercase().replace('_', ".");
+        if word.starts_with("ps") {
+            let help = "a vertex program begins with `vs.1.1`; the pixel shader belongs into the draw's `program`";
+            return Err(self.refuse("NB0108", whole, "this is a pixel shader", "not a vertex program", help));
+        }
+        if !["vs.1.1", "vs.1.0"].contains(&written.as_str()) {
+            let message = format!("there is no version {}", shorten(&written));
+            return Err(self.refuse("NB0108", whole, &message, "not known here", "write `vs.1.1`"));
+        }
+        if let Some(first) = self.version.clone() {
+            let finding = finding("NB0388", whole, "a second version", "again here", "keep one program in a text");
+            self.findings.push(finding.related(first, "first here"));
+        } else if !self.written.shader.instructions.is_empty() {
+            let message = "the version stands behind instructions";
+            return Err(self.refuse("NB0108", whole, message, "not the first", "move it to the first line"));
+        } else {
+            self.version = Some(whole);
+        }
+        Ok(())
+    }
+
+    /// `def c4, 0.5, 1, 2, 0`.
+    fn definition(&mut self, scanner: &mut Scanner<'_>, word: Range<usize>) -> Read<()> {
+        let (source, place) = operand::source(self, scanner)?;
+        let SourceRegister::Constant { index, relative: false } = source.register else {
+            return Err(self.refuse(
+                "NB0380",
+                place,
+                "`def` defines a constant",
+                "not one",
+                "write `def c0, 0, 0, 0, 1`",
+            ));
+        };
+        let mut values = Vec::new();
+        while scanner.sign(',').is_some() {
+            let place = scanner.until_comma();
+            let number = scanner.text(&place).trim_end_matches(['f', 'F']);
+            let plain = number.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
+            match number.parse::<f32>() {
+                Ok(value) if plain && value.is_finite() => values.push(value),
+                _ => {
+                    let message = format!("`{}` is not a number", shorten(scanner.text(&place)));
+                    let help = "write four numbers, such as `def c4, 0.5, 1.0, 2.0, 0.0`";
+                    return Err(self.refuse("NB0205", place, &message, "not finite or no number", help));
+                }
+            }
+        }
+        if !scanner.is_done() {
+            return Err(self.expected(scanner, "`,`"));
+        }
+        let Ok(values) = <[f32; 4]>::try_from(values.as_slice()) else {
+            let message = format!("a constant has four numbers, not {}", values.len());
+            return Err(self.refuse("NB0211", word, &message, "this definition", "write all of x, y, z and w"));
+        };
+        let known = self.written.shader.definitions.iter().position(|(known, _)| *known == index);
+        if let Some(first) = known.and_then(|at| self.written.definitions.get(at)).cloned() {
+            let message = format!("c{index} is defined twice");
+            let finding = finding("NB0388", place, message, "again here", "keep one of them");
+            self.findings.push(finding.related(first, "first here"));
+            return Err(GivenUp);
+        }
+        self.written.shader.definitions.push((index, values));
+        self.written.definitions.push(place);
+        Ok(())
+    }
+
+    fn instruction(&mut self, scanner: &mut Scanner<'_>, opcode: Opcode, place: Range<usize>) -> Read<()> {
+        let (destination, written) = operand::destination(self, scanner)?;
+        let (mut sources, mut places) = (Vec::new(), Vec::new());
+        while scanner.sign(',').is_some() {
+            let (source, place) = operand::source(self, scanner)?;
+            sources.push(source);
+            places.push(place);
+        }
+        if !scanner.is_done() {
+            return Err(self.expected(scanner, "`,` or the end of the line"));
+        }
+        if sources.len() != opcode.sources() {
+            let count = |n: usize| if n == 1 { "1 source".to_owned() } else { format!("{n} sources") };
+            let message = format!("`{}` takes {}, not {}", opcode.word(), count(opcode.sources()), sources.len());
+            let help = "a destination comes first, then the sources, with commas between them";
+            return Err(self.refuse("NB0211", place, &message, "this instruction", help));
+        }
+        let mut destination = destination;
+        if let (Some((rows, _)), 15) = (opcode.matrix(), destination.mask) {
+            destination.mask = natural(rows);
+        }
+        self.written.shader.instructions.push(Instruction { opcode, destination, sources });
+        self.written.places.push(InstructionPlaces { opcode: place, destination: written, sources: places });
+        Ok(())
+    }
+
+    fn unknown(&mut self, scanner: &mut Scanner<'_>, place: Range<usize>, word: &str) -> GivenUp {
+        if word.is_empty() {
+            let mut at = Scanner::new(self.text, place.start..scanner.remaining().end);
+            return self.expected(&mut at, "an instruction");
+        }
+        let list: Vec<&str> = Opcode::ALL.iter().map(|opcode| opcode.word()).collect();
+        let later = ["abs", "crs", "lrp", "mova", "nrm", "pow", "sgn", "sincos", "if", "loop", "rep", "call", "setp"];
+        let help = if later.contains(&word.to_ascii_lowercase().as_str()) {
+            format!("it came with later versions; vs.1.1 has {}", list.join(", "))
+        } else {
+            match closest(word, list.iter().copied()) {
+                Some(name) => format!("did you mean `{name}`? All of them: {}, and def", list.join(", ")),
+                None => format!("vs.1.1 has {}, and def", list.join(", ")),
+            }
+        };
+        self.refuse("NB0204", place, &format!("there is no instruction `{}`", shorten(word)), "not known", &help)
+    }
+}

@@ -1,0 +1,306 @@
+//! Where the vertices of a draw come from, and what the vertex side makes of them.
+
+use super::attribute::{Outputs, Source};
+use super::names::Names;
+use super::target::Targets;
+use super::*;
+use crate::state::{Positions, VertexColor, VertexProgram, Viewport};
+use crate::vertex::fog::{FogEvaluation, FogSource, vertex_factor};
+use crate::vertex::texgen::CoordinateSet;
+use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
+
+/// The vertices of a draw as they were described.
+pub(super) struct Geometry {
+    pub(super) positions: Positions,
+    pub(super) vertices: Vec<crate::state::Vertex>,
+    pub(super) spans: VertexSpans,
+    /// Of a mesh.
+    pub(super) triangles: Option<Vec<u32>>,
+    /// What generated coordinates and fog start from.
+    pub(super) objects: Vec<ObjectVertex>,
+    pub(super) model_view: Rows,
+    /// The vertex program that made them.
+    pub(super) program: Option<VertexProgram>,
+}
+
+/// Generated texture coordinates, texture matrices and fog, into the vertices. False once a finding has been recorded.
+pub(super) fn vertex_side(
+    reader: &mut Reader<'_>,
+    geometry: &mut Geometry,
+    sets: &Option<[CoordinateSet; 4]>,
+    fog: &fog::FogFields,
+    viewer: Viewer,
+    draw: &Range<usize>,
+) -> bool {
+    if sets.is_none() && fog.function.is_none() {
+        return true;
+    }
+    if let Some(program) = &geometry.program
+        && let Some(finding) = beside_program(program, sets.is_some(), fog, draw)
+    {
+        reader.push(finding);
+        return false;
+    }
+    let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone() };
+    if let (Some(_), FogSource::Vertex, Some(_), None) =
+        (&fog.function, fog.source, &geometry.triangles, &geometry.program)
+    {
+        reader.push(
+            Diagnostic::error("NB0222", fog.place.clone(), "the vertices of a mesh give no fog coordinates")
+                .label("needs them from the vertices")
+                .rule("INT-5")
+                .help("add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices"),
+        );
+        return false;
+    }
+    let model_view = ModelView::new(&geometry.model_view);
+    for (index, (vertex, object)) in geometry.vertices.iter_mut().zip(&geometry.objects).enumerate() {
+        let eye = EyeVertex::new(object, &model_view, viewer);
+        if let Some(sets) = sets {
+            let given = vertex.texture_coordinates;
+            vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
+        }
+        if let Some(function) = &fog.function {
+            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye, vertex.position);
+            if fog.evaluation == FogEvaluation::PerVertex && vertex.fog.is_finite() {
+                vertex.fog = vertex_factor(function, vertex.fog);
+            }
+        }
+        let what = if !vertex.fog.is_finite() {
+            "the fog coordinate"
+        } else if !vertex.texture_coordinates.iter().flatten().all(|c| c.is_finite()) {
+            "a texture coordinate"
+        } else {
+            continue;
+        };
+        reader.push(
+            Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
+                .label("beyond all numbers")
+                .rule("TSH-11")
+                .help("use smaller numbers in the matrices, in the planes or in the position"),
+        );
+        return false;
+    }
+    true
+}
+
+/// What the fixed vertex pipe does, and a vertex program in its place has to do itself.
+fn beside_program(
+    program: &VertexProgram,
+    sets: bool,
+    fog: &fog::FogFields,
+    draw: &Range<usize>,
+) -> Option<Diagnostic> {
+    if sets {
+        let message = "coordinates are generated or multiplied beside a vertex program";
+        return Some(Diagnostic::error("NB0389", draw.clone(), message).label("in this draw").rule("VTX-3").help(
+            "the program takes the place of `texgen` and `texture_matrices`: compute in it what goes to oT0 to oT3",
+        ));
+    }
+    fog.function.as_ref()?;
+    let finding = |message: &str, label: &str, help: &str| {
+        Some(Diagnostic::error("NB0389", fog.place.clone(), message).label(label).rule("VTX-3").help(help))
+    };
+    if matches!(fog.source, FogSource::EyePlane | FogSource::EyePlaneAbsolute | FogSource::EyeRadial) {
+        let help = "take `coordinate_source: Depth` or `W`, or leave it out and write the coordinate to oFog";
+        return finding("behind a vertex program there is no eye space", "needs it for this fog", help);
+    }
+    if fog.source == FogSource::Vertex && !program.writes_fog {
+        let help = "write it there: `mov oFog.x, r0.w`";
+        return finding(
+            "fog with a mode reads the coordinate in oFog, which nothing writes",
+            "needs the coordinate",
+            help,
+        );
+    }
+    None
+}
+
+const SOURCES: &[&str] = &["Window", "Matrix", "Program"];
+
+pub(super) fn geometry<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    target: usize,
+    raw: &Raw<'a, source::VertexSource>,
+) -> Option<Geometry> {
+    let (kind, rest) = reader.variant(raw, "vertex source", SOURCES)?;
+    match kind {
+        0 => {
+            let list = Raw::<crate::scene::raw::Tuple<'a, source::VertexList>>::new(rest);
+            let parts = reader.read(&list)?.0;
+            let [list] = parts[..] else {
+                reader.push(
+                    Diagnostic::error(
+                        "NB0211",
+                        reader.span(&list),
+                        "expected one list of vertices in these parentheses",
+                    )
+                    .label("here")
+                    .help("write `Window([(position: (10, 20)), ...])`"),
+                );
+                return None;
+            };
+            let data = names.vertices(reader, &list)?;
+            Some(Geometry {
+                positions: Positions::Window,
+                vertices: data.vertices.clone(),
+                spans: data.spans.clone(),
+                triangles: None,
+                objects: listed(&data),
+                model_view: matrix::IDENTITY,
+                program: None,
+            })
+        }
+        1 => matrix_geometry(reader, names, targets, target, rest),
+        _ => vertex_program::geometry(reader, names, targets, target, rest),
+    }
+}
+
+fn matrix_geometry<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    target: usize,
+    text: &'a str,
+) -> Option<Geometry> {
+    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
+    let matrix = reader.required(&fields.matrix, "matrix", "vertex source", opening.clone());
+    let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
+    let model_view = match &fields.model_view {
+        Some(raw) => names.matrix(reader, raw),
+        None => Some(matrix::IDENTITY),
+    };
+    let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
+    let viewport = viewport(reader, &fields.viewport, size);
+    let (mut vertices, spans, triangles, objects) = match (&fields.vertices, &fields.mesh) {
+        (Some(raw), None) => {
+            let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
+            if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
+                reader.push(
+                    Diagnostic::error("NB0222", reader.span(output), "listed vertices have no mesh attributes")
+                        .label("needs a mesh")
+                        .help("write colours and texture coordinates in the vertices, or use `mesh: ...`"),
+                );
+            }
+            let data = names.vertices(reader, raw)?;
+            (data.vertices.clone(), data.spans.clone(), None, listed(&data))
+        }
+        (None, Some(raw)) => {
+            let mesh = names.mesh(reader, raw);
+            let outputs = outputs(reader, names, &fields);
+            let mesh = mesh?;
+            let vertices = attribute::vertices(&mesh, &outputs);
+            let dimensions = outputs.dimensions();
+            let object = |(vertex, normal): (&crate::state::Vertex, &[f32; 3])| ObjectVertex {
+                position: vertex.position,
+                normal: *normal,
+                fog_coordinate: 0.0,
+                dimensions,
+            };
+            let objects = vertices.iter().zip(&mesh.normals).map(object).collect();
+            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()), objects)
+        }
+        (both, _) => {
+            let (code, message) = match both {
+                Some(_) => ("NB0222", "either `vertices` or `mesh`, not both"),
+                None => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
+            };
+            reader.push(
+                Diagnostic::error(code, opening, message)
+                    .label("in here")
+                    .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`"),
+            );
+            return None;
+        }
+    };
+    let (matrix, model_view) = (matrix?, model_view?);
+    for vertex in &mut vertices {
+        vertex.position = crate::vertex::transform(&matrix, vertex.position);
+    }
+    if let Some(bad) = vertices.iter().position(|vertex| !vertex.position.iter().all(|value| value.is_finite())) {
+        let spans = DrawSpans { draw: opening, vertices: spans };
+        reader.push(
+            Diagnostic::error("NB0207", spans.vertex(bad), format!("the matrix takes vertex {bad} beyond all numbers"))
+                .label("not finite after the matrix")
+                .rule("RAS-0")
+                .help("use smaller numbers in the matrix or in the position"),
+        );
+        return None;
+    }
+    Some(Geometry {
+        positions: Positions::Clip(viewport),
+        vertices,
+        spans,
+        triangles,
+        objects,
+        model_view,
+        program: None,
+    })
+}
+
+/// Listed vertices as the vertex side takes them.
+pub(super) fn listed(data: &vertex::VertexData) -> Vec<ObjectVertex> {
+    let object = |(vertex, extra): (&crate::state::Vertex, &vertex::Extra)| ObjectVertex {
+        position: vertex.position,
+        normal: extra.normal,
+        fog_coordinate: extra.fog_coordinate,
+        dimensions: extra.dimensions,
+    };
+    data.vertices.iter().zip(&data.extras).map(object).collect()
+}
+
+fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::MatrixVertices<'a>) -> Outputs {
+    let mut color = |field: &Option<Raw<'a, source::Attribute>>, default| {
+        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, true));
+        written.unwrap_or(Source::Color(VertexColor::Bytes(default)))
+    };
+    let (diffuse, specular) = (color(&fields.diffuse, [255; 4]), color(&fields.specular, [0; 4]));
+    let coordinates = [&fields.t0, &fields.t1, &fields.t2, &fields.t3].map(|field| {
+        let written = field.as_ref().and_then(|raw| attribute::source(reader, names, raw, false));
+        written.unwrap_or(Source::TextureCoordinates)
+    });
+    Outputs { diffuse, specular, coordinates }
+}
+
+pub(super) fn viewport<'a>(
+    reader: &mut Reader<'a>,
+    raw: &Option<Raw<'a, source::Viewport<'a>>>,
+    (width, height): (u32, u32),
+) -> Viewport {
+    let mut viewport = Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, near: 0.0, far: 1.0 };
+    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return viewport };
+    for (field, slot, positive) in [
+        (&fields.x, &mut viewport.x, false),
+        (&fields.y, &mut viewport.y, false),
+        (&fields.width, &mut viewport.width, true),
+        (&fields.height, &mut viewport.height, true),
+        (&fields.near, &mut viewport.near, false),
+        (&fields.far, &mut viewport.far, false),
+    ] {
+        let Some(raw) = field else { continue };
+        let Some(value) = reader.finite(raw) else { continue };
+        if positive && value <= 0.0 {
+            reader.push(
+                Diagnostic::error("NB0206", reader.span(raw), "a viewport has a width and a height above 0")
+                    .label("out of range"),
+            );
+        }
+        *slot = value;
+    }
+    for (field, value) in [(&fields.near, viewport.near), (&fields.far, viewport.far)] {
+        if let Some(raw) = field
+            && !(0.0..=1.0).contains(&value)
+            && value.is_finite()
+        {
+            reader.push(
+                Diagnostic::error("NB0206", reader.span(raw), format!("a depth cannot be {value}"))
+                    .label("out of range")
+                    .help("write 0.0 (near) to 1.0 (far)"),
+            );
+        }
+    }
+    viewport
+}

@@ -1,0 +1,194 @@
+//! `PixelShader(...)`: Direct3D pixel shaders, version 1.1.
+
+use super::api_program::{ApiProgram, Around};
+use super::names::Names;
+use super::program_text::ProgramText;
+use super::shader::kinds;
+use super::texture::Textures;
+use super::unit::Units;
+use super::*;
+use crate::program::pixel_shader::{self, Bump, CONSTANTS, Context, PixelShader, UnitUse};
+use crate::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS};
+
+/// A shader, where its bytes stand, and what the API sets beside it.
+pub(super) struct ShaderProgram {
+    program: PixelShader,
+    text: ProgramText,
+    constants: [Option<[f32; 4]>; CONSTANTS],
+    bumps: [Bump; TEXTURE_UNITS],
+}
+
+/// Reads the text, or the fields, in the parentheses.
+pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
+    let (mut constants, mut bumps) = ([None; CONSTANTS], [Bump::default(); TEXTURE_UNITS]);
+    let inside = crate::scene::raw::trim(text.strip_prefix('(').unwrap_or(text));
+    let errors = reader.errors;
+    let text = if Raw::<String>::new(inside).is_text() {
+        ProgramText::read(reader, names, text)?
+    } else {
+        let opening = reader.range(text.get(..1).unwrap_or(text));
+        let fields = reader.read(&Raw::<source::PixelShader<'a>>::new(text))?;
+        for entry in reader.table("constant", &fields.constants) {
+            if let Some(index) = register(reader, &entry.name, entry.place, 'c', CONSTANTS, "constant") {
+                constants[index] = color::vertex_color(reader, names, &entry.value).map(color::floats);
+            }
+        }
+        for entry in reader.table("bump state", &fields.bump) {
+            if let Some(index) = register(reader, &entry.name, entry.place, 't', TEXTURE_UNITS, "texture register") {
+                bumps[index] = bump(reader, &entry.value).unwrap_or_default();
+            }
+        }
+        match (&fields.text, &fields.file) {
+            (Some(raw), None) => ProgramText::inline(reader, raw)?,
+            (Some(_), Some(raw)) => {
+                reader.push(
+                    Diagnostic::error("NB0356", reader.span(raw), "a pixel shader is given twice")
+                        .label("again here")
+                        .help("keep one of `text` and `file`"),
+                );
+                return None;
+            }
+            (None, file) => {
+                let raw = reader.required(file, "file", "pixel shader", opening)?;
+                ProgramText::file(reader, names, &raw)?
+            }
+        }
+    };
+    let program = match pixel_shader::parse(&text.text) {
+        Ok(parsed) => {
+            parsed.warnings.into_iter().for_each(|warning| reader.push(text.place(warning)));
+            parsed.program
+        }
+        Err(findings) => {
+            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
+            return None;
+        }
+    };
+    for read in program.constants_read() {
+        let defined = program.definitions.iter().any(|definition| definition.index == read.value);
+        if !defined && constants.get(usize::from(read.value)).is_some_and(Option::is_none) {
+            let index = read.value;
+            let warning = Diagnostic::warning("NB0910", read.place, format!("c{index} has no value"))
+                .label("is 0")
+                .help(format!(
+                    "write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it"
+                ));
+            reader.push(text.place(warning));
+        }
+    }
+    (reader.errors == errors).then(|| ApiProgram::Shader(Box::new(ShaderProgram { program, text, constants, bumps })))
+}
+
+/// The number in the name of a register. `None` once the reason that it is none has been recorded.
+fn register(
+    reader: &mut Reader<'_>,
+    name: &str,
+    place: Range<usize>,
+    letter: char,
+    count: usize,
+    what: &str,
+) -> Option<usize> {
+    let digits = name.strip_prefix(letter).filter(|digits| digits.len() == 1);
+    let index = digits.and_then(|digits| digits.parse::<usize>().ok()).filter(|index| *index < count);
+    if index.is_none() {
+        reader.push(
+            Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
+                .label("not a register")
+                .help(format!("write \"{letter}0\" to \"{letter}{}\"", count - 1)),
+        );
+    }
+    index
+}
+
+fn bump<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BumpEnvironment<'a>>) -> Option<Bump> {
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let fields = reader.read(raw)?;
+    let matrix = reader.required(&fields.matrix, "matrix", "bump state", opening)?;
+    let matrix = reader.numbers(&matrix, "a bump matrix", 4, 4, [0.0; 4])?;
+    let luminance = match &fields.luminance {
+        Some(raw) => Some(reader.numbers(raw, "a bump luminance", 2, 2, [0.0; 4])?),
+        None => None,
+    };
+    Some(Bump { matrix: Some(matrix), luminance: luminance.map(|[scale, offset, ..]| [scale, offset]) })
+}
+
+impl ShaderProgram {
+    /// Combiners, their origins, and the texture shader in its place.
+    pub(super) fn lower(
+        &self,
+        reader: &mut Reader<'_>,
+        units: &Units,
+        textures: &Textures,
+        shader: &mut [ShaderStage; TEXTURE_UNITS],
+        around: &Around,
+        signed: [bool; TEXTURE_UNITS],
+    ) -> Result<(Combiners, Vec<StageOrigin>), Vec<Diagnostic>> {
+        let constants = self.constants.map(Option::unwrap_or_default);
+        let context = Context { profile: reader.profile, signed, fog: around.fog, constants, bumps: self.bumps };
+        let place = |findings: Vec<Diagnostic>| -> Vec<Diagnostic> {
+            findings.into_iter().map(|finding| self.text.place(finding)).collect()
+        };
+        let lowered = pixel_shader::lower(&self.program, &context).map_err(place)?;
+        let mut findings = Vec::new();
+        for (index, using) in lowered.units.iter().enumerate() {
+            if units.bound[index].is_some() && !using.as_ref().is_some_and(|using| using.operation.samples()) {
+                unsampled(reader, units, index);
+            }
+            let Some(using) = using else {
+                // On nv10 all units sample; nothing reads what this one gives.
+                if reader.profile == Profile::Nv2a {
+                    shader[index].operation = ShaderOperation::None;
+                }
+                continue;
+            };
+            findings.extend(
+                objection(units, textures, index, using, around.shader).map(|finding| self.text.place(finding)),
+            );
+            shader[index].operation = using.operation;
+            (shader[index].previous, shader[index].mapping) = (using.previous, using.mapping);
+        }
+        if findings.is_empty() { Ok((lowered.combiners, lowered.origins)) } else { Err(findings) }
+    }
+}
+
+/// The warning that a texture is bound for nothing.
+fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
+    let place = units.places[index].clone();
+    reader.push(
+        Diagnostic::warning("NB0905", place, format!("unit {index} has a texture that is not sampled"))
+            .label(format!("no instruction of the pixel shader samples into t{index}"))
+            .help(format!("write `Unbound` here, or `tex t{index}` in the shader")),
+    );
+}
+
+/// What keeps a unit from doing what the shader asks of it.
+fn objection(units: &Units, textures: &Textures, index: usize, using: &UnitUse, shader: bool) -> Option<Diagnostic> {
+    let place = using.place.clone();
+    if shader {
+        let error = Diagnostic::error("NB0352", place, "texture instructions beside a texture shader")
+            .label("becomes a texture shader itself")
+            .rule("TSH-10");
+        return Some(error.help("leave the draw's `texture_shader` out"));
+    }
+    if !using.operation.samples() {
+        return None;
+    }
+    let Some(unit) = units.bound[index] else {
+        if !units.places[index].is_empty() {
+            return None;
+        }
+        let message = format!("t{index} is sampled, but unit {index} has no texture");
+        let error = Diagnostic::error("NB0343", place, message).label("nothing to sample").rule("TSH-10");
+        return Some(error.help(format!("give the draw `textures: [...]` with an entry for unit {index}")));
+    };
+    let texture = textures.list.get(unit.texture)?;
+    let fits = kinds(&using.operation);
+    (!fits.contains(&texture.kind)).then(|| {
+        let names: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();
+        let message = format!("this does not sample a texture of kind {}, which unit {index} has", texture.kind.name());
+        Diagnostic::error("NB0343", place, message)
+            .label(format!("needs {}", names.join(" or ")))
+            .rule("TSH-10")
+            .help("give the unit another texture, or take the instruction for this kind")
+    })
+}

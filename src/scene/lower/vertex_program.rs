@@ -1,0 +1,233 @@
+//! `Program(...)`: vertices that a vertex program makes.
+#![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
+
+mod constants;
+mod inputs;
+
+use super::geometry::{Geometry, listed, viewport};
+use super::names::Names;
+use super::program_text::ProgramText;
+use super::target::Targets;
+use super::*;
+use crate::program::vertex_shader::{self, Written, print};
+use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Viewport};
+use crate::vertex::ObjectVertex;
+use crate::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
+use inputs::{Given, Input};
+
+/// Runs the program over the vertices. `None` once the reason that it cannot be run has been recorded.
+pub(super) fn geometry<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    target: usize,
+    text: &'a str,
+) -> Option<Geometry> {
+    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
+    let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
+    let mut viewport = viewport(reader, &fields.viewport, size);
+    if clip_depth(reader, &fields.clip_depth) {
+        depth_from_zero(&mut viewport);
+    }
+    let given = given(reader, names, &fields, opening.clone());
+    let program = program(reader, names, &fields, opening);
+    let constants = constants::constants(reader, names, &fields.constants, program.as_ref());
+    let (given, (written, text)) = (given?, program?);
+    let sources = inputs::sources(reader, names, &fields.inputs, &given, (&written, &text));
+    if reader.errors > 0 {
+        // The scene is refused anyway: a program over a large mesh is not run for nothing, draw after draw.
+        return None;
+    }
+    let spans = given.spans.clone();
+    let (vertices, objects) = run(reader, &written.shader, &constants, &sources, &given)?;
+    Some(Geometry {
+        positions: Positions::Clip(viewport),
+        vertices,
+        spans,
+        triangles: given.mesh.map(|mesh| mesh.indices.clone()),
+        objects,
+        model_view: matrix::IDENTITY,
+        program: Some(origin(&written.shader)),
+    })
+}
+
+/// What is kept of a program for those who look at the scene.
+fn origin(shader: &VertexShader) -> VertexProgram {
+    VertexProgram {
+        text: print(shader),
+        instructions: shader.instructions.len(),
+        slots: shader.slots(),
+        writes_fog: shader.written(DestinationRegister::Fog) != 0,
+    }
+}
+
+/// Whether clip space begins at depth 0.
+fn clip_depth<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> bool {
+    let Some(raw) = raw else { return false };
+    reader.variant(raw, "range of depths in clip space", &["MinusOneToOne", "ZeroToOne"]).is_some_and(|(n, _)| n == 1)
+}
+
+/// A viewport that maps depth 0 of normalised coordinates to `near`: it begins as far before that as it ends behind it.
+fn depth_from_zero(viewport: &mut Viewport) {
+    viewport.near = 2.0 * viewport.near - viewport.far;
+}
+
+fn program<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    fields: &source::ProgramVertices<'a>,
+    opening: Range<usize>,
+) -> Option<(Written, ProgramText)> {
+    let text = match (&fields.text, &fields.file) {
+        (Some(raw), None) => ProgramText::inline(reader, raw)?,
+        (None, Some(raw)) => ProgramText::file(reader, names, raw)?,
+        (Some(first), Some(second)) => {
+            let (first, second) = (reader.span(first), reader.span(second));
+            reader.push(
+                Diagnostic::error("NB0388", second, "the vertex program is given twice")
+                    .label("again here")
+                    .related(first, "first here")
+                    .help("keep one of `text` and `file`"),
+            );
+            return None;
+        }
+        (None, None) => {
+            reader.push(
+                Diagnostic::error("NB0202", opening, "this vertex program has neither `text` nor `file`")
+                    .label("in here")
+                    .help("write `text: r#\"vs.1.1 ...\"#`, or `file: \"name.vsh\"`"),
+            );
+            return None;
+        }
+    };
+    match vertex_shader::read(&text.text) {
+        Ok(written) => {
+            for warning in written.warnings.clone() {
+                reader.push(text.place(warning));
+            }
+            Some((written, text))
+        }
+        Err(findings) => {
+            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
+            None
+        }
+    }
+}
+
+/// The vertices that the program takes.
+fn given<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    fields: &source::ProgramVertices<'a>,
+    opening: Range<usize>,
+) -> Option<Given> {
+    match (&fields.vertices, &fields.mesh) {
+        (Some(raw), None) => {
+            let data = names.vertices(reader, raw)?;
+            let objects = listed(&data);
+            Some(Given { spans: data.spans.clone(), objects, vertices: data.vertices.clone(), mesh: None })
+        }
+        (None, Some(raw)) => {
+            let mesh = names.mesh(reader, raw)?;
+            Some(Given {
+                spans: VertexSpans::All(reader.span(raw)),
+                objects: Vec::new(),
+                vertices: Vec::new(),
+                mesh: Some(mesh),
+            })
+        }
+        (both, _) => {
+            let (code, message) = match both {
+                Some(_) => ("NB0222", "either `vertices` or `mesh`, not both"),
+                None => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
+            };
+            reader.push(
+                Diagnostic::error(code, opening, message)
+                    .label("in here")
+                    .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`"),
+            );
+            None
+        }
+    }
+}
+
+/// VTX-3: the vertices that come out. What a set and a fog function start from comes along.
+fn run(
+    reader: &mut Reader<'_>,
+    shader: &VertexShader,
+    constants: &Constants,
+    sources: &[Input],
+    given: &Given,
+) -> Option<(Vec<Vertex>, Vec<ObjectVertex>)> {
+    let written = Registers::of(shader);
+    let count = given.count();
+    let (mut vertices, mut objects) = (Vec::with_capacity(count), Vec::with_capacity(count));
+    for index in 0..count {
+        let mut registers: Inputs = [[0.0; 4]; crate::vertex::shader::INPUTS];
+        for (register, source) in registers.iter_mut().zip(sources) {
+            *register = inputs::value(source, given, index);
+        }
+        let outputs = evaluate(shader, constants, &registers);
+        if let Some(what) = written.not_finite(&outputs) {
+            let spans = DrawSpans { draw: 0..0, vertices: given.spans.clone() };
+            reader.push(
+                Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
+                    .label("what the vertex program makes of it")
+                    .rule("VTX-3")
+                    .help("look for rcp or rsq of 0, log of 0, and numbers too large"),
+            );
+            return None;
+        }
+        vertices.push(written.vertex(&outputs));
+        let fog_coordinate = outputs.fog[0];
+        objects.push(ObjectVertex { position: outputs.position, normal: [0.0; 3], fog_coordinate, dimensions: [4; 4] });
+    }
+    Some((vertices, objects))
+}
+
+/// Output registers that a program writes.
+struct Registers {
+    colors: [bool; 2],
+    coordinates: [bool; 4],
+    fog: bool,
+}
+
+impl Registers {
+    fn of(shader: &VertexShader) -> Registers {
+        let written = |register| shader.written(register) != 0;
+        Registers {
+            colors: [0, 1].map(|n| written(DestinationRegister::Color(n))),
+            coordinates: [0, 1, 2, 3].map(|n| written(DestinationRegister::Coordinates(n))),
+            fog: written(DestinationRegister::Fog),
+        }
+    }
+
+    /// An output that cannot be used. Infinite colours can: they are limited.
+    fn not_finite(&self, outputs: &Outputs) -> Option<String> {
+        if !outputs.position.iter().all(|value| value.is_finite()) {
+            return Some("oPos".to_owned());
+        }
+        let color = (0..2).find(|n| self.colors[*n] && outputs.colors[*n].iter().any(|value| value.is_nan()));
+        let set =
+            (0..4).find(|n| self.coordinates[*n] && !outputs.coordinates[*n].iter().all(|value| value.is_finite()));
+        let fog = self.fog && !outputs.fog[0].is_finite();
+        color.map(|n| format!("oD{n}")).or(set.map(|n| format!("oT{n}"))).or(fog.then(|| "oFog".to_owned()))
+    }
+
+    /// The vertex as the rasteriser takes it; what the program does not write is as in a vertex that does not give it.
+    fn vertex(&self, outputs: &Outputs) -> Vertex {
+        let absent = Vertex::default();
+        let limited = |value: f32| value.clamp(0.0, 1.0);
+        let color = |n: usize, absent: VertexColor| {
+            if self.colors[n] { VertexColor::Floats(outputs.colors[n].map(limited)) } else { absent }
+        };
+        Vertex {
+            position: outputs.position,
+            diffuse: color(0, absent.diffuse),
+            specular: color(1, absent.specular),
+            fog: if self.fog { limited(outputs.fog[0]) } else { absent.fog },
+            texture_coordinates: outputs.coordinates,
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! What the input registers of a vertex program hold.
+
+use std::rc::Rc;
+
+use super::super::attribute::{self, Source};
+use super::*;
+use crate::scene::mesh::Mesh;
+use crate::vertex::shader::INPUTS;
+
+/// The vertices that a program takes: of a mesh, or listed.
+pub(super) struct Given {
+    pub(super) spans: VertexSpans,
+    pub(super) mesh: Option<Rc<Mesh>>,
+    /// Of listed vertices.
+    pub(super) objects: Vec<ObjectVertex>,
+    pub(super) vertices: Vec<Vertex>,
+}
+
+impl Given {
+    pub(super) fn count(&self) -> usize {
+        self.mesh.as_ref().map_or(self.vertices.len(), |mesh| mesh.positions.len())
+    }
+}
+
+/// What a register holds.
+pub(super) enum Input {
+    /// Nothing reads it.
+    Unread,
+    /// Of a mesh, or the same for all.
+    Attribute(Source),
+    /// A field of listed vertices.
+    Field(Field),
+}
+
+/// Fields of listed vertices.
+#[derive(Clone, Copy)]
+pub(super) enum Field {
+    Position,
+    Normal,
+    Diffuse,
+    Specular,
+    FogCoordinate,
+    Coordinates(usize),
+}
+
+/// Their words; the first set of coordinates has two.
+const FIELDS: &[(&str, Field)] = &[
+    ("Position", Field::Position),
+    ("Normal", Field::Normal),
+    ("Diffuse", Field::Diffuse),
+    ("Specular", Field::Specular),
+    ("FogCoordinate", Field::FogCoordinate),
+    ("TextureCoordinates", Field::Coordinates(0)),
+    ("TextureCoordinates0", Field::Coordinates(0)),
+    ("TextureCoordinates1", Field::Coordinates(1)),
+    ("TextureCoordinates2", Field::Coordinates(2)),
+    ("TextureCoordinates3", Field::Coordinates(3)),
+];
+
+/// What registers hold unless something is written: the numbers of Direct3D's fixed vertices.
+fn usual(register: usize, mesh: bool) -> Option<Input> {
+    let (source, field) = match (register, mesh) {
+        (0, _) => (Some(Source::Position), Field::Position),
+        (3, _) => (Some(Source::Normal), Field::Normal),
+        (5, false) => (None, Field::Diffuse),
+        (6, false) => (None, Field::Specular),
+        (7, _) => (Some(Source::TextureCoordinates), Field::Coordinates(0)),
+        _ => return None,
+    };
+    if mesh { source.map(Input::Attribute) } else { Some(Input::Field(field)) }
+}
+
+/// Reads what each register holds; every register that the program reads has something.
+pub(super) fn sources<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Option<Raw<'a, source::ShaderInputs<'a>>>,
+    given: &Given,
+    (written, text): (&Written, &ProgramText),
+) -> Vec<Input> {
+    let fields = raw.as_ref().and_then(|raw| reader.read(raw));
+    let fields = fields.map(|fields| fields.list()).unwrap_or([None; INPUTS]);
+    let mesh = given.mesh.is_some();
+    let mut inputs = Vec::with_capacity(INPUTS);
+    for (register, (field, read)) in fields.iter().zip(written.inputs_read()).enumerate() {
+        let chosen = field.as_ref().map(|raw| input(reader, names, raw, mesh));
+        let input = match (chosen, read) {
+            (Some(_), None) => {
+                let place = field.as_ref().map_or(0..0, |raw| reader.span(raw));
+                reader.push(
+                    Diagnostic::warning("NB0901", place, format!("the input v{register} is not used"))
+                        .label("the vertex program does not read it")
+                        .help("remove it, or check its number"),
+                );
+                None
+            }
+            (Some(chosen), Some(_)) => chosen,
+            (None, None) => None,
+            (None, Some(place)) => {
+                let usual = usual(register, mesh);
+                if usual.is_none() {
+                    let message = format!("nothing says what v{register} holds");
+                    let help = format!(
+                        "add it: `inputs: (v{register}: {})`",
+                        if mesh { "Tangent" } else { "TextureCoordinates1" }
+                    );
+                    let finding = Diagnostic::error("NB0387", place, message)
+                        .label("read here")
+                        .note("without being told, v0 is the position, v3 the normal, v7 the texture coordinates, of listed vertices v5 and v6 the colours")
+                        .help(help);
+                    reader.push(text.place(finding));
+                }
+                usual
+            }
+        };
+        inputs.push(input.unwrap_or(Input::Unread));
+    }
+    inputs
+}
+
+fn input<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::Attribute>,
+    mesh: bool,
+) -> Option<Input> {
+    let (head, rest) = raw.split();
+    if mesh || head.is_empty() {
+        return attribute::source(reader, names, raw, false).map(Input::Attribute);
+    }
+    if ["Tangent", "Binormal", "LightVector", "HalfVector"].contains(&head) {
+        let message = format!("listed vertices have no {head}");
+        reader.push(
+            Diagnostic::error("NB0222", reader.span(raw), message)
+                .label("needs a mesh")
+                .help("use `mesh: Triangles(vertices: [...], indices: [...])`, which has tangents of its own"),
+        );
+        return None;
+    }
+    match FIELDS.iter().find(|(word, _)| *word == head && rest.is_empty()) {
+        Some((_, field)) => Some(Input::Field(*field)),
+        None => {
+            let words: Vec<&'static str> = FIELDS.iter().map(|(word, _)| *word).collect();
+            reader.unknown_variant(raw, "vertex attribute", &words);
+            None
+        }
+    }
+}
+
+/// What a register holds at a vertex.
+pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
+    let field = match (input, &given.mesh) {
+        (Input::Unread, _) => return [0.0; 4],
+        (Input::Attribute(source), Some(mesh)) => return attribute::evaluate(mesh, index, source),
+        // The same for all: other attributes need a mesh.
+        (Input::Attribute(source), None) => {
+            return if let Source::Coordinates(values, _) = source { *values } else { [0.0; 4] };
+        }
+        (Input::Field(field), _) => field,
+    };
+    let (Some(vertex), Some(object)) = (given.vertices.get(index), given.objects.get(index)) else { return [0.0; 4] };
+    let color = |color: VertexColor| match color {
+        VertexColor::Bytes(bytes) => bytes.map(|byte| f32::from(byte) / 255.0),
+        VertexColor::Floats(floats) => floats,
+    };
+    match field {
+        Field::Position => object.position,
+        Field::Normal => [object.normal[0], object.normal[1], object.normal[2], 1.0],
+        Field::Diffuse => color(vertex.diffuse),
+        Field::Specular => color(vertex.specular),
+        Field::FogCoordinate => [object.fog_coordinate, 0.0, 0.0, 1.0],
+        Field::Coordinates(set) => vertex.texture_coordinates[*set],
+    }
+}

@@ -1,0 +1,389 @@
+//! VTX-4: tangent bases of a mesh, from its positions and texture coordinates.
+#![allow(
+    clippy::float_arithmetic,
+    reason = "vertices are floats in the chip's programming model; the order of operations is fixed"
+)]
+
+use std::collections::HashMap;
+
+use super::Mesh;
+
+/// Vertices and triangles without tangents.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surface {
+    /// Object space.
+    pub positions: Vec<[f32; 3]>,
+    /// Of any length. Where one is zero the triangles around give it.
+    pub normals: Vec<[f32; 3]>,
+    /// s, t.
+    pub texture_coordinates: Vec<[f32; 2]>,
+    /// Three a triangle, each below the number of vertices.
+    pub indices: Vec<u32>,
+}
+
+type Vector = [f64; 3];
+
+fn wide(v: [f32; 3]) -> Vector {
+    v.map(f64::from)
+}
+
+fn minus(a: Vector, b: Vector) -> Vector {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn scaled(v: Vector, by: f64) -> Vector {
+    v.map(|c| c * by)
+}
+
+fn add(to: &mut Vector, v: Vector) {
+    for (sum, c) in to.iter_mut().zip(v) {
+        *sum += c;
+    }
+}
+
+/// Of unit length; `None` for a vector that has none, next to `scale`.
+fn unit(v: Vector, scale: f64) -> Option<Vector> {
+    let length = dot(v, v).sqrt();
+    (length > scale * 1e-12).then(|| v.map(|c| c / length))
+}
+
+/// What a triangle says of its surface.
+struct Face {
+    corners: [usize; 3],
+    /// How much it counts at each corner: the sine of its angle there over the lengths of both edges. For points of a sphere their mean
+    /// normal is then the sphere's, and how a flat polygon is cut makes no difference.
+    weights: [f64; 3],
+    /// Of unit length.
+    normal: Vector,
+    /// Along s, of unit length; `None` where the texture has no direction.
+    tangent: Option<Vector>,
+    /// The texture is seen from behind.
+    mirrored: bool,
+}
+
+fn face(surface: &Surface, corners: [usize; 3]) -> Option<Face> {
+    let [a, b, c] = corners.map(|corner| wide(surface.positions[corner]));
+    let (first, second) = (minus(b, a), minus(c, a));
+    let normal = cross(first, second);
+    let area = dot(normal, normal).sqrt();
+    // A sliver whose corners lie in a line to the precision of f32 has no normal.
+    let longest = dot(first, first).max(dot(second, second));
+    if area <= longest * 1e-9 {
+        return None;
+    }
+    let third = minus(c, b);
+    let [ab, ac, bc] = [first, second, third].map(|edge| dot(edge, edge));
+    // A sliver may have two corners at one place.
+    let weights = [ab * ac, ab * bc, ac * bc].map(|squares| if squares > 0.0 { area / squares } else { 0.0 });
+    let [a, b, c] = corners.map(|corner| surface.texture_coordinates[corner].map(f64::from));
+    let ([s1, t1], [s2, t2]) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);
+    let turn = s1 * t2 - s2 * t1;
+    // Position as a function of s and t: its change along s, times `turn`.
+    let mut along = scaled(first, t2);
+    add(&mut along, scaled(second, -t1));
+    let largest = s1.abs().max(s2.abs()) * t1.abs().max(t2.abs());
+    let direction = unit(scaled(along, turn.signum()), 0.0).filter(|_| turn.abs() > largest * 1e-9);
+    // t grows downward: a texture seen from its front turns clockwise in s and t.
+    Some(Face { corners, weights, normal: scaled(normal, 1.0 / area), tangent: direction, mirrored: turn > 0.0 })
+}
+
+/// The part of a coordinate that a repeated texture depends on.
+fn fraction(c: f32) -> u32 {
+    let part = c - c.floor();
+    if part == 1.0 || part == 0.0 { 0 } else { part.to_bits() }
+}
+
+/// Bits that equal positions and directions have in common.
+fn bits(v: [f32; 3]) -> [u32; 3] {
+    v.map(|c| if c == 0.0 { 0 } else { c.to_bits() })
+}
+
+/// The mesh with its bases. Vertices that triangles with mirrored and unmirrored texture share are split: the mirrored ones are
+/// added at the end.
+pub fn mesh(surface: &Surface) -> Mesh {
+    let corners =
+        surface.indices.chunks_exact(3).map(|three| [three[0] as usize, three[1] as usize, three[2] as usize]);
+    let faces: Vec<Option<Face>> = corners.map(|corners| face(surface, corners)).collect();
+    let normals = normals(surface, &faces);
+    let (split, indices) = split(surface, &faces);
+    // What is the same place of the same texture, a whole number of repetitions apart or not, has one tangent.
+    let mut sums: HashMap<_, Vector> = HashMap::new();
+    let key = |vertex: usize, mirrored: bool| {
+        let place = bits(surface.positions[vertex]);
+        (place, bits(normals[vertex]), surface.texture_coordinates[vertex].map(fraction), mirrored)
+    };
+    for face in faces.iter().flatten() {
+        let Some(tangent) = face.tangent else { continue };
+        for (corner, weight) in face.corners.into_iter().zip(face.weights) {
+            add(sums.entry(key(corner, face.mirrored)).or_default(), scaled(tangent, weight));
+        }
+    }
+    let mut mesh = Mesh { indices, ..Mesh::default() };
+    for (vertex, mirrored) in split {
+        let normal = normals[vertex];
+        let sum = sums.get(&key(vertex, mirrored)).copied().unwrap_or_default();
+        let (tangent, binormal) = basis(wide(normal), sum, mirrored);
+        mesh.positions.push(surface.positions[vertex]);
+        mesh.normals.push(normal);
+        mesh.tangents.push(tangent);
+        mesh.binormals.push(binormal);
+        mesh.texture_coordinates.push(surface.texture_coordinates[vertex]);
+    }
+    mesh
+}
+
+/// Unit normals: as given, else the weighted mean of the triangles at the same place.
+fn normals(surface: &Surface, faces: &[Option<Face>]) -> Vec<[f32; 3]> {
+    let mut sums: HashMap<[u32; 3], Vector> = HashMap::new();
+    for face in faces.iter().flatten() {
+        for (corner, weight) in face.corners.into_iter().zip(face.weights) {
+            add(sums.entry(bits(surface.positions[corner])).or_default(), scaled(face.normal, weight));
+        }
+    }
+    let places = surface.positions.iter().zip(&surface.normals);
+    let normal = |(position, given): (&[f32; 3], &[f32; 3])| {
+        let sum = sums.get(&bits(*position)).copied().unwrap_or_default();
+        let found = unit(wide(*given), 0.0).or_else(|| unit(sum, 0.0));
+        found.unwrap_or([0.0, 0.0, 1.0]).map(|c| c as f32)
+    };
+    places.map(normal).collect()
+}
+
+/// The vertices of the mesh, each with whether its texture is mirrored, and the triangles' indices into them.
+fn split(surface: &Surface, faces: &[Option<Face>]) -> (Vec<(usize, bool)>, Vec<u32>) {
+    // How the texture lies around each vertex: seen from the front, from behind.
+    let mut seen = vec![[false; 2]; surface.positions.len()];
+    for face in faces.iter().flatten().filter(|face| face.tangent.is_some()) {
+        for corner in face.corners {
+            seen[corner][usize::from(face.mirrored)] = true;
+        }
+    }
+    let mut vertices: Vec<(usize, bool)> =
+        (0..seen.len()).map(|vertex| (vertex, seen[vertex] == [false, true])).collect();
+    let mut second = HashMap::new();
+    for (vertex, _) in seen.iter().enumerate().filter(|(_, seen)| **seen == [true, true]) {
+        second.insert(vertex, vertices.len() as u32);
+        vertices.push((vertex, true));
+    }
+    let triangles = surface.indices.chunks_exact(3).zip(faces);
+    let indices = triangles.flat_map(|(three, face)| {
+        let mirrored = face.as_ref().is_some_and(|face| face.mirrored && face.tangent.is_some());
+        let second = &second;
+        three.iter().map(move |index| match second.get(&(*index as usize)) {
+            Some(other) if mirrored => *other,
+            _ => *index,
+        })
+    });
+    let indices = indices.collect();
+    (vertices, indices)
+}
+
+/// Tangent and binormal at right angles to the normal. Where no triangle gives a direction it is any.
+fn basis(normal: Vector, sum: Vector, mirrored: bool) -> ([f32; 3], [f32; 3]) {
+    let flat = minus(sum, scaled(normal, dot(sum, normal)));
+    let length = dot(sum, sum).sqrt();
+    // More than rounding must be left beside the normal.
+    let tangent = unit(flat, length * 1e6).or_else(|| {
+        let smallest = (0..3).min_by(|a, b| normal[*a].abs().total_cmp(&normal[*b].abs())).unwrap_or(0);
+        let axis = std::array::from_fn(|k| if k == smallest { 1.0 } else { 0.0 });
+        unit(cross(axis, normal), 0.0)
+    });
+    let tangent = tangent.unwrap_or([1.0, 0.0, 0.0]);
+    let binormal = cross(normal, tangent);
+    let binormal = if mirrored { scaled(binormal, -1.0) } else { binormal };
+    (tangent.map(|c| c as f32), binormal.map(|c| c as f32))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn near(a: [f32; 3], b: [f32; 3]) -> bool {
+        (0..3).all(|k| (a[k] - b[k]).abs() < 1e-5)
+    }
+
+    fn narrow(v: Vector) -> [f32; 3] {
+        v.map(|c| c as f32)
+    }
+
+    fn vector() -> impl Strategy<Value = [f32; 3]> {
+        prop::array::uniform3(-4.0_f32..4.0)
+    }
+
+    /// Bases are orthonormal; right-handed unless the texture is mirrored.
+    fn check(mesh: &Mesh) -> Result<(), TestCaseError> {
+        for vertex in 0..mesh.positions.len() {
+            let [t, b, n] = [mesh.tangents[vertex], mesh.binormals[vertex], mesh.normals[vertex]].map(wide);
+            for (v, w, product) in [(t, t, 1.0), (b, b, 1.0), (n, n, 1.0), (t, b, 0.0), (t, n, 0.0), (b, n, 0.0)] {
+                prop_assert!((dot(v, w) - product).abs() < 1e-5, "{vertex}: {t:?} {b:?} {n:?}");
+            }
+        }
+        prop_assert!(mesh.indices.iter().all(|index| (*index as usize) < mesh.positions.len()));
+        Ok(())
+    }
+
+    proptest! {
+        /// Whatever is given: degenerate triangles, textures without area, zero normals.
+        #[test]
+        fn bases_are_orthonormal(
+            positions in prop::collection::vec(prop_oneof![vector(), Just([0.0; 3]), Just([1.0, 0.0, 0.0])], 3..12),
+            coordinates in prop::collection::vec(prop::array::uniform2(prop_oneof![-2.0_f32..2.0, Just(0.0), Just(1.0)]), 12),
+            normals in prop::collection::vec(prop_oneof![vector(), Just([0.0; 3])], 12),
+            corners in prop::collection::vec(0..12_u32, 30),
+        ) {
+            let count = positions.len();
+            let indices = corners.into_iter().map(|corner| corner % count as u32).collect();
+            let surface = Surface {
+                normals: normals[..count].to_vec(), texture_coordinates: coordinates[..count].to_vec(), positions, indices,
+            };
+            let mesh = mesh(&surface);
+            check(&mesh)?;
+            prop_assert_eq!(mesh.indices.len(), surface.indices.len());
+            for (index, given) in mesh.indices.iter().zip(&surface.indices) {
+                let (vertex, given) = (*index as usize, *given as usize);
+                prop_assert_eq!(mesh.positions[vertex], surface.positions[given]);
+                prop_assert_eq!(mesh.texture_coordinates[vertex], surface.texture_coordinates[given]);
+            }
+        }
+
+        /// The per-pixel-lighting papers' formulas for a triangle V1, V2, V3 whose texture is not sheared:
+        /// DirectionV = |DeltaU2 Vec1 - DeltaU1 Vec2|, DirectionU = |DirectionV x N|, each up to its sign.
+        #[test]
+        fn one_triangle_is_as_the_papers_compute_it(
+            corner in vector(), u in vector(), v in vector(), coordinates in prop::array::uniform3(prop::array::uniform2(-1.0_f32..1.0)),
+        ) {
+            let n = cross(wide(u), wide(v));
+            prop_assume!(dot(n, n) > 0.5);
+            // At right angles, of different lengths.
+            let v = narrow(scaled(cross(n, wide(u)), 0.3 / dot(n, n).sqrt()));
+            let place = |[s, t]: [f32; 2]| std::array::from_fn(|k| corner[k] + s * u[k] + t * v[k]);
+            let [s1, s2] = [1, 2].map(|k: usize| [0, 1].map(|c: usize| f64::from(coordinates[k][c] - coordinates[0][c])));
+            prop_assume!((s1[0] * s2[1] - s1[1] * s2[0]).abs() > 0.1);
+            let positions: Vec<[f32; 3]> = coordinates.iter().map(|c| place(*c)).collect();
+            let [p1, p2, p3] = [0, 1, 2].map(|k| wide(positions[k]));
+            let (vec1, vec2) = (minus(p3, p2), minus(p1, p2));
+            let (delta1, delta2) = (f64::from(coordinates[2][0] - coordinates[1][0]), f64::from(coordinates[0][0] - coordinates[1][0]));
+            let mut direction_v = scaled(vec1, delta2);
+            add(&mut direction_v, scaled(vec2, -delta1));
+            let direction_v = unit(direction_v, 0.0).expect("a direction");
+            let surface = Surface {
+                positions, normals: vec![[0.0; 3]; 3], texture_coordinates: coordinates.to_vec(), indices: vec![0, 1, 2],
+            };
+            let mesh = mesh(&surface);
+            check(&mesh)?;
+            let direction_u = unit(cross(direction_v, wide(mesh.normals[0])), 0.0).expect("a direction");
+            let parallel = |a: [f32; 3], b: Vector| (dot(wide(a), b).abs() - 1.0).abs() < 1e-3;
+            prop_assert!(parallel(mesh.tangents[0], direction_u) && parallel(mesh.binormals[0], direction_v));
+            // And with the signs of the texture: s grows along the tangent, t against the binormal.
+            prop_assert!(dot(wide(mesh.tangents[0]), wide(u)) > 0.0 && dot(wide(mesh.binormals[0]), wide(v)) < 0.0);
+        }
+    }
+
+    fn square(coordinates: [[f32; 2]; 6]) -> Surface {
+        // Two squares side by side in the plane z = 0, seen from +z, sharing the vertices 1 and 4.
+        Surface {
+            positions: vec![
+                [0.0, 1.0, 0.0],
+                [1.0, 1.0, 0.0],
+                [2.0, 1.0, 0.0],
+                [0.0; 3],
+                [1.0, 0.0, 0.0],
+                [2.0, 0.0, 0.0],
+            ],
+            normals: vec![[0.0; 3]; 6],
+            texture_coordinates: coordinates.to_vec(),
+            indices: vec![0, 3, 4, 0, 4, 1, 1, 4, 5, 1, 5, 2],
+        }
+    }
+
+    #[test]
+    fn mirrored_textures_split_their_vertices() {
+        // s runs to the middle and back.
+        let mesh = mesh(&square([[0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 1.0]]));
+        assert_eq!(mesh.positions.len(), 8);
+        assert_eq!(mesh.indices, [0, 3, 4, 0, 4, 1, 6, 7, 5, 6, 5, 2]);
+        for (vertex, tangent) in [(0, 1.0), (1, 1.0), (4, 1.0), (2, -1.0), (5, -1.0), (6, -1.0), (7, -1.0)] {
+            assert!(near(mesh.tangents[vertex], [tangent, 0.0, 0.0]), "{vertex}: {:?}", mesh.tangents[vertex]);
+            // Green goes on pointing up.
+            assert!(near(mesh.binormals[vertex], [0.0, 1.0, 0.0]), "{vertex}");
+        }
+        let plain = self::mesh(&square([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]));
+        assert_eq!(plain.positions.len(), 6);
+        assert!(
+            plain.tangents.iter().all(|t| near(*t, [1.0, 0.0, 0.0]))
+                && plain.normals.iter().all(|n| near(*n, [0.0, 0.0, 1.0]))
+        );
+    }
+
+    #[test]
+    fn a_wrapped_texture_has_no_seam() {
+        // A tent of two sides; the texture goes once around, and its first and last column are the same place.
+        let surface = Surface {
+            positions: vec![
+                [0.0, 1.0, 1.0],
+                [1.0, 1.0, 0.0],
+                [0.0, 0.0, 1.0],
+                [1.0, 0.0, 0.0],
+                [0.0, 1.0, 1.0],
+                [-1.0, 1.0, 0.0],
+                [0.0, 0.0, 1.0],
+                [-1.0, 0.0, 0.0],
+            ],
+            normals: vec![[0.0; 3]; 8],
+            texture_coordinates: vec![
+                [0.0, 0.0],
+                [0.5, 0.0],
+                [0.0, 1.0],
+                [0.5, 1.0],
+                [1.0, 0.0],
+                [0.5, 0.0],
+                [1.0, 1.0],
+                [0.5, 1.0],
+            ],
+            indices: vec![0, 2, 3, 0, 3, 1, 5, 7, 6, 5, 6, 4],
+        };
+        let mesh = mesh(&surface);
+        assert_eq!(mesh.positions.len(), 8);
+        for (first, last) in [(0, 4), (2, 6)] {
+            assert_eq!(mesh.tangents[first], mesh.tangents[last]);
+            assert!(near(mesh.tangents[first], [1.0, 0.0, 0.0]), "{:?}", mesh.tangents[first]);
+        }
+    }
+
+    #[test]
+    fn triangles_without_area_say_nothing() {
+        let mut surface = square([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [0.0, 1.0], [1.0, 1.0], [2.0, 1.0]]);
+        let before = mesh(&surface);
+        surface.indices.extend([0, 0, 4, 3, 4, 5]);
+        let after = mesh(&surface);
+        assert_eq!((before.tangents, before.normals), (after.tangents, after.normals));
+    }
+
+    #[test]
+    fn generated_spheres_agree() {
+        let sphere = super::super::sphere(24, 12, 2.0, [2.0, 1.0]).expect("mesh");
+        let surface = Surface {
+            positions: sphere.positions.clone(),
+            normals: sphere.normals.clone(),
+            texture_coordinates: sphere.texture_coordinates.clone(),
+            indices: sphere.indices.clone(),
+        };
+        let mesh = mesh(&surface);
+        assert_eq!(mesh.positions.len(), sphere.positions.len());
+        for vertex in 0..mesh.positions.len() {
+            // Poles have a fan of their own.
+            if sphere.positions[vertex][1].abs() < 1.99 {
+                assert!(dot(wide(mesh.tangents[vertex]), wide(sphere.tangents[vertex])) > 0.999, "{vertex}");
+            }
+        }
+    }
+}

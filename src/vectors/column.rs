@@ -1,0 +1,300 @@
+//! What stands in a column of a table of vectors: its name, how its numbers are written, which numbers it takes.
+
+use crate::state::Named;
+
+/// How the numbers of a column are written, and how many bits they take in the packed view.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// 0 to 2^bits - 1, decimal.
+    Unsigned(u32),
+    /// Two's complement of so many bits, decimal.
+    Signed(u32),
+    /// A signed number of halves, written as a decimal fraction (`12`, `-3.5`); its bits count halves.
+    Halves(u32),
+    /// One of these names; its number is its place in the list.
+    Name(&'static [&'static str]),
+    /// A word of so many bits, hexadecimal: texels, blocks, the bits of single-precision floats.
+    Hex(u32),
+}
+
+impl Kind {
+    /// Bits in the packed view, at most 64.
+    pub fn bits(&self) -> u32 {
+        match self {
+            Kind::Unsigned(bits) | Kind::Signed(bits) | Kind::Halves(bits) | Kind::Hex(bits) => *bits,
+            Kind::Name(names) => usize::BITS - names.len().saturating_sub(1).leading_zeros().min(usize::BITS - 1),
+        }
+    }
+
+    /// Whether the packed bits are two's complement.
+    pub fn is_signed(&self) -> bool {
+        matches!(self, Kind::Signed(_) | Kind::Halves(_))
+    }
+
+    /// The kind as a header line and a layout write it: `u8`, `s9`, `h10`, `x32`, `e:A,B`.
+    pub fn code(&self) -> String {
+        match self {
+            Kind::Unsigned(bits) => format!("u{bits}"),
+            Kind::Signed(bits) => format!("s{bits}"),
+            Kind::Halves(bits) => format!("h{bits}"),
+            Kind::Hex(bits) => format!("x{bits}"),
+            Kind::Name(names) => format!("e:{}", names.join(",")),
+        }
+    }
+
+    /// Whether a number can be written.
+    pub fn holds(&self, value: i64) -> bool {
+        let bits = self.bits();
+        match self {
+            Kind::Unsigned(_) | Kind::Hex(_) => value >= 0 && (bits >= 63 || value < 1 << bits),
+            Kind::Signed(_) | Kind::Halves(_) => bits >= 64 || (-(1 << (bits - 1))..1 << (bits - 1)).contains(&value),
+            Kind::Name(names) => usize::try_from(value).is_ok_and(|n| n < names.len()),
+        }
+    }
+
+    /// A number as text.
+    pub fn write(&self, value: i64) -> String {
+        match self {
+            Kind::Unsigned(_) | Kind::Signed(_) => value.to_string(),
+            Kind::Halves(_) if value % 2 == 0 => (value / 2).to_string(),
+            Kind::Halves(_) => format!("{}{}.5", if value < 0 { "-" } else { "" }, value.unsigned_abs() / 2),
+            Kind::Hex(bits) => format!("{value:0width$x}", width = bits.div_ceil(4) as usize),
+            Kind::Name(names) => usize::try_from(value)
+                .ok()
+                .and_then(|n| names.get(n))
+                .map_or_else(|| value.to_string(), |n| (*n).to_owned()),
+        }
+    }
+
+    /// A number out of text as [`write`](Self::write) has it; `None` for any other text.
+    pub fn read(&self, text: &str) -> Option<i64> {
+        let value = match self {
+            Kind::Unsigned(_) | Kind::Signed(_) => text.parse().ok()?,
+            Kind::Halves(_) => match text.strip_suffix(".5") {
+                Some("-0") => -1,
+                Some(whole) => {
+                    let doubled = whole.parse::<i64>().ok()?.checked_mul(2)?;
+                    doubled + if whole.starts_with('-') { -1 } else { 1 }
+                }
+                None => text.parse::<i64>().ok()?.checked_mul(2)?,
+            },
+            Kind::Hex(_) => i64::from_str_radix(text, 16).ok()?,
+            Kind::Name(names) => names.iter().position(|name| *name == text)? as i64,
+        };
+        (self.holds(value) && self.write(value) == text).then_some(value)
+    }
+}
+
+/// The numbers that a column takes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Domain {
+    /// Every whole number from the first to the second.
+    Interval(i64, i64),
+    /// These, each a boundary of its own.
+    Listed(Vec<i64>),
+    /// Every word of so many bits, at most 32.
+    Word(u32),
+    /// Bits of finite single-precision floats of a magnitude below 2^limit; the first is whether negative ones are among them.
+    Float(bool, i32),
+}
+
+/// A column.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// Name: `cfg.`, `in.`, `mid.` or `out.` and a name of its own.
+    pub name: String,
+    /// How its numbers are written.
+    pub kind: Kind,
+    /// What it takes; results have none.
+    pub domain: Option<Domain>,
+}
+
+impl Column {
+    fn input(name: &str, kind: Kind, domain: Domain) -> Column {
+        Column { name: name.to_owned(), kind, domain: Some(domain) }
+    }
+
+    /// A result, `mid.` or `out.`.
+    pub fn result(name: &str, kind: Kind) -> Column {
+        Column { name: name.to_owned(), kind, domain: None }
+    }
+
+    /// A choice among the variants of an enumeration.
+    pub fn choice<T: Named>(name: &str) -> Column {
+        Column::names(name, T::NAMES)
+    }
+
+    /// A choice among names.
+    pub fn names(name: &str, names: &'static [&'static str]) -> Column {
+        Column::input(name, Kind::Name(names), Domain::Listed((0..names.len() as i64).collect()))
+    }
+
+    /// 0 or 1.
+    pub fn flag(name: &str) -> Column {
+        Column::input(name, Kind::Unsigned(1), Domain::Interval(0, 1))
+    }
+
+    /// A byte.
+    pub fn byte(name: &str) -> Column {
+        Column::unsigned(name, 8, 255)
+    }
+
+    /// A combiner register, -256 to 255.
+    pub fn register(name: &str) -> Column {
+        Column::input(name, Kind::Signed(9), Domain::Interval(-256, 255))
+    }
+
+    /// A factor of a combiner product, -256 to 256.
+    pub fn factor(name: &str) -> Column {
+        Column::input(name, Kind::Signed(10), Domain::Interval(-256, 256))
+    }
+
+    /// A whole number from 0 to `last`.
+    pub fn unsigned(name: &str, bits: u32, last: i64) -> Column {
+        Column::input(name, Kind::Unsigned(bits), Domain::Interval(0, last))
+    }
+
+    /// A whole number of an interval.
+    pub fn signed(name: &str, bits: u32, first: i64, last: i64) -> Column {
+        Column::input(name, Kind::Signed(bits), Domain::Interval(first, last))
+    }
+
+    /// One of a few numbers.
+    pub fn listed(name: &str, kind: Kind, values: &[i64]) -> Column {
+        Column::input(name, kind, Domain::Listed(values.to_vec()))
+    }
+
+    /// Any word.
+    pub fn word(name: &str, bits: u32) -> Column {
+        Column::input(name, Kind::Hex(bits), Domain::Word(bits))
+    }
+
+    /// The bits of a float.
+    pub fn float(name: &str, negative: bool, limit: i32) -> Column {
+        Column::input(name, Kind::Hex(32), Domain::Float(negative, limit))
+    }
+
+    /// How many numbers it takes.
+    pub fn size(&self) -> u128 {
+        match &self.domain {
+            None => 1,
+            Some(Domain::Interval(first, last)) => (last - first + 1) as u128,
+            Some(Domain::Listed(values)) => values.len() as u128,
+            Some(Domain::Word(bits)) => 1 << bits,
+            // Every pattern counts, those of too large or negative numbers too: floats are never enumerated by this.
+            Some(Domain::Float(..)) => 1 << 32,
+        }
+    }
+
+    /// The number of that place in its domain, below [`size`](Self::size).
+    pub fn nth(&self, place: u128) -> i64 {
+        match &self.domain {
+            None => 0,
+            Some(Domain::Interval(first, _)) => first + place as i64,
+            Some(Domain::Listed(values)) => values.get(place as usize).copied().unwrap_or_default(),
+            Some(Domain::Word(_) | Domain::Float(..)) => place as i64,
+        }
+    }
+
+    /// The numbers at which something may happen: ends, zero, halves, what lies next to them.
+    pub fn boundary(&self) -> Vec<i64> {
+        let mut values = match &self.domain {
+            None => vec![0],
+            Some(Domain::Listed(values)) => values.clone(),
+            Some(Domain::Interval(first, last)) => {
+                let middle = first + (last - first) / 2;
+                let near =
+                    [*first, first + 1, -128, -127, -1, 0, 1, middle, middle + 1, 127, 128, 129, last - 1, *last];
+                near.into_iter().filter(|n| (first..=last).contains(&n)).collect()
+            }
+            Some(Domain::Word(bits)) => {
+                let all = (1_i64 << bits) - 1;
+                let half = 1 << (bits / 2);
+                vec![
+                    0,
+                    1,
+                    half - 1,
+                    half,
+                    all >> 1,
+                    (all >> 1) + 1,
+                    all - 1,
+                    all,
+                    all / 3,
+                    all - all / 3,
+                    all & 0x0f0f_0f0f,
+                ]
+            }
+            Some(Domain::Float(negative, limit)) => floats(*negative, *limit),
+        };
+        values.sort_unstable();
+        values.dedup();
+        values
+    }
+}
+
+/// Bits of notable floats of a magnitude below 2^limit.
+fn floats(negative: bool, limit: i32) -> Vec<i64> {
+    let mut bits: Vec<u32> = vec![0, 1, 0x007f_ffff, 0x0080_0000];
+    for exponent in [-24, -14, -9, -8, -4, -1, 0, 1, 4, 8, 10] {
+        let power = ((exponent + 127) as u32) << 23;
+        bits.extend([power - 1, power, power + 1, power | 0x0040_0000]);
+    }
+    // k / 255 and half way between two of them.
+    for k in [1_u32, 2, 64, 127, 128, 254] {
+        bits.extend([halfway(2 * k), halfway(2 * k + 1)]);
+    }
+    bits.retain(|b| (*b >> 23) as i32 - 127 < limit);
+    if negative {
+        bits.extend(bits.clone().into_iter().map(|b| b | 0x8000_0000));
+    }
+    bits.into_iter().map(i64::from).collect()
+}
+
+/// The float just below n / 510, for n from 1 to 510, without float arithmetic.
+fn halfway(n: u32) -> u32 {
+    let quotient = (u64::from(n) << 40) / 510;
+    let extra = 64 - 24 - quotient.leading_zeros();
+    let (mantissa, exponent) = (quotient >> extra, extra as i32 - 40);
+    ((exponent + 150) as u32) << 23 | (mantissa as u32 & 0x007f_ffff)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_read_as_they_are_written() {
+        for kind in [Kind::Unsigned(8), Kind::Signed(9), Kind::Halves(10), Kind::Hex(12), Kind::Name(&["A", "B", "C"])]
+        {
+            for value in -600..600 {
+                assert_eq!(
+                    kind.holds(value).then_some(value),
+                    kind.read(&kind.write(value)).filter(|_| kind.holds(value))
+                );
+            }
+            for text in ["", "-", "00", "+1", "-0", "1.0", "D", "fffff", "-0.5.5", "99999999999999999999"] {
+                assert!(kind.read(text).is_none_or(|value| kind.write(value) == text), "{kind:?} {text}");
+            }
+        }
+        assert_eq!([1, 2, 3, 4, 5].map(|n| Kind::Name(&["A", "B", "C", "D", "E"][..n]).bits()), [1, 1, 2, 2, 3]);
+    }
+
+    #[test]
+    #[allow(clippy::float_arithmetic, reason = "the statement that integers are held to")]
+    fn halfway_floats_lie_just_below() {
+        for n in 1..=510_u32 {
+            let (float, exact) = (f64::from(f32::from_bits(halfway(n))), f64::from(n) / 510.0);
+            assert!(float <= exact && exact - float < exact * 2.0_f64.powi(-22), "{n}: {float} {exact}");
+        }
+    }
+
+    #[test]
+    fn boundaries_lie_inside() {
+        let columns =
+            [Column::byte("in.a"), Column::register("in.b"), Column::word("in.c", 16), Column::float("in.d", true, 4)];
+        for column in columns {
+            assert!(column.boundary().iter().all(|value| column.kind.holds(*value)), "{column:?}");
+            assert!(column.boundary().len() > 5);
+        }
+    }
+}

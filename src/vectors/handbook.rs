@@ -1,0 +1,42 @@
+//! Grades of rules, out of the handbook itself.
+
+/// The handbook of rules.
+const TEXT: &str = include_str!("../../docs/numerics.md");
+
+/// How well a rule is known, the weakest last.
+pub const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];
+
+/// Place in [`GRADES`] of the weakest grade that the handbook gives a rule; the last for an unknown rule.
+pub fn grade(rule: &str) -> usize {
+    let weakest = GRADES.len() - 1;
+    let mut entry = TEXT.lines().skip_while(|line| {
+        let id = line.strip_prefix("### ").and_then(|heading| heading.split_whitespace().next());
+        id != Some(rule)
+    });
+    entry.next();
+    let line = entry.take_while(|line| !line.starts_with('#')).find_map(|line| line.strip_prefix("- Grade: "));
+    let Some(line) = line else { return weakest };
+    GRADES.iter().rposition(|grade| line.contains(grade)).unwrap_or(weakest)
+}
+
+/// The weakest grade of several rules.
+pub fn weakest(rules: &[&str]) -> &'static str {
+    GRADES[rules.iter().map(|rule| grade(rule)).max().unwrap_or(0)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vectors::units;
+
+    #[test]
+    fn every_rule_of_a_unit_has_an_entry() {
+        for unit in units::all() {
+            assert!(!unit.rules().is_empty(), "{}", unit.name());
+            for rule in unit.rules() {
+                assert!(TEXT.contains(&format!("### {rule} ")), "{}: {rule}", unit.name());
+            }
+        }
+        assert_eq!((GRADES[grade("CMB-6")], GRADES[grade("unknown")]), ("INFERRED", "CHOSEN"));
+    }
+}

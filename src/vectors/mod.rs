@@ -1,0 +1,21 @@
+//! Conformance vectors: what the units of the chip yield, as tables that other implementations are held to.
+//!
+//! A [`Unit`] is a function of the model between named columns of integers. [`cases`] chooses rows, [`table`] writes and reads them,
+//! [`pack`] puts the tables of many units into a folder with a manifest and checks one.
+
+pub mod cases;
+pub mod column;
+pub mod error;
+pub mod handbook;
+pub mod pack;
+pub mod random;
+pub mod read;
+pub mod table;
+pub mod unit;
+pub mod units;
+pub mod view;
+
+pub use unit::Unit;
+
+/// What the model computes: goes up when any output bit of any row changes (`CHANGELOG.md`, *Numerics*).
+pub const BEHAVIOUR: u32 = 1;

@@ -1,0 +1,280 @@
+//! A pack: the tables of many units in one folder, with a manifest.
+//!
+//! ```text
+//! MANIFEST.json           what there is: versions, seed, counts, digests
+//! SHA256SUMS              the digests again, for `sha256sum --check`
+//! units/UNIT.tsv          the rows
+//! units/UNIT.hex, .json, .svh, .h, .jsonl    views, where asked for
+//! ```
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::cases::Level;
+use super::error::{VectorError, read_text};
+use super::read::{self, Table};
+use super::table::{Contents, Writer};
+use super::view::View;
+use super::{BEHAVIOUR, Unit};
+use crate::output::{write_file, write_file_with};
+use crate::state::{Named, Profile};
+
+/// `format` of a manifest.
+pub const FORMAT: &str = "ninebit-vectors-1";
+
+/// Name of the manifest.
+pub const MANIFEST: &str = "MANIFEST.json";
+
+/// What a pack has.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Manifest {
+    /// [`FORMAT`].
+    pub format: String,
+    /// Version of the program.
+    pub version: String,
+    /// What the program computes: goes up when any output bit of any row changes.
+    pub behaviour_rev: u32,
+    /// The chip.
+    pub profile: String,
+    /// L0, L1 or L2.
+    pub level: String,
+    /// Of the random rows.
+    pub seed: u64,
+    /// Only rows that a policy changes.
+    pub deciding: bool,
+    /// What may be done with it.
+    pub license: String,
+    /// The files, by path.
+    pub files: Vec<File>,
+    /// SHA-256 of the digests and paths of all files, one a line as in SHA256SUMS.
+    pub root: String,
+}
+
+/// A file of a pack.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct File {
+    /// Inside the pack, with `/`.
+    pub path: String,
+    /// The unit.
+    pub unit: String,
+    /// Its size.
+    pub bytes: u64,
+    /// Rows of the unit's table.
+    pub rows: usize,
+    /// SHA-256.
+    pub sha256: String,
+}
+
+/// What is to be exported.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// The chip.
+    pub profile: Profile,
+    /// How many rows.
+    pub level: Level,
+    /// Of the random rows.
+    pub seed: u64,
+    /// The units.
+    pub units: Vec<&'static dyn Unit>,
+    /// Only rows that a policy changes.
+    pub deciding: bool,
+    /// What is written beside the tables.
+    pub views: Vec<View>,
+}
+
+/// Hashes and counts what goes through.
+struct Hashing<'w> {
+    out: &'w mut dyn Write,
+    hash: Sha256,
+    bytes: u64,
+}
+
+impl Write for Hashing<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.out.write(bytes)?;
+        self.hash.update(&bytes[..written]);
+        self.bytes += written as u64;
+        Ok(written)
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.out.flush()
+    }
+}
+
+fn hexadecimal(digest: &[u8]) -> String {
+    digest.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+/// Lines as `sha256sum` writes them.
+fn sums(files: &[File]) -> String {
+    files.iter().map(|file| format!("{}  {}\n", file.sha256, file.path)).collect()
+}
+
+/// Writes a pack into `folder`, which is made. The manifest comes last: a pack that was broken off has none.
+///
+/// # Errors
+/// The folder or a file in it cannot be written.
+pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
+    let refused = |path: &Path| {
+        let path = path.to_path_buf();
+        move |source| VectorError::Output(crate::output::OutputError::Write { path, source })
+    };
+    let units = folder.join("units");
+    std::fs::create_dir_all(&units).map_err(refused(&units))?;
+    let manifest_path = folder.join(MANIFEST);
+    if manifest_path.exists() {
+        // What an earlier export left is no pack from now on.
+        std::fs::remove_file(&manifest_path).map_err(refused(&manifest_path))?;
+    }
+    let written: Vec<Vec<File>> =
+        options.units.par_iter().map(|unit| export_unit(folder, *unit, options)).collect::<Result<_, _>>()?;
+    let mut files: Vec<File> = written.into_iter().flatten().collect();
+    files.sort_by(|a, b| a.path.cmp(&b.path));
+    let manifest = Manifest {
+        format: FORMAT.to_owned(),
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        behaviour_rev: BEHAVIOUR,
+        profile: options.profile.name().to_owned(),
+        level: options.level.name().to_owned(),
+        seed: options.seed,
+        deciding: options.deciding,
+        license: "CC0-1.0".to_owned(),
+        root: hexadecimal(&Sha256::digest(sums(&files))),
+        files,
+    };
+    write_file(&folder.join("SHA256SUMS"), sums(&manifest.files).as_bytes())?;
+    let text = serde_json::to_string_pretty(&manifest).unwrap_or_default() + "\n";
+    write_file(&manifest_path, text.as_bytes())?;
+    Ok(manifest)
+}
+
+/// A unit's table and its views.
+fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Result<Vec<File>, VectorError> {
+    let Options { profile, level, seed, deciding, .. } = *options;
+    let writer = Writer::new(Contents { unit, profile, level, seed });
+    let mut files = Vec::new();
+    let mut add =
+        |extension: &str, fill: &dyn Fn(&mut dyn Write) -> std::io::Result<usize>| -> Result<(), VectorError> {
+            let path = format!("units/{}.{extension}", unit.name());
+            let (rows, sha256, bytes) = write_file_with(&folder.join(&path), |out| {
+                let mut hashing = Hashing { out, hash: Sha256::new(), bytes: 0 };
+                let rows = fill(&mut hashing)?;
+                Ok((rows, hexadecimal(&hashing.hash.finalize()), hashing.bytes))
+            })?;
+            files.push(File { path, unit: unit.name().to_owned(), bytes, rows, sha256 });
+            Ok(())
+        };
+    add("tsv", &|out| writer.write(deciding, out))?;
+    for view in &options.views {
+        for (extension, write) in view.files() {
+            add(extension, &|out| write(&writer, deciding, out))?;
+        }
+    }
+    Ok(files)
+}
+
+/// Reads the manifest of a pack.
+///
+/// # Errors
+/// There is none, or it is not one.
+pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
+    let path = folder.join(MANIFEST);
+    let text =
+        read_text(&path, "name the folder of a pack; an export that was broken off leaves no manifest: export again")?;
+    let invalid =
+        |code, message: String, help| VectorError::Invalid { code, path: path.clone(), line: 0, message, help };
+    let value: serde_json::Value = serde_json::from_str(&text)
+        .map_err(|error| invalid("NB1010", format!("not a manifest: {error}"), "export the pack again"))?;
+    let format = value.get("format").and_then(|format| format.as_str()).unwrap_or_default().to_owned();
+    if format != FORMAT {
+        let message = format!("the format is `{}`, not `{FORMAT}`", format.chars().take(60).collect::<String>());
+        return Err(invalid("NB1003", message, "use the program that wrote it, or export again"));
+    }
+    let manifest: Manifest = serde_json::from_value(value)
+        .map_err(|error| invalid("NB1010", format!("not a manifest: {error}"), "export the pack again"))?;
+    let inside = |file: &File| {
+        let name = file.path.strip_prefix("units/").unwrap_or_default();
+        !name.is_empty()
+            && name.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_'))
+            && !name.contains("..")
+    };
+    if let Some(file) = manifest.files.iter().find(|file| !inside(file)) {
+        let message = format!("`{}` is no file of a pack", file.path.chars().take(60).collect::<String>());
+        return Err(invalid("NB1010", message, "export the pack again"));
+    }
+    if hexadecimal(&Sha256::digest(sums(&manifest.files))) != manifest.root {
+        return Err(invalid(
+            "NB1010",
+            "its root is not that of its files".to_owned(),
+            "it was changed by hand: export again",
+        ));
+    }
+    Ok(manifest)
+}
+
+/// A pack whose files are what the manifest says, with its tables read.
+///
+/// # Errors
+/// A file is missing, was changed, or is too many; a table cannot be read or is of another chip, level or seed.
+pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
+    let manifest = manifest(folder)?;
+    let listed: Vec<PathBuf> = manifest.files.iter().map(|file| folder.join(&file.path)).collect();
+    let invalid = |code, path: &Path, message: String, help| VectorError::Invalid {
+        code,
+        path: path.to_path_buf(),
+        line: 0,
+        message,
+        help,
+    };
+    for (file, path) in manifest.files.iter().zip(&listed) {
+        let bytes = std::fs::read(path).map_err(|error| match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                VectorError::Missing { path: path.clone(), help: "the manifest lists it: the pack is not whole" }
+            }
+            _ => VectorError::Unreadable { path: path.clone(), reason: error.to_string() },
+        })?;
+        if bytes.len() as u64 != file.bytes || hexadecimal(&Sha256::digest(&bytes)) != file.sha256 {
+            let message = format!("not the file that the manifest lists ({} bytes, {} there)", bytes.len(), file.bytes);
+            return Err(invalid("NB1011", path, message, "it was changed or cut off since the export: export again"));
+        }
+    }
+    let units = folder.join("units");
+    let entries = std::fs::read_dir(&units).map_err(|_| VectorError::Missing {
+        path: units.clone(),
+        help: "the manifest lists files in it: the pack is not whole",
+    })?;
+    let mut others: Vec<PathBuf> =
+        entries.flatten().map(|entry| entry.path()).filter(|path| !listed.contains(path)).collect();
+    others.sort();
+    if let Some(path) = others.first() {
+        return Err(invalid(
+            "NB1012",
+            path,
+            "the manifest does not list this file".to_owned(),
+            "take it out of the pack",
+        ));
+    }
+    let tables: Vec<Table> = listed
+        .par_iter()
+        .filter(|path| path.extension().is_some_and(|extension| extension == "tsv"))
+        .map(|path| {
+            let table = read::parse(&read_text(path, "the pack is not whole")?, path)?;
+            let Contents { profile, level, seed, .. } = table.contents;
+            if (profile.name(), level.name(), seed)
+                != (manifest.profile.as_str(), manifest.level.as_str(), manifest.seed)
+            {
+                let message = "its chip, level or seed is not the manifest's".to_owned();
+                return Err(invalid("NB1011", path, message, "it belongs to another pack: export again"));
+            }
+            Ok(table)
+        })
+        .collect::<Result<_, _>>()?;
+    Ok((manifest, tables))
+}

@@ -1,0 +1,244 @@
+//! Tables out of text, and whether the model still says what they say.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::cases::{Level, Origin};
+use super::error::VectorError;
+use super::table::{Contents, FORMAT, LAST, Row, Writer};
+use super::{BEHAVIOUR, units};
+use crate::state::{Named, Profile};
+
+const AGAIN: &str = "export the pack again";
+
+/// A table that was read.
+#[derive(Debug)]
+pub struct Table {
+    /// What it is of.
+    pub contents: Contents,
+    /// The behaviour of the model that wrote it.
+    pub behaviour: u32,
+    /// Its columns.
+    pub writer: Writer,
+    /// Its rows.
+    pub rows: Vec<TableRow>,
+}
+
+/// A row of a table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TableRow {
+    /// Its line in the file, from 1.
+    pub line: usize,
+    /// Its id.
+    pub id: String,
+    /// Configuration and inputs.
+    pub inputs: Vec<i64>,
+    /// Intermediates and results as they stand there.
+    pub results: Vec<i64>,
+    /// Why it is there.
+    pub origin: Origin,
+    /// The whole line.
+    pub text: String,
+}
+
+/// Where a row and the model differ.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Difference {
+    /// Line in the file.
+    pub line: usize,
+    /// The row.
+    pub id: String,
+    /// The first column that differs.
+    pub column: String,
+    /// What the table says.
+    pub table: String,
+    /// What the model says.
+    pub model: String,
+    /// The row as the model has it.
+    pub row: Row,
+}
+
+/// Reads lines one after the other, with their numbers.
+struct Lines<'t> {
+    path: &'t Path,
+    lines: std::iter::Enumerate<std::str::Split<'t, char>>,
+}
+
+impl<'t> Lines<'t> {
+    fn next(&mut self, wanted: &str) -> Result<(usize, &'t str), VectorError> {
+        let found = self.lines.next();
+        let error = || invalid(self.path, 0, "NB1004", format!("the file ends where {wanted} should be"), AGAIN);
+        found.map(|(n, line)| (n + 1, line)).ok_or_else(error)
+    }
+
+    /// The value of a header line.
+    fn field(&mut self, name: &str) -> Result<(usize, &'t str), VectorError> {
+        let (line, text) = self.next(&format!("`# {name}`"))?;
+        let value =
+            text.strip_prefix("# ").and_then(|rest| rest.strip_prefix(name)).and_then(|rest| rest.strip_prefix(' '));
+        let error = || invalid(self.path, line, "NB1004", format!("`# {name} ...` is expected here"), AGAIN);
+        value.map(|value| (line, value)).ok_or_else(error)
+    }
+}
+
+fn invalid(path: &Path, line: usize, code: &'static str, message: String, help: &'static str) -> VectorError {
+    VectorError::Invalid { code, path: path.to_path_buf(), line, message, help }
+}
+
+/// Reads a table. `path` is for messages only.
+///
+/// # Errors
+/// Not a table, another version, an unknown unit, a line that this program would not have written, a row that is there twice or whose id is
+/// not that of its inputs, an end in the middle of a line.
+pub fn parse(text: &str, path: &Path) -> Result<Table, VectorError> {
+    let mut lines = Lines { path, lines: text.split('\n').enumerate() };
+    let (_, first) = lines.next("the format")?;
+    if first != FORMAT {
+        let (code, message, help) = if first.starts_with("# ninebit-vectors") {
+            (
+                "NB1003",
+                format!("`{first}` is another version; this is `{FORMAT}`"),
+                "use the program that wrote it, or export again",
+            )
+        } else {
+            (
+                "NB1004",
+                format!("not a table of vectors: the first line is not `{FORMAT}`"),
+                "name a `.tsv` file of a pack",
+            )
+        };
+        return Err(invalid(path, 1, code, message, help));
+    }
+    let (line, name) = lines.field("unit")?;
+    let unknown =
+        |what: &str, name: &str| format!("there is no {what} `{}`", name.chars().take(60).collect::<String>());
+    let unit = units::by_name(name).ok_or_else(|| {
+        invalid(path, line, "NB1005", unknown("unit", name), "`ninebit vectors list` names the units")
+    })?;
+    lines.field("about")?;
+    let (line, name) = lines.field("profile")?;
+    let profile = Profile::from_name(name)
+        .ok_or_else(|| invalid(path, line, "NB1005", unknown("profile", name), "profiles are Nv10 and Nv2a"))?;
+    let (line, name) = lines.field("level")?;
+    let level = Level::from_name(name)
+        .ok_or_else(|| invalid(path, line, "NB1005", unknown("level", name), "levels are L0, L1 and L2"))?;
+    let mut number = |name: &str| -> Result<u64, VectorError> {
+        let (line, text) = lines.field(name)?;
+        text.parse().map_err(|_| invalid(path, line, "NB1004", format!("`{name}` is not a number"), AGAIN))
+    };
+    let (seed, behaviour) = (number("seed")?, number("behaviour")?);
+    lines.field("rules")?;
+    let writer = Writer::new(Contents { unit, profile, level, seed });
+    let head = writer.head();
+    let expected: Vec<&str> = head.lines().collect();
+    for wanted in expected.iter().skip(8) {
+        let (line, text) = lines.next("the names of the columns")?;
+        if text != *wanted {
+            let message = format!("the columns are not those of `{}`", unit.name());
+            return Err(invalid(
+                path,
+                line,
+                "NB1006",
+                message,
+                "export the pack again, or use the program that wrote it",
+            ));
+        }
+    }
+    let mut rows = Rows { path, writer: &writer, seen: HashMap::new(), rows: Vec::new() };
+    let mut ended = false;
+    for (number, line) in lines.lines {
+        if ended {
+            return Err(invalid(path, number, "NB1007", "an empty line between rows".to_owned(), AGAIN));
+        }
+        if line.is_empty() {
+            ended = true;
+            continue;
+        }
+        rows.take(number + 1, line)?;
+    }
+    if !ended {
+        return Err(invalid(
+            path,
+            0,
+            "NB1007",
+            "the file ends in the middle of a line: it is cut off".to_owned(),
+            AGAIN,
+        ));
+    }
+    let rows = rows.rows;
+    Ok(Table { contents: writer.contents(), behaviour: u32::try_from(behaviour).unwrap_or(u32::MAX), writer, rows })
+}
+
+/// The rows so far.
+struct Rows<'t> {
+    path: &'t Path,
+    writer: &'t Writer,
+    seen: HashMap<String, usize>,
+    rows: Vec<TableRow>,
+}
+
+impl Rows<'_> {
+    fn take(&mut self, line: usize, text: &str) -> Result<(), VectorError> {
+        let error = |code, message, help| Err(invalid(self.path, line, code, message, help));
+        let fields: Vec<&str> = text.split('\t').collect();
+        let (inputs, results) = (self.writer.inputs(), self.writer.results());
+        let wanted = 1 + inputs.len() + results.len() + LAST.len();
+        if fields.len() != wanted {
+            return error("NB1007", format!("{} fields where the columns are {wanted}", fields.len()), AGAIN);
+        }
+        let mut numbers = Vec::with_capacity(inputs.len() + results.len());
+        for (column, field) in inputs.iter().chain(results).zip(&fields[1..]) {
+            let Some(value) = column.kind.read(field) else {
+                let field: String = field.chars().take(60).collect();
+                let message = format!("`{field}` is not a value of {} ({})", column.name, column.kind.code());
+                return error("NB1007", message, AGAIN);
+            };
+            numbers.push(value);
+        }
+        let results = numbers.split_off(inputs.len());
+        let id = self.writer.id(&numbers);
+        if fields[0] != id {
+            let message = format!(
+                "the row's id is `{}`, that of its inputs is {id}",
+                fields[0].chars().take(60).collect::<String>()
+            );
+            return error("NB1008", message, "inputs were changed by hand: export the pack again");
+        }
+        if let Some(first) = self.seen.insert(id.clone(), line) {
+            return error("NB1009", format!("row {id} stands in line {first} already"), AGAIN);
+        }
+        let tag = fields[fields.len() - LAST.len()].split(',').next().unwrap_or_default();
+        let origins = [Origin::Regression, Origin::Exhaustive, Origin::Boundary, Origin::Random];
+        let Some(origin) = origins.into_iter().find(|origin| origin.word() == tag) else {
+            return error("NB1007", format!("`{}` is no tag", tag.chars().take(60).collect::<String>()), AGAIN);
+        };
+        self.rows.push(TableRow { line, id, inputs: numbers, results, origin, text: text.to_owned() });
+        Ok(())
+    }
+}
+
+impl Table {
+    /// Whether this program behaves as the one that wrote the table.
+    pub fn is_current(&self) -> bool {
+        self.behaviour == BEHAVIOUR
+    }
+
+    /// The rows of which the model says something else.
+    pub fn differences(&self) -> Vec<Difference> {
+        self.rows.iter().filter_map(|row| self.difference(row)).collect()
+    }
+
+    fn difference(&self, read: &TableRow) -> Option<Difference> {
+        let row = self.writer.row(&read.inputs, read.origin);
+        let line = self.writer.line(&row);
+        if line == read.text {
+            return None;
+        }
+        let columns = self.writer.inputs().iter().chain(self.writer.results()).map(|column| column.name.as_str());
+        let names = ["id"].into_iter().chain(columns).chain(LAST);
+        let fields = names.zip(read.text.split('\t').zip(line.split('\t')));
+        let (column, (table, model)) = fields.into_iter().find(|(_, (table, model))| table != model)?;
+        let (column, table, model) = (column.to_owned(), table.to_owned(), model.to_owned());
+        Some(Difference { line: read.line, id: read.id.clone(), column, table, model, row })
+    }
+}

@@ -1,0 +1,130 @@
+//! What is tested: a unit of the chip as a function from integers to integers.
+
+use super::column::Column;
+use crate::state::{POLICIES, Policies, Profile};
+
+/// What holds besides a row's own numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Conditions {
+    /// The chip.
+    pub profile: Profile,
+    /// Rules that have alternatives.
+    pub policies: Policies,
+}
+
+/// A unit: columns that it reads, columns that it yields, and the function between them, which is the model's own.
+pub trait Unit: Sync + std::fmt::Debug {
+    /// Its name: lower case, words joined by `-`; also that of its files.
+    fn name(&self) -> &'static str;
+
+    /// What it does, in one line.
+    fn about(&self) -> &'static str;
+
+    /// The rules that it applies, by id.
+    fn rules(&self) -> &'static [&'static str];
+
+    /// The chips that have it.
+    fn profiles(&self) -> &'static [Profile] {
+        &[Profile::Nv10, Profile::Nv2a]
+    }
+
+    /// Configuration and inputs, `cfg.` and `in.`.
+    fn inputs(&self) -> Vec<Column>;
+
+    /// Intermediates and results, `mid.` and `out.`.
+    fn results(&self) -> Vec<Column>;
+
+    /// Computes the results of one row; both slices are as long as their columns.
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]);
+
+    /// Whether the inputs make sense together on this chip.
+    fn accepts(&self, _inputs: &[i64], _profile: Profile) -> bool {
+        true
+    }
+
+    /// Makes drawn inputs fit each other, where few would by chance.
+    fn fit(&self, _inputs: &mut [i64]) {}
+
+    /// Rows that are always there: examples of the handbook, what was once wrong.
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        Vec::new()
+    }
+
+    /// How a frame buffer of eight bits shows the row.
+    fn reach(&self, _inputs: &[i64], _results: &[i64]) -> Reach {
+        Reach::Inside
+    }
+}
+
+/// How a draw can show what a row says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Operands as texels, constants or vertex colours, the result as it is stored.
+    Direct,
+    /// An operand is negative or above 255: a general stage before makes it.
+    StageBefore,
+    /// The result is negative: two draws, as it is and negated.
+    TwoDraws,
+    /// Both.
+    StageBeforeTwoDraws,
+    /// Geometry shows it: which pixels are covered, or which texel is met.
+    Geometry,
+    /// Nothing shows it by itself; units that use it do.
+    Inside,
+}
+
+impl Reach {
+    /// Whether operands and result fit a frame buffer.
+    pub fn of(operands: &[i64], results: &[i64]) -> Reach {
+        let bytes = |values: &[i64]| values.iter().all(|v| (0..=255).contains(v));
+        match (bytes(operands), bytes(results)) {
+            (true, true) => Reach::Direct,
+            (false, true) => Reach::StageBefore,
+            (true, false) => Reach::TwoDraws,
+            (false, false) => Reach::StageBeforeTwoDraws,
+        }
+    }
+
+    /// The word in the table.
+    pub fn word(self) -> &'static str {
+        match self {
+            Reach::Direct => "direct",
+            Reach::StageBefore => "stage-before",
+            Reach::TwoDraws => "two-draws",
+            Reach::StageBeforeTwoDraws => "stage-before+two-draws",
+            Reach::Geometry => "geometry",
+            Reach::Inside => "inside",
+        }
+    }
+}
+
+/// What a row would yield if a rule were read otherwise.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Alternative {
+    /// The rule and the value, `CMB-3=literal`.
+    pub policy: String,
+    /// All results.
+    pub results: Vec<i64>,
+}
+
+/// The policies that change an `out.` column of a row, one at a time.
+pub fn alternatives(unit: &dyn Unit, inputs: &[i64], profile: Profile, results: &[i64]) -> Vec<Alternative> {
+    let outputs: Vec<usize> =
+        unit.results().iter().enumerate().filter(|(_, c)| c.name.starts_with("out.")).map(|(n, _)| n).collect();
+    let mut found = Vec::new();
+    for policy in POLICIES {
+        for (index, (value, _)) in policy.values.iter().enumerate() {
+            let mut policies = Policies::DEFAULT;
+            if policies.chosen(policy.rule) == index {
+                continue;
+            }
+            policies.choose(policy.rule, index);
+            let mut other = vec![0; results.len()];
+            unit.evaluate(inputs, &Conditions { profile, policies }, &mut other);
+            if outputs.iter().any(|n| other[*n] != results[*n]) {
+                found.push(Alternative { policy: format!("{}={value}", policy.rule), results: other });
+            }
+        }
+    }
+    found
+}

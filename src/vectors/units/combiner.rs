@@ -1,0 +1,292 @@
+//! The parts of a general combiner stage, one channel at a time.
+
+use super::named;
+use crate::combiner::general;
+use crate::combiner::mapping;
+use crate::number::{Factor, Lane};
+use crate::state::{self, Bias, Component, MuxSelect, Portion, Scale};
+use crate::trace::{Observer, Rule, Silent, Step};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+/// A product sum as the tables write it: in 1/65025.
+const WIDE: Kind = Kind::Signed(19);
+
+/// A factor in steps of 1/255 as the combiner holds it.
+fn factor(value: i64) -> <i32 as Lane>::Mapped {
+    crate::number::Register::factor(value as i32)
+}
+
+/// A full-width sum in 1/65025; whole, because no input has half a step.
+fn wide(sum: <i32 as Lane>::Full) -> i64 {
+    i32::observe_sum(sum).0 / 4
+}
+
+/// Rounded and saturated, neither biased nor scaled.
+fn written(raw: <i32 as Lane>::Full, conditions: &Conditions) -> i64 {
+    general::output(raw, Bias::None, Scale::One, conditions.policies.register_floor, |_, v| v).into()
+}
+
+/// A register through a mapping.
+#[derive(Debug)]
+pub(super) struct InputMapping;
+
+impl Unit for InputMapping {
+    fn name(&self) -> &'static str {
+        "input-mapping"
+    }
+
+    fn about(&self) -> &'static str {
+        "a register through one of the eight input mappings becomes a factor"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-2", "CMB-3", "CMB-4", "CMB-5"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::choice::<state::InputMapping>("cfg.mapping"), Column::register("in.x")]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.factor", Kind::Halves(11))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let [mapped] = mapping::map([inputs[1] as i32], named(inputs[0]), &conditions.policies);
+        results[0] = i32::observe_factor(mapped).0;
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(&inputs[1..], &[results[0] / 2])
+    }
+}
+
+/// A B.
+#[derive(Debug)]
+pub(super) struct Product;
+
+impl Unit for Product {
+    fn name(&self) -> &'static str {
+        "product"
+    }
+
+    fn about(&self) -> &'static str {
+        "AB: the product of two factors, rounded to the nearest 255th, saturated"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-6", "NUM-2", "NUM-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::factor("in.a"), Column::factor("in.b")]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("mid.product", WIDE), Column::result("out.ab", Kind::Signed(9))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let raw = factor(inputs[0]).product(factor(inputs[1]));
+        results[0] = wide(raw);
+        results[1] = written(raw, conditions);
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        vec![vec![100, 200], vec![-256, 256], vec![-256, -256]]
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(inputs, &results[1..])
+    }
+}
+
+/// A B + C D.
+#[derive(Debug)]
+pub(super) struct Sum;
+
+impl Unit for Sum {
+    fn name(&self) -> &'static str {
+        "sum"
+    }
+
+    fn about(&self) -> &'static str {
+        "AB + CD: the sum of two products at full width, rounded once, saturated"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-7", "NUM-2", "NUM-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        ["in.a", "in.b", "in.c", "in.d"].map(Column::factor).to_vec()
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = ["mid.ab", "mid.cd", "mid.sum"].map(|name| Column::result(name, WIDE)).to_vec();
+        columns.push(Column::result("out.sum", Kind::Signed(9)));
+        columns
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let ab = factor(inputs[0]).product(factor(inputs[1]));
+        let cd = factor(inputs[2]).product(factor(inputs[3]));
+        let sum = general::third::<i32, _>([ab, cd], None, None, &conditions.policies, &mut Silent);
+        results[..3].copy_from_slice(&[ab, cd, sum].map(wide));
+        results[3] = written(sum, conditions);
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(inputs, &results[3..])
+    }
+}
+
+/// A . B.
+#[derive(Debug)]
+pub(super) struct DotProduct;
+
+impl Unit for DotProduct {
+    fn name(&self) -> &'static str {
+        "dot-product"
+    }
+
+    fn about(&self) -> &'static str {
+        "A . B: the sum of three products at full width, rounded once, saturated"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-8", "NUM-2", "NUM-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        ["in.a.r", "in.a.g", "in.a.b", "in.b.r", "in.b.g", "in.b.b"].map(Column::factor).to_vec()
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("mid.sum", Kind::Signed(20)), Column::result("out.dot", Kind::Signed(9))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let [a, b] = [0, 3].map(|first| [0, 1, 2].map(|n| factor(inputs[first + n])));
+        let raw = general::dot::<i32, _>(&a, &b, &conditions.policies, &mut Silent);
+        results[0] = wide(raw);
+        results[1] = written(raw, conditions);
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(inputs, &results[1..])
+    }
+}
+
+/// AB or CD by SPARE0.a.
+#[derive(Debug)]
+pub(super) struct Mux;
+
+impl Unit for Mux {
+    fn name(&self) -> &'static str {
+        "mux"
+    }
+
+    fn about(&self) -> &'static str {
+        "whether the mux takes CD, by the most or the least significant bit of SPARE0.a"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-10"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::choice::<MuxSelect>("cfg.select"), Column::register("in.spare0.a")]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.takes_cd", Kind::Unsigned(1))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        results[0] = general::mux_takes_cd(inputs[1] as i32, named(inputs[0]), &conditions.policies).into();
+    }
+
+    fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {
+        Reach::of(&inputs[1..], &[])
+    }
+}
+
+/// Rounding, bias, scale, saturation.
+#[derive(Debug)]
+pub(super) struct ScaleBias;
+
+impl Unit for ScaleBias {
+    fn name(&self) -> &'static str {
+        "scale-bias"
+    }
+
+    fn about(&self) -> &'static str {
+        "AB through the output of a portion: rounded to the nearest 255th, biased, scaled, saturated"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-9", "NUM-2", "NUM-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![
+            Column::choice::<Scale>("cfg.scale"),
+            Column::choice::<Bias>("cfg.bias"),
+            Column::factor("in.a"),
+            Column::factor("in.b"),
+        ]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![
+            Column::result("mid.product", WIDE),
+            Column::result("mid.rounded", Kind::Signed(10)),
+            Column::result("mid.scaled", Kind::Signed(12)),
+            Column::result("out.value", Kind::Signed(9)),
+        ]
+    }
+
+    fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
+        // The chip has no such outputs: CMB-12.
+        named::<Bias>(inputs[1]) == Bias::None || matches!(named(inputs[0]), Scale::One | Scale::Two)
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let raw = factor(inputs[2]).product(factor(inputs[3]));
+        let mut portion = Portion::idle(Component::Rgb);
+        (portion.scale, portion.bias) = (named(inputs[0]), named(inputs[1]));
+        let mut tap = Tap::default();
+        let value = general::finish::<i32, _>(raw, &portion, Some(Rule::Cmb6), &conditions.policies, &mut tap);
+        results.copy_from_slice(&[wide(raw), tap.of(Rule::Cmb6), tap.of(Rule::Cmb9), value.into()]);
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(&inputs[2..], &results[3..])
+    }
+}
+
+/// Keeps what rules yield.
+#[derive(Debug, Default)]
+struct Tap {
+    settled: Vec<(Rule, i64)>,
+}
+
+impl Tap {
+    /// What a rule has yielded last; 0 if it has not been applied.
+    fn of(&self, rule: Rule) -> i64 {
+        self.settled.iter().rev().find(|(settled, _)| *settled == rule).map_or(0, |(_, value)| *value)
+    }
+}
+
+impl Observer for Tap {
+    const ON: bool = false;
+
+    fn step(&mut self, _: Step) {}
+
+    fn settle<L: Lane>(&mut self, rule: Rule, value: L) -> L {
+        self.settled.push((rule, value.observe().0));
+        value
+    }
+}

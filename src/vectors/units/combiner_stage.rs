@@ -1,0 +1,365 @@
+//! Whole general stages: everything is read before anything is written.
+
+use super::named;
+use crate::combiner::general::{self, PlannedPortion, PlannedStage};
+use crate::combiner::registers::Registers;
+use crate::state::{
+    Bias, CombinerInput, Component, InputMapping, MuxSelect, Policies, Portion, Profile, Register, Scale,
+};
+use crate::trace::{Recorder, Step};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
+
+/// Where the four inputs of a tested portion come from.
+const SOURCES: [Register; 4] =
+    [Register::Texture0, Register::Texture1, Register::PrimaryColor, Register::SecondaryColor];
+
+/// The value of a step, 0 if nobody reported it.
+fn step(steps: &[Step], name: &str) -> i64 {
+    steps.iter().find(|step| step.name == name).map_or(0, |step| step.value)
+}
+
+fn registers(names: &[&str]) -> Vec<Column> {
+    names.iter().map(|name| Column::register(name)).collect()
+}
+
+fn results(names: &[&str], kind: &Kind) -> Vec<Column> {
+    names.iter().map(|name| Column::result(name, kind.clone())).collect()
+}
+
+/// A portion whose every output is needed, and an idle one.
+fn planned(portion: Portion, channels: u8) -> PlannedPortion {
+    let live = |output: Register| if output == Register::Zero { 0 } else { channels };
+    PlannedPortion {
+        portion,
+        live: [portion.ab_output, portion.cd_output, portion.sum_output].map(live),
+        blue_to_alpha: [portion.ab_blue_to_alpha, portion.cd_blue_to_alpha],
+    }
+}
+
+fn stage(rgb: Portion, alpha: Portion) -> PlannedStage {
+    let (rgb, alpha) = (planned(rgb, 7), planned(alpha, 8));
+    PlannedStage { index: 0, rgb, alpha, constants: [[0; 4]; 2], reads_constants: false }
+}
+
+/// A portion that reads the four sources.
+fn portion(component: Component, mappings: &[i64]) -> Portion {
+    let mut portion = Portion::idle(component);
+    for ((input, register), mapping) in portion.inputs.iter_mut().zip(SOURCES).zip(mappings) {
+        *input = CombinerInput { register, component, mapping: named(*mapping) };
+    }
+    portion
+}
+
+fn run(stages: &[PlannedStage], select: MuxSelect, policies: &Policies, registers: &mut Registers<i32>) -> Vec<Step> {
+    let mut recorder = Recorder::default();
+    for stage in stages {
+        general::run(stage, select, policies, registers, &mut recorder);
+    }
+    recorder.steps
+}
+
+/// The configuration that the RGB and the alpha portion share.
+fn configuration(dots: bool) -> Vec<Column> {
+    let mut columns: Vec<Column> =
+        INPUTS.iter().map(|name| Column::choice::<InputMapping>(&format!("cfg.mapping_{name}"))).collect();
+    columns.extend([Column::choice::<Scale>("cfg.scale"), Column::choice::<Bias>("cfg.bias"), Column::flag("cfg.mux")]);
+    columns.push(Column::choice::<MuxSelect>("cfg.mux_select"));
+    if dots {
+        columns.extend([Column::flag("cfg.ab_dot"), Column::flag("cfg.cd_dot")]);
+    }
+    columns
+}
+
+/// CMB-12: what goes with what.
+fn legal(scale: i64, bias: i64) -> bool {
+    named::<Bias>(bias) == Bias::None || matches!(named(scale), Scale::One | Scale::Two)
+}
+
+/// An RGB portion with three outputs.
+#[derive(Debug)]
+pub(super) struct GeneralStage;
+
+impl Unit for GeneralStage {
+    fn name(&self) -> &'static str {
+        "general-stage"
+    }
+
+    fn about(&self) -> &'static str {
+        "an RGB portion of texture0, texture1, primary and secondary: AB to spare0, CD to spare1, AB + CD or the mux to texture2"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "NUM-2", "NUM-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = configuration(true);
+        for name in INPUTS {
+            columns.extend(["r", "g", "b"].map(|channel| Column::register(&format!("in.{name}.{channel}"))));
+        }
+        columns.push(Column::register("in.spare0.a"));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = Vec::new();
+        for name in ["A", "B", "C", "D"] {
+            let names = ["r", "g", "b"].map(|channel| format!("mid.{name}.{channel}"));
+            columns.extend(names.iter().map(|name| Column::result(name, Kind::Halves(11))));
+        }
+        columns.push(Column::result("mid.takes_cd", Kind::Unsigned(1)));
+        for name in ["ab", "cd", "third"] {
+            let names = ["r", "g", "b"].map(|channel| format!("out.{name}.{channel}"));
+            columns.extend(names.iter().map(|name| Column::result(name, Kind::Signed(9))));
+        }
+        columns
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        legal(inputs[4], inputs[5])
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let mut rgb = portion(Component::Rgb, &inputs[..4]);
+        (rgb.scale, rgb.bias, rgb.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
+        (rgb.ab_dot_product, rgb.cd_dot_product) = (inputs[8] != 0, inputs[9] != 0);
+        (rgb.ab_output, rgb.cd_output, rgb.sum_output) = (Register::Spare0, Register::Spare1, Register::Texture2);
+        let mut file = Registers::new();
+        for (register, values) in SOURCES.into_iter().zip(inputs[10..22].chunks_exact(3)) {
+            file.load(register, [values[0] as i32, values[1] as i32, values[2] as i32, 0]);
+        }
+        file.write(Register::Spare0, 3, inputs[22] as i32);
+        let takes_cd = general::mux_takes_cd(inputs[22] as i32, named(inputs[7]), &conditions.policies);
+        let stages = [stage(rgb, Portion::idle(Component::Alpha))];
+        // The factors by themselves: a trace of each row would be far slower.
+        for (n, input) in rgb.inputs.iter().enumerate() {
+            let x: [i32; 3] = std::array::from_fn(|channel| file.read(input.register, channel));
+            let factors = crate::combiner::mapping::map(x, input.mapping, &conditions.policies);
+            for (channel, factor) in factors.into_iter().enumerate() {
+                results[3 * n + channel] = <i32 as crate::number::Lane>::observe_factor(factor).0;
+            }
+        }
+        results[12] = takes_cd.into();
+        general::run(&stages[0], named(inputs[7]), &conditions.policies, &mut file, &mut crate::trace::Silent);
+        for (n, register) in [Register::Spare0, Register::Spare1, Register::Texture2].into_iter().enumerate() {
+            for channel in 0..3 {
+                results[13 + 3 * n + channel] = file.read(register, channel).into();
+            }
+        }
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(&inputs[10..], &results[13..])
+    }
+}
+
+/// An alpha portion with three outputs.
+#[derive(Debug)]
+pub(super) struct AlphaPortion;
+
+impl Unit for AlphaPortion {
+    fn name(&self) -> &'static str {
+        "alpha-portion"
+    }
+
+    fn about(&self) -> &'static str {
+        "an alpha portion of the blue or alpha of four registers: AB to spare1, CD to texture2, AB + CD or the mux to texture3"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-9", "CMB-10", "NUM-2", "NUM-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = configuration(false);
+        columns.extend(INPUTS.map(|name| Column::names(&format!("cfg.component_{name}"), &["Blue", "Alpha"])));
+        for name in INPUTS {
+            columns.extend(["b", "a"].map(|channel| Column::register(&format!("in.{name}.{channel}"))));
+        }
+        columns.push(Column::register("in.spare0.a"));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns: Vec<Column> =
+            ["A", "B", "C", "D"].map(|name| Column::result(&format!("mid.{name}"), Kind::Halves(11))).to_vec();
+        columns.extend(results(&["out.ab", "out.cd", "out.third"], &Kind::Signed(9)));
+        columns
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        legal(inputs[4], inputs[5])
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let mut alpha = portion(Component::Alpha, &inputs[..4]);
+        for (input, component) in alpha.inputs.iter_mut().zip(&inputs[8..12]) {
+            input.component = if *component == 0 { Component::Blue } else { Component::Alpha };
+        }
+        (alpha.scale, alpha.bias, alpha.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
+        let outputs = [Register::Spare1, Register::Texture2, Register::Texture3];
+        [alpha.ab_output, alpha.cd_output, alpha.sum_output] = outputs;
+        let mut file = Registers::new();
+        for (n, register) in SOURCES.into_iter().enumerate() {
+            file.load(register, [0, 0, inputs[12 + 2 * n] as i32, inputs[13 + 2 * n] as i32]);
+        }
+        file.write(Register::Spare0, 3, inputs[20] as i32);
+        for (n, input) in alpha.inputs.iter().enumerate() {
+            let x = file.read(input.register, general::source_channel(input, 3));
+            let [factor] = crate::combiner::mapping::map([x], input.mapping, &conditions.policies);
+            results[n] = <i32 as crate::number::Lane>::observe_factor(factor).0;
+        }
+        let stage = stage(Portion::idle(Component::Rgb), alpha);
+        general::run(&stage, named(inputs[7]), &conditions.policies, &mut file, &mut crate::trace::Silent);
+        for (n, register) in outputs.into_iter().enumerate() {
+            results[4 + n] = file.read(register, 3).into();
+        }
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(&inputs[12..], &results[4..])
+    }
+}
+
+/// A dot product's blue in the alpha of its destination.
+#[derive(Debug)]
+pub(super) struct BlueToAlpha;
+
+impl Unit for BlueToAlpha {
+    fn name(&self) -> &'static str {
+        "blue-to-alpha"
+    }
+
+    fn about(&self) -> &'static str {
+        "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"]
+    }
+
+    fn profiles(&self) -> &'static [Profile] {
+        &[Profile::Nv2a]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = ["cfg.ab_dot", "cfg.ab_to_alpha", "cfg.cd_to_alpha"].map(Column::flag).to_vec();
+        columns.extend(registers(&[
+            "in.a.r",
+            "in.a.g",
+            "in.a.b",
+            "in.b.r",
+            "in.b.g",
+            "in.b.b",
+            "in.c.b",
+            "in.d.b",
+            "in.spare0.a",
+            "in.spare1.a",
+        ]));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        results(&["mid.ab.b", "mid.cd.b", "out.spare0.a", "out.spare1.a"], &Kind::Signed(9))
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let mut rgb = portion(Component::Rgb, &[InputMapping::SignedIdentity as i64; 4]);
+        (rgb.ab_output, rgb.cd_output, rgb.ab_dot_product) = (Register::Spare0, Register::Spare1, inputs[0] != 0);
+        (rgb.ab_blue_to_alpha, rgb.cd_blue_to_alpha) = (inputs[1] != 0, inputs[2] != 0);
+        let v: Vec<i32> = inputs[3..].iter().map(|v| *v as i32).collect();
+        let mut file = Registers::new();
+        file.load(SOURCES[0], [v[0], v[1], v[2], 0]);
+        file.load(SOURCES[1], [v[3], v[4], v[5], 0]);
+        file.load(SOURCES[2], [0, 0, v[6], 0]);
+        file.load(SOURCES[3], [0, 0, v[7], 0]);
+        file.write(Register::Spare0, 3, v[8]);
+        file.write(Register::Spare1, 3, v[9]);
+        let stage = stage(rgb, Portion::idle(Component::Alpha));
+        general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, &mut crate::trace::Silent);
+        for (n, (register, channel)) in
+            [(Register::Spare0, 2), (Register::Spare1, 2), (Register::Spare0, 3), (Register::Spare1, 3)]
+                .into_iter()
+                .enumerate()
+        {
+            results[n] = file.read(register, channel).into();
+        }
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(&inputs[3..], &results[2..])
+    }
+}
+
+/// A register value handed from one stage to the next.
+#[derive(Debug)]
+pub(super) struct TwoStages;
+
+impl Unit for TwoStages {
+    fn name(&self) -> &'static str {
+        "two-stages"
+    }
+
+    fn about(&self) -> &'static str {
+        "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![
+            Column::choice::<Scale>("cfg.scale"),
+            Column::choice::<Bias>("cfg.bias"),
+            Column::choice::<InputMapping>("cfg.mapping_spare0"),
+            Column::choice::<InputMapping>("cfg.mapping_b"),
+            Column::register("in.a"),
+            Column::register("in.b"),
+            Column::register("in.c"),
+            Column::register("in.d"),
+        ]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = vec![Column::result("mid.spare0", Kind::Signed(9))];
+        columns.push(Column::result("mid.spare0_mapped", Kind::Halves(11)));
+        columns.push(Column::result("out.spare0", Kind::Signed(9)));
+        columns
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        legal(inputs[0], inputs[1])
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let signed = [InputMapping::SignedIdentity as i64; 4];
+        let mut first = portion(Component::Rgb, &signed);
+        (first.scale, first.bias, first.sum_output) = (named(inputs[0]), named(inputs[1]), Register::Spare0);
+        let mut second = portion(Component::Rgb, &signed);
+        let spare0 = CombinerInput { register: Register::Spare0, component: Component::Rgb, mapping: named(inputs[2]) };
+        second.inputs[0] = spare0;
+        second.inputs[1].mapping = named(inputs[3]);
+        second.sum_output = Register::Spare0;
+        let mut file = Registers::new();
+        for (register, value) in SOURCES.into_iter().zip(&inputs[4..]) {
+            file.load(register, [*value as i32; 4]);
+        }
+        let alpha = Portion::idle(Component::Alpha);
+        let mut after = stage(second, alpha);
+        after.index = 1;
+        let steps = run(&[stage(first, alpha), after], MuxSelect::Msb, &conditions.policies, &mut file);
+        // `spare0.r` is written twice; the first is the first stage's.
+        results[0] = step(&steps, "spare0.r");
+        let mapped = steps.iter().find(|step| step.name == "stage1.rgb.A.r");
+        results[1] = mapped.map_or(0, |step| if step.per_one == 255 { 2 * step.value } else { step.value });
+        results[2] = file.read(Register::Spare0, 0).into();
+    }
+
+    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+        Reach::of(&inputs[4..], &results[2..])
+    }
+}

@@ -1,0 +1,68 @@
+//! The units that vectors are made of, in the order of the pipe.
+
+mod combiner;
+mod combiner_stage;
+mod final_combiner;
+mod fog;
+mod number;
+mod raster;
+mod rop;
+mod shader;
+mod texel;
+mod texture;
+
+use super::unit::Unit;
+use crate::state::Named;
+
+/// All units.
+pub fn all() -> Vec<&'static dyn Unit> {
+    vec![
+        &number::VertexColor,
+        &number::ConstantColor,
+        &number::VertexSnap,
+        &number::Depth,
+        &raster::Coverage,
+        &raster::ColorWeights,
+        &raster::ColorInterpolation,
+        &raster::TextureCoordinate,
+        &fog::FogFactor,
+        &texture::NearestAddress,
+        &texture::LinearAddress,
+        &texture::LinearStep,
+        &texture::Bilinear,
+        &texture::CubeFace,
+        &texture::LevelChoice,
+        &texel::TexelExpansion,
+        &texel::CompressedBlock,
+        &shader::Remap,
+        &shader::DotProduct,
+        &shader::BumpOffset,
+        &shader::Luminance,
+        &shader::Dependent,
+        &combiner::InputMapping,
+        &combiner::Product,
+        &combiner::Sum,
+        &combiner::DotProduct,
+        &combiner::Mux,
+        &combiner::ScaleBias,
+        &combiner_stage::GeneralStage,
+        &combiner_stage::AlphaPortion,
+        &combiner_stage::BlueToAlpha,
+        &combiner_stage::TwoStages,
+        &final_combiner::FinalCombiner,
+        &rop::AlphaTest,
+        &rop::Blend,
+        &rop::SurfaceStore,
+        &rop::SurfaceLoad,
+    ]
+}
+
+/// The unit of that name.
+pub fn by_name(name: &str) -> Option<&'static dyn Unit> {
+    all().into_iter().find(|unit| unit.name() == name)
+}
+
+/// The variant of that number; the last one of those that do not exist.
+fn named<T: Named>(number: i64) -> T {
+    T::ALL[usize::try_from(number).unwrap_or(0).min(T::ALL.len() - 1)]
+}

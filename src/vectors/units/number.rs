@@ -1,0 +1,150 @@
+//! Where floats enter: colours, positions and depths.
+
+use crate::number::convert;
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+fn float(bits: i64) -> f32 {
+    f32::from_bits(bits as u32)
+}
+
+/// A float vertex colour to a byte.
+#[derive(Debug)]
+pub(super) struct VertexColor;
+
+impl Unit for VertexColor {
+    fn name(&self) -> &'static str {
+        "vertex-color"
+    }
+
+    fn about(&self) -> &'static str {
+        "a float vertex colour c becomes a byte: clamped to 0..1, cut to 14 significant bits, floor(255 c + 1/2)"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["NUM-4"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::float("in.color", true, 2)]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.byte", Kind::Unsigned(8))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = convert::vertex_color(float(inputs[0])).into();
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // Infinities and NaN.
+        [0x7f80_0000, 0xff80_0000, 0x7fc0_0000, 0x8000_0000].map(|bits| vec![bits]).to_vec()
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// A float constant to a byte.
+#[derive(Debug)]
+pub(super) struct ConstantColor;
+
+impl Unit for ConstantColor {
+    fn name(&self) -> &'static str {
+        "constant-color"
+    }
+
+    fn about(&self) -> &'static str {
+        "a float constant c becomes a byte: floor(255 c + 1/2) after clamping to 0..1, exactly"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["NUM-0"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::float("in.color", true, 2)]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.byte", Kind::Unsigned(8))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = convert::constant(float(inputs[0])).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// A window coordinate to 1/16 pixel.
+#[derive(Debug)]
+pub(super) struct VertexSnap;
+
+impl Unit for VertexSnap {
+    fn name(&self) -> &'static str {
+        "vertex-snap"
+    }
+
+    fn about(&self) -> &'static str {
+        "a window coordinate becomes 1/16 pixel, truncated toward zero"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["RAS-1"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::float("in.coordinate", true, 12)]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.snapped", Kind::Signed(17))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = convert::snap(float(inputs[0]));
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// A depth to the buffer's units.
+#[derive(Debug)]
+pub(super) struct Depth;
+
+impl Unit for Depth {
+    fn name(&self) -> &'static str {
+        "depth"
+    }
+
+    fn about(&self) -> &'static str {
+        "a depth z becomes floor(z (2^bits - 1)), clamped to the buffer's range"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["DEP-1"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]), Column::float("in.depth", true, 2)]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.depth", Kind::Unsigned(24))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = convert::depth(float(inputs[1]), inputs[0] as u32);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}

@@ -1,0 +1,271 @@
+//! Triangles: which pixels they cover, and what the pixels get from the vertices.
+
+use crate::raster::interpolate::{self, Sample};
+use crate::raster::setup::Triangle;
+use crate::state::Profile;
+use crate::vectors::column::{Column, Domain, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
+const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];
+
+/// The farthest position that is drawn, 1/16 pixel.
+const FARTHEST: i64 = 640 * 16;
+
+/// Three positions in 1/16 pixel, and a pixel.
+fn geometry() -> Vec<Column> {
+    let mut columns = POSITIONS.map(|name| Column::signed(name, 17, 0, FARTHEST)).to_vec();
+    columns.extend(["in.column", "in.row"].map(|name| Column::unsigned(name, 10, 640)));
+    columns
+}
+
+/// Moves the pixel into the triangle's box, and a third of the triangles to whole pixels and a small size, where edges and ties are met.
+fn fit(inputs: &mut [i64]) {
+    let (positions, pixel) = inputs.split_at_mut(6);
+    let mixed = positions.iter().fold(0, |sum, n| (sum * 31 + n) & 0xffff);
+    if mixed % 3 == 0 {
+        for position in positions.iter_mut() {
+            *position = *position / 16 % 17 * 16;
+        }
+    } else if mixed % 3 == 1 {
+        for position in positions.iter_mut() {
+            *position = *position / 4 % 80 * 4;
+        }
+    }
+    for (axis, pixel) in pixel.iter_mut().take(2).enumerate() {
+        let along = [positions[axis], positions[2 + axis], positions[4 + axis]];
+        let (least, most) = (along.iter().min().unwrap_or(&0) / 16, along.iter().max().unwrap_or(&0) / 16);
+        *pixel = least + *pixel % (most - least + 1);
+    }
+}
+
+/// n / 16 as a float, exactly; |n| is below 2^24.
+fn sixteenths(n: i64) -> f32 {
+    let whole = n as f32;
+    if n == 0 { whole } else { f32::from_bits(whole.to_bits() - (4 << 23)) }
+}
+
+/// The triangle; `w` are the bits of three floats, if perspective counts.
+fn triangle(inputs: &[i64], w: Option<&[i64]>, profile: Profile) -> Option<Triangle> {
+    let positions = [0, 1, 2].map(|n| {
+        let w = w.map_or(1.0, |w| f32::from_bits(w[n] as u32));
+        [sixteenths(inputs[2 * n]), sixteenths(inputs[2 * n + 1]), 0.0, w]
+    });
+    Triangle::new(positions, w.is_some(), profile)
+}
+
+/// Whether the pixel is covered.
+fn is_covered(inputs: &[i64], profile: Profile) -> bool {
+    triangle(inputs, None, profile).is_some_and(|t| t.covers(t.edges(inputs[6], inputs[7])))
+}
+
+/// Whether a triangle covers a pixel.
+#[derive(Debug)]
+pub(super) struct Coverage;
+
+impl Unit for Coverage {
+    fn name(&self) -> &'static str {
+        "coverage"
+    }
+
+    fn about(&self) -> &'static str {
+        "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["RAS-2", "RAS-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        geometry()
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = EDGES.map(|name| Column::result(name, Kind::Signed(36))).to_vec();
+        columns.push(Column::result("out.covered", Kind::Unsigned(1)));
+        columns
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        fit(inputs);
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let Some(triangle) = triangle(inputs, None, conditions.profile) else { return results.fill(0) };
+        let edges = triangle.edges(inputs[6], inputs[7]);
+        results[..3].copy_from_slice(&edges);
+        results[3] = triangle.covers(edges).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// The weights of the vertices' colours.
+#[derive(Debug)]
+pub(super) struct ColorWeights;
+
+impl Unit for ColorWeights {
+    fn name(&self) -> &'static str {
+        "color-weights"
+    }
+
+    fn about(&self) -> &'static str {
+        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["INT-1", "INT-2", "INT-3", "INT-6"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = geometry();
+        columns.extend(W.map(w));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = EDGES.map(|name| Column::result(name, Kind::Signed(36))).to_vec();
+        columns.extend(["mid.p0", "mid.p1", "mid.p2"].map(|name| Column::result(name, Kind::Unsigned(28))));
+        columns.extend(["mid.lowered0", "mid.lowered2"].map(|name| Column::result(name, Kind::Unsigned(1))));
+        columns.extend(["out.weight0", "out.weight2"].map(|name| Column::result(name, Kind::Unsigned(9))));
+        columns
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        fit(inputs);
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        is_covered(inputs, profile)
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let Some(triangle) = triangle(inputs, Some(&inputs[8..]), conditions.profile) else { return results.fill(0) };
+        let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
+        let weights = sample.weights();
+        results[..3].copy_from_slice(&sample.e);
+        results[3..6].copy_from_slice(&triangle.p);
+        for (n, weight) in weights.into_iter().enumerate() {
+            (results[6 + n], results[8 + n]) = (weight.lowered.into(), weight.value);
+        }
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+const W: [&str; 3] = ["in.w0", "in.w1", "in.w2"];
+
+/// Bits of w: powers of two, which make ties, and others.
+fn w(name: &str) -> Column {
+    let bits = [1.0_f32, 2.0, 4.0, 0.5, 1.5, 3.0, 1.25, 7.0, 1.1, 2.7, 0.3, 100.0].map(|w| i64::from(w.to_bits()));
+    Column::listed(name, Kind::Hex(32), &bits)
+}
+
+/// One colour channel of a pixel.
+#[derive(Debug)]
+pub(super) struct ColorInterpolation;
+
+impl Unit for ColorInterpolation {
+    fn name(&self) -> &'static str {
+        "color-interpolation"
+    }
+
+    fn about(&self) -> &'static str {
+        "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["INT-2"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = ["in.c0", "in.c1", "in.c2"].map(Column::byte).to_vec();
+        columns.extend(["in.weight0", "in.weight2"].map(|name| Column::unsigned(name, 9, 256)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.color", Kind::Unsigned(8))]
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        inputs[3] + inputs[4] <= 256
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        inputs[4] %= 257 - inputs[3];
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let c = [0, 1, 2].map(|n| inputs[n] as i32);
+        results[0] = interpolate::color(c, inputs[3] as i32, inputs[4] as i32).into();
+    }
+}
+
+/// A texture coordinate of a pixel.
+#[derive(Debug)]
+pub(super) struct TextureCoordinate;
+
+impl Unit for TextureCoordinate {
+    fn name(&self) -> &'static str {
+        "texture-coordinate"
+    }
+
+    fn about(&self) -> &'static str {
+        "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["INT-1", "INT-4", "INT-4t", "INT-6"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = geometry();
+        columns.extend(W.map(w));
+        columns.extend(["in.s0", "in.s1", "in.s2"].map(|name| Column {
+            name: name.to_owned(),
+            kind: Kind::Hex(32),
+            domain: Some(Domain::Float(true, 5)),
+        }));
+        columns.push(Column::listed("in.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512, 4096]));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = ["mid.g0", "mid.g1", "mid.g2"].map(|name| Column::result(name, Kind::Signed(56))).to_vec();
+        columns.push(Column::result("mid.lowered", Kind::Unsigned(1)));
+        columns.push(Column::result("out.u", Kind::Signed(26)));
+        columns
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        fit(inputs);
+        // Coordinates that are whole texels of vertices at whole pixels: ties.
+        if inputs[6] & 1 == 0 {
+            for n in 11..14 {
+                inputs[n] = i64::from(((inputs[n] & 15) as f32).to_bits());
+            }
+        }
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        is_covered(inputs, profile)
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let Some(triangle) = triangle(inputs, Some(&inputs[8..11]), conditions.profile) else { return results.fill(0) };
+        let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
+        let g = triangle.coordinate([11, 12, 13].map(|n| f32::from_bits(inputs[n] as u32)), inputs[14] as u32);
+        let u = sample.coordinate(&g);
+        results[..3].copy_from_slice(&g);
+        (results[3], results[4]) = (u.lowered.into(), u.value);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}

@@ -1,0 +1,192 @@
+//! Alpha test, blending, surfaces.
+
+use super::named;
+use crate::rop::{blend, surface};
+use crate::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
+use crate::trace::Silent;
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
+
+fn colors(names: &[&str]) -> Vec<Column> {
+    let each = |name: &&str| CHANNELS.map(|channel| Column::byte(&format!("in.{name}.{channel}")));
+    names.iter().flat_map(each).collect()
+}
+
+fn color(values: &[i64]) -> [i32; 4] {
+    std::array::from_fn(|n| values[n] as i32)
+}
+
+fn bytes(values: &[i64]) -> [u8; 4] {
+    std::array::from_fn(|n| values[n] as u8)
+}
+
+/// Whether a fragment passes the alpha test.
+#[derive(Debug)]
+pub(super) struct AlphaTest;
+
+impl Unit for AlphaTest {
+    fn name(&self) -> &'static str {
+        "alpha-test"
+    }
+
+    fn about(&self) -> &'static str {
+        "whether a fragment of this alpha passes"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["ROP-1"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.passes", Kind::Unsigned(1))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let test = state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 };
+        results[0] = blend::alpha_test(&test, inputs[2] as i32, &mut Silent).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// A fragment and the surface.
+#[derive(Debug)]
+pub(super) struct Blend;
+
+impl Unit for Blend {
+    fn name(&self) -> &'static str {
+        "blend"
+    }
+
+    fn about(&self) -> &'static str {
+        "a fragment blended with what a surface of eight bits a channel holds"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["ROP-2", "ROP-3", "ROP-4"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![
+            Column::choice::<BlendEquation>("cfg.equation"),
+            Column::choice::<BlendFactor>("cfg.source_factor"),
+            Column::choice::<BlendFactor>("cfg.destination_factor"),
+        ];
+        columns.extend(colors(&["source", "destination", "constant"]));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let results =
+            |name: &str| CHANNELS.map(|channel| Column::result(&format!("{name}.{channel}"), Kind::Unsigned(8)));
+        [results("mid.source_factor"), results("mid.destination_factor"), results("out")].concat()
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let state =
+            state::Blend { equation: named(inputs[0]), source: named(inputs[1]), destination: named(inputs[2]) };
+        let [source, destination, constant] = [3, 7, 11].map(|first| color(&inputs[first..first + 4]));
+        for channel in 0..4 {
+            let factor = |f: BlendFactor| i64::from(blend::factor(f, channel, &source, &destination, &constant));
+            results[channel] = factor(state.source);
+            results[4 + channel] = factor(state.destination);
+        }
+        let out = blend::run(&state, 15, bytes(&inputs[11..15]), &source, &destination, &mut Silent);
+        for (result, value) in results[8..].iter_mut().zip(out) {
+            *result = value.into();
+        }
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// Bytes to a surface's word.
+#[derive(Debug)]
+pub(super) struct SurfaceStore;
+
+impl Unit for SurfaceStore {
+    fn name(&self) -> &'static str {
+        "surface-store"
+    }
+
+    fn about(&self) -> &'static str {
+        "a colour as the word that a surface of this format keeps"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["ROP-5"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![Column::choice::<SurfaceFormat>("cfg.format")];
+        columns.extend(CHANNELS.map(|channel| Column::byte(&format!("in.{channel}"))));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.word", Kind::Hex(32))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = surface::pack(named(inputs[0]), bytes(&inputs[1..])).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// A surface's word to the bytes that a blend reads.
+#[derive(Debug)]
+pub(super) struct SurfaceLoad;
+
+impl Unit for SurfaceLoad {
+    fn name(&self) -> &'static str {
+        "surface-load"
+    }
+
+    fn about(&self) -> &'static str {
+        "the word of a surface as the colour that a blend reads"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["ROP-5"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        CHANNELS.map(|channel| Column::result(&format!("out.{channel}"), Kind::Unsigned(8))).to_vec()
+    }
+
+    fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
+        let bytes = named::<SurfaceFormat>(inputs[0]).bytes();
+        inputs[1] >> (8 * bytes) == 0
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        inputs[1] &= (1 << (8 * named::<SurfaceFormat>(inputs[0]).bytes())) - 1;
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        for (result, byte) in results.iter_mut().zip(surface::read(named(inputs[0]), inputs[1] as u32)) {
+            *result = byte.into();
+        }
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}

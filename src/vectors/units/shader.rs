@@ -1,0 +1,236 @@
+//! The texture shader's arithmetic.
+
+use super::named;
+use crate::number::convert::split;
+use crate::state::{DotMapping, Profile};
+use crate::texture::{dot, shader};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+const NV2A: &[Profile] = &[Profile::Nv2a];
+
+fn float(bits: i64) -> f32 {
+    f32::from_bits(bits as u32)
+}
+
+fn color() -> Vec<Column> {
+    ["in.r", "in.g", "in.b", "in.a"].map(Column::byte).to_vec()
+}
+
+fn bytes(inputs: &[i64]) -> [u8; 4] {
+    std::array::from_fn(|n| inputs[n] as u8)
+}
+
+fn floats(names: &[&str]) -> Vec<Column> {
+    names.iter().map(|name| Column::result(name, Kind::Hex(32))).collect()
+}
+
+/// A colour as the vector of a dot product.
+#[derive(Debug)]
+pub(super) struct Remap;
+
+impl Unit for Remap {
+    fn name(&self) -> &'static str {
+        "shader-remap"
+    }
+
+    fn about(&self) -> &'static str {
+        "a colour's bytes as the three floats that the dot unit reads"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TSH-1", "TSH-2", "TSH-3"]
+    }
+
+    fn profiles(&self) -> &'static [Profile] {
+        NV2A
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        [vec![Column::choice::<DotMapping>("cfg.mapping")], color()].concat()
+    }
+
+    fn results(&self) -> Vec<Column> {
+        floats(&["out.x", "out.y", "out.z"])
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        for (result, value) in results.iter_mut().zip(dot::remap(named(inputs[0]), bytes(&inputs[1..]))) {
+            *result = value.to_bits().into();
+        }
+    }
+}
+
+/// Coordinates times a colour.
+#[derive(Debug)]
+pub(super) struct DotProduct;
+
+impl Unit for DotProduct {
+    fn name(&self) -> &'static str {
+        "shader-dot-product"
+    }
+
+    fn about(&self) -> &'static str {
+        "the dot product of float coordinates and a remapped colour, in single precision"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TSH-1", "TSH-2", "TSH-3", "TSH-4"]
+    }
+
+    fn profiles(&self) -> &'static [Profile] {
+        NV2A
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![Column::choice::<DotMapping>("cfg.mapping")];
+        columns.extend(color());
+        columns.extend(["in.s", "in.t", "in.q"].map(|name| Column::float(name, true, 8)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        floats(&["mid.product_x", "mid.product_y", "mid.product_z", "out.dot"])
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let color = dot::remap(named(inputs[0]), bytes(&inputs[1..]));
+        let products = dot::products([5, 6, 7].map(|n| float(inputs[n])), color);
+        let all = products.into_iter().chain([dot::sum(products)]);
+        for (result, value) in results.iter_mut().zip(all) {
+            *result = value.to_bits().into();
+        }
+    }
+}
+
+/// By how much a bump map moves a coordinate.
+#[derive(Debug)]
+pub(super) struct BumpOffset;
+
+impl Unit for BumpOffset {
+    fn name(&self) -> &'static str {
+        "bump-offset"
+    }
+
+    fn about(&self) -> &'static str {
+        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TSH-7"]
+    }
+
+    fn profiles(&self) -> &'static [Profile] {
+        NV2A
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 64, 256, 4096])];
+        columns.extend(["in.entry_blue", "in.entry_green"].map(|name| Column::float(name, true, 3)));
+        columns.extend(["in.blue", "in.green"].map(Column::byte));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.offset", Kind::Signed(56))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let entries = [1, 2].map(|n| float(inputs[n]));
+        results[0] = shader::offset(entries, [inputs[3] as u8, inputs[4] as u8], inputs[0] as u32);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// The luminance of a bump map.
+#[derive(Debug)]
+pub(super) struct Luminance;
+
+impl Unit for Luminance {
+    fn name(&self) -> &'static str {
+        "bump-luminance"
+    }
+
+    fn about(&self) -> &'static str {
+        "a channel times R / 255 scale + offset, in 4096ths and as a byte"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TSH-8", "NUM-6"]
+    }
+
+    fn profiles(&self) -> &'static [Profile] {
+        NV2A
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = ["in.channel", "in.red"].map(Column::byte).to_vec();
+        columns.extend(["in.scale", "in.offset"].map(|name| Column::float(name, true, 3)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("mid.value", Kind::Unsigned(21)), Column::result("out.byte", Kind::Unsigned(8))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = shader::luminance(inputs[0] as i32, inputs[1] as u8, [2, 3].map(|n| float(inputs[n])));
+        results[1] = shader::luminance_byte(results[0]).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// A byte, or a result of the dot unit, as a coordinate.
+#[derive(Debug)]
+pub(super) struct Dependent;
+
+impl Unit for Dependent {
+    fn name(&self) -> &'static str {
+        "dependent-coordinate"
+    }
+
+    fn about(&self) -> &'static str {
+        "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TSH-4", "TSH-6"]
+    }
+
+    fn profiles(&self) -> &'static [Profile] {
+        NV2A
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![
+            Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 1024, 4096]),
+            Column::byte("in.byte"),
+            Column::float("in.float", true, 6),
+        ]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.of_byte", Kind::Unsigned(21)), Column::result("out.of_float", Kind::Signed(28))]
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        // A float whose coordinate fits: all of the domain do.
+        split(float(inputs[2])).1 < 16
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let size = inputs[0] as u32;
+        results[0] = shader::dependent(inputs[1] as u8, size, conditions.policies.dependent_scale);
+        results[1] = shader::coordinate(float(inputs[2]), size);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}

@@ -1,0 +1,119 @@
+//! Texels: words and blocks to bytes.
+
+use super::named;
+use crate::state::{Named, Profile, TextureFormat};
+use crate::texture::{compressed, format};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+fn channels() -> Vec<Column> {
+    ["out.r", "out.g", "out.b", "out.a"].map(|name| Column::result(name, Kind::Unsigned(8))).to_vec()
+}
+
+/// The formats for which `wanted` holds, as a column.
+fn formats(wanted: fn(TextureFormat) -> bool) -> Column {
+    let numbers: Vec<i64> = (0..).zip(TextureFormat::ALL).filter(|(_, f)| wanted(**f)).map(|(n, _)| n).collect();
+    Column::listed("cfg.format", Kind::Name(TextureFormat::NAMES), &numbers)
+}
+
+fn is_compressed(format: TextureFormat) -> bool {
+    matches!(format, TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5)
+}
+
+/// A texel's word to its bytes.
+#[derive(Debug)]
+pub(super) struct TexelExpansion;
+
+impl Unit for TexelExpansion {
+    fn name(&self) -> &'static str {
+        "texel-expansion"
+    }
+
+    fn about(&self) -> &'static str {
+        "the word of a texel as the bytes that a unit reads"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-1"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        channels()
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        inputs[1] >> (8 * named::<TextureFormat>(inputs[0]).bytes()) == 0
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        inputs[1] &= (1 << (8 * named::<TextureFormat>(inputs[0]).bytes())) - 1;
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        for (result, byte) in results.iter_mut().zip(format::expand(named(inputs[0]), inputs[1] as u32)) {
+            *result = byte.into();
+        }
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// A texel of a compressed block.
+#[derive(Debug)]
+pub(super) struct CompressedBlock;
+
+impl Unit for CompressedBlock {
+    fn name(&self) -> &'static str {
+        "compressed-block"
+    }
+
+    fn about(&self) -> &'static str {
+        "the texel in a column and row of a DXT block; DXT1 has two words, the others four"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-2", "TEX-3", "TEX-4"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![formats(is_compressed)];
+        columns.extend(["in.word0", "in.word1", "in.word2", "in.word3"].map(|name| Column::word(name, 32)));
+        columns.extend(["in.column", "in.row"].map(|name| Column::unsigned(name, 2, 3)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        channels()
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        named::<TextureFormat>(inputs[0]) != TextureFormat::Dxt1 || inputs[3..5] == [0, 0]
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        if named::<TextureFormat>(inputs[0]) == TextureFormat::Dxt1 {
+            inputs[3..5].fill(0);
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let format = named(inputs[0]);
+        let words = [1, 2, 3, 4].map(|n| inputs[n] as u32);
+        let block = if format == TextureFormat::Dxt1 { &words[..2] } else { &words[..] };
+        let dithered = conditions.profile == Profile::Nv2a;
+        let decoded = compressed::decode(format, dithered, block, inputs[5] as u32, inputs[6] as u32);
+        for (result, byte) in results.iter_mut().zip(decoded.bytes) {
+            *result = byte.into();
+        }
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}

@@ -1,0 +1,368 @@
+//! Where a texture unit looks, and how it mixes what it finds.
+
+use super::named;
+use crate::state::{
+    AddressMode, Filter, Level, MipFilter, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit,
+};
+use crate::texture::cube::Face;
+use crate::texture::unit::PlannedUnit;
+use crate::texture::{address, filter, lod, shader};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+const SIZES: [i64; 9] = [1, 2, 3, 4, 17, 64, 100, 256, 4096];
+
+/// Mode, size, and a coordinate in 1/256 texel.
+fn addressing() -> Vec<Column> {
+    vec![
+        Column::choice::<AddressMode>("cfg.mode"),
+        Column::flag("cfg.border_texels"),
+        Column::listed("cfg.size", Kind::Unsigned(13), &SIZES),
+        Column::signed("in.u", 24, -(1 << 23), (1 << 23) - 1),
+    ]
+}
+
+/// Coordinates around the image, most of the time.
+fn near(inputs: &mut [i64]) {
+    if inputs[3] & 3 != 0 {
+        inputs[3] = inputs[3].rem_euclid((inputs[2] + 8) * 768) - (inputs[2] + 8) * 256;
+    }
+}
+
+/// A texel index by its mode: whether it is inside, and where.
+fn place(inputs: &[i64], index: i64) -> [i64; 2] {
+    let found = address::address(named(inputs[0]), index, inputs[2] as u32, inputs[1] != 0);
+    [found.is_some().into(), found.unwrap_or(0)]
+}
+
+/// The nearest texel.
+#[derive(Debug)]
+pub(super) struct NearestAddress;
+
+impl Unit for NearestAddress {
+    fn name(&self) -> &'static str {
+        "nearest-address"
+    }
+
+    fn about(&self) -> &'static str {
+        "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-5", "TEX-7", "TEX-8"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        addressing()
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![
+            Column::result("mid.index", Kind::Signed(17)),
+            Column::result("out.inside", Kind::Unsigned(1)),
+            Column::result("out.texel", Kind::Signed(14)),
+        ]
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        near(inputs);
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = filter::nearest(inputs[3]);
+        [results[1], results[2]] = place(inputs, results[0]);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// The two texels of the linear filter along one axis.
+#[derive(Debug)]
+pub(super) struct LinearAddress;
+
+impl Unit for LinearAddress {
+    fn name(&self) -> &'static str {
+        "linear-address"
+    }
+
+    fn about(&self) -> &'static str {
+        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-6", "TEX-7", "TEX-8"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        addressing()
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let (inside, texel) = (Kind::Unsigned(1), Kind::Signed(14));
+        vec![
+            Column::result("mid.index", Kind::Signed(17)),
+            Column::result("out.weight", Kind::Unsigned(8)),
+            Column::result("out.inside0", inside.clone()),
+            Column::result("out.texel0", texel.clone()),
+            Column::result("out.inside1", inside),
+            Column::result("out.texel1", texel),
+        ]
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        near(inputs);
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let (index, weight) = filter::linear(inputs[3]);
+        (results[0], results[1]) = (index, weight.into());
+        [results[2], results[3]] = place(inputs, index);
+        [results[4], results[5]] = place(inputs, index + 1);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// One linear step.
+#[derive(Debug)]
+pub(super) struct LinearStep;
+
+impl Unit for LinearStep {
+    fn name(&self) -> &'static str {
+        "linear-step"
+    }
+
+    fn about(&self) -> &'static str {
+        "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-6", "TEX-9"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.value", Kind::Unsigned(8))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = filter::lerp(inputs[0] as i32, inputs[1] as i32, inputs[2] as i32).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// The mix of four texels.
+#[derive(Debug)]
+pub(super) struct Bilinear;
+
+impl Unit for Bilinear {
+    fn name(&self) -> &'static str {
+        "bilinear"
+    }
+
+    fn about(&self) -> &'static str {
+        "one channel of four texels mixed along u on both rows, then along v; signed channels are -128..127"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-6"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns =
+            ["in.t00", "in.t10", "in.t01", "in.t11"].map(|name| Column::signed(name, 9, -128, 255)).to_vec();
+        columns.extend(["in.weight_u", "in.weight_v"].map(Column::byte));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        ["mid.row0", "mid.row1", "out.value"].map(|name| Column::result(name, Kind::Signed(9))).to_vec()
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        let texels = &inputs[..4];
+        texels.iter().all(|t| *t >= 0) || texels.iter().all(|t| *t < 128)
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        if inputs[..4].iter().any(|t| *t < 0) {
+            inputs[..4].iter_mut().filter(|t| **t > 127).for_each(|t| *t -= 128);
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let texels = [0, 1, 2, 3].map(|n| inputs[n] as i32);
+        let mut steps = results.iter_mut();
+        filter::bilinear(texels, inputs[4] as i32, inputs[5] as i32, |value| {
+            if let Some(step) = steps.next() {
+                *step = value.into();
+            }
+            value
+        });
+    }
+
+    fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {
+        Reach::of(&inputs[..4], &[])
+    }
+}
+
+/// A look-up in a cube map.
+#[derive(Debug)]
+pub(super) struct CubeFace;
+
+impl Unit for CubeFace {
+    fn name(&self) -> &'static str {
+        "cube-face"
+    }
+
+    fn about(&self) -> &'static str {
+        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-12", "TEX-13"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512])];
+        columns.extend(["in.x", "in.y", "in.z"].map(|name| Column::float(name, true, 4)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = vec![Column::result("out.face", Kind::Name(Face::NAMES))];
+        columns.extend(["out.u", "out.v"].map(|name| Column::result(name, Kind::Unsigned(18))));
+        columns
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // Every direction of components -1, 0 and 1: the ties.
+        let component = |n: i64| [0xbf80_0000, 0, 0x3f80_0000][(n % 3) as usize];
+        let infinite = [0x7f80_0000, 0xff80_0000, 0x7fc0_0000].map(|bits| vec![64, bits, 0x3f80_0000, 0]);
+        let lattice = (0..27).map(|n| vec![64, component(n), component(n / 3), component(n / 9)]);
+        lattice.chain(infinite).collect()
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let d = shader::direction([1, 2, 3].map(|n| f32::from_bits(inputs[n] as u32)));
+        let face = Face::of(d, d.map(i64::abs), 0);
+        let [s, t, m] = face.components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] });
+        results[0] = face as i64;
+        for (result, minor) in results[1..].iter_mut().zip([s, t]) {
+            *result = shader::face_coordinate(minor, m, inputs[0] as u32, 8);
+        }
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// Filter and levels for a lod.
+#[derive(Debug)]
+pub(super) struct LevelChoice;
+
+impl Unit for LevelChoice {
+    fn name(&self) -> &'static str {
+        "level-choice"
+    }
+
+    fn about(&self) -> &'static str {
+        "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["TEX-9", "TEX-10", "TEX-11"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![
+            Column::choice::<Filter>("cfg.min_filter"),
+            Column::choice::<Filter>("cfg.mag_filter"),
+            Column::choice::<MipFilter>("cfg.mip_filter"),
+            Column::unsigned("cfg.levels", 4, 10),
+            Column::signed("cfg.lod_bias", 13, -4096, 4095),
+            Column::unsigned("cfg.min_lod", 12, 4095),
+            Column::unsigned("cfg.max_lod", 12, 4095),
+        ];
+        let names = ["in.u_right", "in.v_right", "in.u_lower", "in.v_lower"];
+        columns.extend(names.map(|name| Column::signed(name, 34, -(1 << 32), 1 << 32)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![
+            Column::result("mid.log2_ratio", Kind::Signed(16)),
+            Column::result("mid.lod", Kind::Signed(16)),
+            Column::result("out.filter", Kind::Name(Filter::NAMES)),
+            Column::result("out.level", Kind::Unsigned(4)),
+            Column::result("out.next_level", Kind::Unsigned(4)),
+            Column::result("out.weight", Kind::Unsigned(8)),
+        ]
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        inputs[3] >= 1 && inputs[5] <= inputs[6]
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        inputs[3] = inputs[3].max(1);
+        // Biases and ratios that lie among the levels, more often than not.
+        if inputs[4] & 1 == 0 {
+            inputs[4] /= 8;
+        }
+        if inputs[5] > inputs[6] {
+            inputs.swap(5, 6);
+        }
+        let shift = (inputs[7] ^ inputs[8]) & 15;
+        inputs[7..11].iter_mut().for_each(|along| *along >>= shift);
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let (width, levels) = (1 << 9, inputs[3] as u32);
+        let (levels, face_words) = Level::chain(TextureFormat::A8R8G8B8, width, width, levels, false);
+        let state = TextureUnit {
+            min_filter: named(inputs[0]),
+            mag_filter: named(inputs[1]),
+            mip_filter: named(inputs[2]),
+            lod_bias: inputs[4] as i32,
+            min_lod: inputs[5] as i32,
+            max_lod: inputs[6] as i32,
+            ..TextureUnit::new(0)
+        };
+        let unit = PlannedUnit {
+            index: 0,
+            state,
+            stage: ShaderStage::conventional(0, true),
+            kind: TextureKind::TwoDimensional,
+            format: TextureFormat::A8R8G8B8,
+            levels,
+            face_words,
+            border: false,
+            dithered: false,
+            palette: None,
+            live: 15,
+        };
+        let log2_ratio = lod::log2_ratio(Some([[0, 0], [inputs[7], inputs[8]], [inputs[9], inputs[10]]]));
+        let biased = lod::biased(&unit, log2_ratio);
+        let choice = lod::choose(&unit, biased);
+        let (next, weight) = choice.next.unwrap_or((choice.level, 0));
+        let numbers =
+            [log2_ratio.into(), biased.into(), choice.filter as i64, choice.level as i64, next as i64, weight.into()];
+        results.copy_from_slice(&numbers);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}

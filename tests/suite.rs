@@ -1,0 +1,64 @@
+//! The tests that need no binary of their own, in one: linking forty binaries would take longer than running them.
+//!
+//! `cargo test --test suite trace::` runs those of `tests/trace.rs`.
+#![allow(
+    unreachable_pub,
+    dead_code,
+    missing_docs,
+    missing_debug_implementations,
+    clippy::unwrap_used,
+    clippy::float_arithmetic,
+    reason = "tests fail by panicking, and modules share files of which each uses its part"
+)]
+
+#[path = "common/bench.rs"]
+mod bench;
+#[path = "common/dds.rs"]
+mod dds;
+#[path = "common/random_program.rs"]
+mod random_program;
+#[path = "common/random_scene.rs"]
+mod random_scene;
+#[path = "common/random_vertex_program.rs"]
+mod random_vertex_program;
+#[path = "common/recompute.rs"]
+mod recompute;
+#[path = "common/scene_files.rs"]
+mod scene_files;
+#[path = "common/third_party.rs"]
+mod third_party;
+
+mod architecture;
+mod assets_images;
+mod assets_output;
+mod assets_scenes;
+mod bad_scenes;
+mod cli;
+mod cli_compare;
+mod cli_texture;
+mod combiner_language;
+mod compare;
+mod compressed;
+mod dds_files;
+mod diff;
+mod docs;
+mod engines;
+mod error_codes;
+mod explain;
+mod op;
+mod oracle;
+mod readme;
+mod registers;
+mod scene_format;
+mod scene_hostile;
+mod texture_properties;
+mod textures;
+mod third_party_pipeline;
+mod third_party_pixel_shader;
+mod third_party_registers;
+mod third_party_stages;
+mod trace;
+mod trace_format;
+mod vectors;
+mod vertex_programs;
+mod vertex_scenes;

@@ -1,0 +1,280 @@
+//! Packs of vectors: what is written is read back, what was tampered with is refused, what the model says otherwise is found.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use ninebit::state::{Policies, Profile};
+use ninebit::vectors::cases::{self, Level};
+use ninebit::vectors::pack::{self, Options};
+use ninebit::vectors::read::parse;
+use ninebit::vectors::table::{Contents, Writer};
+use ninebit::vectors::unit::{Conditions, alternatives};
+use ninebit::vectors::units;
+use ninebit::vectors::view::View;
+
+fn options(units: &[&str]) -> Options {
+    let units = units.iter().map(|name| units::by_name(name).unwrap()).collect();
+    Options {
+        profile: Profile::Nv2a,
+        level: Level::L0,
+        seed: 1,
+        units,
+        deciding: false,
+        views: vec![View::Hex, View::Jsonl],
+    }
+}
+
+fn vectors(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_ninebit")).arg("vectors").args(arguments).output().unwrap()
+}
+
+/// Every unit on every chip that has it: numbers fit their columns, rows do not repeat, the table is what it was told to be.
+#[test]
+fn tables_of_all_units_are_sound() {
+    for unit in units::all() {
+        for profile in unit.profiles() {
+            let contents = Contents { unit, profile: *profile, level: Level::L0, seed: 7 };
+            let writer = Writer::new(contents);
+            let mut text = Vec::new();
+            let rows = writer.write(false, &mut text).unwrap();
+            let whole = cases::size(&unit.inputs()).min(1_000);
+            assert!(rows as u128 >= whole.min(900), "{}: {rows} rows", unit.name());
+            let table = parse(std::str::from_utf8(&text).unwrap(), Path::new("table")).unwrap();
+            assert_eq!((table.rows.len(), table.differences()), (rows, vec![]), "{}", unit.name());
+        }
+    }
+}
+
+/// More rows, for what a thousand do not meet.
+#[test]
+fn numbers_fit_their_columns() {
+    for unit in units::all() {
+        let columns: Vec<_> = unit.inputs().into_iter().chain(unit.results()).collect();
+        let results = unit.results().len();
+        for profile in unit.profiles() {
+            let conditions = Conditions { profile: *profile, policies: Policies::DEFAULT };
+            let mut left = 4_000;
+            cases::visit(unit, *profile, Level::L1, 3, |inputs, _| {
+                if left == 0 {
+                    return;
+                }
+                left -= 1;
+                let mut row = inputs.to_vec();
+                row.resize(inputs.len() + results, 0);
+                let (inputs, outputs) = row.split_at_mut(inputs.len());
+                unit.evaluate(inputs, &conditions, outputs);
+                for (column, value) in columns.iter().zip(&row) {
+                    assert!(column.kind.holds(*value), "{}: {} = {value} in {row:?}", unit.name(), column.name);
+                }
+            });
+        }
+    }
+}
+
+/// Each policy that a unit's rules name changes some row of it, and no other does.
+#[test]
+fn policies_change_the_units_of_their_rules() {
+    let mut found: Vec<(String, &str)> = Vec::new();
+    for unit in units::all() {
+        for profile in unit.profiles() {
+            cases::visit(unit, *profile, Level::L0, 1, |inputs, _| {
+                let mut results = vec![0; unit.results().len()];
+                let conditions = Conditions { profile: *profile, policies: Policies::DEFAULT };
+                unit.evaluate(inputs, &conditions, &mut results);
+                for alternative in alternatives(unit, inputs, *profile, &results) {
+                    let rule = alternative.policy.split('=').next().unwrap();
+                    assert!(unit.rules().contains(&rule), "{} does not name {rule}", unit.name());
+                    if !found.contains(&(alternative.policy.clone(), unit.name())) {
+                        found.push((alternative.policy, unit.name()));
+                    }
+                }
+            });
+        }
+    }
+    for policy in ninebit::state::POLICIES {
+        for (index, (value, _)) in policy.values.iter().enumerate() {
+            let name = format!("{}={value}", policy.rule);
+            let default = Policies::DEFAULT.chosen(policy.rule) == index;
+            assert_eq!(found.iter().any(|(policy, _)| *policy == name), !default, "{name}");
+        }
+    }
+}
+
+#[test]
+fn a_pack_is_whole_or_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    let pack = place("pack");
+    let manifest = pack::export(&pack, &options(&["product", "mux"])).unwrap();
+    assert_eq!(manifest.files.len(), 12);
+    let again = pack::export(&place("again"), &options(&["mux", "product"])).unwrap();
+    assert_eq!(manifest, again, "the order of the units does not count");
+    let (_, tables) = pack::open(&pack).unwrap();
+    assert!(tables.iter().all(|table| table.differences().is_empty() && table.is_current()));
+
+    let table = pack.join("units/mux.tsv");
+    let text = std::fs::read_to_string(&table).unwrap();
+    let refused = |code: &str| {
+        let error = pack::open(&pack).unwrap_err();
+        assert_eq!(error.code(), code, "{error}");
+    };
+    std::fs::write(&table, text.replacen('1', "0", 1)).unwrap();
+    refused("NB1011");
+    std::fs::remove_file(&table).unwrap();
+    refused("NB1001");
+    std::fs::write(&table, &text).unwrap();
+    std::fs::write(pack.join("units/other.tsv"), "").unwrap();
+    refused("NB1012");
+    std::fs::remove_file(pack.join("units/other.tsv")).unwrap();
+    let manifest = pack.join("MANIFEST.json");
+    let json = std::fs::read_to_string(&manifest).unwrap();
+    for (from, to, code) in [
+        ("\"seed\": 1", "\"seed\": 2", "NB1011"),
+        ("ninebit-vectors-1", "ninebit-vectors-9", "NB1003"),
+        ("\"rows\"", "\"row\"", "NB1010"),
+        ("units/mux.tsv", "../mux.tsv", "NB1010"),
+        ("{", "", "NB1010"),
+    ] {
+        std::fs::write(&manifest, json.replacen(from, to, 1)).unwrap();
+        refused(code);
+    }
+    std::fs::remove_file(&manifest).unwrap();
+    refused("NB1001");
+}
+
+#[test]
+fn tables_that_were_tampered_with_are_refused() {
+    let unit = units::by_name("product").unwrap();
+    let writer = Writer::new(Contents { unit, profile: Profile::Nv10, level: Level::L0, seed: 1 });
+    let mut text = Vec::new();
+    writer.write(false, &mut text).unwrap();
+    let text = String::from_utf8(text).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    let row = lines[12];
+    let fields: Vec<&str> = row.split('\t').collect();
+    let with = |n: usize, value: &str| {
+        let mut fields = fields.clone();
+        fields[n] = value;
+        text.replacen(row, &fields.join("\t"), 1)
+    };
+    let other = if fields[1] == "5" { "6" } else { "5" };
+    let broken = [
+        (String::new(), "NB1004"),
+        (text.replacen("vectors 1", "vectors 2", 1), "NB1003"),
+        (text.replacen("# unit product", "# unit produce", 1), "NB1005"),
+        (text.replacen("# profile Nv10", "# profile Nv30", 1), "NB1005"),
+        (text.replacen("# level L0", "# level L9", 1), "NB1005"),
+        (text.replacen("# seed 1", "# seed x", 1), "NB1004"),
+        (text.replacen("in.a", "in.x", 1), "NB1006"),
+        (text.replacen("s10", "s11", 1), "NB1006"),
+        (with(1, other), "NB1008"),
+        (with(1, "512"), "NB1007"),
+        (with(1, "+5"), "NB1007"),
+        (with(3, ""), "NB1007"),
+        (with(fields.len() - 4, "odd"), "NB1007"),
+        (with(fields.len() - 1, "-\t-"), "NB1007"),
+        (format!("{text}{row}\n"), "NB1009"),
+        (text[..text.len() - 1].to_owned(), "NB1007"),
+        (text[..text.len() - 9].to_owned(), "NB1007"),
+        (text.replacen(row, "", 1), "NB1007"),
+    ];
+    for (text, code) in broken {
+        let error = parse(&text, Path::new("table")).unwrap_err();
+        assert_eq!(error.code(), code, "{error}");
+    }
+    // A wrong result is no broken table: it is what a table is for.
+    let wrong = with(4, if fields[4] == "7" { "8" } else { "7" });
+    let table = parse(&wrong, Path::new("table")).unwrap();
+    let differences = table.differences();
+    assert_eq!(differences.len(), 1);
+    assert_eq!(
+        (differences[0].column.as_str(), differences[0].model.as_str(), differences[0].line),
+        ("out.ab", fields[4], 13)
+    );
+}
+
+/// A pack with one wrong row, the digests made to fit.
+fn with_a_wrong_row(folder: &Path) -> PathBuf {
+    use sha2::{Digest, Sha256};
+    let pack = folder.join("wrong");
+    pack::export(&pack, &options(&["mux"])).unwrap();
+    let table = pack.join("units/mux.tsv");
+    let text = std::fs::read_to_string(&table).unwrap();
+    let row = text.lines().nth(20).unwrap();
+    let mut fields: Vec<&str> = row.split('\t').collect();
+    fields[3] = if fields[3] == "0" { "1" } else { "0" };
+    let text = text.replacen(row, &fields.join("\t"), 1);
+    std::fs::write(&table, &text).unwrap();
+    let mut manifest = pack::manifest(&pack).unwrap();
+    let hex = |bytes: &[u8]| bytes.iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let mut sums = String::new();
+    for file in &mut manifest.files {
+        if file.path == "units/mux.tsv" {
+            file.sha256 = hex(&Sha256::digest(&text));
+        }
+        sums += &format!("{}  {}\n", file.sha256, file.path);
+    }
+    manifest.root = hex(&Sha256::digest(&sums));
+    std::fs::write(pack.join("MANIFEST.json"), serde_json::to_string(&manifest).unwrap()).unwrap();
+    pack
+}
+
+#[test]
+fn the_command_line_tells_packs_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let good = folder.path().join("good");
+    let output =
+        vectors(&["export", "--unit", "mux", "--view", "hex", "--view", "jsonl", "-o", good.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let wrong = with_a_wrong_row(folder.path());
+    let [good, wrong] = [&good, &wrong].map(|path| path.to_str().unwrap());
+
+    let said = |output: &Output| String::from_utf8(output.stdout.clone()).unwrap();
+    assert_eq!(vectors(&["check", good]).status.code(), Some(0));
+    let output = vectors(&["check", wrong]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("mux: 1 of 1000 rows differ"), "{output:?}");
+    assert_eq!(vectors(&["diff", good, good]).status.code(), Some(0));
+    let output = vectors(&["diff", good, wrong]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("mux: 0 rows more, 0 fewer, 1 changed"), "{output:?}");
+    assert_eq!(vectors(&["check", folder.path().to_str().unwrap()]).status.code(), Some(4));
+    assert_eq!(vectors(&["export", "--unit", "mix", "-o", good]).status.code(), Some(2));
+    assert_eq!(vectors(&["export", "--unit", "fog-factor", "--profile", "nv10", "-o", good]).status.code(), Some(2));
+    let listed = said(&vectors(&["list"]));
+    for unit in units::all() {
+        assert!(listed.contains(unit.name()) && listed.contains(unit.about()));
+    }
+}
+
+/// The packed view has the bits of the table.
+#[test]
+fn packed_rows_are_the_rows() {
+    use ninebit::vectors::view::{layout, packed};
+    for name in ["input-mapping", "general-stage", "shader-remap"] {
+        let unit = units::by_name(name).unwrap();
+        let writer = Writer::new(Contents { unit, profile: Profile::Nv2a, level: Level::L0, seed: 1 });
+        let (slices, width) = layout(&writer);
+        let mut left = 50;
+        cases::visit(unit, Profile::Nv2a, Level::L0, 1, |inputs, origin| {
+            if left == 0 {
+                return;
+            }
+            left -= 1;
+            let row = writer.row(inputs, origin);
+            let word = packed(&slices, width, &row);
+            assert_eq!(word.len(), width.div_ceil(4) as usize);
+            let bit = |n: u32| {
+                let digit = word.as_bytes()[word.len() - 1 - n as usize / 4] as char;
+                digit.to_digit(16).unwrap() >> (n % 4) & 1
+            };
+            for (slice, value) in slices.iter().zip(row.inputs.iter().chain(&row.results)) {
+                let bits: i64 = (slice.low..=slice.high).map(|n| i64::from(bit(n)) << (n - slice.low)).sum();
+                let width = slice.high - slice.low + 1;
+                let signed = slice.column.kind.is_signed() && bits >> (width - 1) & 1 != 0;
+                assert_eq!(if signed { bits - (1 << width) } else { bits }, *value, "{name} {}", slice.column.name);
+            }
+        });
+    }
+}
