@@ -118,7 +118,7 @@ fn engine(c: &mut Criterion) {
         let plan = Plan::compile(&scene(perspective), &PlanOptions::default()).unwrap();
         for threads in [1, 2] {
             group.bench_function(format!("{name}/{threads}_thread"), |b| {
-                b.iter(|| render(black_box(&plan), &RenderOptions { threads }));
+                b.iter(|| render(black_box(&plan), &RenderOptions { threads, ..RenderOptions::default() }));
             });
         }
     }
@@ -153,7 +153,7 @@ fn state(c: &mut Criterion) {
         let mut scene = scene(true);
         change(&mut scene);
         let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-        group.bench_function(name, |b| b.iter(|| render(black_box(&plan), &RenderOptions { threads: 1 })));
+        group.bench_function(name, |b| b.iter(|| render(black_box(&plan), &RenderOptions::default())));
     };
     bench("one_color", &|s| {
         s.draws[0].combiners = shown(FinalRegister::PrimaryColor);

@@ -61,7 +61,7 @@ fn units(c: &mut Criterion) {
     group.throughput(Throughput::Elements(u64::from(SIDE * SIDE))).sample_size(20);
     let mut bench = |name: &str, texture: Option<Texture>, unit: TextureUnit, ratio: f32| {
         let plan = Plan::compile(&scene(texture, unit, ratio), &PlanOptions::default()).unwrap();
-        group.bench_function(name, |b| b.iter(|| render(black_box(&plan), &RenderOptions { threads: 1 })));
+        group.bench_function(name, |b| b.iter(|| render(black_box(&plan), &RenderOptions::default())));
     };
     let (flat, argb) = (TextureKind::TwoDimensional, TextureFormat::A8R8G8B8);
     let nearest = TextureUnit { min_filter: Filter::Nearest, mag_filter: Filter::Nearest, ..TextureUnit::new(0) };

@@ -25,8 +25,8 @@ fn scenes_folder() -> PathBuf {
 fn check(file: &Path, bless: bool) -> Result<(), String> {
     let loaded = scene::load(file, &Limits::default()).map_err(|error| error.render(false))?;
     let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).map_err(|errors| format!("{errors:?}"))?;
-    let frames = render(&plan, &RenderOptions { threads: 1 });
-    if render(&plan, &RenderOptions { threads: 3 }) != frames {
+    let frames = render(&plan, &RenderOptions::default());
+    if render(&plan, &RenderOptions { threads: 3, ..RenderOptions::default() }) != frames {
         return Err("the picture depends on the number of threads".to_owned());
     }
     let surface = &frames.surfaces[0];

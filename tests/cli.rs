@@ -19,6 +19,7 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("--help").text(), file!["cli/help.txt"]);
     assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
     assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
+    assert_data_eq!(bench.run("bench --help").text(), file!["cli/help-bench.txt"]);
     assert_data_eq!(bench.run("diff --help").text(), file!["cli/help-diff.txt"]);
     for operation in ["combiner", "final", "blend", "filter", "address"] {
         let text = bench.run(&format!("op {operation} --help")).text();
@@ -242,6 +243,27 @@ fn scenes_are_checked() {
 }
 
 #[test]
+fn scenes_are_timed() {
+    let bench = Bench::new();
+    bench.write("scene.ron", SCENE);
+    let text = bench.run("bench scene.ron --frames 2 --threads 1 --isa baseline").text();
+    assert!(text.starts_with("engine fast, baseline, 1 thread(s)") && text.contains("scene.ron"), "{text}");
+    let document: serde_json::Value =
+        serde_json::from_slice(&bench.run("bench scene.ron scene.ron --frames 3 --engine scalar --json").data())
+            .unwrap();
+    assert_eq!((&document["format"], &document["engine"]), (&"ninebit-bench-1".into(), &"scalar".into()));
+    let scenes = document["scenes"].as_array().unwrap();
+    assert!(
+        scenes.len() == 2
+            && scenes.iter().all(|scene| scene["frames"] == 3 && scene["shaded_pixels"].as_u64() > Some(0))
+    );
+    bench.run("bench").failed(2, "<SCENE>...");
+    bench.run("bench scene.ron --isa z80").failed(2, "x86-64-v3");
+    bench.run("bench scene.ron --frames 0").failed(2, "0 is not in 1..=1000000");
+    bench.run("bench missing.ron").failed(4, "missing.ron");
+}
+
+#[test]
 fn scenes_are_rendered() {
     let bench = Bench::new();
     bench.write("scene.ron", SCENE);
@@ -251,7 +273,13 @@ fn scenes_are_rendered() {
     assert_eq!((picture.width, picture.height, picture.pixels[3 * 8]), (8, 4, [255, 0, 0, 255]));
 
     let bytes = fs::read(bench.path("frame.png")).unwrap();
-    for arguments in ["-o -", "-o - --threads 1", "-o - --threads 3 --target frame", "-o - --policy CMB-7=each"] {
+    for arguments in [
+        "-o -",
+        "-o - --threads 1",
+        "-o - --threads 3 --target frame",
+        "-o - --policy CMB-7=each",
+        "-o - --engine scalar",
+    ] {
         assert_eq!(bench.run(&format!("render scene.ron {arguments}")).data(), bytes, "{arguments}");
     }
     assert_ne!(bench.run("render scene.ron --target spare -o -").data(), bytes);

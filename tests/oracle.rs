@@ -53,7 +53,7 @@ fn compare(scene: &Scene, policies: &Policies) -> Result<(), String> {
     let expected = model::render(scene, policies);
     for (prune, threads) in [(true, 1), (false, 1), (true, 3)] {
         let plan = Plan::compile(scene, &PlanOptions { policies: *policies, prune }).map_err(|e| format!("{e:?}"))?;
-        let frames = render(&plan, &RenderOptions { threads });
+        let frames = render(&plan, &RenderOptions { threads, ..RenderOptions::default() });
         if let Some((target, x, y, what)) = difference(&frames.surfaces, &expected) {
             let text = trace(&plan, target, (x, y), None).map_or_else(|e| format!("{e:?}"), |t| trace_text(&plan, &t));
             return Err(format!("target {target} ({x}, {y}), prune {prune}, threads {threads}: {what}\n{text}"));

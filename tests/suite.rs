@@ -42,6 +42,7 @@ mod compressed;
 mod dds_files;
 mod diff;
 mod docs;
+mod engines;
 mod error_codes;
 mod explain;
 mod op;

@@ -30,7 +30,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
     /// Threads; 0 takes all cores
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = super::render::threads)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = super::engine::threads)]
     threads: usize,
 }
 

@@ -131,7 +131,7 @@ fn scene<'a>(
     if (width, height) != (difference.width, difference.height) {
         return Err(other_size());
     }
-    let mut frames = engine::render(&plan, &RenderOptions { threads: 0 });
+    let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
     let surface = frames.surfaces.swap_remove(target);
     let frame = Rgba { width, height, pixels: surface.rgba8() };
     let mut different = [0; 2];

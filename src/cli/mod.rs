@@ -1,9 +1,11 @@
 //! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
 
+mod bench;
 mod check;
 mod compare;
 mod cost;
 mod diff;
+mod engine;
 mod exit;
 mod explain;
 mod generate;
@@ -75,6 +77,8 @@ enum Command {
     Policies,
     /// List the limits that scenes are held to
     Limits,
+    /// Time how long scenes take to draw
+    Bench(bench::Arguments),
     /// Make height fields and normal maps
     #[command(subcommand)]
     Generate(generate::Command),
@@ -130,6 +134,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Vectors(command) => vectors::run(&command),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
+        Command::Bench(arguments) => bench::run(&arguments, context),
         Command::Generate(command) => generate::run(&command),
     };
     match result {

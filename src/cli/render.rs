@@ -4,13 +4,14 @@ use std::ffi::OsString;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use ninebit::engine::{self, RenderOptions};
+use ninebit::engine;
 use ninebit::output::{Compression, Destination, encode_png, write_stdout};
 use ninebit::state::Named;
 use serde_json::json;
 
 use super::Context;
 use super::cost::Cost;
+use super::engine::EngineArguments;
 use super::exit::Failure;
 use super::scene::{SceneArguments, chosen_target, refuse_overwriting};
 use super::terminal::Progress;
@@ -25,9 +26,8 @@ pub(crate) struct Arguments {
     /// Which render target to write [default: the scene's first]
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
-    /// Threads; 0 takes all cores. The picture does not depend on it
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
-    threads: usize,
+    #[command(flatten)]
+    engine: EngineArguments,
     /// Print statistics to stdout
     #[arg(long, value_enum, value_name = "FORMAT")]
     stats: Option<Stats>,
@@ -38,9 +38,6 @@ enum Stats {
     /// One JSON object
     Json,
 }
-
-/// The most threads that can be asked for.
-const MAXIMUM_THREADS: usize = 1024;
 
 /// Renders a scene and writes one of its targets.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
@@ -53,13 +50,14 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     }
     refuse_overwriting(&arguments.scene.scene, &destination)?;
 
+    let options = arguments.engine.options()?;
+
     let mut clock = Clock::start();
     let (scene, plan) = arguments.scene.load(context)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     clock.lap("load");
     let (frames, statistics) = {
         let progress = Progress::new("rendering", context.color);
-        let options = RenderOptions { threads: arguments.threads };
         engine::render_counted(&plan, &options, &|done, total| progress.report(done as u64, total as u64))
     };
     clock.lap("render");
@@ -99,14 +97,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         write_stdout(format!("{value:#}\n").as_bytes())?;
     }
     Ok(())
-}
-
-/// A number of threads.
-pub(crate) fn threads(text: &str) -> Result<usize, String> {
-    text.parse()
-        .ok()
-        .filter(|count| *count <= MAXIMUM_THREADS)
-        .ok_or_else(|| format!("not a number from 0 to {MAXIMUM_THREADS}"))
 }
 
 /// Wall-clock times of the steps.

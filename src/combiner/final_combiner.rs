@@ -60,7 +60,7 @@ pub fn color_sum<L: Lane>(spare0: L, secondary: L, state: &FinalCombiner) -> L {
 
 /// FIN-4: E F.
 #[inline(always)]
-pub fn product<L: Lane>(e: L, f: L) -> L {
+pub fn product<R: crate::number::Register>(e: R, f: R) -> R {
     e.factor().product(f.factor()).rounded()
 }
 

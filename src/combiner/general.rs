@@ -5,7 +5,7 @@
 use super::mapping;
 use super::registers::Registers;
 use super::report::StageReport;
-use crate::number::{Factor, Lane, Register as _, Sum};
+use crate::number::{Factor, Lane, Sum};
 use crate::state::{
     Bias, CombinerInput, Component, DotRounding, MuxNegative, MuxSelect, OutputRounding, Policies, Portion, Register,
     RegisterFloor, Scale, SumRounding,
@@ -31,6 +31,18 @@ where
     S::Register: crate::number::Register,
 {
     let v = settle(OutputStep::Rounded, raw.rounded());
+    finished(v, bias, scale, floor, settle)
+}
+
+/// What [`output`] does after the rounding.
+#[inline(always)]
+pub fn finished<R: crate::number::Register>(
+    v: R,
+    bias: Bias,
+    scale: Scale,
+    floor: RegisterFloor,
+    mut settle: impl FnMut(OutputStep, R) -> R,
+) -> R {
     let v = settle(OutputStep::Scaled, scaled(biased(v, bias), scale));
     settle(OutputStep::Saturated, v.saturated(floor))
 }
@@ -85,7 +97,9 @@ pub fn mux_takes_cd<L: Lane>(spare0_alpha: L, select: MuxSelect, policies: &Poli
     takes_cd(spare0_alpha.decision(), select, policies)
 }
 
-fn takes_cd(v: i32, select: MuxSelect, policies: &Policies) -> bool {
+/// CMB-10 of SPARE0's alpha as an integer.
+#[inline(always)]
+pub fn takes_cd(v: i32, select: MuxSelect, policies: &Policies) -> bool {
     match select {
         MuxSelect::Lsb => v & 1 != 0,
         MuxSelect::Msb => match policies.mux_negative {

@@ -25,15 +25,21 @@ pub fn expand_normal<R: Register>(x: R) -> R::Expanded {
 /// Any mapping, under any policy, of some channels.
 #[inline(always)]
 pub fn map<L: Lane, const N: usize>(x: [L; N], mapping: InputMapping, policies: &Policies) -> [L::Mapped; N] {
+    std::array::from_fn(|n| map_one(x[n], mapping, policies))
+}
+
+/// Any mapping, under any policy, of a channel.
+#[inline(always)]
+pub fn map_one<L: Lane>(x: L, mapping: InputMapping, policies: &Policies) -> L::Mapped {
     match mapping {
-        InputMapping::UnsignedIdentity => x.map(|x| unsigned_identity(x).factor()),
-        InputMapping::UnsignedInvert => x.map(|x| unsigned_invert(x).factor()),
-        InputMapping::ExpandNormal => x.map(|x| expand(x, policies)),
-        InputMapping::ExpandNegate => x.map(|x| L::negated(expand(x, policies))),
-        InputMapping::HalfBiasNormal => x.map(|x| half_bias(x.max0(), L::HALF, policies)),
-        InputMapping::HalfBiasNegate => x.map(|x| L::negated(half_bias(x.max0(), L::HALF, policies))),
-        InputMapping::SignedIdentity => x.map(|x| x.factor()),
-        InputMapping::SignedNegate => x.map(|x| L::negated(x.factor())),
+        InputMapping::UnsignedIdentity => unsigned_identity(x).factor(),
+        InputMapping::UnsignedInvert => unsigned_invert(x).factor(),
+        InputMapping::ExpandNormal => expand(x, policies),
+        InputMapping::ExpandNegate => L::negated(expand(x, policies)),
+        InputMapping::HalfBiasNormal => half_bias(x.max0(), L::HALF, policies),
+        InputMapping::HalfBiasNegate => L::negated(half_bias(x.max0(), L::HALF, policies)),
+        InputMapping::SignedIdentity => x.factor(),
+        InputMapping::SignedNegate => L::negated(x.factor()),
     }
 }
 

@@ -1,36 +1,54 @@
-//! The scalar engine: a plan in, frames or the trace of one pixel out.
+//! The engines: a plan in, frames or the trace of one pixel out.
 //!
-//! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; this module walks
-//! draws, bands of rows, triangles and quads. A pixel's result is a pure function of the plan, whatever the bands and threads.
+//! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; `walk.rs` walks triangles and
+//! quads: the scalar engine, which is the definition. `rows/` is the fast engine: the same bytes, a block of pixels at a time. This module
+//! runs draws and bands of rows on threads. A pixel's result is a pure function of the plan, whatever the engine, bands and threads.
 
 mod counting;
 pub(crate) mod pixel;
 mod report;
+mod rows;
 mod tracing;
 pub(crate) mod walk;
 
 pub use counting::{DrawCounts, count, fragments};
+pub use rows::Isa;
 pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
 
 use crate::frame::{Frames, Surface};
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
-use crate::state::{Target, Texture, TextureImage};
+use crate::state::{Target, Texture, TextureImage, named};
 use crate::texture::unit::Image;
 use crate::trace::Silent;
 use rayon::prelude::*;
+use rows::Rows;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+named! {
+    /// Which engine draws. The bytes do not depend on it.
+    pub enum Engine {
+        /// The definition: one pixel at a time.
+        Scalar = "scalar",
+        /// Blocks of pixels; draws under policies that are not the default ones are the definition's all the same.
+        Fast = "fast",
+    }
+}
 
 /// How to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderOptions {
     /// Threads; 0 takes one a core. The result does not depend on it.
     pub threads: usize,
+    /// The engine. The result does not depend on it.
+    pub engine: Engine,
+    /// The instruction set of the fast engine; `None` takes the widest. One that the machine lacks is taken as the baseline.
+    pub isa: Option<Isa>,
 }
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        RenderOptions { threads: 1 }
+        RenderOptions { threads: 1, engine: Engine::Fast, isa: None }
     }
 }
 
@@ -59,19 +77,93 @@ pub fn render_counted(
     progress: &(dyn Fn(usize, usize) + Sync),
 ) -> (Frames, Statistics) {
     let mut frames = cleared(plan);
-    let mut statistics = Statistics::default();
-    let pool = (options.threads != 1)
-        .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok())
-        .flatten();
-    let bands = |draw: &PlannedDraw| (plan.targets[draw.target].height as usize).div_ceil(BAND);
-    let total = plan.draws.iter().map(bands).sum();
+    let renderer = Renderer::new(plan, options);
+    let total = plan.draws.iter().map(|draw| renderer.bands(draw)).sum();
     let done = AtomicUsize::new(0);
     let band_done = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
-    for index in 0..plan.draws.len() {
-        let shaded = draw(plan, index, &mut frames, pool.as_ref(), &band_done);
-        statistics.shaded_pixels.push(shaded);
-    }
+    let statistics = renderer.draw_all(&mut frames, &band_done);
     (frames, statistics)
+}
+
+/// A plan ready to be drawn, any number of times.
+#[derive(Debug)]
+pub struct Renderer<'a> {
+    plan: &'a Plan,
+    rows: Option<Rows>,
+    isa: Isa,
+    threads: usize,
+    pool: Option<rayon::ThreadPool>,
+}
+
+impl<'a> Renderer<'a> {
+    /// Decodes textures and compiles draws, as far as the engine wants that, and starts the threads.
+    pub fn new(plan: &'a Plan, options: &RenderOptions) -> Renderer<'a> {
+        let pool = (options.threads != 1)
+            .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok())
+            .flatten();
+        let isa = options
+            .isa
+            .filter(|isa| isa.is_available())
+            .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
+        let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan)).flatten();
+        let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
+        Renderer { plan, rows, isa, threads, pool }
+    }
+
+    /// The instruction set that the fast engine uses.
+    pub fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    /// Clears the targets and draws everything.
+    pub fn render(&self) -> (Frames, Statistics) {
+        let mut frames = cleared(self.plan);
+        let statistics = self.draw_all(&mut frames, &|| {});
+        (frames, statistics)
+    }
+
+    /// Draws everything once more on frames that [`render`](Self::render) made; nothing is cleared.
+    pub fn redraw(&self, frames: &mut Frames) -> Statistics {
+        self.draw_all(frames, &|| {})
+    }
+
+    fn draw_all(&self, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Statistics {
+        let draws = 0..self.plan.draws.len();
+        Statistics { shaded_pixels: draws.map(|index| self.draw(index, frames, band_done)).collect() }
+    }
+
+    /// Rows of a band of a draw.
+    fn band(&self, draw: &PlannedDraw) -> usize {
+        let height = self.plan.targets[draw.target].height as usize;
+        match (&self.rows, self.threads) {
+            (None, _) => BAND,
+            // What is set up for a triangle is set up for each band that it meets.
+            (Some(_), 1) => height.next_multiple_of(2).max(2),
+            (Some(_), threads) => height.div_ceil(4 * threads).next_multiple_of(2).max(BAND),
+        }
+    }
+
+    fn bands(&self, draw: &PlannedDraw) -> usize {
+        (self.plan.targets[draw.target].height as usize).div_ceil(self.band(draw))
+    }
+
+    /// Runs one draw on its target; covered pixels.
+    fn draw(&self, index: usize, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> u64 {
+        let planned = &self.plan.draws[index];
+        let compiled = self.rows.as_ref().map(|rows| rows.draw(self.plan, index, &frames.surfaces));
+        let run = |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>| {
+            let shaded = match &compiled {
+                Some(compiled) => {
+                    let job = rows::Job { plan: self.plan, draw: planned, compiled, textures };
+                    rows::isa::run(self.isa, job, band)
+                }
+                None => walk::draw(self.plan, planned, textures, band, &mut Silent).0,
+            };
+            band_done();
+            shaded
+        };
+        draw(self.plan, index, self.band(planned), frames, self.pool.as_ref(), &run)
+    }
 }
 
 /// The surfaces as the clears leave them.
@@ -106,13 +198,17 @@ pub(crate) fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Imag
     plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
 }
 
-/// Runs one draw on its target; covered pixels.
-pub(crate) fn draw(
+/// What runs a draw in one band.
+type RunBand<'r> = dyn Fn(&[Image<'_, i32>], &mut walk::Band<'_>) -> u64 + Sync + 'r;
+
+/// Runs one draw on its target, in bands of so many rows; covered pixels.
+fn draw(
     plan: &Plan,
     index: usize,
+    height: usize,
     frames: &mut Frames,
     pool: Option<&rayon::ThreadPool>,
-    band_done: &(dyn Fn() + Sync),
+    run_band: &RunBand<'_>,
 ) -> u64 {
     let planned = &plan.draws[index];
     let target = &mut frames.surfaces[planned.target];
@@ -120,20 +216,16 @@ pub(crate) fn draw(
     // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
     let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
     let textures = images(plan, &frames.surfaces);
-    let band_of = |number: usize, words, depth| walk::Band { first_row: number * BAND, width, words, depth };
+    let band_of = |number: usize, words, depth| walk::Band { first_row: number * height, width, words, depth };
     let shaded = {
         let bands: Vec<walk::Band<'_>> = if depth.is_empty() {
-            words.chunks_mut(BAND * width).enumerate().map(|(n, w)| band_of(n, w, &mut [][..])).collect()
+            words.chunks_mut(height * width).enumerate().map(|(n, w)| band_of(n, w, &mut [][..])).collect()
         } else {
-            let pairs = words.chunks_mut(BAND * width).zip(depth.chunks_mut(BAND * width));
+            let pairs = words.chunks_mut(height * width).zip(depth.chunks_mut(height * width));
             pairs.enumerate().map(|(n, (w, d))| band_of(n, w, d)).collect()
         };
         let pixels = planned.window.width as usize * planned.window.height as usize;
-        let run = |mut band: walk::Band<'_>| {
-            let (shaded, _) = walk::draw(plan, planned, &textures, &mut band, &mut Silent);
-            band_done();
-            shaded
-        };
+        let run = |mut band: walk::Band<'_>| run_band(&textures, &mut band);
         match pool {
             Some(pool) if pixels >= SMALL => pool.install(|| bands.into_par_iter().map(run).sum()),
             _ => bands.into_iter().map(run).sum(),
@@ -142,4 +234,10 @@ pub(crate) fn draw(
     let target = &mut frames.surfaces[planned.target];
     (target.words, target.depth) = (words, depth);
     shaded
+}
+
+/// Runs one draw by the definition, on one thread.
+pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
+    let planned = &plan.draws[index];
+    draw(plan, index, BAND, frames, None, &|textures, band| walk::draw(plan, planned, textures, band, &mut Silent).0);
 }

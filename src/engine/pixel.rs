@@ -14,7 +14,7 @@ use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
 use crate::texture::chain::Chain;
 use crate::texture::place::{Coordinates, Interpolated};
 use crate::texture::stage::ShaderSetup;
-use crate::texture::unit::{self, Image};
+use crate::texture::unit::{self, Image, PlannedUnit};
 use crate::trace::{Decision, Observer, Rule, Step, Work, report};
 
 /// A triangle of a draw, set up.
@@ -27,11 +27,11 @@ pub(crate) struct TriangleContext<'a> {
     pub(crate) vertices: [&'a Vertex; 3],
     /// The vertices whose diffuse and specular are taken: all three, or the provoking one thrice.
     colored: [&'a Vertex; 3],
-    primary: [[u8; 4]; 3],
-    secondary: [[u8; 4]; 3],
-    coordinates: [Option<Coordinates>; 4],
+    pub(super) primary: [[u8; 4]; 3],
+    pub(super) secondary: [[u8; 4]; 3],
+    pub(super) coordinates: [Option<Coordinates>; 4],
     /// Of the texture shader, where there is one; units have none of their own then.
-    shader: Option<ShaderSetup>,
+    shader: Option<Box<ShaderSetup>>,
     /// None where the fog register's alpha is not read, or fog is off.
     fog: Option<FogPlane>,
     pub(crate) z: [i64; 3],
@@ -82,7 +82,8 @@ impl<'a> TriangleContext<'a> {
             ShadeModel::Flat => [&all[provoking as usize]; 3],
         };
         let mut coordinates = [None; 4];
-        let shader = draw.shader.as_ref().map(|shader| ShaderSetup::new(shader, &draw.units, &triangle, vertices));
+        let shader =
+            draw.shader.as_ref().map(|shader| Box::new(ShaderSetup::new(shader, &draw.units, &triangle, vertices)));
         for unit in draw.units.iter().filter(|_| shader.is_none()) {
             let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
             coordinates[unit.index] = Some(Coordinates::new(&triangle, sets, unit));
@@ -222,7 +223,12 @@ impl<'a> TriangleContext<'a> {
     }
 
     /// The fog register: its colour, and in alpha the factor (NUM-6), 255 with fog off (CMB-13).
-    fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
+    pub(super) fn load_fog<L: Lane, O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        registers: &mut Registers<L>,
+        observer: &mut O,
+    ) {
         let draw = self.draw;
         let [r, g, b] = draw.fog.color.map(L::byte);
         let factor = if let Some(plane) = &self.fog {
@@ -251,7 +257,7 @@ impl<'a> TriangleContext<'a> {
 
     /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). `None`: the texture shader drops the fragment.
     #[inline]
-    fn sample_textures<L: Lane, O: Observer>(
+    pub(super) fn sample_textures<L: Lane, O: Observer>(
         &self,
         sample: &Sample<'_>,
         pixel: (i64, i64),
@@ -275,7 +281,7 @@ impl<'a> TriangleContext<'a> {
                 }
             }
         }
-        let w = self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 });
+        let w = self.w();
         if let (Some(shader), Some(setup)) = (&self.draw.shader, &self.shader) {
             let (units, vertices, scale) = (&self.draw.units, self.vertices, self.plan.policies.dependent_scale);
             let chain = Chain { shader, units, setup, textures, vertices, w, scale };
@@ -285,15 +291,7 @@ impl<'a> TriangleContext<'a> {
             }
         }
         for planned in &self.draw.units {
-            let Some(coordinates) = &self.coordinates[planned.index] else { continue };
-            let place = Interpolated {
-                unit: planned,
-                coordinates,
-                at: sample,
-                pixel,
-                vertices: self.vertices.map(|v| v.texture_coordinates[planned.stage.coordinate_set]),
-                w,
-            };
+            let Some(place) = self.place(planned, sample, pixel) else { continue };
             let image = &textures[planned.state.texture];
             let value = unit::sample::<L, O>(planned, image, &place, observer);
             registers.load(UNITS[planned.index], value);
@@ -311,6 +309,24 @@ impl<'a> TriangleContext<'a> {
             observer.step(report::register_step("registers", "CMB-13", "spare0.a", alpha).by("write", inputs));
         }
         Some(())
+    }
+
+    /// w of the vertices; all 1 without perspective.
+    fn w(&self) -> [f32; 3] {
+        self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 })
+    }
+
+    /// Where a unit samples; `None` where the texture shader runs it.
+    #[inline]
+    pub(super) fn place<'s>(
+        &'s self,
+        unit: &'s PlannedUnit,
+        sample: &'s Sample<'s>,
+        pixel: (i64, i64),
+    ) -> Option<Interpolated<'s>> {
+        let coordinates = self.coordinates[unit.index].as_ref()?;
+        let vertices = self.vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
+        Some(Interpolated { unit, coordinates, at: sample, pixel, vertices, w: self.w() })
     }
 
     /// ROP-1 to ROP-6, DEP-1, DEP-2.
@@ -396,7 +412,7 @@ impl<'a> TriangleContext<'a> {
 }
 
 /// NUM-4, or the bytes as they are.
-fn color_bytes(color: &VertexColor) -> [u8; 4] {
+pub(super) fn color_bytes(color: &VertexColor) -> [u8; 4] {
     match color {
         VertexColor::Bytes(bytes) => *bytes,
         VertexColor::Floats(floats) => floats.map(convert::vertex_color),

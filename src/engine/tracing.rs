@@ -1,7 +1,7 @@
 //! The trace of one pixel: the same walk, the lane that carries the ideal beside the definition, and a recorder.
 
 use super::pixel::{Fragment, TriangleContext};
-use super::{cleared, cleared_colors, draw, images};
+use super::{cleared, cleared_colors, draw_defined, images};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
@@ -118,7 +118,7 @@ pub fn trace(plan: &Plan, target: usize, (x, y): (u32, u32), only: Option<usize>
             draws.extend(traced.into_iter().filter(|_| only.is_none_or(|d| d == index)));
         }
         if rendered {
-            draw(plan, index, &mut frames, None, &|| {});
+            draw_defined(plan, index, &mut frames);
         }
     }
     let shown = surface::show(description.format, pixel.word);

@@ -19,7 +19,7 @@ pub(super) struct Band<'a> {
 
 impl Band<'_> {
     /// First row and the row after the last.
-    fn rows(&self) -> (i64, i64) {
+    pub(super) fn rows(&self) -> (i64, i64) {
         (self.first_row as i64, (self.first_row + self.words.len() / self.width) as i64)
     }
 }

@@ -10,8 +10,9 @@
 //! | [`Paired`] | the definition and the ideal side by side; the definition takes every decision | traces |
 //! | `f64` | the ideal: the vendor's real-number text, nothing rounded | comparisons, the second half of [`Paired`] |
 //! | [`Paired`] of [`Strands`] | the definition and several ideals, which tell the errors of the rules apart | comparisons |
-//! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | `benches/stage.rs` |
-//! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | `benches/stage.rs` |
+//! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | the fast engine |
+//! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | the fast engine |
+//! | [`Two`] | two 8-bit channels in one word | the fast engine's filter |
 //!
 //! All lanes count in steps of 1/255 (NUM-1): 1.0 is 255.
 
@@ -22,7 +23,7 @@ mod real;
 mod scalar;
 mod strands;
 
-pub use block::{Halved, Narrow, Quarter};
+pub use block::{Halved, Narrow, Quarter, Two, byte_product};
 pub use paired::{Paired, PairedFactor, PairedSum};
 pub use scalar::{Halves, Quarters};
 pub use strands::{STRANDS, Strands};

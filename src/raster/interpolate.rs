@@ -173,7 +173,9 @@ fn dominant(n: [i64; 3], d: i64) -> usize {
         if n <= 0 {
             return u32::MAX;
         }
-        (0..).find(|c| i128::from(n) << (c + 1) > i128::from(d)).unwrap_or(u32::MAX)
+        // Shifted so, n has as many bits as d.
+        let shift = n.leading_zeros().saturating_sub(d.leading_zeros());
+        if n << shift > d { shift.saturating_sub(1) } else { shift }
     });
     let best = class[0].min(class[1]).min(class[2]);
     match class.map(|c| c == best) {
@@ -257,6 +259,29 @@ mod tests {
             for i in 0..63 - j {
                 assert!(Sample::new(&t, t.edges(i, j)).weights().iter().all(|w| !w.lowered));
             }
+        }
+    }
+
+    proptest! {
+        /// The class of a weight by its statement: the smallest c with n 2^(c + 1) above d.
+        #[test]
+        fn classes_by_their_statement(d in 1_i64..1 << 62, small in 0_u32..62, parts in (0.0..1.0_f64, 0.0..1.0_f64), whole in 0..4) {
+            let d = (d >> small).max(4);
+            #[allow(clippy::float_arithmetic, reason = "choosing weights")]
+            let first = match whole {
+                0 => ((d as f64 * parts.0) as i64).min(d),
+                1 => d >> 1,
+                2 => d >> 2,
+                _ => d,
+            };
+            #[allow(clippy::float_arithmetic, reason = "choosing weights")]
+            let second = (((d - first) as f64 * parts.1) as i64).clamp(0, d - first);
+            let n = [first, second, d - first - second];
+            let class = n.map(|n| {
+                if n == 0 { 999 } else { (0..).find(|c| i128::from(n) << (c + 1) > i128::from(d)).unwrap_or(999) }
+            });
+            let got = dominant(n, d);
+            prop_assert_eq!(class[got], class.into_iter().min().unwrap_or(0), "{:?} {}", n, d);
         }
     }
 

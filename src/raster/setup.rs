@@ -27,6 +27,8 @@ pub struct Triangle {
     pub doubled_area: i64,
     /// First row and the row after the last that can be covered.
     pub rows: (i64, i64),
+    /// First column and the column after the last.
+    pub columns: (i64, i64),
     /// The winding as seen on screen.
     pub counter_clockwise: bool,
     /// INT-3's exception: the reciprocal of the weights' sum is exact, no tie is lowered.
@@ -63,7 +65,11 @@ impl Triangle {
         let w = positions.map(|p| if profile == Profile::Nv10 { w_16_bits(p[3]) } else { p[3] });
         let doubled_area = area.abs();
         let one_power_of_two = w[0] == w[1] && w[1] == w[2] && w[0].to_bits() & 0x7f_ffff == 0;
-        let (low, high) = (y[0].min(y[1]).min(y[2]), y[0].max(y[1]).max(y[2]));
+        // Centres lie at 16 n + 8.
+        let centres = |n: [i64; 3]| {
+            let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
+            ((low - 8).div_euclid(16), (high - 8).div_euclid(16) + 1)
+        };
         Some(Triangle {
             a,
             b,
@@ -71,7 +77,8 @@ impl Triangle {
             owns,
             p: if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] },
             doubled_area,
-            rows: ((low - 8).div_euclid(16), (high - 8).div_euclid(16) + 1),
+            rows: centres(y),
+            columns: centres(x),
             // y points down, so a positive area turns clockwise for the viewer.
             counter_clockwise: area < 0,
             exact_reciprocal: doubled_area.count_ones() == 1 && (!perspective || one_power_of_two),

@@ -118,7 +118,7 @@ fn of_scene(
     let (texels, target) = match &texture.image {
         TextureImage::Texels(texels) => (texels.clone(), None),
         TextureImage::Target { target } => {
-            let mut frames = engine::render(&plan, &RenderOptions { threads: 0 });
+            let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
             let surface = frames.surfaces.swap_remove(*target);
             let (width, height, words) = (surface.width, surface.height, surface.words.into());
             let name = scene.targets[*target].name.clone();

@@ -1,0 +1,48 @@
+//! How frames are drawn: threads, engine, instruction set.
+
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use ninebit::engine::{Engine, Isa, RenderOptions};
+use ninebit::state::Named;
+
+use super::exit::Failure;
+
+/// How to draw. The picture depends on none of it.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct EngineArguments {
+    /// Threads; 0 takes all cores. The picture does not depend on it
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    pub(crate) threads: usize,
+    /// What draws: one pixel at a time by the definition, or blocks of pixels. The picture does not depend on it
+    #[arg(long, value_name = "ENGINE", default_value = "fast", value_parser = PossibleValuesParser::new(Engine::NAMES))]
+    engine: String,
+    /// The instruction set of the fast engine [default: the widest that the machine has]
+    #[arg(long, value_name = "ISA", value_parser = PossibleValuesParser::new(Isa::NAMES))]
+    isa: Option<String>,
+}
+
+impl EngineArguments {
+    /// The options that they stand for, `threads` being the number of threads.
+    pub(crate) fn options(&self) -> Result<RenderOptions, Failure> {
+        let isa = self.isa.as_deref().and_then(Isa::from_name);
+        if let Some(isa) = isa.filter(|isa| !isa.is_available()) {
+            return Err(Failure::usage(
+                format!("this machine does not have {}", isa.name()),
+                format!("the widest that it has is {}", Isa::best().name()),
+            ));
+        }
+        let engine = Engine::from_name(&self.engine).unwrap_or(Engine::Fast);
+        Ok(RenderOptions { threads: self.threads, engine, isa })
+    }
+}
+
+/// The most threads that can be asked for.
+const MAXIMUM_THREADS: usize = 1024;
+
+/// A number of threads.
+pub(crate) fn threads(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|count| *count <= MAXIMUM_THREADS)
+        .ok_or_else(|| format!("not a number from 0 to {MAXIMUM_THREADS}"))
+}

@@ -1,0 +1,259 @@
+//! Weights, coordinates and faces of the rows against the definition, by the million.
+//!
+//! `NINEBIT_DENSE_PIXELS=250000000 cargo test --release --lib rows::dense` compares 10^9 quotients of 2D coordinates and weights; without
+//! the variable a small part of it runs.
+#![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
+
+use super::band::{Patch, SIDE, is_small};
+use super::kernels::Row;
+use super::quotient::{self, IOTA};
+use super::triangle::{Piece, Setup, Varying, whole_steps};
+use super::{BLOCK, Rows};
+use crate::engine::pixel::TriangleContext;
+use crate::plan::{Plan, PlanOptions};
+use crate::raster::interpolate::Sample;
+use crate::state::*;
+use crate::texture::place::Place;
+
+const WIDTH: u32 = 640;
+const HEIGHT: u32 = 480;
+
+/// A sequence of numbers that is the same everywhere.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        self.0
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        (self.next() >> 20) % n
+    }
+
+    fn unit(&mut self) -> f32 {
+        (self.next() >> 40) as f32 / (1_u64 << 24) as f32
+    }
+
+    fn of<T: Copy>(&mut self, values: &[T]) -> T {
+        values[self.below(values.len() as u64) as usize]
+    }
+}
+
+/// Tiny, slivers, far beyond the frame, one w, few-valued w and coordinates, steep w, one texel a pixel, and round right triangles, whose
+/// weights and coordinates are full of ties.
+fn triangle(r: &mut Random) -> [Vertex; 3] {
+    // Half of them are tiny: they have few pixels each.
+    let kind = r.below(18);
+    let kind = if kind < 9 { kind } else { 0 };
+    let aligned = r.below(3) == 0;
+    let (cx, cy) = (r.unit() * WIDTH as f32, r.unit() * HEIGHT as f32);
+    let lean = [r.unit() - 0.5, r.unit() - 0.5, r.unit()];
+    let (x0, y0) = (r.below(64) as f32, r.below(64) as f32);
+    let legs = [r.of(&[8.0, 10.0, 64.0, 96.0, 128.0, 100.0, 320.0]), r.of(&[8.0, 12.0, 64.0, 80.0, 120.0, 256.0])];
+    let turn = r.below(3) as usize;
+    let mut vertices = [Vertex::default(); 3];
+    for (k, vertex) in vertices.iter_mut().enumerate() {
+        let (x, y) = match kind {
+            0 => (cx + 11.0 * (r.unit() - 0.5), cy + 11.0 * (r.unit() - 0.5)),
+            1 => (cx + k as f32 * 200.0 * lean[0] + r.unit(), cy + k as f32 * 200.0 * lean[1] + r.unit()),
+            2 => ((r.unit() - 0.5) * 8000.0, (r.unit() - 0.5) * 8000.0),
+            7 | 8 => {
+                let corner = [(0.0, 0.0), (legs[0], 0.0), (0.0, legs[1])][(k + turn) % 3];
+                (x0 + corner.0, y0 + corner.1)
+            }
+            _ => (r.unit() * 1.4 * WIDTH as f32 - 90.0, r.unit() * 1.4 * HEIGHT as f32 - 90.0),
+        };
+        let (x, y) = if aligned { (x.floor(), y.floor()) } else { (x, y) };
+        let w = match kind {
+            3 => 1.0,
+            4 | 7 => r.of(&[1.0, 1.0, 2.0, 4.0]),
+            5 => 0.01 + 30.0 * r.unit() * r.unit(),
+            6 => 1e-3 + 1e3 * r.unit(),
+            8 => 1.0,
+            _ => 0.5 + lean[2] + 0.2 * r.unit(),
+        };
+        let st = match kind {
+            3 | 8 if aligned => [x / 64.0, y / 64.0],
+            4 | 7 => [r.below(9) as f32 / 4.0 - 1.0, r.below(9) as f32 / 4.0 - 1.0],
+            6 => [600.0 * (r.unit() - 0.5), 600.0 * (r.unit() - 0.5)],
+            _ => [8.0 * (r.unit() - 0.5), 8.0 * (r.unit() - 0.5)],
+        };
+        let direction = match kind {
+            4 | 7 => [0; 3].map(|_| r.below(5) as f32 - 2.0),
+            _ => [0; 3].map(|_| r.unit() - 0.5),
+        };
+        vertex.position = [x, y, 0.0, w];
+        vertex.diffuse = VertexColor::Bytes([0; 4].map(|_| r.next() as u8));
+        vertex.texture_coordinates[0] = [st[0], st[1], 0.0, 1.0];
+        vertex.texture_coordinates[1] = [direction[0], direction[1], direction[2], 1.0];
+    }
+    vertices
+}
+
+/// A scene of some triangles that read the diffuse, a plane texture and a cube map, both filtered or neither.
+fn scene(vertices: Vec<Vertex>, filter: Filter) -> Scene {
+    let texture = |kind, side: u32, faces: u32| Texture {
+        name: String::new(),
+        kind,
+        format: TextureFormat::A8R8G8B8,
+        image: TextureImage::Texels(Texels {
+            width: side,
+            height: side,
+            levels: 1,
+            border: false,
+            words: vec![0; (side * side * faces) as usize].into(),
+        }),
+    };
+    let unit = |texture| Some(TextureUnit { min_filter: filter, mag_filter: filter, ..TextureUnit::new(texture) });
+    let input = |register| CombinerInput { register, component: Component::Rgb, mapping: InputMapping::SignedIdentity };
+    let mut rgb = Portion::idle(Component::Rgb);
+    rgb.inputs = [Register::Texture0, Register::PrimaryColor, Register::Texture1, Register::PrimaryColor].map(input);
+    rgb.sum_output = Register::Spare0;
+    let stage = GeneralStage { rgb, alpha: Portion::idle(Component::Alpha), constants: [[0; 4]; 2] };
+    let mut inputs = [FinalInput::zero(Component::Rgb); 6];
+    inputs[3].register = FinalRegister::Spare0;
+    let draw = Draw {
+        name: String::new(),
+        target: 0,
+        positions: Positions::Window,
+        indices: (0..vertices.len() as u32).collect(),
+        vertices,
+        topology: Topology::Triangles,
+        shade_model: ShadeModel::Smooth,
+        provoking_vertex: ProvokingVertex::First,
+        perspective: true,
+        cull: Cull::None,
+        front_face: FrontFace::CounterClockwise,
+        scissor: None,
+        fog: Fog { enabled: false, color: [0; 3], function: None },
+        textures: [unit(0), unit(1), None, None],
+        texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, unit < 2)),
+        vertex_program: None,
+        combiners: Combiners {
+            stages: vec![stage],
+            mux_select: MuxSelect::Msb,
+            final_combiner: FinalCombiner {
+                inputs,
+                g: FinalInput::zero(Component::Alpha),
+                color_sum_clamp: false,
+                invert_spare0: false,
+                invert_secondary: false,
+                constants: [[0; 4]; 2],
+            },
+        },
+        program_origin: vec![],
+        alpha_test: None,
+        depth_test: None,
+        blend: None,
+        blend_constant: [0; 4],
+        color_mask: [true; 4],
+    };
+    let target = Target {
+        name: String::new(),
+        width: WIDTH,
+        height: HEIGHT,
+        format: SurfaceFormat::A8R8G8B8,
+        clear_color: [0; 4],
+        depth: None,
+    };
+    Scene {
+        profile: Profile::Nv2a,
+        targets: vec![target],
+        textures: vec![texture(TextureKind::TwoDimensional, 64, 1), texture(TextureKind::Cube, 16, 6)],
+        palettes: vec![],
+        draws: vec![draw],
+    }
+}
+
+/// Compares a piece with the definition, pixel by pixel.
+fn compare<const FMA: bool, const ROW: bool>(
+    setup: &Setup<'_>,
+    compiled: &super::Compiled,
+    piece: Piece<'_>,
+    varying: &mut Varying,
+    rows: &mut [Row],
+) {
+    setup.interpolate::<FMA, ROW>(piece, compiled, &[], varying, rows);
+    let context = &setup.context;
+    for n in 0..piece.count {
+        let (i, j) = (piece.first.0 + i64::from(piece.at.x[n]), piece.first.1 + i64::from(piece.at.y[n]));
+        let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
+        let lane = piece.lane + n;
+        let weights = sample.weights().map(|w| w.value as i32);
+        assert_eq!(varying.weights.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices);
+        for (index, unit) in context.draw.units.iter().enumerate() {
+            let place = context.place(unit, &sample, (i, j)).unwrap();
+            let bias = if compiled.samplers[index].filters { 128 } else { 0 };
+            let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
+            let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
+            assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices);
+            if unit.kind == TextureKind::Cube {
+                assert_eq!(varying.faces[index][lane], place.face() as u32, "({i}, {j}) of {:?}", context.vertices);
+            }
+        }
+    }
+}
+
+#[test]
+fn rows_interpolate_what_the_definition_does() {
+    let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
+    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let (mut pixels, mut patches, mut round) = (0, 0, 0_u64);
+    while pixels < wanted {
+        round += 1;
+        let filter = random.of(&[Filter::Linear, Filter::Nearest]);
+        let vertices = (0..64).flat_map(|_| triangle(&mut random)).collect();
+        let Ok(plan) = Plan::compile(&scene(vertices, filter), &PlanOptions::default()) else { continue };
+        let compiled = Rows::compile(&plan).unwrap().draw(&plan, 0, &[]);
+        assert_eq!(compiled.samplers.len(), 2);
+        let draw = &plan.draws[0];
+        let (mut varying, mut rows) = (Varying::default(), compiled.rows.clone());
+        let mut planes = Vec::new();
+        let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
+        for number in 0..draw.assembly.triangles.len() {
+            let Some(context) = TriangleContext::new(&plan, draw, number, whole) else { continue };
+            let setup = Setup::new(context, &compiled, planes);
+            let triangle = &setup.context.triangle;
+            let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
+            if is_small(triangle) {
+                let patch = Patch::of(triangle, window, columns);
+                let lanes = whole_steps(patch.count);
+                let at = quotient::Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
+                let extent = (SIDE as i32, SIDE as i32);
+                let piece = Piece { first: patch.first, at, count: patch.count, lane: 0, extent };
+                if round.is_multiple_of(4) {
+                    compare::<true, false>(&setup, &compiled, piece, &mut varying, &mut rows);
+                } else {
+                    compare::<false, false>(&setup, &compiled, piece, &mut varying, &mut rows);
+                }
+                let covered = (window.0..window.1).map(|j| triangle.span(j, columns)).map(|(a, b)| (b - a) as usize);
+                assert_eq!(patch.count, covered.sum::<usize>());
+                (pixels, patches) = (pixels + patch.count as u64, patches + 1);
+            } else {
+                for j in window.0..window.1 {
+                    let (mut i, end) = triangle.span(j, columns);
+                    while i < end {
+                        let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 16);
+                        let lanes = whole_steps(count);
+                        let (last, zeros) = (count as i32 - 1, [0; super::kernels::LANES]);
+                        let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };
+                        let piece = Piece { first: (i, j), at, count, lane: 0, extent: (last, 0) };
+                        if round.is_multiple_of(4) {
+                            compare::<true, true>(&setup, &compiled, piece, &mut varying, &mut rows);
+                        } else {
+                            compare::<false, true>(&setup, &compiled, piece, &mut varying, &mut rows);
+                        }
+                        i += count as i64;
+                        pixels += count as u64;
+                    }
+                }
+            }
+            planes = setup.given_back();
+        }
+    }
+    assert!(patches > 10);
+    println!("{pixels} pixels, {patches} small triangles");
+}

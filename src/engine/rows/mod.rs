@@ -1,0 +1,271 @@
+//! The fast engine: blocks of 128 pixels instead of pixels, and rows of numbers, one a pixel, instead of registers.
+//!
+//! | file | knows |
+//! |---|---|
+//! | `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
+//! | `kernels.rs` | the rules as loops over rows |
+//! | `planes.rs`, `quotient.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
+//! | `store.rs` | surfaces: what blending reads, the tests, the store |
+//! | `band.rs` | triangles to pieces to blocks |
+//! | `isa.rs` | the same text for several instruction sets |
+//!
+//! The bytes are the scalar engine's: a rule is the same text in both, and what is computed otherwise (quotients) is proved to be the same
+//! integer. What rows do not cover is computed by the definition, pixel by pixel, within the same blocks.
+
+mod band;
+mod build;
+#[cfg(test)]
+mod dense;
+mod fetch;
+mod graph;
+pub(crate) mod isa;
+mod kernels;
+mod planes;
+mod quotient;
+mod store;
+mod table;
+mod triangle;
+
+pub(crate) use band::Job;
+pub use isa::Isa;
+
+use crate::frame::Surface;
+use crate::plan::{Plan, PlannedDraw};
+use crate::raster::setup::Triangle;
+use crate::rop::surface;
+use crate::state::{Filter, Policies, TEXTURE_UNITS, TextureImage, TextureKind};
+use crate::texture::unit::Image;
+use graph::{Input, Node, Value};
+use kernels::Row;
+use std::sync::Arc;
+use table::{Key, Table};
+
+/// Pixels of a block.
+pub(crate) const BLOCK: usize = 128;
+
+/// Rows that take what nobody reads: one for each channel of a texel.
+const SPARE: usize = 4;
+
+/// Decoding so many texels costs no more than sampling a pixel by the definition.
+const PAYS: u64 = 8;
+
+/// Most entries of all tables, of eight bytes at most.
+const MOST_ENTRIES: u64 = 1 << 25;
+
+/// A unit that rows sample.
+#[derive(Clone, Debug)]
+pub(crate) struct Sampler {
+    /// Its index among the draw's units.
+    index: usize,
+    /// Its number.
+    unit: usize,
+    /// Bilinear.
+    filters: bool,
+    cube: bool,
+    /// Texels of a side of a cube map's face.
+    side: u32,
+    signed: [bool; 4],
+    /// `None`: of an image that is drawn by this scene, made anew for each draw.
+    table: Option<Arc<Table>>,
+}
+
+/// A draw compiled to rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Compiled {
+    /// What is computed, and into which row.
+    operations: Vec<(Node, usize)>,
+    /// The rows as they are before the first block: constants are filled in.
+    rows: Vec<Row>,
+    primary: [Option<u16>; 4],
+    secondary: [Option<u16>; 4],
+    fog: Option<u16>,
+    textures: [[Option<u16>; 4]; TEXTURE_UNITS],
+    destination: [Option<u16>; 4],
+    /// Rows of R, G, B, A as they are stored.
+    stored: [u16; 4],
+    /// Row of the alpha that is tested.
+    alpha: u16,
+    samplers: Vec<Sampler>,
+    /// Texture units are the definition's, pixel by pixel.
+    samples_pixels: bool,
+    /// Something is.
+    pixel_by_pixel: bool,
+    /// What the surface holds is read: by the blend, because not all bits are written, or because fragments can be dropped.
+    reads_surface: bool,
+    /// Fragments can be dropped.
+    drops: bool,
+    /// Some of what the surface holds stays: bits that are not written, or dropped fragments.
+    merges: bool,
+}
+
+/// A plan compiled to rows.
+#[derive(Clone, Debug)]
+pub(crate) struct Rows {
+    draws: Vec<Compiled>,
+}
+
+impl Rows {
+    /// Compiles every draw. `None`: the policies are not the default ones, whose rules rows have.
+    pub(crate) fn compile(plan: &Plan) -> Option<Rows> {
+        if plan.policies != Policies::DEFAULT {
+            return None;
+        }
+        let mut tables = Vec::new();
+        Some(Rows { draws: plan.draws.iter().map(|draw| compile(plan, draw, &mut tables)).collect() })
+    }
+
+    /// A draw with the tables of images that were drawn before it.
+    pub(crate) fn draw(&self, plan: &Plan, index: usize, surfaces: &[Surface]) -> Compiled {
+        let mut compiled = self.draws[index].clone();
+        for sampler in compiled.samplers.iter_mut().filter(|sampler| sampler.table.is_none()) {
+            let unit = &plan.draws[index].units[sampler.index];
+            if let (TextureImage::Target { target }, Some(axes)) =
+                (&plan.textures[unit.state.texture].image, table::axes(unit))
+            {
+                let image = Image { words: &surfaces[*target].words, memory: None };
+                sampler.table = Some(Arc::new(Table::new(unit, axes, &image)));
+            }
+        }
+        compiled
+    }
+}
+
+/// Pixels that a draw covers, more or less: not more than its window for each triangle.
+fn pixels(draw: &PlannedDraw, plan: &Plan) -> u64 {
+    let window = u64::from(draw.window.width) * u64::from(draw.window.height);
+    let all = &draw.assembly.vertices;
+    let area = |t: &crate::raster::assemble::Assembled| {
+        let positions = t.vertices.map(|v| all[v as usize].position);
+        Triangle::new(positions, draw.perspective, plan.profile).map_or(0, |t| t.doubled_area as u64 / 512)
+    };
+    draw.assembly.triangles.iter().map(|t| area(t).min(window)).sum()
+}
+
+fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Compiled {
+    let samplers = if draw.shader.is_some() { None } else { samplers(plan, draw, tables) };
+    let samples_pixels = samplers.is_none();
+    let samplers = samplers.unwrap_or_default();
+    let built = build::build(draw, !samples_pixels);
+    let mut compiled = Compiled {
+        operations: Vec::new(),
+        rows: Vec::new(),
+        primary: [None; 4],
+        secondary: [None; 4],
+        fog: None,
+        textures: [[None; 4]; TEXTURE_UNITS],
+        destination: [None; 4],
+        stored: [0; 4],
+        alpha: 0,
+        samplers,
+        samples_pixels,
+        pixel_by_pixel: false,
+        reads_surface: false,
+        drops: false,
+        merges: false,
+    };
+    emit(&built, draw, &mut compiled);
+    let kills = draw.shader.as_ref().is_some_and(crate::texture::stage::PlannedShader::kills);
+    compiled.drops = kills || draw.alpha_test.is_some() || draw.depth_test.is_some();
+    let whole = surface::write_mask(draw.surface, [true; 4]);
+    let reads = compiled.destination.iter().any(Option::is_some);
+    compiled.merges = compiled.drops || draw.write_mask != whole;
+    compiled.reads_surface = reads || compiled.merges;
+    let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
+    compiled.samples_pixels = samples_pixels && samples;
+    compiled.pixel_by_pixel = compiled.samples_pixels || compiled.fog.is_some() || draw.depth_test.is_some();
+    compiled
+}
+
+/// The draw's units, if rows can sample all of them and their tables pay.
+fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Option<Vec<Sampler>> {
+    let pixels = pixels(draw, plan);
+    let mut samplers = Vec::with_capacity(draw.units.len());
+    for (index, unit) in draw.units.iter().enumerate() {
+        let axes = table::axes(unit)?;
+        let key = Key::of(unit);
+        let texture = &plan.textures[unit.state.texture];
+        let known = tables.iter().find(|(other, _)| *other == key).map(|(_, table)| Arc::clone(table));
+        let size = table::size(unit, &axes);
+        let held: u64 = tables.iter().map(|(_, table)| table.entries()).sum();
+        if known.is_none() && (size > PAYS * pixels || size + held > MOST_ENTRIES) {
+            return None;
+        }
+        let table = match (&texture.image, known) {
+            (_, Some(table)) => Some(table),
+            (TextureImage::Texels(texels), None) => {
+                let image = Image { words: &texels.words, memory: None };
+                let table = Arc::new(Table::new(unit, axes, &image));
+                tables.push((key, Arc::clone(&table)));
+                Some(table)
+            }
+            (TextureImage::Target { .. }, None) => None,
+        };
+        samplers.push(Sampler {
+            index,
+            unit: unit.index,
+            filters: unit.state.mag_filter == Filter::Linear,
+            cube: unit.kind == TextureKind::Cube,
+            side: unit.levels[0].width,
+            signed: unit.state.signed,
+            table,
+        });
+    }
+    Some(samplers)
+}
+
+/// The rows of what reaches the surface, in order; nothing else of the graph.
+fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut Compiled) {
+    let wanted = |channel: usize| draw.written >> channel & 1 != 0;
+    let mut outputs: Vec<Value> = (0..4).filter(|c| wanted(*c)).map(|c| built.stored[c]).collect();
+    if draw.alpha_test.is_some() {
+        outputs.push(built.alpha);
+    }
+    let count = outputs.iter().map(|v| usize::from(v.0) + 1).max().unwrap_or(0);
+    let mut reached = vec![false; count];
+    for value in &outputs {
+        reached[usize::from(value.0)] = true;
+    }
+    for n in (0..count).rev().filter(|n| reached[*n]).collect::<Vec<_>>() {
+        mark(n, built, &mut reached);
+    }
+    // The first rows are there for what nobody reads.
+    compiled.rows.resize(SPARE, Row::of(0));
+    let mut row_of = vec![0_u16; count];
+    for n in (0..count).filter(|n| reached[*n]) {
+        let row = compiled.rows.len() as u16;
+        row_of[n] = row;
+        let node = built.graph.node(Value(n as u16));
+        compiled.rows.push(Row::of(if let Node::Constant(value) = node { value } else { 0 }));
+        match node {
+            Node::Constant(_) => {}
+            Node::Input(Input::Primary(channel)) => compiled.primary[channel] = Some(row),
+            Node::Input(Input::Secondary(channel)) => compiled.secondary[channel] = Some(row),
+            Node::Input(Input::Fog) => compiled.fog = Some(row),
+            Node::Input(Input::Texture(unit, channel)) => compiled.textures[unit][channel] = Some(row),
+            Node::Input(Input::Destination(channel)) => compiled.destination[channel] = Some(row),
+            node => {
+                let operation = node.renamed(|v| Value(row_of[usize::from(v.0)]));
+                compiled.operations.push((operation, usize::from(row)));
+            }
+        }
+    }
+    for channel in (0..4).filter(|c| wanted(*c)) {
+        compiled.stored[channel] = row_of[usize::from(built.stored[channel].0)];
+    }
+    if draw.alpha_test.is_some() {
+        compiled.alpha = row_of[usize::from(built.alpha.0)];
+    }
+}
+
+/// Marks what a value is made of, and what that is made of.
+fn mark(value: usize, built: &build::Built, reached: &mut [bool]) {
+    let mut open = vec![Value(value as u16)];
+    while let Some(value) = open.pop() {
+        for operand in built.graph.node(value).operands() {
+            if !std::mem::replace(&mut reached[usize::from(operand.0)], true) {
+                open.push(operand);
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! Linear functions across a triangle, as estimates and modulo 2^64.
+#![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
+
+use super::quotient::{Exact, Line};
+use crate::raster::setup::Triangle;
+
+/// sum G_k E_k.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Plane {
+    /// G_k.
+    pub(super) g: [i64; 3],
+    real: [f64; 3],
+    /// How it changes along x and y.
+    slope: [f64; 2],
+    whole: [i64; 2],
+    /// Powers of two that all G_k and P_k share.
+    shared: u32,
+    /// The largest magnitude of its quotient by D, and somewhat more.
+    pub(super) reach: f64,
+    /// INT-4t can lower its ties.
+    pub(super) lowers: bool,
+}
+
+impl Plane {
+    pub(super) fn new(triangle: &Triangle, g: [i64; 3]) -> Plane {
+        let slope = |a: &[i64; 3]| {
+            let bits =
+                |n: &[i64; 3]| 64 - (n[0].unsigned_abs() | n[1].unsigned_abs() | n[2].unsigned_abs()).leading_zeros();
+            if bits(&g) + bits(a) <= 60 {
+                let sum = g[0] * a[0] + g[1] * a[1] + g[2] * a[2];
+                (sum as f64, sum)
+            } else {
+                let sum: i128 = (0..3).map(|k| i128::from(g[k]) * i128::from(a[k])).sum();
+                (sum as f64, sum as i64)
+            }
+        };
+        let (x, y) = (slope(&triangle.a), slope(&triangle.b));
+        let p = &triangle.p;
+        let real = g.map(|g| g as f64);
+        let mut reach = 0.0;
+        for k in 0..3 {
+            let quotient = real[k].abs() / p[k] as f64;
+            if quotient > reach {
+                reach = quotient;
+            }
+        }
+        let falls = |k: usize| i128::from(g[k]) * i128::from(p[1]) > i128::from(p[k]) * i128::from(g[1]);
+        Plane {
+            g,
+            real,
+            slope: [x.0, y.0],
+            whole: [x.1, y.1],
+            shared: (g[0] | g[1] | g[2] | p[0] | p[1] | p[2]).trailing_zeros(),
+            // Half a denominator, half a texel, and the rounding of this very number.
+            reach: reach + 260.0,
+            lowers: !triangle.exact_reciprocal && (falls(0) || falls(2)),
+        }
+    }
+
+    /// From a pixel with edge functions `e`.
+    #[inline(always)]
+    pub(super) fn line(&self, e: &[f64; 3]) -> Line {
+        let c = self.real[0] * e[0] + self.real[1] * e[1] + self.real[2] * e[2];
+        Line { c, x: self.slope[0], y: self.slope[1] }
+    }
+
+    /// The largest term of [`line`](Self::line), so many columns and rows around the pixel.
+    #[inline(always)]
+    pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
+        let at = self.real[0].abs() * e[0] + self.real[1].abs() * e[1] + self.real[2].abs() * e[2];
+        at + self.slope[0].abs() * columns + self.slope[1].abs() * rows
+    }
+
+    /// The same modulo 2^64.
+    #[inline(always)]
+    pub(super) fn exact(&self, e: &[i64; 3]) -> Exact {
+        let [g0, g1, g2] = self.g;
+        let c = g0.wrapping_mul(e[0]).wrapping_add(g1.wrapping_mul(e[1])).wrapping_add(g2.wrapping_mul(e[2]));
+        Exact { c, x: self.whole[0], y: self.whole[1] }
+    }
+
+    /// By how many bits numerator and denominator can be divided, if that leaves denominators below 2^30. `bits` is what D can have.
+    #[inline(always)]
+    pub(super) fn small(&self, bits: u32) -> Option<u32> {
+        (bits.saturating_sub(self.shared) <= 30).then_some(self.shared)
+    }
+}

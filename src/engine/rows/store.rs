@@ -1,0 +1,88 @@
+//! ROP-1, ROP-5, ROP-6 and DEP-2 on rows.
+
+use super::kernels::Row;
+use super::{BLOCK, Compiled};
+use crate::plan::PlannedDraw;
+use crate::rop::surface;
+use crate::state::{CompareFunction, SurfaceFormat};
+
+/// What blending reads of the surface's words, into the rows that want it.
+#[inline(always)]
+pub(super) fn read(draw: &PlannedDraw, compiled: &Compiled, words: &[u32; BLOCK], rows: &mut [Row]) {
+    for channel in 0..4 {
+        let Some(row) = compiled.destination[channel] else { continue };
+        let out = rows[usize::from(row)].block_mut();
+        match channel {
+            0 => read_channel::<0>(draw.surface, words, out),
+            1 => read_channel::<1>(draw.surface, words, out),
+            2 => read_channel::<2>(draw.surface, words, out),
+            _ => read_channel::<3>(draw.surface, words, out),
+        }
+    }
+}
+
+/// The commonest formats as constants: loops that hold one format's bits only.
+#[inline(always)]
+fn read_channel<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
+    match format {
+        SurfaceFormat::A8R8G8B8 => read_as::<CHANNEL>(SurfaceFormat::A8R8G8B8, words, out),
+        SurfaceFormat::R5G6B5 => read_as::<CHANNEL>(SurfaceFormat::R5G6B5, words, out),
+        other => read_as::<CHANNEL>(other, words, out),
+    }
+}
+
+#[inline(always)]
+fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], out: &mut [i16; BLOCK]) {
+    for (out, word) in out.iter_mut().zip(words) {
+        *out = i16::from(surface::read(format, *word)[CHANNEL]);
+    }
+}
+
+/// The stored rows as words.
+#[inline(always)]
+pub(super) fn pack(draw: &PlannedDraw, compiled: &Compiled, rows: &[Row], words: &mut [u32; BLOCK]) {
+    let row = |channel: usize| rows[usize::from(compiled.stored[channel])].block();
+    let (r, g, b, a) = (row(0), row(1), row(2), row(3));
+    match draw.surface {
+        SurfaceFormat::A8R8G8B8 => pack_as(SurfaceFormat::A8R8G8B8, r, g, b, a, words),
+        SurfaceFormat::X8R8G8B8O => pack_as(SurfaceFormat::X8R8G8B8O, r, g, b, a, words),
+        SurfaceFormat::R5G6B5 => pack_as(SurfaceFormat::R5G6B5, r, g, b, a, words),
+        other => pack_as(other, r, g, b, a, words),
+    }
+}
+
+#[inline(always)]
+fn pack_as(
+    format: SurfaceFormat,
+    r: &[i16; BLOCK],
+    g: &[i16; BLOCK],
+    b: &[i16; BLOCK],
+    a: &[i16; BLOCK],
+    words: &mut [u32; BLOCK],
+) {
+    for n in 0..BLOCK {
+        words[n] = surface::pack(format, [r[n] as u8, g[n] as u8, b[n] as u8, a[n] as u8]);
+    }
+}
+
+/// ROP-6, and what was there where a fragment was dropped.
+#[inline(always)]
+pub(super) fn merge(mask: u32, alive: &[bool; BLOCK], stored: &[u32; BLOCK], words: &mut [u32; BLOCK]) {
+    for ((word, stored), alive) in words.iter_mut().zip(stored).zip(alive) {
+        let mask = if *alive { mask } else { 0 };
+        *word = (*stored & !mask) | (*word & mask);
+    }
+}
+
+/// A comparison of rows.
+#[inline(always)]
+pub(super) fn test<T: Copy + PartialOrd>(
+    function: CompareFunction,
+    incoming: impl Fn(usize) -> T,
+    stored: impl Fn(usize) -> T,
+    alive: &mut [bool; BLOCK],
+) {
+    for (n, alive) in alive.iter_mut().enumerate() {
+        *alive &= function.passes(incoming(n), stored(n));
+    }
+}
