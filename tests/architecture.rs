@@ -81,3 +81,17 @@ fn the_oracle_is_independent() {
         }
     }
 }
+
+/// Files in `tests` are no test binaries by themselves here: one that nobody names would never run.
+#[test]
+fn every_test_file_runs() {
+    let (suite, manifest) = ["tests/suite.rs", "Cargo.toml"].map(|file| std::fs::read_to_string(file).unwrap()).into();
+    for entry in std::fs::read_dir("tests").unwrap() {
+        let path = entry.unwrap().path();
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        if path.extension().is_some_and(|extension| extension == "rs") {
+            let named = suite.contains(&format!("mod {name};")) || manifest.contains(&format!("\"tests/{name}.rs\""));
+            assert!(named, "neither tests/suite.rs nor Cargo.toml names {}", path.display());
+        }
+    }
+}
