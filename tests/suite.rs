@@ -1,7 +1,15 @@
 //! The tests that need no binary of their own, in one: linking forty binaries would take longer than running them.
 //!
 //! `cargo test --test suite trace::` runs those of `tests/trace.rs`.
-#![allow(unreachable_pub, dead_code, reason = "modules share files, and each uses its part")]
+#![allow(
+    unreachable_pub,
+    dead_code,
+    missing_docs,
+    missing_debug_implementations,
+    clippy::unwrap_used,
+    clippy::float_arithmetic,
+    reason = "tests fail by panicking, and modules share files of which each uses its part"
+)]
 
 #[path = "common/bench.rs"]
 mod bench;

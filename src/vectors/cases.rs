@@ -116,12 +116,12 @@ fn draw(column: &Column, random: &mut Random) -> i64 {
     match column.domain {
         // Half of the floats are spread over 0..1, the others over the exponents.
         Some(Domain::Float(negative, limit)) => {
-            let sign = if negative { (random.next() as u32) & 0x8000_0000 } else { 0 };
+            let sign = if negative { (random.bits() as u32) & 0x8000_0000 } else { 0 };
             let exponent = match random.once_in(2) {
-                true => 126 - (random.next().trailing_zeros().min(30)),
+                true => 126 - (random.bits().trailing_zeros().min(30)),
                 false => (127 + limit - 1 - random.below(24) as i32).clamp(0, 254) as u32,
             };
-            i64::from(sign | exponent << 23 | random.next() as u32 & 0x007f_ffff)
+            i64::from(sign | exponent << 23 | random.bits() as u32 & 0x007f_ffff)
         }
         _ => column.nth(random.below(column.size())),
     }

@@ -37,6 +37,6 @@ mod tests {
                 assert!(TEXT.contains(&format!("### {rule} ")), "{}: {rule}", unit.name());
             }
         }
-        assert_eq!((GRADES[grade("CMB-6")], GRADES[grade("CMB-0")]), ("INFERRED", "CHOSEN"));
+        assert_eq!((GRADES[grade("CMB-6")], GRADES[grade("unknown")]), ("INFERRED", "CHOSEN"));
     }
 }

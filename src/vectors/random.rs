@@ -15,13 +15,13 @@ impl Random {
         let mut random = Random { state: seed };
         for byte in name.bytes() {
             random.state = random.state.wrapping_add(u64::from(byte));
-            random.state = random.next();
+            random.state = random.bits();
         }
         random
     }
 
     /// 64 bits.
-    pub fn next(&mut self) -> u64 {
+    pub fn bits(&mut self) -> u64 {
         let value = Random::mixed(self.state);
         self.state = self.state.wrapping_add(GOLDEN);
         value
@@ -37,7 +37,7 @@ impl Random {
 
     /// A number below `end`, which is not 0.
     pub fn below(&mut self, end: u128) -> u128 {
-        let wide = u128::from(self.next()) << 64 | u128::from(self.next());
+        let wide = u128::from(self.bits()) << 64 | u128::from(self.bits());
         wide % end.max(1)
     }
 
