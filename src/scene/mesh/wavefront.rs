@@ -130,6 +130,10 @@ impl<'t> File<'t> {
     /// The crate takes `inf` and `nan` for numbers.
     fn not_finite(self, data: &ObjData) -> Vec<Diagnostic> {
         let finite = |numbers: &[f32]| numbers.iter().all(|number| number.is_finite());
+        let lists = [data.position.as_flattened(), data.texture.as_flattened(), data.normal.as_flattened()];
+        if lists.into_iter().all(finite) {
+            return Vec::new();
+        }
         let lines = |name, whole: Vec<bool>| self.named(name).zip(whole).filter(|(_, whole)| !whole);
         lines("v", data.position.iter().map(|position| finite(position)).collect())
             .chain(lines("vt", data.texture.iter().map(|coordinates| finite(coordinates)).collect()))
