@@ -1,10 +1,15 @@
-//! Wavefront OBJ files: vertices and faces.
+//! Wavefront OBJ files: the `obj` crate reads vertices and faces; corners become vertices here.
+//!
+//! The crate gets what it needs and no more: comments are cut off and statements that say nothing about triangles are blanked, so that groups and
+//! materials neither cost memory nor split the list of faces. Line numbers stay.
 
 use std::collections::HashMap;
-use std::ops::Range;
+
+use obj::{IndexTuple, ObjData, ObjError};
 
 use super::Surface;
 use crate::diagnostic::{Diagnostic, shorten};
+use crate::guard;
 
 /// Findings beyond this many are not looked for.
 const MOST_FINDINGS: usize = 16;
@@ -12,187 +17,212 @@ const MOST_FINDINGS: usize = 16;
 /// Statements that say nothing about triangles.
 const WITHOUT_TRIANGLES: &[&str] = &["o", "g", "s", "usemtl", "mtllib", "l", "p", "vp"];
 
+type Found<T> = Result<T, Box<Diagnostic>>;
+
 /// Reads the vertices (`v`, `vt`, `vn`) and faces (`f`) of a file; a face of more than three corners is cut into a fan. The first row of
 /// a texture lies at the top here and at the bottom there: t is 1 minus what the file has.
 ///
 /// # Errors
-/// Lines that are not understood, indices of nothing, more than `vertices` vertices or `indices` indices.
+/// The first line that is not understood; numbers that are not finite, indices of nothing, more than `vertices` vertices or
+/// `indices` indices.
 pub fn read(text: &str, vertices: usize, indices: usize) -> Result<Surface, Vec<Diagnostic>> {
-    let mut file = File { limits: (vertices, indices), ..File::default() };
-    let mut findings = Vec::new();
-    let mut start = 0;
-    for line in text.split_inclusive('\n') {
-        let at = start;
-        start += line.len();
-        let content = line.split('#').next().unwrap_or("");
-        if let Err(finding) = file.line(at, content) {
-            let ends = ["NB0603", "NB0609"].contains(&finding.code);
-            findings.push(*finding);
-            if ends || findings.len() >= MOST_FINDINGS {
+    let file = File { text };
+    let data = file.count(indices).and_then(|()| file.parse()).map_err(|finding| vec![*finding])?;
+    let mut findings = file.not_finite(&data);
+    let surface = file.surface(&data, vertices, &mut findings);
+    if findings.is_empty() { Ok(surface) } else { Err(findings) }
+}
+
+/// What a line says about triangles: empty if nothing.
+fn statement(line: &str) -> &str {
+    let content = line.split('#').next().unwrap_or("");
+    let passed_over = content.split_whitespace().next().is_some_and(|word| WITHOUT_TRIANGLES.contains(&word));
+    if passed_over { &line[..0] } else { content.trim() }
+}
+
+/// Of a face.
+fn corners(statement: &str) -> usize {
+    statement.split_whitespace().skip(1).count()
+}
+
+#[derive(Clone, Copy)]
+struct File<'t> {
+    text: &'t str,
+}
+
+impl<'t> File<'t> {
+    /// One for each line.
+    fn statements(self) -> impl Iterator<Item = &'t str> {
+        self.text.split('\n').map(statement)
+    }
+
+    /// The statements that begin with `name`, in the order of the file.
+    fn named(self, name: &str) -> impl Iterator<Item = &'t str> {
+        self.statements().filter(move |statement| statement.split_whitespace().next() == Some(name))
+    }
+
+    /// `part` is a piece of the text.
+    fn finding(self, code: &'static str, part: &str, message: impl Into<String>) -> Diagnostic {
+        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
+        Diagnostic::error(code, start..start + part.len(), message)
+    }
+
+    fn refused(self, part: &str, message: impl Into<String>, help: &str) -> Diagnostic {
+        self.finding("NB0236", part, message).label("in this line").help(help)
+    }
+
+    fn too_many(self, code: &'static str, part: &str, message: String) -> Diagnostic {
+        self.finding(code, part, message).label("too many from here").help("`ninebit limits` prints what is allowed")
+    }
+
+    /// Refuses a file with too many faces or corners before anything is built of it.
+    fn count(self, limit: usize) -> Found<()> {
+        let mut indices = 0;
+        for face in self.named("f") {
+            indices += 3 * corners(face).saturating_sub(2).max(1);
+            if indices > limit {
+                let message = format!("more than {limit} indices in a mesh");
+                return Err(Box::new(self.too_many("NB0609", face, message)));
+            }
+        }
+        Ok(())
+    }
+
+    fn parse(self) -> Found<ObjData> {
+        let mut reduced = String::with_capacity(self.text.len() + 1);
+        for statement in self.statements() {
+            reduced.push_str(statement);
+            reduced.push('\n');
+        }
+        match guard::quietly(|| ObjData::load_buf(reduced.as_bytes())) {
+            Ok(Ok(data)) => Ok(data),
+            Ok(Err(error)) => Err(Box::new(self.explain(&error))),
+            Err(panic) => {
+                let message = format!("the reader of Wavefront files gave up ({})", shorten(&panic));
+                Err(Box::new(Diagnostic::error("NB0236", 0..0, message).label("this file")))
+            }
+        }
+    }
+
+    /// The crate counts lines from 0, and says so in its message: the message is our own.
+    fn explain(self, error: &ObjError) -> Diagnostic {
+        let line = |number: usize| self.statements().nth(number).unwrap_or(&self.text[..0]);
+        match error {
+            ObjError::ArgumentListFailure { line_number, .. } => {
+                let help = "a position and a normal have three decimal numbers, texture coordinates two";
+                self.refused(line(*line_number), "numbers are missing, or are no numbers", help)
+            }
+            ObjError::MalformedFaceGroup { line_number, group } => {
+                let message = format!("`{}` is not a corner of a face", shorten(group));
+                self.refused(line(*line_number), message, "write `1`, `1/2`, `1//3` or `1/2/3`")
+            }
+            ObjError::ZeroVertexNumber { line_number } => {
+                self.refused(line(*line_number), "there is no position 0", "indices are counted from 1")
+            }
+            ObjError::UnexpectedCommand { line_number, command } => {
+                let help = "read are v, vt, vn, f; passed over o, g, s, usemtl, mtllib, l, p, vp";
+                self.refused(line(*line_number), format!("there is no statement `{}`", shorten(command)), help)
+            }
+            other => self.refused(&self.text[..0], other.to_string(), "write a Wavefront OBJ file"),
+        }
+    }
+
+    /// The crate takes `inf` and `nan` for numbers.
+    fn not_finite(self, data: &ObjData) -> Vec<Diagnostic> {
+        let finite = |numbers: &[f32]| numbers.iter().all(|number| number.is_finite());
+        let lists = [data.position.as_flattened(), data.texture.as_flattened(), data.normal.as_flattened()];
+        if lists.into_iter().all(finite) {
+            return Vec::new();
+        }
+        let lines = |name, whole: Vec<bool>| self.named(name).zip(whole).filter(|(_, whole)| !whole);
+        lines("v", data.position.iter().map(|position| finite(position)).collect())
+            .chain(lines("vt", data.texture.iter().map(|coordinates| finite(coordinates)).collect()))
+            .chain(lines("vn", data.normal.iter().map(|normal| finite(normal)).collect()))
+            .map(|(line, _)| self.refused(line, "a number is not finite", "write decimal numbers"))
+            .take(MOST_FINDINGS)
+            .collect()
+    }
+
+    /// A vertex for each combination of indices, in the order in which faces name them.
+    fn surface(self, data: &ObjData, vertices: usize, findings: &mut Vec<Diagnostic>) -> Surface {
+        let mut surface = Surface::default();
+        let mut known = HashMap::new();
+        let polygons = data.objects.iter().flat_map(|object| &object.groups).flat_map(|group| &group.polys);
+        for (face, polygon) in self.named("f").zip(polygons) {
+            if findings.len() >= MOST_FINDINGS {
                 break;
             }
-        }
-    }
-    if findings.is_empty() && file.surface.indices.is_empty() {
-        let help = "a mesh needs faces: lines such as `f 1/1 2/2 3/3`";
-        findings.push(Diagnostic::error("NB0236", 0..0, "this file has no triangles").label("here").help(help));
-    }
-    if findings.is_empty() { Ok(file.surface) } else { Err(findings) }
-}
-
-#[derive(Default)]
-struct File {
-    limits: (usize, usize),
-    positions: Vec<[f32; 3]>,
-    coordinates: Vec<[f32; 2]>,
-    normals: Vec<[f32; 3]>,
-    /// Vertices of the surface by their position, coordinates and normal.
-    known: HashMap<[Option<usize>; 3], u32>,
-    surface: Surface,
-}
-
-type Found<T> = Result<T, Box<Diagnostic>>;
-
-fn refused(place: Range<usize>, message: impl Into<String>, help: &str) -> Box<Diagnostic> {
-    Box::new(Diagnostic::error("NB0236", place, message).label("in this line").help(help))
-}
-
-fn too_many(code: &'static str, place: Range<usize>, message: String) -> Box<Diagnostic> {
-    let help = "`ninebit limits` prints what is allowed";
-    Box::new(Diagnostic::error(code, place, message).label("too many from here").help(help))
-}
-
-impl File {
-    fn line(&mut self, start: usize, line: &str) -> Found<()> {
-        let mut words = line.split_whitespace();
-        let Some(word) = words.next() else { return Ok(()) };
-        let place = |part: &str| {
-            let offset = (part.as_ptr() as usize).saturating_sub(line.as_ptr() as usize);
-            start + offset..start + offset + part.len()
-        };
-        match word {
-            "v" => {
-                let position = numbers(words, place(word), &place, 3)?;
-                self.positions.push(position);
-            }
-            "vt" => {
-                let [s, t, _] = numbers(words, place(word), &place, 1)?;
-                self.coordinates.push([s, upright(t)]);
-            }
-            "vn" => {
-                let normal = numbers(words, place(word), &place, 3)?;
-                self.normals.push(normal);
-            }
-            "f" => self.face(words, place(word), &place)?,
-            _ if WITHOUT_TRIANGLES.contains(&word) => {}
-            _ => {
-                let message = format!("there is no statement `{}`", shorten(word));
-                return Err(refused(
-                    place(word),
-                    message,
-                    "read are v, vt, vn, f; passed over o, g, s, usemtl, mtllib, l, p, vp",
-                ));
-            }
-        }
-        Ok(())
-    }
-
-    fn face<'t>(
-        &mut self,
-        words: impl Iterator<Item = &'t str>,
-        place: Range<usize>,
-        at: &dyn Fn(&str) -> Range<usize>,
-    ) -> Found<()> {
-        let mut corners = Vec::new();
-        for word in words {
-            corners.push(self.corner(word, at(word))?);
-        }
-        if corners.len() < 3 {
-            let message = format!("a face has at least three corners, not {}", corners.len());
-            return Err(refused(place, message, "write `f 1 2 3`"));
-        }
-        if self.surface.indices.len() + 3 * (corners.len() - 2) > self.limits.1 {
-            let message = format!("more than {} indices in a mesh", self.limits.1);
-            return Err(too_many("NB0609", place, message));
-        }
-        for pair in corners[1..].windows(2) {
-            self.surface.indices.extend([corners[0], pair[0], pair[1]]);
-        }
-        Ok(())
-    }
-
-    /// The vertex of `1`, `1/2`, `1//3` or `1/2/3`.
-    fn corner(&mut self, word: &str, place: Range<usize>) -> Found<u32> {
-        let counts = [self.positions.len(), self.coordinates.len(), self.normals.len()];
-        let mut parts = word.split('/');
-        let mut key = [None; 3];
-        for (n, slot) in key.iter_mut().enumerate() {
-            let part = parts.next().unwrap_or("");
-            if part.is_empty() && n > 0 {
+            let count = corners(face);
+            if count < 3 {
+                let message = format!("a face has at least three corners, not {count}");
+                findings.push(self.refused(face, message, "write `f 1 2 3`"));
                 continue;
             }
-            let what = ["position", "texture coordinates", "normal"][n];
-            let index = part.parse::<i64>().ok().and_then(|number| match number {
-                1.. => usize::try_from(number - 1).ok(),
-                // Counted from the end.
-                _ => usize::try_from(counts[n] as i64 + number).ok().filter(|_| number < 0),
-            });
-            *slot = index.filter(|index| *index < counts[n]);
-            if slot.is_none() {
-                let message = format!("`{}` names no {what} before this line", shorten(part));
-                let help = format!("there are {} so far, counted from 1", counts[n]);
-                return Err(refused(place, message, &help));
+            let mut fan = Vec::with_capacity(count);
+            for (word, corner) in face.split_whitespace().skip(1).zip(&polygon.0) {
+                if let Err(finding) = self.check(data, word, corner) {
+                    findings.push(*finding);
+                    break;
+                }
+                let next = surface.positions.len();
+                let number = *known.entry(*corner).or_insert(next as u32);
+                if number as usize == next {
+                    if next >= vertices {
+                        let message = format!("more than {vertices} vertices in a mesh");
+                        findings.push(self.too_many("NB0603", word, message));
+                        return surface;
+                    }
+                    add(&mut surface, data, corner);
+                }
+                fan.push(number);
+            }
+            for pair in fan.get(1..).unwrap_or_default().windows(2) {
+                surface.indices.extend([fan[0], pair[0], pair[1]]);
             }
         }
-        if parts.next().is_some() {
-            return Err(refused(place, "a corner has at most three numbers", "write `1/2/3`"));
+        if surface.indices.is_empty() && findings.is_empty() {
+            let finding = Diagnostic::error("NB0236", 0..0, "this file has no triangles");
+            findings.push(finding.label("here").help("a mesh needs faces: lines such as `f 1/1 2/2 3/3`"));
         }
-        if let Some(known) = self.known.get(&key) {
-            return Ok(*known);
-        }
-        let [position, coordinates, normal] = key;
-        let surface = &mut self.surface;
-        let number = surface.positions.len();
-        if number >= self.limits.0 {
-            let message = format!("more than {} vertices in a mesh", self.limits.0);
-            return Err(too_many("NB0603", place, message));
-        }
-        surface.positions.push(position.map_or([0.0; 3], |index| self.positions[index]));
-        surface.texture_coordinates.push(coordinates.map_or([0.0; 2], |index| self.coordinates[index]));
-        surface.normals.push(normal.map_or([0.0; 3], |index| self.normals[index]));
-        self.known.insert(key, number as u32);
-        Ok(number as u32)
+        surface
     }
+
+    /// Whether the file has what a corner names. The crate checks no index against its list, and passes over those of texture coordinates
+    /// and normals that it cannot read, and over a fourth.
+    fn check(self, data: &ObjData, word: &str, corner: &IndexTuple) -> Found<()> {
+        let IndexTuple(position, coordinates, normal) = *corner;
+        let read = 1 + usize::from(coordinates.is_some()) + usize::from(normal.is_some());
+        if word.split('/').filter(|part| !part.is_empty()).count() != read {
+            let message = format!("`{}` is not a corner of a face", shorten(word));
+            return Err(Box::new(self.refused(word, message, "write `1`, `1/2`, `1//3` or `1/2/3`, counted from 1")));
+        }
+        for (what, index, count) in [
+            ("position", Some(position), data.position.len()),
+            ("texture coordinates", coordinates, data.texture.len()),
+            ("normal", normal, data.normal.len()),
+        ] {
+            if index.is_some_and(|index| index >= count) {
+                let message = format!("`{}` names no {what} of this file", shorten(word));
+                let help = format!("there are {count}, counted from 1, or from -1 backward");
+                return Err(Box::new(self.refused(word, message, &help)));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A vertex whose indices have been checked; zeros where it has none.
+fn add(surface: &mut Surface, data: &ObjData, corner: &IndexTuple) {
+    let IndexTuple(position, coordinates, normal) = *corner;
+    surface.positions.push(data.position[position]);
+    let coordinates = coordinates.map(|index| data.texture[index]);
+    surface.texture_coordinates.push(coordinates.map_or([0.0; 2], |[s, t]| [s, upright(t)]));
+    surface.normals.push(normal.map_or([0.0; 3], |index| data.normal[index]));
 }
 
 #[allow(clippy::float_arithmetic, reason = "texture coordinates are floats")]
 fn upright(t: f32) -> f32 {
     1.0 - t
-}
-
-/// At least `least` numbers; the first three.
-fn numbers<'t>(
-    words: impl Iterator<Item = &'t str>,
-    place: Range<usize>,
-    at: &dyn Fn(&str) -> Range<usize>,
-    least: usize,
-) -> Found<[f32; 3]> {
-    let (mut values, mut count) = ([0.0; 3], 0);
-    for word in words {
-        let number = word.parse::<f32>().ok().filter(|number| number.is_finite());
-        let Some(number) = number else {
-            return Err(refused(at(word), format!("`{}` is not a number", shorten(word)), "write decimal numbers"));
-        };
-        if let Some(slot) = values.get_mut(count) {
-            *slot = number;
-        }
-        count += 1;
-    }
-    if count < least {
-        let message = format!("{count} numbers where there are at least {least}");
-        return Err(refused(place, message, "a position and a normal have three, texture coordinates two"));
-    }
-    Ok(values)
 }
 
 #[cfg(test)]
@@ -225,38 +255,103 @@ mod tests {
         let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
         for (line, code, part) in [
             ("", "NB0236", ""),
-            ("f 1 2", "NB0236", "f"),
+            ("f 1 2", "NB0236", "f 1 2"),
             ("f 1 2 4", "NB0236", "4"),
-            ("f 0 1 2", "NB0236", "0"),
+            ("f 0 1 2", "NB0236", "f 0 1 2"),
             ("f -4 1 2", "NB0236", "-4"),
+            ("f 1 2 -9223372036854775808", "NB0236", "-9223372036854775808"),
             ("f 1/1 2 3", "NB0236", "1/1"),
             ("f 1/1/1/1 2 3", "NB0236", "1/1/1/1"),
             ("f 1//2 2 3", "NB0236", "1//2"),
-            ("f a b c", "NB0236", "a"),
-            ("f 9999999999999999999999 2 3", "NB0236", "9999999999999999999999"),
-            ("v 1 2", "NB0236", "v"),
-            ("v 1 2 inf", "NB0236", "inf"),
-            ("vt x", "NB0236", "x"),
-            ("curv 1 2", "NB0236", "curv"),
-            ("f 1 2 3 1 2 3 1", "NB0609", "f"),
+            ("f 1/0 2 3", "NB0236", "1/0"),
+            ("f 1/x 2 3 # comment", "NB0236", "1/x"),
+            ("  f a b c\r", "NB0236", "f a b c"),
+            ("f 9999999999999999999999 2 3", "NB0236", "f 9999999999999999999999 2 3"),
+            ("f 1 2 3\nv 1 2", "NB0236", "v 1 2"),
+            ("f 1 2 3\n# v\nv 1 2 inf\n", "NB0236", "v 1 2 inf"),
+            ("f 1 2 3\nvt x 0", "NB0236", "vt x 0"),
+            ("f 1 2 3\ng x\ncurv 1 2 # v 1", "NB0236", "curv 1 2"),
+            ("f 1 2 3 1 2 3 1", "NB0609", "f 1 2 3 1 2 3 1"),
             ("v 1 1 1\nv 2 2 2\nv 3 3 3\nf 1 2 3\nf 4 5 6", "NB0603", "6"),
         ] {
             assert_eq!(refusal(&format!("{triangle}{line}")), (code, part.to_owned()), "{line}");
         }
-        let many = "curv\n".repeat(100);
-        assert_eq!(read(&many, 5, 5).expect_err("no statement").len(), MOST_FINDINGS);
+        let many = "f 7 8 9\n".repeat(100);
+        assert_eq!(read(&many, 5, 300).expect_err("no positions").len(), MOST_FINDINGS);
+    }
+
+    #[test]
+    fn groups_and_materials_take_nothing_away() {
+        let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+        let text =
+            format!("{triangle}usemtl a\nf 1 2 3\ng\no x\nusemtl b\nusemtl c\nf 3 2 1\ng y\nmtllib\nf 2 3 1\no\n");
+        assert_eq!(of(&text).indices, [0, 1, 2, 2, 1, 0, 1, 2, 0]);
+    }
+
+    fn sound(text: &str) -> Result<(), proptest::test_runner::TestCaseError> {
+        match read(text, 8, 24) {
+            Ok(surface) => {
+                let count = surface.positions.len();
+                proptest::prop_assert!(count <= 8 && surface.indices.len() <= 24);
+                proptest::prop_assert!(surface.indices.iter().all(|index| (*index as usize) < count));
+                proptest::prop_assert_eq!([surface.normals.len(), surface.texture_coordinates.len()], [count; 2]);
+                proptest::prop_assert!(surface.positions.as_flattened().iter().all(|number| number.is_finite()));
+            }
+            Err(findings) => {
+                let placed = |finding: &Diagnostic| finding.span.clone().is_some_and(|place| text.get(place).is_some());
+                proptest::prop_assert!((1..=MOST_FINDINGS).contains(&findings.len()) && findings.iter().all(placed));
+            }
+        }
+        Ok(())
     }
 
     proptest::proptest! {
         #[test]
         fn garbage_is_read_or_refused(text in "([vfn t0-9/.\\-\n]|vt|vn|f 1|v 1 1 1\n){0,60}") {
-            match read(&text, 8, 24) {
-                Ok(surface) => {
-                    let count = surface.positions.len() as u32;
-                    proptest::prop_assert!(surface.indices.iter().all(|index| *index < count) && count <= 8);
-                }
-                Err(findings) => proptest::prop_assert!(findings.iter().all(|f| f.span.clone().is_some_and(|s| text.get(s).is_some()))),
+            sound(&text)?;
+        }
+
+        #[test]
+        fn mangled_files_are_read_or_refused(
+            edits in proptest::collection::vec((0..200_usize, "[vfnto/#.e\\-0-9 \n\r]|inf|usemtl |-?[0-9]{19}|\u{3000}|\\PC"), 1..6),
+        ) {
+            let mut file: Vec<String> = include_str!("../../../vectors/scenes/programs/cube.obj").chars().map(String::from).collect();
+            for (place, edit) in edits {
+                let length = file.len();
+                file[(length - 1 - place) % length] = edit;
             }
+            sound(&file.concat())?;
+        }
+
+        /// Corners of all kinds, counted from either end.
+        #[test]
+        fn faces_say_what_was_written(
+            faces in proptest::collection::vec(
+                proptest::collection::vec((0..4_usize, proptest::option::of(0..3_usize), proptest::option::of(0..2_usize), proptest::bool::ANY), 3..6),
+                1..5,
+            ),
+        ) {
+            let mut text = "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nvt 4 1\nvt 5 1\nvt 6 1\nvn 7 0 0\nvn 8 0 0\n".to_owned();
+            for face in &faces {
+                text.push('f');
+                for (position, coordinates, normal, backward) in face {
+                    let index = |index: usize, count: i64| if *backward { index as i64 - count } else { index as i64 + 1 };
+                    let coordinates = coordinates.map_or(String::new(), |n| index(n, 3).to_string());
+                    let normal = normal.map_or(String::new(), |n| format!("/{}", index(n, 2)));
+                    text += &format!(" {}/{coordinates}{normal}", index(*position, 4));
+                }
+                text.push('\n');
+            }
+            let surface = of(&text);
+            let vertex = |index: &u32| {
+                let n = *index as usize;
+                (surface.positions[n][0], surface.texture_coordinates[n][0], surface.normals[n][0])
+            };
+            let written = |(position, coordinates, normal, _): &(usize, Option<usize>, Option<usize>, bool)| {
+                (*position as f32, coordinates.map_or(0.0, |n| (n + 4) as f32), normal.map_or(0.0, |n| (n + 7) as f32))
+            };
+            let fans = faces.iter().flat_map(|face| face[1..].windows(2).flat_map(|pair| [written(&face[0]), written(&pair[0]), written(&pair[1])]));
+            proptest::prop_assert_eq!(surface.indices.iter().map(vertex).collect::<Vec<_>>(), fans.collect::<Vec<_>>());
         }
     }
 }
