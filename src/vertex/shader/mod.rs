@@ -1,6 +1,6 @@
 //! Vertex programs of the language vs.1.1, ready to run: what an instruction is, and what it does to a vertex.
 //!
-//! The text is read in [`crate::program::vertex_shader`]. [`evaluate`] runs a program on one vertex. Rules VTX-1 to VTX-4.
+//! The text is read in [`crate::program::vertex_shader`]. [`evaluate()`] runs a program on one vertex. Rules VTX-1 to VTX-4.
 
 mod evaluate;
 mod function;
