@@ -204,15 +204,7 @@ fn matrix_geometry<'a>(
             (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()), objects)
         }
         (both, _) => {
-            let (code, message) = match both {
-                Some(_) => ("NB0222", "either `vertices` or `mesh`, not both"),
-                None => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
-            };
-            reader.push(
-                Diagnostic::error(code, opening, message)
-                    .label("in here")
-                    .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`"),
-            );
+            reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
             return None;
         }
     };
@@ -303,4 +295,15 @@ pub(super) fn viewport<'a>(
         }
     }
     viewport
+}
+
+/// A source of vertices that has both of these fields, or neither.
+pub(super) fn one_of_vertices_and_mesh(both: bool, opening: Range<usize>) -> Diagnostic {
+    let (code, message) = match both {
+        true => ("NB0222", "either `vertices` or `mesh`, not both"),
+        false => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
+    };
+    Diagnostic::error(code, opening, message)
+        .label("in here")
+        .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`")
 }

@@ -4,7 +4,7 @@
 mod constants;
 mod inputs;
 
-use super::geometry::{Geometry, listed, viewport};
+use super::geometry::{Geometry, listed, one_of_vertices_and_mesh, viewport};
 use super::names::Names;
 use super::program_text::ProgramText;
 use super::target::Targets;
@@ -138,15 +138,7 @@ fn given<'a>(
             })
         }
         (both, _) => {
-            let (code, message) = match both {
-                Some(_) => ("NB0222", "either `vertices` or `mesh`, not both"),
-                None => ("NB0202", "this vertex source has neither `vertices` nor `mesh`"),
-            };
-            reader.push(
-                Diagnostic::error(code, opening, message)
-                    .label("in here")
-                    .help("write `vertices: [...]` for listed vertices, or `mesh: Sphere(slices: 32, stacks: 16)`"),
-            );
+            reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
             None
         }
     }
