@@ -29,7 +29,12 @@ pub fn digest(width: u32, height: u32, pixels: &[[u8; 4]]) -> String {
     hash.update(width.to_le_bytes());
     hash.update(height.to_le_bytes());
     hash.update(pixels.as_flattened());
-    hash.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&hash.finalize())
+}
+
+/// Bytes as two digits each.
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 #[cfg(test)]

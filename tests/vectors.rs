@@ -79,10 +79,11 @@ fn policies_change_the_units_of_their_rules() {
     for unit in units::all() {
         for profile in unit.profiles() {
             cases::visit(unit, *profile, Level::L0, 1, |inputs, _| {
-                let mut results = vec![0; unit.results().len()];
+                let columns = unit.results();
+                let mut results = vec![0; columns.len()];
                 let conditions = Conditions { profile: *profile, policies: Policies::DEFAULT };
                 unit.evaluate(inputs, &conditions, &mut results);
-                for alternative in alternatives(unit, inputs, *profile, &results) {
+                for alternative in alternatives(unit, &columns, inputs, *profile, &results) {
                     let rule = alternative.policy.split('=').next().unwrap();
                     assert!(unit.rules().contains(&rule), "{} does not name {rule}", unit.name());
                     if !found.contains(&(alternative.policy.clone(), unit.name())) {

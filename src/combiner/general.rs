@@ -121,6 +121,19 @@ pub struct PlannedPortion {
 }
 
 impl PlannedPortion {
+    /// A portion of which everything that it writes is needed, in these channels.
+    pub fn whole(portion: Portion, channels: u8) -> PlannedPortion {
+        let live = |output: Register| if output == Register::Zero { 0 } else { channels };
+        PlannedPortion {
+            portion,
+            live: [portion.ab_output, portion.cd_output, portion.sum_output].map(live),
+            blue_to_alpha: [
+                portion.ab_blue_to_alpha && portion.ab_output != Register::Zero,
+                portion.cd_blue_to_alpha && portion.cd_output != Register::Zero,
+            ],
+        }
+    }
+
     /// Whether nothing of it is needed.
     pub fn is_idle(&self) -> bool {
         self.live == [0; 3] && self.blue_to_alpha == [false; 2]

@@ -2,7 +2,7 @@
 //!
 //! Deterministic: the same arguments give the same bytes on every machine.
 
-mod hash;
+pub(crate) mod hash;
 pub mod height_field;
 pub mod hemisphere;
 pub mod normal_map;

@@ -91,12 +91,7 @@ pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    for row in 0..rows {
-        for column in 0..columns {
-            let [a, b, c, d] = cell(columns, row, column);
-            mesh.indices.extend([a, c, d, a, d, b]);
-        }
-    }
+    cells(&mut mesh, columns, rows);
     Ok(mesh)
 }
 
@@ -203,6 +198,16 @@ fn cell(columns: u32, row: u32, column: u32) -> [u32; 4] {
     let upper = row * (columns + 1) + column;
     let lower = upper + columns + 1;
     [upper, upper + 1, lower, lower + 1]
+}
+
+/// Two triangles for each cell of a mesh of so many columns and rows.
+fn cells(mesh: &mut Mesh, columns: u32, rows: u32) {
+    for row in 0..rows {
+        for column in 0..columns {
+            let [a, b, c, d] = cell(columns, row, column);
+            mesh.indices.extend([a, c, d, a, d, b]);
+        }
+    }
 }
 
 fn at_least(shape: &'static str, what: &'static str, minimum: u32, given: u32) -> Result<(), MeshError> {

@@ -5,6 +5,7 @@ use std::collections::HashSet;
 use super::column::{Column, Domain};
 use super::random::Random;
 use super::unit::Unit;
+use crate::generate::hash::mix;
 use crate::state::{Profile, named};
 
 named! {
@@ -141,7 +142,7 @@ impl<F: FnMut(&[i64], Origin)> Sieve<'_, F> {
         if self.seen.len() >= self.rows || !self.unit.accepts(row, self.profile) {
             return;
         }
-        if self.seen.insert(row.iter().fold(0, |sum, value| Random::mixed(sum ^ *value as u64))) {
+        if self.seen.insert(row.iter().fold(0, |sum, value| mix(sum ^ *value as u64))) {
             (self.each)(row, origin);
         }
     }

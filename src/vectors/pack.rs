@@ -21,6 +21,7 @@ use super::table::{Contents, Writer};
 use super::view::View;
 use super::{BEHAVIOUR, Unit};
 use crate::output::{write_file, write_file_with};
+use crate::picture::hexadecimal;
 use crate::state::{Named, Profile};
 
 /// `format` of a manifest.
@@ -106,10 +107,6 @@ impl Write for Hashing<'_> {
     fn flush(&mut self) -> std::io::Result<()> {
         self.out.flush()
     }
-}
-
-fn hexadecimal(digest: &[u8]) -> String {
-    digest.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Lines as `sha256sum` writes them.

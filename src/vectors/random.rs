@@ -1,7 +1,6 @@
 //! Randomness that is the same everywhere: SplitMix64.
 
-/// 2^64 over the golden ratio.
-const GOLDEN: u64 = 0x9e37_79b9_7f4a_7c15;
+use crate::generate::hash::{GOLDEN, mix};
 
 /// A seeded sequence.
 #[derive(Clone, Debug)]
@@ -22,17 +21,9 @@ impl Random {
 
     /// 64 bits.
     pub fn bits(&mut self) -> u64 {
-        let value = Random::mixed(self.state);
+        let value = mix(self.state);
         self.state = self.state.wrapping_add(GOLDEN);
         value
-    }
-
-    /// 64 bits that depend on all of `z`.
-    pub fn mixed(z: u64) -> u64 {
-        let z = z.wrapping_add(GOLDEN);
-        let z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
     }
 
     /// A number below `end`, which is not 0.

@@ -23,6 +23,7 @@ use super::cases::{self, Level, Origin};
 use super::column::Column;
 use super::unit::{self, Conditions, Unit};
 use super::{BEHAVIOUR, handbook};
+use crate::picture::hexadecimal;
 use crate::state::{Named, Policies, Profile};
 
 /// First line of a table.
@@ -113,7 +114,7 @@ impl Writer {
         let Contents { unit, profile, .. } = self.contents;
         let mut results = vec![0; self.results.len()];
         unit.evaluate(inputs, &Conditions { profile, policies: Policies::DEFAULT }, &mut results);
-        let alternatives = unit::alternatives(unit, inputs, profile, &results);
+        let alternatives = unit::alternatives(unit, &self.results, inputs, profile, &results);
         Row { inputs: inputs.to_vec(), results, origin, alternatives }
     }
 
@@ -125,7 +126,7 @@ impl Writer {
         for (column, value) in self.inputs.iter().zip(inputs) {
             hash.update(format!("{}={}\n", column.name, column.kind.write(*value)));
         }
-        hash.finalize().iter().take(6).map(|byte| format!("{byte:02x}")).collect()
+        hexadecimal(&hash.finalize()[..6])
     }
 
     /// The line of a row, without its end.
@@ -163,22 +164,27 @@ impl Writer {
     /// The destination refuses.
     pub fn write(&self, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
         out.write_all(self.head().as_bytes())?;
-        let (mut rows, mut failed) = (0, None);
+        self.each(deciding, |row| writeln!(out, "{}", self.line(row)))
+    }
+
+    /// Hands over every row of the table, with `deciding` only those that some policy changes, until one is refused. Returns their number.
+    ///
+    /// # Errors
+    /// What `take` refuses.
+    pub fn each(&self, deciding: bool, mut take: impl FnMut(&Row) -> io::Result<()>) -> io::Result<usize> {
+        let (mut rows, mut result) = (0, Ok(()));
         let Contents { unit, profile, level, seed } = self.contents;
         cases::visit(unit, profile, level, seed, |inputs, origin| {
-            if failed.is_some() {
+            if result.is_err() {
                 return;
             }
             let row = self.row(inputs, origin);
-            if deciding && row.alternatives.is_empty() {
-                return;
-            }
-            rows += 1;
-            if let Err(error) = writeln!(out, "{}", self.line(&row)) {
-                failed = Some(error);
+            if !deciding || !row.alternatives.is_empty() {
+                rows += 1;
+                result = take(&row);
             }
         });
-        failed.map_or(Ok(rows), Err)
+        result.map(|()| rows)
     }
 }
 

@@ -108,9 +108,15 @@ pub struct Alternative {
 }
 
 /// The policies that change an `out.` column of a row, one at a time.
-pub fn alternatives(unit: &dyn Unit, inputs: &[i64], profile: Profile, results: &[i64]) -> Vec<Alternative> {
-    let outputs: Vec<usize> =
-        unit.results().iter().enumerate().filter(|(_, c)| c.name.starts_with("out.")).map(|(n, _)| n).collect();
+///
+/// `columns` are those of the results, which the caller has looked up once.
+pub fn alternatives(
+    unit: &dyn Unit,
+    columns: &[Column],
+    inputs: &[i64],
+    profile: Profile,
+    results: &[i64],
+) -> Vec<Alternative> {
     let mut found = Vec::new();
     for policy in POLICIES {
         for (index, (value, _)) in policy.values.iter().enumerate() {
@@ -121,7 +127,7 @@ pub fn alternatives(unit: &dyn Unit, inputs: &[i64], profile: Profile, results: 
             policies.choose(policy.rule, index);
             let mut other = vec![0; results.len()];
             unit.evaluate(inputs, &Conditions { profile, policies }, &mut other);
-            if outputs.iter().any(|n| other[*n] != results[*n]) {
+            if columns.iter().zip(other.iter().zip(results)).any(|(c, (a, b))| a != b && c.name.starts_with("out.")) {
                 found.push(Alternative { policy: format!("{}={value}", policy.rule), results: other });
             }
         }

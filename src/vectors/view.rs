@@ -7,7 +7,6 @@ use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
-use super::cases;
 use super::column::{Column, Kind};
 use super::table::{Row, Writer};
 use crate::state::named;
@@ -73,30 +72,13 @@ pub fn packed(slices: &[Slice], width: u32, row: &Row) -> String {
     digits.iter().rev().map(|digit| char::from_digit(u32::from(*digit), 16).unwrap_or('0')).collect()
 }
 
-/// Calls `each` for every row of the table, and counts.
-fn rows(writer: &Writer, deciding: bool, mut each: impl FnMut(&Row) -> io::Result<()>) -> io::Result<usize> {
-    let (mut count, mut result) = (0, Ok(()));
-    let contents = writer.contents();
-    cases::visit(contents.unit, contents.profile, contents.level, contents.seed, |inputs, origin| {
-        if result.is_err() {
-            return;
-        }
-        let row = writer.row(inputs, origin);
-        if !deciding || !row.alternatives.is_empty() {
-            count += 1;
-            result = each(&row);
-        }
-    });
-    result.map(|()| count)
-}
-
 fn hex(writer: &Writer, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
     let (slices, width) = layout(writer);
-    rows(writer, deciding, |row| writeln!(out, "{}", packed(&slices, width, row)))
+    writer.each(deciding, |row| writeln!(out, "{}", packed(&slices, width, row)))
 }
 
 fn jsonl(writer: &Writer, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
-    rows(writer, deciding, |row| {
+    writer.each(deciding, |row| {
         let mut object = Map::new();
         object.insert("id".to_owned(), json!(writer.id(&row.inputs)));
         let numbers = row.inputs.iter().chain(&row.results);

@@ -190,19 +190,6 @@ fn outputs(arguments: &Arguments) -> [Option<Register>; 3] {
     }
 }
 
-/// A portion of which everything is needed.
-fn planned(portion: &Portion, channels: u8) -> PlannedPortion {
-    let live = |output: Register| if output == Register::Zero { 0 } else { channels };
-    PlannedPortion {
-        portion: *portion,
-        live: [portion.ab_output, portion.cd_output, portion.sum_output].map(live),
-        blue_to_alpha: [
-            portion.ab_blue_to_alpha && portion.ab_output != Register::Zero,
-            portion.cd_blue_to_alpha && portion.cd_output != Register::Zero,
-        ],
-    }
-}
-
 impl Operation for Stage {
     const NAME: &'static str = "combiner";
 
@@ -226,8 +213,8 @@ impl Operation for Stage {
         let mut registers = inputs::load(values);
         let stage = PlannedStage {
             index: 0,
-            rgb: planned(&self.stage.rgb, 7),
-            alpha: planned(&self.stage.alpha, 8),
+            rgb: PlannedPortion::whole(self.stage.rgb, 7),
+            alpha: PlannedPortion::whole(self.stage.alpha, 8),
             constants: self.stage.constants,
             // The registers hold them already.
             reads_constants: false,

@@ -173,8 +173,7 @@ fn matrix_geometry<'a>(
         Some(raw) => names.matrix(reader, raw),
         None => Some(matrix::IDENTITY),
     };
-    let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
-    let viewport = viewport(reader, &fields.viewport, size);
+    let viewport = viewport(reader, &fields.viewport, targets, target);
     let (mut vertices, spans, triangles, objects) = match (&fields.vertices, &fields.mesh) {
         (Some(raw), None) => {
             let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
@@ -257,11 +256,14 @@ fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Matr
     Outputs { diffuse, specular, coordinates }
 }
 
+/// The viewport of a draw; without one the whole target.
 pub(super) fn viewport<'a>(
     reader: &mut Reader<'a>,
     raw: &Option<Raw<'a, source::Viewport<'a>>>,
-    (width, height): (u32, u32),
+    targets: &Targets,
+    target: usize,
 ) -> Viewport {
+    let (width, height) = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
     let mut viewport = Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, near: 0.0, far: 1.0 };
     let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return viewport };
     for (field, slot, positive) in [

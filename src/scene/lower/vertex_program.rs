@@ -25,8 +25,7 @@ pub(super) fn geometry<'a>(
 ) -> Option<Geometry> {
     let opening = reader.range(text.get(..1).unwrap_or(text));
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
-    let size = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
-    let mut viewport = viewport(reader, &fields.viewport, size);
+    let mut viewport = viewport(reader, &fields.viewport, targets, target);
     if clip_depth(reader, &fields.clip_depth) {
         depth_from_zero(&mut viewport);
     }

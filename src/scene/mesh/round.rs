@@ -4,7 +4,7 @@
     reason = "vertices are floats in the chip's programming model; the order of operations is fixed"
 )]
 
-use super::{Mesh, MeshError, at_least, cell, circle, with_room};
+use super::{Mesh, MeshError, at_least, cells, circle, with_room};
 
 /// A torus about the y axis: `slices` around it, `sides` around its tube, whose middle is `radius` from the axis and which is `tube`
 /// thick, from its middle.
@@ -32,12 +32,7 @@ pub fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) 
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    for side in 0..sides {
-        for slice in 0..slices {
-            let [a, b, c, d] = cell(slices, side, slice);
-            mesh.indices.extend([a, c, d, a, d, b]);
-        }
-    }
+    cells(&mut mesh, slices, sides);
     Ok(mesh)
 }
 
@@ -73,12 +68,7 @@ pub fn cylinder(
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    for stack in 0..stacks {
-        for slice in 0..slices {
-            let [a, b, c, d] = cell(slices, stack, slice);
-            mesh.indices.extend([a, c, d, a, d, b]);
-        }
-    }
+    cells(&mut mesh, slices, stacks);
     for up in [1.0, -1.0].into_iter().filter(|_| caps) {
         disc(&mut mesh, slices, radius, up * (height / 2.0), up);
     }

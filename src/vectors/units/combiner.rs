@@ -1,6 +1,6 @@
 //! The parts of a general combiner stage, one channel at a time.
 
-use super::named;
+use super::{named, scale_takes_bias};
 use crate::combiner::general;
 use crate::combiner::mapping;
 use crate::number::{Factor, Lane};
@@ -249,8 +249,7 @@ impl Unit for ScaleBias {
     }
 
     fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
-        // The chip has no such outputs: CMB-12.
-        named::<Bias>(inputs[1]) == Bias::None || matches!(named(inputs[0]), Scale::One | Scale::Two)
+        scale_takes_bias(inputs[0], inputs[1])
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {

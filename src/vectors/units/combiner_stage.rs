@@ -1,6 +1,6 @@
 //! Whole general stages: everything is read before anything is written.
 
-use super::named;
+use super::{named, scale_takes_bias, step};
 use crate::combiner::general::{self, PlannedPortion, PlannedStage};
 use crate::combiner::registers::Registers;
 use crate::state::{
@@ -16,11 +16,6 @@ const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 const SOURCES: [Register; 4] =
     [Register::Texture0, Register::Texture1, Register::PrimaryColor, Register::SecondaryColor];
 
-/// The value of a step, 0 if nobody reported it.
-fn step(steps: &[Step], name: &str) -> i64 {
-    steps.iter().find(|step| step.name == name).map_or(0, |step| step.value)
-}
-
 fn registers(names: &[&str]) -> Vec<Column> {
     names.iter().map(|name| Column::register(name)).collect()
 }
@@ -29,18 +24,9 @@ fn results(names: &[&str], kind: &Kind) -> Vec<Column> {
     names.iter().map(|name| Column::result(name, kind.clone())).collect()
 }
 
-/// A portion whose every output is needed, and an idle one.
-fn planned(portion: Portion, channels: u8) -> PlannedPortion {
-    let live = |output: Register| if output == Register::Zero { 0 } else { channels };
-    PlannedPortion {
-        portion,
-        live: [portion.ab_output, portion.cd_output, portion.sum_output].map(live),
-        blue_to_alpha: [portion.ab_blue_to_alpha, portion.cd_blue_to_alpha],
-    }
-}
-
+/// A stage whose every output is needed.
 fn stage(rgb: Portion, alpha: Portion) -> PlannedStage {
-    let (rgb, alpha) = (planned(rgb, 7), planned(alpha, 8));
+    let (rgb, alpha) = (PlannedPortion::whole(rgb, 7), PlannedPortion::whole(alpha, 8));
     PlannedStage { index: 0, rgb, alpha, constants: [[0; 4]; 2], reads_constants: false }
 }
 
@@ -71,11 +57,6 @@ fn configuration(dots: bool) -> Vec<Column> {
         columns.extend([Column::flag("cfg.ab_dot"), Column::flag("cfg.cd_dot")]);
     }
     columns
-}
-
-/// CMB-12: what goes with what.
-fn legal(scale: i64, bias: i64) -> bool {
-    named::<Bias>(bias) == Bias::None || matches!(named(scale), Scale::One | Scale::Two)
 }
 
 /// An RGB portion with three outputs.
@@ -119,7 +100,7 @@ impl Unit for GeneralStage {
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
-        legal(inputs[4], inputs[5])
+        scale_takes_bias(inputs[4], inputs[5])
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
@@ -191,7 +172,7 @@ impl Unit for AlphaPortion {
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
-        legal(inputs[4], inputs[5])
+        scale_takes_bias(inputs[4], inputs[5])
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
@@ -332,7 +313,7 @@ impl Unit for TwoStages {
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
-        legal(inputs[0], inputs[1])
+        scale_takes_bias(inputs[0], inputs[1])
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {

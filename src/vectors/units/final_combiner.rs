@@ -1,10 +1,10 @@
 //! The final combiner, one colour channel and alpha.
 
-use super::named;
+use super::{named, step};
 use crate::combiner::final_combiner::{self, PlannedFinal};
 use crate::combiner::registers::Registers;
 use crate::state::{self, Component, FinalInput, FinalRegister, Register, named as enumeration};
-use crate::trace::{Recorder, Step};
+use crate::trace::Recorder;
 use crate::vectors::column::{Column, Kind};
 use crate::vectors::unit::{Conditions, Reach, Unit};
 
@@ -94,13 +94,9 @@ impl Unit for FinalCombiner {
         let mut recorder = Recorder::default();
         let (profile, policies) = (conditions.profile, &conditions.policies);
         let out = final_combiner::run(&planned, profile, policies, &mut file, &mut recorder);
-        let value = |name: &str| {
-            let found: Option<&Step> = recorder.steps.iter().find(|step| step.name == name);
-            found.map_or(0, |step| step.value)
-        };
         let names = ["final.sum.r", "final.EF.r", "final.A.r", "final.B.r", "final.C.r", "final.D.r", "final.rgb.r"];
         for (result, name) in results.iter_mut().zip(names) {
-            *result = value(name);
+            *result = step(&recorder.steps, name);
         }
         (results[7], results[8]) = (out[0].into(), out[3].into());
     }

@@ -12,7 +12,8 @@ mod texel;
 mod texture;
 
 use super::unit::Unit;
-use crate::state::Named;
+use crate::state::{Bias, Named, Scale};
+use crate::trace::Step;
 
 /// All units.
 pub fn all() -> Vec<&'static dyn Unit> {
@@ -65,4 +66,14 @@ pub fn by_name(name: &str) -> Option<&'static dyn Unit> {
 /// The variant of that number; the last one of those that do not exist.
 fn named<T: Named>(number: i64) -> T {
     T::ALL[usize::try_from(number).unwrap_or(0).min(T::ALL.len() - 1)]
+}
+
+/// CMB-12: whether the scale and the bias of those numbers go together.
+fn scale_takes_bias(scale: i64, bias: i64) -> bool {
+    named::<Bias>(bias) == Bias::None || matches!(named(scale), Scale::One | Scale::Two)
+}
+
+/// The value of a step, 0 if nobody reported it.
+fn step(steps: &[Step], name: &str) -> i64 {
+    steps.iter().find(|step| step.name == name).map_or(0, |step| step.value)
 }
