@@ -211,8 +211,8 @@ fn tables_that_were_tampered_with_are_refused() {
         (text[..text.len() - 1].to_owned(), "NB1007"),
         (text[..text.len() - 9].to_owned(), "NB1007"),
         (text.replacen(row, "", 1), "NB1007"),
-        (text.replacen('\n', "\r\n", 1), "NB1003"),
-        (text.replacen(row, &format!("{row}\r"), 1), "NB1007"),
+        (text.replacen('\n', "\r\n", 1), "NB1004"),
+        (text.replacen(row, &format!("{row}\r"), 1), "NB1004"),
         (text.replacen("in.a\tin.b", "in.b\tin.a", 1), "NB1006"),
         (text.replacen("# seed 1\n", "", 1), "NB1004"),
     ];
