@@ -38,7 +38,7 @@ impl View {
     pub fn files(self) -> Vec<(&'static str, Content)> {
         match self {
             View::Hex => vec![
-                ("hex", Content::Rows(|_| String::new(), |layout, row| packed(layout, row))),
+                ("hex", Content::Rows(|_| String::new(), packed)),
                 ("layout.json", Content::Whole(layout_json)),
                 ("svh", Content::Whole(verilog_header)),
                 ("h", Content::Whole(c_header)),
