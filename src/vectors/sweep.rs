@@ -1,6 +1,6 @@
 //! Sweeps: every row of a unit, as digests.
 //!
-//! All rows of a unit, in the order of [`cases::nth`](super::cases::nth), are cut into leaves: ranges whose number depends on nothing but the
+//! All rows of a unit, in the order of [`cases::nth`], are cut into leaves: ranges whose number depends on nothing but the
 //! unit. A leaf is the SHA-256 of the rows' `out.` columns, each number in as many whole bytes as its bits need, low byte first; rows whose
 //! inputs do not go together have none.
 
