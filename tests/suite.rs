@@ -40,6 +40,7 @@ mod combiner_language;
 mod compare;
 mod compressed;
 mod dds_files;
+mod deciding;
 mod diff;
 mod docs;
 mod engines;
