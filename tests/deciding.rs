@@ -3,11 +3,12 @@
 
 use std::path::{Path, PathBuf};
 
-use ninebit::diff::{Options, compare};
+use ninebit::diff::{self, compare};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;
+use ninebit::output::{Compression, encode_png};
 use ninebit::plan::Plan;
-use ninebit::replay::find;
+use ninebit::replay::{Options, find, replay};
 use ninebit::scene;
 use ninebit::scene::image::Rgba;
 use ninebit::state::{POLICIES, Policies, Policy};
@@ -45,7 +46,7 @@ fn apart(a: &Rgba, b: &Rgba) -> u64 {
     let far = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) >= LEVELS);
     let marks = a.pixels.iter().zip(&b.pixels).map(far).map(|far| if far { [255; 4] } else { [0; 4] }).collect();
     let nothing = Rgba { pixels: vec![[0; 4]; a.pixels.len()], ..a.clone() };
-    let found = compare(&nothing, &Rgba { pixels: marks, ..a.clone() }, &Options::default()).unwrap();
+    let found = compare(&nothing, &Rgba { pixels: marks, ..a.clone() }, &diff::Options::default()).unwrap();
     found.regions.first().map_or(0, |region| region.pixels)
 }
 
@@ -99,5 +100,42 @@ fn rows_name_the_answer() {
         let lit = |y: u32| picture.pixels[(y * 256) as usize..][..256].iter().all(|pixel| *pixel == [255; 4]);
         let dark = |y: u32| picture.pixels[(y * 256) as usize..][..256].iter().all(|pixel| pixel[..3] == [0; 3]);
         assert!((0..64).all(lit) && (64..128).all(dark), "{}", policy.rule);
+    }
+}
+
+/// Runs of white in a row of a picture.
+fn bars(picture: &Rgba, y: u32) -> Vec<usize> {
+    let row = &picture.pixels[(y * picture.width) as usize..][..picture.width as usize];
+    let runs = row.chunk_by(|a, b| a == b).filter(|run| run[0] == [255; 4]);
+    runs.map(<[_]>::len).collect()
+}
+
+#[test]
+fn weights_of_eight_bits_show_as_a_wide_bar() {
+    let loaded = scene::load(&folder().join("INT-2-ramp.ron"), &Limits::default()).unwrap();
+    let picture = picture(&loaded.plan, "", 0);
+    for (rows, width) in [(0..64, 4), (64..128, 8), (128..192, 4)] {
+        assert!(rows.clone().all(|y| bars(&picture, y) == [width]), "{rows:?}");
+    }
+}
+
+/// What `docs/hardware.md` says becomes of a capture: replay names the policy that draws it.
+#[test]
+fn a_capture_is_recognised() {
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("scene.ron");
+    std::fs::copy(folder().join("CMB-4-half-bias.ron"), &file).unwrap();
+    let plan = scene::load(&file, &Limits::default()).unwrap().plan;
+    let allowance = r#"(picture: "captured.png", pixels: 0, difference: 0, reason: "a card")"#;
+    let expectation =
+        format!(r#"(version: 1, target: "frame", width: 256, height: 192, sha256: "", allowance: {allowance})"#);
+    std::fs::write(place.path().join("scene.expect.ron"), expectation).unwrap();
+    for (value, says) in [(0, None), (1, Some("CMB-4=127 draws")), (2, Some("CMB-4=127.5 draws"))] {
+        let captured = picture(&plan, "CMB-4", value);
+        let png = encode_png(captured.width, captured.height, &captured.pixels, Compression::Fast).unwrap();
+        std::fs::write(place.path().join("captured.png"), png).unwrap();
+        let replayed = replay(&find(&[file.clone()]).unwrap(), &Options::default(), &|_| {});
+        let message = replayed[0].message();
+        assert!(says.map_or(message.is_empty(), |says| message.contains(says)), "{value}: {message}");
     }
 }
