@@ -134,7 +134,7 @@ fn a_capture_is_recognised() {
         let captured = picture(&plan, "CMB-4", value);
         let png = encode_png(captured.width, captured.height, &captured.pixels, Compression::Fast).unwrap();
         std::fs::write(place.path().join("captured.png"), png).unwrap();
-        let replayed = replay(&find(&[file.clone()]).unwrap(), &Options::default(), &|_| {});
+        let replayed = replay(&find(std::slice::from_ref(&file)).unwrap(), &Options::default(), &|_| {});
         let message = replayed[0].message();
         assert!(says.map_or(message.is_empty(), |says| message.contains(says)), "{value}: {message}");
     }

@@ -279,10 +279,12 @@ impl Subject<'_> {
         Some(match other {
             Some((found, expected)) if found.plan.policies != self.plan.policies => {
                 let lines = beside(&expected, &drawn);
+                let parted = lines.iter().find(|line| line.differs());
                 let text = format!(
-                    "pixel {},{}: as expected, and as it is drawn; `>` where they differ\n{}",
+                    "pixel {},{}: as expected, and as it is drawn; `>` where they differ{}\n{}",
                     first.x,
                     first.y,
+                    parted.map_or(String::new(), |line| format!(", first in {} ({})", line.name, line.rule)),
                     beside_text(["expected", "drawn"], &lines)
                 );
                 Traces { text, lines, drawn: value, expected: Some(trace_value(&found.plan, &expected)) }

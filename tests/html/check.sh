@@ -15,8 +15,11 @@ rm -rf "$out"
 mkdir -p "$out/scenes"
 out=$(cd "$out" && pwd)
 
-cargo build --release --locked --quiet
-ninebit=$PWD/target/release/ninebit
+if [ -z "${NINEBIT:-}" ]; then
+    cargo build --release --locked --quiet
+    NINEBIT=$PWD/target/release/ninebit
+fi
+ninebit=$(realpath "$NINEBIT")
 cp vectors/scenes/deciding/CMB-3-expand.ron vectors/scenes/dot3/{constant-light.ron,hemisphere.ron} vectors/scenes/dot3/*.png "$out/scenes"
 (
     cd "$out"

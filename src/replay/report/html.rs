@@ -6,6 +6,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::diff::{CHANNELS, Histogram, ranges};
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
+use crate::report::BesideLine;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -121,28 +122,41 @@ fn histogram(known: &Known) -> Markup {
 
 fn traces(known: &Known, traces: &Traces) -> Markup {
     let first = &known.first;
+    // What both traces have before they part is there to be looked up; the block in which they part is shown whole.
+    let parted = traces.lines.iter().position(BesideLine::differs).unwrap_or(0);
+    let begin = traces.lines.iter().take(parted + 1).rposition(|line| line.heading.is_some()).unwrap_or(0);
     html! {
         details open[!traces.lines.is_empty()] {
             summary { "How the first differing pixel, " (first.x) "," (first.y) ", came to be" }
             @if traces.lines.is_empty() {
                 pre { (traces.text) }
             } @else {
-                div.scroll { table.trace {
-                    tr { th { "what" } th.number { "expected" } th.number { "drawn" } th { "rule" } th { "how" } }
-                    @for line in &traces.lines {
-                        @if let Some(heading) = &line.heading { tr.heading { td colspan="5" { (heading) } } }
-                        tr.other[line.differs()] {
-                            td { (line.name) }
-                            @for side in [&line.first, &line.second] {
-                                td.number { @if let Some((_, integer)) = side { (integer) } }
-                            }
-                            td { (line.rule) }
-                            td { (how(line.first.as_ref(), line.second.as_ref())) }
-                        }
-                    }
-                } }
+                @let (before, after) = traces.lines.split_at(begin);
+                @if !before.is_empty() {
+                    details { summary { (before.len()) " steps before, the same in both" } (table(before)) }
+                }
+                (table(after))
             }
         }
+    }
+}
+
+fn table(lines: &[BesideLine]) -> Markup {
+    html! {
+        div.scroll { table.trace {
+            tr { th { "what" } th.number { "expected" } th.number { "drawn" } th { "rule" } th { "how" } }
+            @for line in lines {
+                @if let Some(heading) = &line.heading { tr.heading { td colspan="5" { (heading) } } }
+                tr.other[line.differs()] {
+                    td { (line.name) }
+                    @for side in [&line.first, &line.second] {
+                        td.number { @if let Some((_, integer)) = side { (integer) } }
+                    }
+                    td { (line.rule) }
+                    td { (how(line.first.as_ref(), line.second.as_ref())) }
+                }
+            }
+        } }
     }
 }
 
