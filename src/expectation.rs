@@ -51,7 +51,8 @@ pub struct Expectation {
     /// An image in the same folder, of the same size: the picture of this digest, to show where another one differs.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub picture: Option<String>,
-    /// Files in the same folder that the scene needs and that are not handed out with it. Where one is not there, the scene is not drawn.
+    /// Files in the same folder that the scene needs and that are not handed out with it. Where one is not there, the scene is not
+    /// drawn.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub needs: Vec<String>,
 }

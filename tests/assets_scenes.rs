@@ -1,7 +1,7 @@
 //! Every scene under `vectors/scenes` shows what is expected, and its generated textures are what the generators make.
 //!
-//! `ninebit replay --bless vectors/scenes` rewrites the expectations, but for those that come from a capture; look at the pictures and at the difference
-//! before committing.
+//! `ninebit replay --bless vectors/scenes` rewrites the expectations, but for those that come from a capture; look at the pictures and at
+//! the difference before committing.
 #![allow(clippy::unwrap_used, unreachable_pub, reason = "a test fails by panicking, and shares a file with others")]
 
 use std::path::{Path, PathBuf};

@@ -22,7 +22,8 @@ use bench::{Bench, Run};
 /// A triangle that a dot product lights: 3 * 100 * `light` / 255 in red, green and blue.
 fn lit(light: u8) -> String {
     format!(
-        r#"(version: 1, profile: Nv10, targets: [(name: "frame", width: 24, height: 16), (name: "other", width: 4, height: 4)], draws: [(
+        r#"(version: 1, profile: Nv10, targets: [(name: "frame", width: 24, height: 16), (name: "other", width: 4, height: 4)],
+draws: [(
     vertices: Window([(position: (2, 2)), (position: (22, 2)), (position: (2, 14))]),
     program: CombinerText(r"
         const0 = bytes(100, 100, 100, 255);

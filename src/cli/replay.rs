@@ -28,7 +28,7 @@ pub(crate) struct Arguments {
     /// Only scenes whose name matches; with `!` in front, those that do not. May be given several times
     #[arg(long = "filter", value_name = "GLOB")]
     filters: Vec<String>,
-    /// Only every nth scene, starting with the ith: 1/4 to 4/4 are all
+    /// Only one of N parts of the scenes: 1/4 to 4/4 are all
     #[arg(long, value_name = "I/N", value_parser = shard)]
     shard: Option<Shard>,
     /// Only scenes of this chip

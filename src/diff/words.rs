@@ -7,8 +7,8 @@ use super::Histogram;
 /// Names of the channels in the order of a pixel's bytes.
 pub const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
-/// The histograms of some channels as a table: a line for each difference that occurs, then how many pixels differ and by how much. `title` heads
-/// the column of differences.
+/// The histograms of some channels as a table: a line for each difference that occurs, then how many pixels differ and by how much.
+/// `title` heads the column of differences.
 pub fn histogram_text(title: &str, channels: &[(&str, &Histogram)]) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.

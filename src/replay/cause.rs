@@ -43,8 +43,8 @@ pub(super) struct Found {
     pub(super) surface: Surface,
 }
 
-/// Looks for the one policy, or the engine, with which `matches` accepts the target. `first` is a pixel of which it is known what it has to be: a value
-/// that does not make it so need not be drawn.
+/// Looks for the one policy, or the engine, with which `matches` accepts the target. `first` is a pixel of which it is known what it has
+/// to be: a value that does not make it so need not be drawn.
 pub(super) fn find(
     plan: &Plan,
     render: &RenderOptions,

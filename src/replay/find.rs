@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{Glob, GlobSet, GlobSetBuilder};
+use sha2::{Digest, Sha256};
 use thiserror::Error;
 use walkdir::WalkDir;
 
@@ -164,7 +165,8 @@ fn set(patterns: &[&String]) -> Result<GlobSet, FilterError> {
     builder.build().map_err(|error| refused("", error))
 }
 
-/// One of several runs that share the scenes: of all that are meant, in their order, every `count`th.
+/// One of several runs that share the scenes. A scene's name alone decides which of them replays it, so that a new scene moves no other to
+/// another machine, where its pictures of an earlier run are not.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -179,7 +181,12 @@ impl Shard {
 
     /// The entries of this shard.
     pub fn of(self, entries: Vec<Entry>) -> Vec<Entry> {
-        entries.into_iter().skip(self.index - 1).step_by(self.count).collect()
+        let part = |name: &str| {
+            let digest = Sha256::digest(name.as_bytes());
+            let first = digest.iter().take(8).fold(0_u64, |number, byte| number << 8 | u64::from(*byte));
+            first % self.count as u64
+        };
+        entries.into_iter().filter(|entry| part(&entry.name) == self.index as u64 - 1).collect()
     }
 }
 
@@ -221,6 +228,12 @@ mod tests {
                 (1..=count).filter_map(|index| Some(Shard::new(index, count)?.of(all.clone()))).flatten().collect();
             joined.sort_by(|a, b| a.name.cmp(&b.name));
             assert_eq!(joined, all, "{count}");
+            // Whatever else there is, a scene stays where it is.
+            for index in 1..=count {
+                let alone = |entry: &Entry| Shard::new(index, count).map(|shard| shard.of(vec![entry.clone()]));
+                let one_by_one: Vec<Entry> = all.iter().filter_map(alone).flatten().collect();
+                assert_eq!(Shard::new(index, count).map(|shard| shard.of(all.clone())), Some(one_by_one));
+            }
         }
         assert_eq!((Shard::new(0, 2), Shard::new(3, 2), Shard::new(0, 0)), (None, None, None));
     }

@@ -1,8 +1,8 @@
 //! Scenes drawn again and held against what is expected of them: the golden test of any project that keeps scenes.
 //!
-//! [`find`] lists the scenes of files and folders, [`replay`] draws them, each on one thread and many side by side, and says of each whether
-//! it shows what `NAME.expect.ron` beside it states. What is said of a scene depends on nothing but its files and the [`Options`]: not on the other
-//! scenes, their order or the threads. [`report`] writes it all down.
+//! [`find()`] lists the scenes of files and folders, [`replay()`] draws them, each on one thread and many side by side, and says of each
+//! whether it shows what `NAME.expect.ron` beside it states. What is said of a scene depends on nothing but its files and the [`Options`]: not
+//! on the other scenes, their order or the threads. [`report`] writes it all down.
 
 mod bless;
 mod cause;

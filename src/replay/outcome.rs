@@ -72,6 +72,12 @@ impl Problem {
     }
 }
 
+/// What there is to say where the expected picture is not known.
+const ONLY_DIGEST: &str = "\
+Only the digest of the expected picture is known, so it cannot be said where it differs. `--expected` takes a folder of
+pictures of an earlier run, `picture` in the expectation a file.
+";
+
 /// How a scene differs from what is expected.
 #[derive(Clone, Debug)]
 pub struct Difference {
@@ -195,9 +201,7 @@ impl Difference {
                 }
             }
             None if matches!(self.mismatch, Mismatch::Size { .. }) => {}
-            None => {
-                text += "Only the digest of the expected picture is known, so it cannot be said where it differs: `--expected` takes a folder of pictures of an earlier run, `picture` in the expectation a file.\n"
-            }
+            None => text += ONLY_DIGEST,
         }
         text
     }

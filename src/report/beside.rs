@@ -85,7 +85,8 @@ fn draw_lines(lines: &mut Vec<BesideLine>, draw: &DrawTrace, first: &[Step], sec
     }
 }
 
-/// The lines as a table for people. `titles` head the columns of the first and the second trace. Lines in which they differ begin with `>`.
+/// The lines as a table for people. `titles` head the columns of the first and the second trace. Lines in which they differ begin
+/// with `>`.
 pub fn beside_text(titles: [&str; 2], lines: &[BesideLine]) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.

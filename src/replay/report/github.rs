@@ -5,7 +5,8 @@ use crate::replay::{Outcome, Replayed, Summary};
 /// Annotations of one kind that GitHub keeps of a step.
 const MOST: usize = 10;
 
-/// Lines that GitHub Actions turns into annotations: an error for each scene that is not as expected, ten at most, as more are dropped there.
+/// Lines that GitHub Actions turns into annotations: an error for each scene that is not as expected, ten at most, as more are dropped
+/// there.
 pub fn annotations(all: &[Replayed]) -> String {
     let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
     let shown = if wrong.len() > MOST { MOST - 1 } else { wrong.len() };

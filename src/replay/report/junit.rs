@@ -7,7 +7,8 @@ use quick_xml::events::{BytesDecl, BytesText, Event};
 
 use crate::replay::{Outcome, Replayed, Summary};
 
-/// One test case for each scene: its folder is the class, its verdict the message. Empty if the writer fails, which in memory it does not.
+/// One test case for each scene: its folder is the class, its verdict the message. Empty if the writer fails, which it does not in
+/// memory.
 pub fn junit(all: &[Replayed]) -> String {
     let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
     let written = write(&mut writer, all).map(|()| writer.into_inner());
