@@ -22,7 +22,7 @@ fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
         [("tests", summary.scenes), ("failures", summary.differing), ("errors", errors), ("skipped", summary.skipped)]
             .map(|(name, count)| (name, count.to_string()));
     let counts = || counts.iter().map(|(name, count)| (*name, count.as_str()));
-    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("UTF-8"), None)))?;
+    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("utf-8"), None)))?;
     let suites = writer.create_element("testsuites").with_attributes(counts());
     suites.write_inner_content(|writer| {
         let suite =
