@@ -327,6 +327,24 @@ mod tests {
         assert!(Expectation::parse(&expectation.to_text().replace("version: 1", "version: 2")).is_err());
         assert!(Expectation::parse("(version: 1, colour: 2)").is_err());
         assert!(Expectation::parse(&" ".repeat(MAXIMUM_BYTES + 1)).is_err());
+        // However deep the brackets are, the form is refused at the first that does not belong.
+        for start in ["", "(version: ", "(needs: [", "(colour: ", "(allowance: (picture: "] {
+            assert!(Expectation::parse(&(start.to_owned() + &"([".repeat(30_000))).is_err(), "{start}");
+        }
+    }
+
+    #[test]
+    fn files_that_are_not_handed_out_are_missed() {
+        let folder = tempfile::tempdir().expect("folder");
+        write_file(&folder.path().join("here.png"), b"").expect("writes");
+        let needs = |names: &[&str]| Expectation {
+            needs: names.iter().map(|name| (*name).to_owned()).collect(),
+            ..Expectation::of("frame", &surface(&[1, 2]))
+        };
+        let expectation = needs(&["here.png", "captured/a.png", "b.png"]);
+        assert_eq!(expectation.missing(folder.path()).expect("plain names"), ["captured/a.png", "b.png"]);
+        assert!(needs(&["../here.png"]).missing(folder.path()).is_err());
+        assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
     }
 
     #[test]
