@@ -1,6 +1,8 @@
 //! `ninebit vectors`.
 
+mod adopt;
 mod check;
+mod compare;
 mod diff;
 mod export;
 mod list;
@@ -28,6 +30,14 @@ pub(crate) enum Command {
     ///
     /// Rows are found by their ids. Exit status 0: the packs have the same rows; 1: they differ.
     Diff(diff::Arguments),
+    /// Hold what a card or a driver answered to its pack: exact, off by one or worse, by unit, tag and policy
+    ///
+    /// Exit status 0: everything is exact or waived; 1: it is not; 3: the pack or the results are not valid; 4: a file is missing.
+    Compare(compare::Arguments),
+    /// Record what a real card answered as truth, grade SILICON
+    ///
+    /// Software renderers are refused. Exit status 0: recorded; 3: refused; 4: a file is missing.
+    Adopt(adopt::Arguments),
 }
 
 /// Runs one of them.
@@ -37,6 +47,8 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Export(arguments) => export::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Adopt(arguments) => adopt::run(arguments),
     }
 }
 

@@ -170,7 +170,7 @@ fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Res
         };
     add("tsv", &|out| writer.write(deciding, out))?;
     for view in &options.views {
-        for (extension, write) in view.files() {
+        for (extension, write) in view.files(unit.name()) {
             add(extension, &|out| write(&writer, deciding, out))?;
         }
     }

@@ -1,13 +1,14 @@
 //! Views: the same rows for readers that want no text.
 //!
 //! `hex` packs a row into one word, the first column in its top bits, for `$readmemh`; `json`, `svh` and `h` say which bits a column has. `jsonl` has one
-//! object a row.
+//! object a row. `gpu` has draws ([`gpu`](super::gpu)).
 
 use std::io::{self, Write};
 
 use serde_json::{Map, Value, json};
 
 use super::column::{Column, Kind};
+use super::gpu;
 use super::table::{Row, Writer};
 use crate::state::named;
 
@@ -18,6 +19,8 @@ named! {
         Hex,
         /// One JSON object a row.
         Jsonl,
+        /// Draws for a graphics card, of units that one can show.
+        Gpu,
     }
 }
 
@@ -25,9 +28,11 @@ named! {
 type WriteFile = fn(&Writer, bool, &mut dyn Write) -> io::Result<usize>;
 
 impl View {
-    /// The files of the view: extension, and what writes it.
-    pub fn files(self) -> Vec<(&'static str, WriteFile)> {
+    /// The files of the view for a unit: extension, and what writes it.
+    pub fn files(self, unit: &str) -> Vec<(&'static str, WriteFile)> {
         match self {
+            View::Gpu if gpu::recipes(unit).is_empty() => Vec::new(),
+            View::Gpu => vec![("gpu.txt", gpu::write::text), ("gpu.raw", gpu::write::raw)],
             View::Hex => vec![("hex", hex), ("layout.json", layout_json), ("svh", verilog_header), ("h", c_header)],
             View::Jsonl => vec![("jsonl", jsonl)],
         }
