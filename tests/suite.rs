@@ -49,6 +49,7 @@ mod op;
 mod oracle;
 mod readme;
 mod registers;
+mod results;
 mod scene_format;
 mod scene_hostile;
 mod texture_properties;

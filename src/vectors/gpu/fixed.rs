@@ -105,9 +105,16 @@ pub(super) fn vertex_color(case: &Case) -> Option<Placement> {
 pub(super) fn constant_color(case: &Case) -> Option<Placement> {
     let color = float(case.number("in.color"))?;
     let one = 1.0_f32.to_le_bytes();
-    let words = ["TEXTURE_ENV_MODE COMBINE", "COMBINE_RGB REPLACE", "SOURCE0_RGB CONSTANT", "OPERAND0_RGB SRC_COLOR"];
-    let mut state: Vec<String> = words.iter().map(|words| format!("env 0 {words}")).collect();
-    state.extend(["env 0 RGB_SCALE 1", "ramp 0 1"].map(str::to_owned));
+    let words = [
+        "TEXTURE_ENV_MODE COMBINE",
+        "COMBINE_RGB REPLACE",
+        "SOURCE0_RGB CONSTANT",
+        "OPERAND0_RGB SRC_COLOR",
+        "RGB_SCALE 1",
+    ];
+    // A unit with a texture, whose environment comes after it.
+    let mut state = vec!["ramp 0 1".to_owned()];
+    state.extend(words.iter().map(|words| format!("env 0 {words}")));
     let sources = vec![("environment_float", [color, color, color, one].concat())];
     Some(drawn(Path::Common, vec![COMBINE], state, sources, vec![Read::byte("out.byte", 0)]))
 }
