@@ -72,6 +72,28 @@ fn numbers_fit_their_columns() {
     }
 }
 
+/// Every operation of an API has a form on the chip: rows of it that are not black.
+#[test]
+fn programs_of_every_operation_run() {
+    for (name, column) in
+        [("texture-stage", 0), ("texture-environment", 0), ("texture-combine", 1), ("pixel-shader", 0)]
+    {
+        let unit = units::by_name(name).unwrap();
+        let numbers = unit.inputs()[column].boundary();
+        for profile in unit.profiles() {
+            let writer = Writer::new(Contents { unit, profile: *profile, level: Level::L0, seed: 1 });
+            let mut lit = std::collections::BTreeSet::new();
+            cases::visit(unit, *profile, Level::L0, 1, |inputs, origin| {
+                let row = writer.row(inputs, origin);
+                if row.results[4..].iter().any(|value| *value != 0) {
+                    lit.insert(inputs[column]);
+                }
+            });
+            assert_eq!(lit.into_iter().collect::<Vec<_>>(), numbers, "{name}");
+        }
+    }
+}
+
 /// Each policy that a unit's rules name changes some row of it, and no other does.
 #[test]
 fn policies_change_the_units_of_their_rules() {

@@ -5,11 +5,15 @@ mod combiner_stage;
 mod final_combiner;
 mod fog;
 mod number;
+mod pixel_shader;
+mod program;
 mod raster;
 mod rop;
 mod shader;
 mod texel;
 mod texture;
+mod texture_environment;
+mod texture_stage;
 
 use super::unit::Unit;
 use crate::state::{Bias, Named, Scale};
@@ -51,6 +55,10 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &combiner_stage::BlueToAlpha,
         &combiner_stage::TwoStages,
         &final_combiner::FinalCombiner,
+        &texture_stage::Stage,
+        &texture_environment::Classic,
+        &texture_environment::Combine,
+        &pixel_shader::Instruction,
         &rop::AlphaTest,
         &rop::Blend,
         &rop::SurfaceStore,
