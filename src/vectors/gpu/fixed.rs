@@ -4,7 +4,7 @@ use super::{Case, Draw, Path, Placement, Read, byte};
 use crate::state::{AddressMode, Bias, BlendEquation, BlendFactor, CompareFunction, Scale, TextureFormat};
 
 /// A placement with one draw.
-fn drawn(
+pub(super) fn drawn(
     path: Path,
     needs: Vec<&'static str>,
     state: Vec<String>,
@@ -15,8 +15,13 @@ fn drawn(
 }
 
 /// The four channels of the pixel in columns of these names.
-fn colors(columns: [&str; 4]) -> Vec<Read> {
+pub(super) fn colors(columns: [&str; 4]) -> Vec<Read> {
     columns.into_iter().enumerate().map(|(n, column)| Read::byte(column, n)).collect()
+}
+
+/// The bytes of a colour of the row.
+pub(super) fn color(case: &Case, name: &str) -> Option<Vec<u8>> {
+    ["r", "g", "b", "a"].iter().map(|channel| byte(case.number(&format!("in.{name}.{channel}")))).collect()
 }
 
 /// The bits of a finite float as four bytes, the lowest first; `None` for infinities and NaN, which an API may treat as it likes.
@@ -47,7 +52,7 @@ fn combine(operation: &str) -> Vec<String> {
     words.iter().map(|words| format!("env 0 {words}")).collect()
 }
 
-const COMBINE: &str = "GL_ARB_texture_env_combine|GL_EXT_texture_env_combine";
+pub(super) const COMBINE: &str = "GL_ARB_texture_env_combine|GL_EXT_texture_env_combine";
 
 /// MODULATE of two bytes.
 fn modulate(case: &Case, column: &str, state: &[String]) -> Option<Placement> {
@@ -275,13 +280,10 @@ pub(super) fn blend(case: &Case) -> Option<Placement> {
     if factors[1] == BlendFactor::SourceAlphaSaturate {
         return None;
     }
-    let color = |name: &str| -> Option<Vec<u8>> {
-        ["r", "g", "b", "a"].iter().map(|channel| byte(case.number(&format!("in.{name}.{channel}")))).collect()
-    };
-    let mut sources = vec![("primary", color("source")?), ("destination", color("destination")?)];
+    let mut sources = vec![("primary", color(case, "source")?), ("destination", color(case, "destination")?)];
     if factors.iter().any(|f| factor(*f).contains("CONSTANT")) {
         needs.push("GL_EXT_blend_color");
-        sources.push(("blend_color", color("constant")?));
+        sources.push(("blend_color", color(case, "constant")?));
     }
     let state = vec![format!("blend {equation} {} {}", factor(factors[0]), factor(factors[1]))];
     Some(drawn(Path::Common, needs, state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))

@@ -4,9 +4,11 @@
 //! an RGBA frame buffer. [`Placement`] says all that for one row; rows that share their state are one batch of up to 65,536 pixels. The
 //! program under `vectors/harness/gl` draws batches and writes what it read back.
 //!
-//! [`recipes`] names what there is for a unit: [`stages`] asks the register combiners, [`fixed`] what OpenGL has without them.
+//! [`recipes`] names what there is for a unit: [`stages`] asks the register combiners, [`environment`] whole texture environments, [`fixed`] what else OpenGL has without
+//! them.
 
 pub mod combiners;
+mod environment;
 mod fixed;
 mod stages;
 pub mod write;
@@ -137,6 +139,8 @@ pub fn recipes(unit: &str) -> &'static [Recipe] {
         "alpha-portion" => &[stages::alpha_portion],
         "two-stages" => &[stages::two_stages],
         "final-combiner" => &[stages::final_combiner],
+        "texture-environment" => &[environment::texture_environment],
+        "texture-combine" => &[environment::texture_combine],
         "alpha-test" => &[fixed::alpha_test],
         "blend" => &[fixed::blend],
         _ => &[],

@@ -103,7 +103,7 @@ fn the_model_answers_what_recipes_ask() {
 /// Recipes look columns up by name: a name that a unit does not have would be read as 0.
 #[test]
 fn recipes_name_columns_that_exist() {
-    let sources = concat!(include_str!("stages.rs"), include_str!("fixed.rs"));
+    let sources = concat!(include_str!("stages.rs"), include_str!("environment.rs"), include_str!("fixed.rs"));
     let mut known: Vec<String> = Vec::new();
     for unit in units::all().into_iter().filter(|unit| !recipes(unit.name()).is_empty()) {
         known.extend(unit.inputs().into_iter().chain(unit.results()).map(|column| column.name));

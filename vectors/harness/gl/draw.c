@@ -323,7 +323,8 @@ static void draw_rows(const drawing *d)
     const batch_source *primary_float = batch_find(b, "primary_float"), *environment = batch_find(b, "environment_float");
     const batch_source *coordinates = batch_find(b, "coordinates0"), *corners = batch_find(b, "corners0");
     const batch_source *weights = batch_find(b, "weights0"), *blend_color = batch_find(b, "blend_color");
-    int apart = environment || blend_color, n;
+    const batch_source *environment_byte = batch_find(b, "environment");
+    int apart = environment || environment_byte || blend_color, n;
     long row;
     GLfloat at[3], color[4];
     long bytes[4];
@@ -334,6 +335,11 @@ static void draw_rows(const drawing *d)
         const unsigned char *p;
         if (environment) {
             for (n = 0; n < 4; n++) color[n] = float_of(environment->bytes + 16 * row + 4 * n);
+            gl.TexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, color);
+        }
+        if (environment_byte) {
+            for (n = 0; n < 4; n++) bytes[n] = environment_byte->bytes[4 * row + n];
+            color_of(bytes, color);
             gl.TexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, color);
         }
         if (blend_color) {
