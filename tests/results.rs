@@ -261,6 +261,50 @@ fn results_of_something_else_are_refused() {
     refused("NB1001", 4);
 }
 
+/// Batches ask rows of their table, and point to bytes that are there.
+#[test]
+fn batches_ask_rows_of_their_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let pack = folder.path().join("pack");
+    let arguments =
+        ["vectors", "export", "--unit", "product", "--unit", "compressed-block", "--unit", "mux", "--unit", "depth"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
+    let output = command.args(arguments).args(["--gpu-batches", "-o"]).arg(&pack).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (manifest, tables) = pack::open(&pack).unwrap();
+    let batches = manifest.files.iter().filter(|file| file.path.ends_with(".gpu.txt"));
+    assert_eq!(batches.map(|file| file.unit.as_str()).collect::<Vec<_>>(), ["compressed-block", "mux", "product"]);
+    for unit in ["compressed-block", "mux", "product"] {
+        let text = fs::read_to_string(pack.join(format!("units/{unit}.gpu.txt"))).unwrap();
+        let raw = fs::read(pack.join(format!("units/{unit}.gpu.raw"))).unwrap();
+        let table = tables.iter().find(|table| table.contents.unit.name() == unit).unwrap();
+        let (mut place, mut rows, mut asked) = (0, 0, 0);
+        for line in text.lines() {
+            let words: Vec<&str> = line.split(' ').collect();
+            let number = |n: usize| words[n].parse::<usize>().unwrap();
+            match words[0] {
+                "batch" => rows = number(1),
+                "ids" => {
+                    assert_eq!(number(1), place);
+                    for id in raw[place..place + 6 * rows].chunks(6) {
+                        let id: String = id.iter().map(|byte| format!("{byte:02x}")).collect();
+                        assert!(table.rows.iter().any(|row| row.id == id), "{unit}: {id}");
+                    }
+                    place += 6 * rows;
+                    asked += rows;
+                }
+                "source" => {
+                    assert_eq!(number(3), place);
+                    place += number(2) * rows;
+                }
+                _ => {}
+            }
+        }
+        assert_eq!(place, raw.len(), "{unit}");
+        assert!(asked >= 500, "{unit}: {asked} rows");
+    }
+}
+
 /// Records whose truth the model does not follow yet, or whose files were changed.
 fn owed(folder: &Path) -> Vec<String> {
     use sha2::{Digest, Sha256};
