@@ -200,26 +200,27 @@ fn shown(register: Register) -> FinalCombiner {
     }
 }
 
-/// A register negated into SPARE0.
+/// A register times -1 in SPARE0; whether the negated mapping of -256 saturates or wraps does not count here.
 fn negated(register: Register) -> GeneralStage {
-    let portion = |component| {
-        let mut portion = Portion::idle(component);
-        portion.inputs[0] = input(register, component, InputMapping::SignedNegate);
-        portion.inputs[1] = one(component);
-        portion.ab_output = Register::Spare0;
-        portion
-    };
-    stage(portion(Component::Rgb), portion(Component::Alpha))
+    times_minus_one(register, false)
 }
 
 /// 1 in SPARE0 where a register is -256, less than 1 elsewhere: -1 times it, less 255.
 fn below(register: Register) -> GeneralStage {
+    times_minus_one(register, true)
+}
+
+fn times_minus_one(register: Register, less_one: bool) -> GeneralStage {
     let portion = |component| {
         let minus_one = input(Register::ConstantColor0, component, InputMapping::SignedNegate);
         let mut portion = Portion::idle(component);
-        portion.inputs =
-            [input(register, component, InputMapping::SignedIdentity), minus_one, minus_one, one(component)];
-        portion.sum_output = Register::Spare0;
+        (portion.inputs[0], portion.inputs[1]) = (input(register, component, InputMapping::SignedIdentity), minus_one);
+        if less_one {
+            (portion.inputs[2], portion.inputs[3]) = (minus_one, one(component));
+            portion.sum_output = Register::Spare0;
+        } else {
+            portion.ab_output = Register::Spare0;
+        }
         portion
     };
     GeneralStage { constants: [[255; 4], [0; 4]], ..stage(portion(Component::Rgb), portion(Component::Alpha)) }

@@ -1,4 +1,5 @@
 //! What recipes ask of the combiners, the model answers as the tables say.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::*;
 use crate::combiner::final_combiner::{self, PlannedFinal};
@@ -66,11 +67,10 @@ fn observed(placement: &Placement, profile: Profile) -> Vec<(String, i64)> {
 fn the_model_answers_what_recipes_ask() {
     for profile in [Profile::Nv10, Profile::Nv2a] {
         for unit in units::all().into_iter().filter(|unit| unit.profiles().contains(&profile)) {
-            let writer = Writer::new(Contents { unit, profile, level: Level::L1, seed: 1 });
-            let (mut asked, mut seen) = (0, 0);
-            cases::visit(unit, profile, Level::L1, 1, |inputs, origin| {
-                seen += 1;
-                if recipes(unit.name()).is_empty() || seen > 4_000 {
+            let writer = Writer::new(Contents { unit, profile, level: Level::L0, seed: 1 });
+            let mut asked = 0;
+            cases::visit(unit, profile, Level::L0, 1, |inputs, origin| {
+                if recipes(unit.name()).is_empty() {
                     return;
                 }
                 let mut results = vec![0; writer.results().len()];

@@ -259,8 +259,18 @@ static int set_state(drawing *d, char **words, int count)
     return 1;
 }
 
+/* Whether the stages have constants of their own: batches for a chip whose stages share them must not turn that on. */
+static int has_stage_constants(const batch *from)
+{
+    int n;
+    for (n = 0; n < from->needs_count; n++) {
+        if (strcmp(from->needs[n], "GL_NV_register_combiners2") == 0) return gl.CombinerStageParameterfvNV != NULL;
+    }
+    return 0;
+}
+
 /* No input, no output, anywhere. */
-static void reset_combiners(void)
+static void reset_combiners(int stage_constants)
 {
     static const GLfloat black[4] = { 0, 0, 0, 0 };
     int stages = max_of(GL_MAX_GENERAL_COMBINERS_NV), stage, n;
@@ -271,7 +281,7 @@ static void reset_combiners(void)
         GLenum name = GL_COMBINER0_NV + (GLenum)stage;
         gl.CombinerOutputNV(name, GL_RGB, GL_DISCARD_NV, GL_DISCARD_NV, GL_DISCARD_NV, GL_NONE, GL_NONE, 0, 0, 0);
         gl.CombinerOutputNV(name, GL_ALPHA, GL_DISCARD_NV, GL_DISCARD_NV, GL_DISCARD_NV, GL_NONE, GL_NONE, 0, 0, 0);
-        for (n = 0; gl.CombinerStageParameterfvNV && n < 2; n++) {
+        for (n = 0; stage_constants && n < 2; n++) {
             gl.CombinerStageParameterfvNV(name, GL_CONSTANT_COLOR0_NV + (GLenum)n, black);
         }
     }
@@ -508,10 +518,11 @@ enum draw_status draw_batch(const batch_file *file, const batch *from, long *res
     gl.ShadeModel(GL_SMOOTH);
     if (d.combines) {
         gl.Enable(GL_REGISTER_COMBINERS_NV);
-        if (gl.CombinerStageParameterfvNV) gl.Enable(GL_PER_STAGE_CONSTANTS_NV);
-        reset_combiners();
+        if (has_stage_constants(from)) gl.Enable(GL_PER_STAGE_CONSTANTS_NV);
+        reset_combiners(has_stage_constants(from));
     }
-    if (batch_find(from, "secondary") && !d.combines) gl.Enable(GL_COLOR_SUM);
+    /* Without it the secondary color may not reach the fragment; the combiners ignore the sum itself. */
+    if (batch_find(from, "secondary")) gl.Enable(GL_COLOR_SUM);
     drawn = draw_all(&d, pixels, results);
     for (unit = 0; unit < UNITS; unit++) {
         if (!d.enabled[unit]) continue;
@@ -522,9 +533,10 @@ enum draw_status draw_batch(const batch_file *file, const batch *from, long *res
     activate(0);
     gl.Disable(GL_ALPHA_TEST);
     if (d.combines) {
-        if (gl.CombinerStageParameterfvNV) gl.Disable(GL_PER_STAGE_CONSTANTS_NV);
+        if (has_stage_constants(from)) gl.Disable(GL_PER_STAGE_CONSTANTS_NV);
         gl.Disable(GL_REGISTER_COMBINERS_NV);
     }
+    if (batch_find(from, "secondary")) gl.Disable(GL_COLOR_SUM);
     free(pixels);
     error = gl.GetError();
     if (drawn && error) sprintf(message, "OpenGL error 0x%x", error);
