@@ -1,7 +1,7 @@
 //! Views: the same rows for readers that want no text.
 //!
 //! `hex` packs a row into one word, the first column in its top bits, for `$readmemh`; `json`, `svh` and `h` say which bits a column has. `jsonl` has one
-//! object a row. `gpu` has draws ([`gpu`](super::gpu)).
+//! object a row. `gpu` has draws ([`gpu`]).
 
 use std::io::{self, Write};
 

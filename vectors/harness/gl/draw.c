@@ -1,48 +1,16 @@
 #include "draw.h"
-#include "gl.h"
+#include "drawing.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #define LINE 512
-#define UNITS 4
-
-/* What is drawn at the moment. */
-typedef struct drawing {
-    const batch_file *file;
-    const batch *from;
-    /* Rows of the picture, and the next power of two. */
-    int height, power;
-    /* 0, or what unit 0 looks up: GL_TEXTURE_2D or GL_TEXTURE_CUBE_MAP. */
-    GLenum enabled[UNITS];
-    GLuint names[UNITS];
-    int combines;
-    char *message;
-} drawing;
-
-static int fail(drawing *d, const char *message, const char *detail)
-{
-    sprintf(d->message, "%.100s%.60s", message, detail);
-    return 0;
-}
-
-static int max_of(GLenum name)
-{
-    GLint value = 0;
-    gl.GetIntegerv(name, &value);
-    return value;
-}
 
 /* The unit's number at the end of a name of a source. */
 static int unit_of(const char *name)
 {
     return name[strlen(name) - 1] - '0';
-}
-
-static void activate(int unit)
-{
-    if (gl.ActiveTexture) gl.ActiveTexture(GL_TEXTURE0 + (GLenum)unit);
 }
 
 static int combiners(void)
@@ -65,7 +33,7 @@ int draw_supports(const batch_file *file, const batch *from, const char **missin
         const char *name = from->sources[n].name;
         if (strncmp(name, "texture", 7) == 0 && unit_of(name) > 0) {
             *missing = "more texture units";
-            if (!gl.ActiveTexture || !gl.MultiTexCoord2f || max_of(GL_MAX_TEXTURE_UNITS) <= unit_of(name)) return 0;
+            if (!gl.ActiveTexture || !gl.MultiTexCoord2f || drawing_max(GL_MAX_TEXTURE_UNITS) <= unit_of(name)) return 0;
         }
     }
     *missing = "a function that the extension should have";
@@ -74,225 +42,6 @@ int draw_supports(const batch_file *file, const batch *from, const char **missin
     if (batch_find(from, "blocks0") && !gl.CompressedTexImage2D) return 0;
     if (batch_find(from, "blend_color") && !gl.BlendColor) return 0;
     return 1;
-}
-
-/* A texture of a unit, looked up by the nearest texel. */
-static void bind(drawing *d, int unit, GLenum target, GLint filter)
-{
-    activate(unit);
-    gl.GenTextures(1, &d->names[unit]);
-    gl.BindTexture(target, d->names[unit]);
-    gl.TexParameteri(target, GL_TEXTURE_MIN_FILTER, filter);
-    gl.TexParameteri(target, GL_TEXTURE_MAG_FILTER, filter);
-    gl.TexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
-    gl.TexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
-    gl.Enable(target);
-    gl.TexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_REPLACE);
-    d->enabled[unit] = target;
-}
-
-/* Uploads what the rows bring, a texel a row, in a format of OpenGL. */
-static int upload(drawing *d, int unit, const batch_source *source, GLint internal, GLenum format, GLenum type)
-{
-    unsigned char *texels = (unsigned char *)calloc((size_t)BATCH_WIDTH * (size_t)d->power, (size_t)source->size);
-    if (!texels) return fail(d, "not enough memory", "");
-    memcpy(texels, source->bytes, (size_t)(d->from->rows * source->size));
-    bind(d, unit, GL_TEXTURE_2D, GL_NEAREST);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, internal, BATCH_WIDTH, d->power, 0, format, type, texels);
-    free(texels);
-    return 1;
-}
-
-/* Four texels a row, which its coordinates lie between. */
-static int upload_quads(drawing *d, const batch_source *source)
-{
-    unsigned char *texels = (unsigned char *)calloc((size_t)BATCH_WIDTH * (size_t)d->power, 16);
-    long row;
-    if (!texels) return fail(d, "not enough memory", "");
-    for (row = 0; row < d->from->rows; row++) {
-        unsigned char *place = texels + 4 * (row / BATCH_WIDTH * 2 * (2 * BATCH_WIDTH) + row % BATCH_WIDTH * 2);
-        memcpy(place, source->bytes + 16 * row, 8);
-        memcpy(place + 4 * 2 * BATCH_WIDTH, source->bytes + 16 * row + 8, 8);
-    }
-    bind(d, 0, GL_TEXTURE_2D, GL_LINEAR);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, 2 * BATCH_WIDTH, 2 * d->power, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
-    free(texels);
-    return 1;
-}
-
-/* A compressed block a row. */
-static int upload_blocks(drawing *d, GLint internal)
-{
-    const batch_source *source = batch_find(d->from, "blocks0");
-    size_t size;
-    unsigned char *blocks;
-    if (!source) return fail(d, "there are no blocks", "");
-    size = (size_t)BATCH_WIDTH * (size_t)d->power * (size_t)source->size;
-    blocks = (unsigned char *)calloc(size, 1);
-    if (!blocks) return fail(d, "not enough memory", "");
-    memcpy(blocks, source->bytes, (size_t)(d->from->rows * source->size));
-    bind(d, 0, GL_TEXTURE_2D, GL_NEAREST);
-    gl.CompressedTexImage2D(GL_TEXTURE_2D, 0, (GLenum)internal, 4 * BATCH_WIDTH, 4 * d->power, 0, (GLsizei)size, blocks);
-    free(blocks);
-    return 1;
-}
-
-/* A line of texels that say where they are: red and green the number of the column, blue 1. */
-static int upload_ramp(drawing *d, int size)
-{
-    unsigned char *texels = (unsigned char *)calloc((size_t)size, 4);
-    int column;
-    if (!texels) return fail(d, "not enough memory", "");
-    for (column = 0; column < size; column++) {
-        texels[4 * column] = (unsigned char)(column & 255);
-        texels[4 * column + 1] = (unsigned char)(column >> 8);
-        texels[4 * column + 2] = 1;
-        texels[4 * column + 3] = 255;
-    }
-    bind(d, 0, GL_TEXTURE_2D, GL_NEAREST);
-    gl.TexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size, 1, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
-    free(texels);
-    return 1;
-}
-
-/* Six faces of texels that say where they are: red the column, green the row, blue the face. */
-static int upload_cube(drawing *d, int size)
-{
-    unsigned char *texels = (unsigned char *)calloc((size_t)size * (size_t)size, 4);
-    int face, n;
-    if (!texels) return fail(d, "not enough memory", "");
-    bind(d, 0, GL_TEXTURE_CUBE_MAP, GL_NEAREST);
-    for (face = 0; face < 6; face++) {
-        for (n = 0; n < size * size; n++) {
-            texels[4 * n] = (unsigned char)(n % size);
-            texels[4 * n + 1] = (unsigned char)(n / size);
-            texels[4 * n + 2] = (unsigned char)face;
-            texels[4 * n + 3] = 255;
-        }
-        gl.TexImage2D(GL_TEXTURE_CUBE_MAP_POSITIVE_X + (GLenum)face, 0, GL_RGBA8, size, size, 0, GL_RGBA, GL_UNSIGNED_BYTE, texels);
-    }
-    free(texels);
-    return 1;
-}
-
-/* Four bytes as a color of floats. */
-static void color_of(const long *bytes, GLfloat *color)
-{
-    int n;
-    for (n = 0; n < 4; n++) color[n] = (GLfloat)bytes[n] / 255.0f;
-}
-
-/* The inputs and outputs of a portion: words 3 to 14 are register, mapping and component of A to D. */
-static int set_portion(const GLint *values)
-{
-    GLenum stage = GL_COMBINER0_NV + (GLenum)values[1], portion = (GLenum)values[2];
-    int n;
-    for (n = 0; n < 4; n++) {
-        const GLint *input = values + 3 + 3 * n;
-        gl.CombinerInputNV(stage, portion, GL_VARIABLE_A_NV + (GLenum)n, (GLenum)input[0], (GLenum)input[1], (GLenum)input[2]);
-    }
-    gl.CombinerOutputNV(stage, portion, (GLenum)values[15], (GLenum)values[16], (GLenum)values[17], (GLenum)values[18], (GLenum)values[19],
-                        (GLboolean)values[20], (GLboolean)values[21], (GLboolean)values[22]);
-    return 1;
-}
-
-/* Does what a line of state says. */
-static int set_state(drawing *d, char **words, int count)
-{
-    GLint v[BATCH_WORDS];
-    long bytes[4];
-    GLfloat color[4];
-    int known = 1, n;
-    const char *what = words[0];
-    for (n = 1; n < count; n++) v[n] = gl_value(words[n], &known);
-    for (n = 0; n < 4; n++) bytes[n] = 255;
-    if (!known) return fail(d, "unknown words in the state: ", what);
-    if (strcmp(what, "env") == 0 && count == 4) {
-        activate(v[1]);
-        gl.TexEnvi(GL_TEXTURE_ENV, (GLenum)v[2], v[3]);
-    } else if (strcmp(what, "parameter") == 0 && count == 4) {
-        activate(v[1]);
-        gl.TexParameteri(d->enabled[v[1] & 3], (GLenum)v[2], v[3]);
-    } else if (strcmp(what, "ramp") == 0 && count == 3 && v[2] > 0) {
-        if (v[2] > max_of(GL_MAX_TEXTURE_SIZE)) return fail(d, "the texture is too large", "");
-        return upload_ramp(d, v[2]);
-    } else if (strcmp(what, "cube") == 0 && count == 3 && v[2] > 0 && v[2] <= 256) {
-        return upload_cube(d, v[2]);
-    } else if (strcmp(what, "texels") == 0 && count == 5) {
-        const batch_source *source = batch_find(d->from, "texture0");
-        if (!source) return fail(d, "there are no texels", "");
-        return upload(d, 0, source, v[2], (GLenum)v[3], (GLenum)v[4]);
-    } else if (strcmp(what, "compressed") == 0 && count == 3) {
-        return upload_blocks(d, v[2]);
-    } else if (strcmp(what, "alpha_test") == 0 && count == 3) {
-        gl.Enable(GL_ALPHA_TEST);
-        gl.AlphaFunc((GLenum)v[1], (GLfloat)v[2] / 255.0f);
-    } else if (strcmp(what, "blend") == 0 && count == 4) {
-        if (gl.BlendEquation) gl.BlendEquation((GLenum)v[1]);
-        else if (v[1] != GL_FUNC_ADD) return fail(d, "there is no glBlendEquation", "");
-        gl.BlendFunc((GLenum)v[2], (GLenum)v[3]);
-    } else if (strcmp(what, "fog_color") == 0 && count == 4) {
-        for (n = 0; n < 3; n++) bytes[n] = v[n + 1];
-        color_of(bytes, color);
-        gl.Fogfv(GL_FOG_COLOR, color);
-    } else if (strcmp(what, "combiners") == 0 && count == 2) {
-        if (v[1] > max_of(GL_MAX_GENERAL_COMBINERS_NV)) return fail(d, "there are too few general combiners", "");
-        gl.CombinerParameteriNV(GL_NUM_GENERAL_COMBINERS_NV, v[1]);
-    } else if (strcmp(what, "portion") == 0 && count == 23) {
-        return set_portion(v);
-    } else if (strcmp(what, "constant") == 0 && count == 6) {
-        for (n = 0; n < 4; n++) bytes[n] = v[n + 2];
-        color_of(bytes, color);
-        gl.CombinerParameterfvNV(GL_CONSTANT_COLOR0_NV + (GLenum)v[1], color);
-    } else if (strcmp(what, "stage_constant") == 0 && count == 7) {
-        if (!gl.CombinerStageParameterfvNV) return fail(d, "there are no constants of single stages", "");
-        for (n = 0; n < 4; n++) bytes[n] = v[n + 3];
-        color_of(bytes, color);
-        gl.CombinerStageParameterfvNV(GL_COMBINER0_NV + (GLenum)v[1], GL_CONSTANT_COLOR0_NV + (GLenum)v[2], color);
-    } else if (strcmp(what, "final") == 0 && count == 5) {
-        gl.FinalCombinerInputNV((GLenum)v[1], (GLenum)v[2], (GLenum)v[3], (GLenum)v[4]);
-    } else if (strcmp(what, "color_sum_clamp") == 0 && count == 2) {
-        gl.CombinerParameteriNV(GL_COLOR_SUM_CLAMP_NV, v[1]);
-    } else {
-        return fail(d, "not a line of state: ", what);
-    }
-    return 1;
-}
-
-/* Whether the stages have constants of their own: batches for a chip whose stages share them must not turn that on. */
-static int has_stage_constants(const batch *from)
-{
-    int n;
-    for (n = 0; n < from->needs_count; n++) {
-        if (strcmp(from->needs[n], "GL_NV_register_combiners2") == 0) return gl.CombinerStageParameterfvNV != NULL;
-    }
-    return 0;
-}
-
-/* No input, no output, anywhere. */
-static void reset_combiners(int stage_constants)
-{
-    static const GLfloat black[4] = { 0, 0, 0, 0 };
-    int stages = max_of(GL_MAX_GENERAL_COMBINERS_NV), stage, n;
-    for (n = 0; n < 2; n++) {
-        gl.CombinerParameterfvNV(GL_CONSTANT_COLOR0_NV + (GLenum)n, black);
-    }
-    for (stage = 0; stage < stages; stage++) {
-        GLenum name = GL_COMBINER0_NV + (GLenum)stage;
-        gl.CombinerOutputNV(name, GL_RGB, GL_DISCARD_NV, GL_DISCARD_NV, GL_DISCARD_NV, GL_NONE, GL_NONE, 0, 0, 0);
-        gl.CombinerOutputNV(name, GL_ALPHA, GL_DISCARD_NV, GL_DISCARD_NV, GL_DISCARD_NV, GL_NONE, GL_NONE, 0, 0, 0);
-        for (n = 0; stage_constants && n < 2; n++) {
-            gl.CombinerStageParameterfvNV(name, GL_CONSTANT_COLOR0_NV + (GLenum)n, black);
-        }
-    }
-}
-
-static void reset_final(void)
-{
-    GLenum n;
-    for (n = GL_VARIABLE_A_NV; n <= GL_VARIABLE_G_NV; n++) {
-        gl.FinalCombinerInputNV(n, GL_ZERO, GL_UNSIGNED_IDENTITY_NV, n == GL_VARIABLE_G_NV ? GL_ALPHA : GL_RGB);
-    }
 }
 
 /* Four bytes, the lowest first, as a float. */
@@ -349,12 +98,12 @@ static void draw_rows(const drawing *d)
         }
         if (environment_byte) {
             for (n = 0; n < 4; n++) bytes[n] = environment_byte->bytes[4 * row + n];
-            color_of(bytes, color);
+            drawing_color(bytes, color);
             gl.TexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, color);
         }
         if (blend_color) {
             for (n = 0; n < 4; n++) bytes[n] = blend_color->bytes[4 * row + n];
-            color_of(bytes, color);
+            drawing_color(bytes, color);
             gl.BlendColor(color[0], color[1], color[2], color[3]);
         }
         if (apart) gl.Begin(GL_QUADS);
@@ -427,7 +176,7 @@ static int read_back(drawing *d, size_t *place, size_t end, const unsigned char 
         }
         column = count == 4 && strcmp(words[0], "read") == 0 ? batch_column(d->file, words[1]) : -1;
         channel = column >= 0 && strlen(words[2]) == 1 ? (int)strcspn("RGBA", words[2]) : 4;
-        if (channel > 3) return fail(d, "not a line of a draw: ", words[0]);
+        if (channel > 3) return drawing_fail(d, "not a line of a draw: ", words[0]);
         weight = strtol(words[3], NULL, 10);
         for (row = 0; row < d->from->rows; row++) results[row * d->file->column_count + column] += weight * pixels[4 * row + channel];
     }
@@ -484,7 +233,7 @@ static int draw_all(drawing *d, unsigned char *pixels, long *results)
     }
     while (place < d->from->end) {
         int count = batch_words(d->file, &place, line, words);
-        if (count != 1 || strcmp(words[0], "draw") != 0) return fail(d, "expected: ", "draw");
+        if (count != 1 || strcmp(words[0], "draw") != 0) return drawing_fail(d, "expected: ", "draw");
         if (!draw_once(d, &place, d->from->end, pixels, results)) return 0;
     }
     return 1;
@@ -506,7 +255,7 @@ enum draw_status draw_batch(const batch_file *file, const batch *from, long *res
     for (d.power = 1; d.power < d.height;) d.power *= 2;
     pixels = (unsigned char *)malloc((size_t)BATCH_WIDTH * (size_t)d.height * 4);
     if (!pixels) {
-        fail(&d, "not enough memory", "");
+        drawing_fail(&d, "not enough memory", "");
         return DRAW_ERROR;
     }
     memset(results, 0, (size_t)from->rows * (size_t)file->column_count * sizeof *results);
@@ -516,26 +265,19 @@ enum draw_status draw_batch(const batch_file *file, const batch *from, long *res
     gl.PixelStorei(GL_UNPACK_SWAP_BYTES, *(const unsigned char *)&order == 0);
     gl.Disable(GL_DITHER);
     gl.ShadeModel(GL_SMOOTH);
-    if (d.combines) {
-        gl.Enable(GL_REGISTER_COMBINERS_NV);
-        if (has_stage_constants(from)) gl.Enable(GL_PER_STAGE_CONSTANTS_NV);
-        reset_combiners(has_stage_constants(from));
-    }
+    if (d.combines) begin_combiners(from);
     /* Without it the secondary color may not reach the fragment; the combiners ignore the sum itself. */
     if (batch_find(from, "secondary")) gl.Enable(GL_COLOR_SUM);
     drawn = draw_all(&d, pixels, results);
     for (unit = 0; unit < UNITS; unit++) {
         if (!d.enabled[unit]) continue;
-        activate(unit);
+        drawing_activate(unit);
         gl.Disable(d.enabled[unit]);
         gl.DeleteTextures(1, &d.names[unit]);
     }
-    activate(0);
+    drawing_activate(0);
     gl.Disable(GL_ALPHA_TEST);
-    if (d.combines) {
-        if (has_stage_constants(from)) gl.Disable(GL_PER_STAGE_CONSTANTS_NV);
-        gl.Disable(GL_REGISTER_COMBINERS_NV);
-    }
+    if (d.combines) end_combiners(from);
     if (batch_find(from, "secondary")) gl.Disable(GL_COLOR_SUM);
     free(pixels);
     error = gl.GetError();
