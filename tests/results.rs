@@ -197,25 +197,25 @@ fn spoiled_results_are_refused() {
     let next = good.lines().nth(10).unwrap();
     let body = &good[..good.rfind("# end").unwrap()];
     let broken = [
-        (String::new(), "NB1020"),
-        (good[..good.len() - 1].to_owned(), "NB1020"),
-        (good[..good.len() / 2].to_owned(), "NB1020"),
-        (body.to_owned(), "NB1020"),
-        (good.replacen(row, next, 1), "NB1020"),
-        (good.replacen(&format!("{row}\n{next}\n"), &format!("{next}\n{row}\n"), 1), "NB1020"),
+        (String::new(), "NB1030"),
+        (good[..good.len() - 1].to_owned(), "NB1030"),
+        (good[..good.len() / 2].to_owned(), "NB1030"),
+        (body.to_owned(), "NB1030"),
+        (good.replacen(row, next, 1), "NB1030"),
+        (good.replacen(&format!("{row}\n{next}\n"), &format!("{next}\n{row}\n"), 1), "NB1030"),
         (good.replacen("results 1", "results 2", 1), "NB1003"),
         (sealed(&body.replacen("# unit product", "# unit produce", 1)), "NB1005"),
-        (sealed(&body.replacen("# seed 1", "# sead 1", 1)), "NB1022"),
-        (sealed(&body.replacen("out.ab", "out.xy", 1)), "NB1022"),
-        (sealed(&body.replacen("out.ab", "mid.product", 1)), "NB1022"),
-        (sealed(&body.replacen("out.ab", "out.ab>>99", 1)), "NB1022"),
+        (sealed(&body.replacen("# seed 1", "# sead 1", 1)), "NB1032"),
+        (sealed(&body.replacen("out.ab", "out.xy", 1)), "NB1032"),
+        (sealed(&body.replacen("out.ab", "mid.product", 1)), "NB1032"),
+        (sealed(&body.replacen("out.ab", "out.ab>>99", 1)), "NB1032"),
         (sealed(&body.replacen(row, &format!("{row}\n{row}"), 1)), "NB1009"),
-        (sealed(&body.replacen(row, &row.replacen("\tok", "\tfine", 1), 1)), "NB1022"),
-        (sealed(&body.replacen(row, &row.replacen("\tok", "\terror", 1), 1)), "NB1022"),
-        (sealed(&body.replacen(row, &row.replacen('\t', "\t+", 1), 1)), "NB1022"),
-        (sealed(&body.replacen(row, &format!("x{}", &row[1..]), 1)), "NB1022"),
-        (sealed(&body.replacen(row, &row[..12], 1)), "NB1022"),
-        (sealed(&body.replacen("# unsupported 0\n", "", 1)), "NB1022"),
+        (sealed(&body.replacen(row, &row.replacen("\tok", "\tfine", 1), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &row.replacen("\tok", "\terror", 1), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &row.replacen('\t', "\t+", 1), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &format!("x{}", &row[1..]), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &row[..12], 1)), "NB1032"),
+        (sealed(&body.replacen("# unsupported 0\n", "", 1)), "NB1032"),
     ];
     for (text, code) in broken {
         let error = parse(&text, Path::new("results")).unwrap_err();
@@ -240,22 +240,22 @@ fn results_of_something_else_are_refused() {
     let device = asked.results().join("device.json");
     let text = fs::read_to_string(&device).unwrap();
     fs::write(&device, text.replace(&asked.manifest.root, &"0".repeat(64))).unwrap();
-    refused("NB1021", 3);
+    refused("NB1031", 3);
     fs::write(&device, text.replace("ninebit-device-1", "ninebit-device-2")).unwrap();
     refused("NB1003", 3);
     fs::write(&device, "{").unwrap();
-    refused("NB1023", 3);
+    refused("NB1033", 3);
     fs::remove_file(&device).unwrap();
     refused("NB1001", 4);
     changed(&asked.path("product"), |body| body.replacen("# seed 1", "# seed 2", 1));
-    refused("NB1021", 3);
+    refused("NB1031", 3);
     changed(&asked.path("product"), |body| format!("{body}0123456789ab\t1\tok\n"));
-    refused("NB1025", 3);
+    refused("NB1035", 3);
     fs::rename(asked.path("product"), asked.path("sum")).unwrap();
-    refused("NB1022", 3);
+    refused("NB1032", 3);
     fs::remove_file(asked.path("sum")).unwrap();
     fs::write(asked.results().join("sum.part"), "").unwrap();
-    refused("NB1020", 3);
+    refused("NB1030", 3);
     fs::remove_file(asked.results().join("sum.part")).unwrap();
     UNITS.iter().for_each(|unit| fs::remove_file(asked.path(unit)).unwrap());
     refused("NB1001", 4);

@@ -61,5 +61,7 @@ mod third_party_stages;
 mod trace;
 mod trace_format;
 mod vectors;
+mod vectors_committed;
+mod vectors_sweep;
 mod vertex_programs;
 mod vertex_scenes;

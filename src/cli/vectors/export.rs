@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use ninebit::output::write_stdout;
-use ninebit::state::{Named, Profile};
+use ninebit::state::Profile;
 use ninebit::vectors::cases::Level;
 use ninebit::vectors::pack::{self, Options};
 use ninebit::vectors::view::View;
@@ -47,10 +47,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let profile = arguments.profile;
     let mut chosen = if arguments.units.is_empty() { units::all() } else { arguments.units.clone() };
     if let Some(unit) = arguments.units.iter().find(|unit| !unit.profiles().contains(&profile)) {
-        return Err(Failure::usage(
-            format!("{} has no unit `{}`", profile.name(), unit.name()),
-            "`ninebit vectors list` says which chips have a unit",
-        ));
+        return Err(super::lacks(*unit, profile));
     }
     chosen.retain(|unit| unit.profiles().contains(&profile));
     let mut seen = HashSet::new();

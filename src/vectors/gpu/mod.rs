@@ -4,8 +4,8 @@
 //! an RGBA frame buffer. [`Placement`] says all that for one row; rows that share their state are one batch of up to 65,536 pixels. The
 //! program under `vectors/harness/gl` draws batches and writes what it read back.
 //!
-//! [`recipes`] names what there is for a unit: [`stages`] asks the register combiners, [`environment`] whole texture environments, [`fixed`] what else OpenGL has without
-//! them.
+//! [`recipes`] names what there is for a unit: `stages.rs` asks the register combiners, `environment.rs` whole texture environments, `fixed.rs` what
+//! else OpenGL has without them.
 
 pub mod combiners;
 mod environment;

@@ -25,12 +25,11 @@
 //! Numbers after a source are the bytes of a row and the place of the first in the raw file. An id takes six bytes there.
 
 use std::collections::BTreeMap;
-use std::io::{self, Write};
 
 use super::{Case, Placement, recipes};
 use crate::state::Named;
 use crate::vectors::BEHAVIOUR;
-use crate::vectors::table::Writer;
+use crate::vectors::table::{Contents, Row, Writer};
 
 /// Rows of a batch: a draw of 256 by 256 pixels.
 pub const ROWS: usize = 65_536;
@@ -58,38 +57,72 @@ fn key(placement: &Placement) -> String {
     format!("{}\n{}", placement.path.word(), lines.join("\n"))
 }
 
-/// The batches of a unit, by their state.
-fn batches(writer: &Writer, deciding: bool) -> io::Result<Vec<Batch>> {
-    let contents = writer.contents();
-    let recipes = recipes(contents.unit.name());
-    let mut open: BTreeMap<String, Vec<Batch>> = BTreeMap::new();
-    writer.each(deciding, |row| {
-        let case = Case { inputs: writer.inputs(), results: writer.results(), row, profile: contents.profile };
-        for placement in recipes.iter().filter_map(|recipe| recipe(&case)) {
-            let batches = open.entry(key(&placement)).or_default();
+/// The batches of a table, row by row.
+#[derive(Debug)]
+pub struct Batches<'w> {
+    writer: &'w Writer,
+    /// By their state.
+    open: BTreeMap<String, Vec<Batch>>,
+}
+
+/// The two files of a unit.
+#[derive(Debug)]
+pub struct Drawn {
+    /// What is drawn.
+    pub text: String,
+    /// What the rows bring.
+    pub raw: Vec<u8>,
+    /// How many rows are asked.
+    pub rows: usize,
+}
+
+impl<'w> Batches<'w> {
+    /// Of a table whose rows will come.
+    pub fn new(writer: &'w Writer) -> Batches<'w> {
+        Batches { writer, open: BTreeMap::new() }
+    }
+
+    /// Places a row, if the unit has a recipe for it.
+    pub fn take(&mut self, row: &Row) {
+        let Contents { unit, profile, .. } = self.writer.contents();
+        let case = Case { inputs: self.writer.inputs(), results: self.writer.results(), row, profile };
+        for placement in recipes(unit.name()).iter().filter_map(|recipe| recipe(&case)) {
+            let batches = self.open.entry(key(&placement)).or_default();
             if batches.last().is_none_or(|batch| batch.rows == ROWS) {
                 let sources = vec![Vec::new(); placement.sources.len()];
                 let placement = placement.clone();
                 batches.push(Batch { ids: Vec::new(), placement, sources, rows: 0, deciding: false });
             }
             let Some(batch) = batches.last_mut() else { continue };
-            batch.ids.extend(id_bytes(&writer.id(&row.inputs)));
+            batch.ids.extend(id_bytes(&self.writer.id(&row.inputs)));
             for (all, (_, bytes)) in batch.sources.iter_mut().zip(placement.sources) {
                 all.extend(bytes);
             }
             batch.rows += 1;
             batch.deciding |= !row.alternatives.is_empty();
         }
-        Ok(())
-    })?;
-    let mut batches: Vec<Batch> = open.into_values().flatten().collect();
-    if batches.len() > BATCHES {
-        batches.sort_by_key(|batch| !batch.deciding);
-        batches.truncate(BATCHES);
     }
-    // The path first, so that a reader that skips one skips it at once.
-    batches.sort_by_key(|batch| batch.placement.path);
-    Ok(batches)
+
+    /// The files; none for a unit that no frame buffer shows.
+    pub fn finish(self) -> Option<Drawn> {
+        if recipes(self.writer.contents().unit.name()).is_empty() {
+            return None;
+        }
+        let mut batches: Vec<Batch> = self.open.into_values().flatten().collect();
+        if batches.len() > BATCHES {
+            batches.sort_by_key(|batch| !batch.deciding);
+            batches.truncate(BATCHES);
+        }
+        // The path first, so that a reader that skips one skips it at once.
+        batches.sort_by_key(|batch| batch.placement.path);
+        let mut raw = Vec::new();
+        for batch in &batches {
+            raw.extend_from_slice(&batch.ids);
+            batch.sources.iter().for_each(|bytes| raw.extend_from_slice(bytes));
+        }
+        let rows = batches.iter().map(|batch| batch.rows).sum();
+        Some(Drawn { text: text(self.writer, &batches), raw, rows })
+    }
 }
 
 /// Twelve hexadecimal digits as six bytes.
@@ -98,15 +131,9 @@ fn id_bytes(id: &str) -> Vec<u8> {
     id.as_bytes().chunks(2).map(|pair| pair.iter().fold(0, |byte, c| byte << 4 | digit(*c))).collect()
 }
 
-/// Writes the text; returns how many rows are asked.
-///
-/// # Errors
-/// The destination refuses.
-pub fn text(writer: &Writer, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
+/// The lines of all batches.
+fn text(writer: &Writer, batches: &[Batch]) -> String {
     let contents = writer.contents();
-    let batches = batches(writer, deciding)?;
-    writeln!(out, "ninebit-gpu 1\nunit {}\nprofile {}", contents.unit.name(), contents.profile.name())?;
-    writeln!(out, "level {}\nseed {}\nbehaviour {BEHAVIOUR}", contents.level.name(), contents.seed)?;
     let mut columns: Vec<&str> = Vec::new();
     let reads = batches.iter().flat_map(|batch| &batch.placement.draws).flat_map(|draw| &draw.reads);
     for read in reads {
@@ -114,51 +141,36 @@ pub fn text(writer: &Writer, deciding: bool, out: &mut dyn Write) -> io::Result<
             columns.push(&read.column);
         }
     }
-    writeln!(out, "columns {}", columns.join(" "))?;
-    let (mut place, mut rows) = (0, 0);
-    for batch in &batches {
+    let mut lines = vec![
+        "ninebit-gpu 1".to_owned(),
+        format!("unit {}", contents.unit.name()),
+        format!("profile {}", contents.profile.name()),
+        format!("level {}", contents.level.name()),
+        format!("seed {}", contents.seed),
+        format!("behaviour {BEHAVIOUR}"),
+        format!("columns {}", columns.join(" ")),
+    ];
+    let mut place = 0;
+    for batch in batches {
         let Batch { placement, .. } = batch;
-        writeln!(out, "batch {} {}", batch.rows, placement.path.word())?;
-        for needs in &placement.needs {
-            writeln!(out, "needs {needs}")?;
-        }
-        writeln!(out, "ids {place}")?;
+        lines.push(format!("batch {} {}", batch.rows, placement.path.word()));
+        lines.extend(placement.needs.iter().map(|needs| format!("needs {needs}")));
+        lines.push(format!("ids {place}"));
         place += batch.ids.len();
         for ((name, bytes), all) in placement.sources.iter().zip(&batch.sources) {
-            writeln!(out, "source {name} {} {place}", bytes.len())?;
+            lines.push(format!("source {name} {} {place}", bytes.len()));
             place += all.len();
         }
-        for line in &placement.state {
-            writeln!(out, "{line}")?;
-        }
+        lines.extend_from_slice(&placement.state);
         for draw in &placement.draws {
-            writeln!(out, "draw")?;
-            for line in &draw.state {
-                writeln!(out, "{line}")?;
-            }
+            lines.push("draw".to_owned());
+            lines.extend_from_slice(&draw.state);
             for read in &draw.reads {
                 let channel = ["R", "G", "B", "A"][read.channel];
-                writeln!(out, "read {} {channel} {}", read.column, read.weight)?;
+                lines.push(format!("read {} {channel} {}", read.column, read.weight));
             }
         }
-        writeln!(out, "end")?;
-        rows += batch.rows;
+        lines.push("end".to_owned());
     }
-    Ok(rows)
-}
-
-/// Writes the bytes that the text names; returns how many rows are asked.
-///
-/// # Errors
-/// The destination refuses.
-pub fn raw(writer: &Writer, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
-    let mut rows = 0;
-    for batch in batches(writer, deciding)? {
-        out.write_all(&batch.ids)?;
-        for bytes in &batch.sources {
-            out.write_all(bytes)?;
-        }
-        rows += batch.rows;
-    }
-    Ok(rows)
+    lines.join("\n") + "\n"
 }

@@ -86,7 +86,7 @@ pub fn adopt(
         first.map_or_else(PathBuf::new, Path::to_path_buf).join(DEVICE)
     };
     let device_path = source(results);
-    let refuse = |message: String, help| VectorError::invalid("NB1026", &device_path, 0, message, help);
+    let refuse = |message: String, help| VectorError::invalid("NB1036", &device_path, 0, message, help);
     let device = &results.device;
     if device.is_software() {
         let message = format!("`{:.80}` is a program, not silicon", device.renderer);
@@ -105,7 +105,7 @@ pub fn adopt(
     }
     if place.exists() {
         let help = "take the record away first, or give the device another name";
-        return Err(VectorError::invalid("NB1026", &place, 0, "the device has a record already", help));
+        return Err(VectorError::invalid("NB1036", &place, 0, "the device has a record already", help));
     }
     let written = |error: std::io::Error| {
         VectorError::Output(OutputError::Write { path: place.clone(), source: error.kind().into() })

@@ -123,7 +123,7 @@ pub fn compare(
         let name = of_unit.unit.name();
         let Some(table) = tables.iter().find(|table| table.contents.unit.name() == name) else {
             let message = format!("the pack has no unit `{name}`");
-            return Err(VectorError::invalid("NB1025", &of_unit.path, 2, message, "name the pack that was drawn"));
+            return Err(VectorError::invalid("NB1035", &of_unit.path, 2, message, "name the pack that was drawn"));
         };
         let pairs = paired(table, of_unit)?;
         let mut compared = unit(table, of_unit, &pairs, shown);
@@ -156,7 +156,7 @@ fn paired<'r>(table: &'r Table, results: &'r UnitResults) -> Result<Vec<(&'r Tab
         Some(expected) => Ok((*expected, row)),
         None => {
             let message = format!("the pack has no row {}", row.id);
-            Err(VectorError::invalid("NB1025", &results.path, row.line, message, "name the pack that was drawn"))
+            Err(VectorError::invalid("NB1035", &results.path, row.line, message, "name the pack that was drawn"))
         }
     };
     results.rows.iter().map(pair).collect()

@@ -130,7 +130,7 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
     if device.pack != manifest.root {
         let message = format!("these are results of the pack {:.12}, not of {:.12}", device.pack, manifest.root);
         return Err(VectorError::invalid(
-            "NB1021",
+            "NB1031",
             &device_path,
             0,
             message,
@@ -143,7 +143,7 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "tsv" || extension == "part"));
     paths.sort();
     if let Some(part) = paths.iter().find(|path| path.extension().is_some_and(|extension| extension == "part")) {
-        return Err(VectorError::invalid("NB1020", part, 0, "a run was broken off here", "draw the pack again"));
+        return Err(VectorError::invalid("NB1030", part, 0, "a run was broken off here", "draw the pack again"));
     }
     if paths.is_empty() {
         return Err(VectorError::Missing {
@@ -157,7 +157,7 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
         let name = results.unit.name();
         if path.file_stem().is_none_or(|stem| stem != name) {
             return Err(VectorError::invalid(
-                "NB1022",
+                "NB1032",
                 &path,
                 2,
                 format!("these are results of `{name}`"),
@@ -169,7 +169,7 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
         if results.asked.iter().zip(of_pack).any(|(asked, own)| asked != own) {
             let message = "its chip, level, seed or behaviour is not the pack's";
             return Err(VectorError::invalid(
-                "NB1021",
+                "NB1031",
                 &path,
                 0,
                 message,
@@ -185,7 +185,7 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
 fn device(text: &str, path: &Path) -> Result<Device, VectorError> {
     let help = "draw the pack again";
     let device: Device = serde_json::from_str(text).map_err(|error| {
-        VectorError::invalid("NB1023", path, error.line(), format!("not a device file: {error}"), help)
+        VectorError::invalid("NB1033", path, error.line(), format!("not a device file: {error}"), help)
     })?;
     if device.format != DEVICE_FORMAT {
         let message = format!("the format is `{:.60}`, not `{DEVICE_FORMAT}`", device.format);

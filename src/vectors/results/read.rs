@@ -25,7 +25,7 @@ pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
         let shown: String = first.chars().take(60).collect();
         let (code, message) = match first.starts_with("# ninebit-results") {
             true => ("NB1003", format!("`{shown}` is another version; this is `{FORMAT}`")),
-            false => ("NB1020", format!("not results: the first line is not `{FORMAT}`")),
+            false => ("NB1030", format!("not results: the first line is not `{FORMAT}`")),
         };
         return Err(invalid(code, 1, message));
     }
@@ -37,7 +37,7 @@ pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
             text.strip_prefix("# ").and_then(|rest| rest.strip_prefix(name)).and_then(|rest| rest.strip_prefix(' '));
         value
             .map(|value| (line, value))
-            .ok_or_else(|| invalid("NB1022", line, format!("`# {name} ...` is expected here")))
+            .ok_or_else(|| invalid("NB1032", line, format!("`# {name} ...` is expected here")))
     };
     let (line, name) = field("unit")?;
     let unit = units::by_name(name).ok_or_else(|| {
@@ -47,29 +47,29 @@ pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
     let results = unit.results();
     let (line, names) = lines.next().unwrap_or((0, ""));
     let columns = observed(names, &results)
-        .ok_or_else(|| invalid("NB1022", line, format!("the columns are not those of results of `{}`", unit.name())))?;
+        .ok_or_else(|| invalid("NB1032", line, format!("the columns are not those of results of `{}`", unit.name())))?;
     let mut seen: HashMap<&str, usize> = HashMap::new();
     let mut rows = Vec::new();
     let mut unsupported = None;
     for (line, text) in lines {
         if let Some(count) = text.strip_prefix("# unsupported ") {
-            unsupported = Some(count.parse().map_err(|_| invalid("NB1022", line, "not a number of rows".to_owned()))?);
+            unsupported = Some(count.parse().map_err(|_| invalid("NB1032", line, "not a number of rows".to_owned()))?);
             continue;
         }
-        let row = row(text, line, &columns, &results).map_err(|message| invalid("NB1022", line, message))?;
+        let row = row(text, line, &columns, &results).map_err(|message| invalid("NB1032", line, message))?;
         let id = text.get(..12).unwrap_or_default();
         if let Some(first) = seen.insert(id, line) {
             return Err(invalid("NB1009", line, format!("row {id} stands in line {first} already")));
         }
         rows.push(row);
     }
-    let unsupported = unsupported.ok_or_else(|| invalid("NB1022", 0, "`# unsupported ...` is missing".to_owned()))?;
+    let unsupported = unsupported.ok_or_else(|| invalid("NB1032", 0, "`# unsupported ...` is missing".to_owned()))?;
     Ok(UnitResults { path: path.to_path_buf(), unit, asked, columns, rows, unsupported })
 }
 
 /// Everything before the last line, which says how much that is.
 fn checked<'t>(text: &'t str, path: &Path) -> Result<&'t str, VectorError> {
-    let invalid = |message: &str| VectorError::invalid("NB1020", path, 0, message, AGAIN);
+    let invalid = |message: &str| VectorError::invalid("NB1030", path, 0, message, AGAIN);
     let last = text.strip_suffix('\n').and_then(|text| text.rfind('\n')).map(|at| at + 1);
     let end = last.map(|at| text.split_at(at)).filter(|(_, end)| end.starts_with("# end "));
     let Some((body, end)) = end else { return Err(invalid("its last line is not `# end ...`: it is cut off")) };

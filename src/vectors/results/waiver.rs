@@ -27,7 +27,7 @@ pub struct Waiver {
 /// The file is missing or is not such a list; a unit does not exist or is there twice; a waiver waives nothing or has no reason.
 pub fn read(path: &Path) -> Result<Vec<Waiver>, VectorError> {
     let help = r#"a list such as [{"unit": "blend", "maximum": 1, "count": 7, "reason": "..."}]"#;
-    let invalid = |line, message: String| VectorError::invalid("NB1024", path, line, message, help);
+    let invalid = |line, message: String| VectorError::invalid("NB1034", path, line, message, help);
     let text = read_text(path, "check the spelling of the file of waivers")?;
     let waivers: Vec<Waiver> = serde_json::from_str(&text)
         .map_err(|error| invalid(error.line(), format!("not a list of waivers: {error}")))?;

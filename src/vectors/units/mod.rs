@@ -1,5 +1,6 @@
 //! The units that vectors are made of, in the order of the pipe.
 
+mod block;
 mod combiner;
 mod combiner_stage;
 mod final_combiner;
