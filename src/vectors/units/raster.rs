@@ -147,15 +147,17 @@ impl Unit for ColorWeights {
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4, 3 4 1, and sixteenths 5 6 5.
-        let one = i64::from(1.0_f32.to_bits());
+        // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4, 3 4 1, and sixteenths 5 6 5. Then halves and quarters of an area that is a
+        // power of two, which no tie lowers, unless w is none.
+        let [one, two, other] = [1.0_f32, 2.0, 1.5].map(|w| i64::from(w.to_bits()));
         let positions = [
             [40, 24, 104, 216, 88, 264],
             [104, 216, 40, 24, 88, 264],
             [104, 216, 88, 264, 40, 24],
             [79, 232, 103, 216, 79, 200],
         ];
-        positions.into_iter().map(|row| [&row[..], &[5, 13, one, one, one]].concat()).collect()
+        let exact = [one, two, other].map(|w| vec![8, 8, 72, 8, 8, 72, 1, 1, w, w, w]);
+        positions.into_iter().map(|row| [&row[..], &[5, 13, one, one, one]].concat()).chain(exact).collect()
     }
 
     fn fit(&self, inputs: &mut [i64]) {
