@@ -51,6 +51,7 @@ mod oracle;
 mod readme;
 mod registers;
 mod replay;
+mod results;
 mod scene_format;
 mod scene_hostile;
 mod texture_properties;

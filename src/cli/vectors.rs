@@ -1,6 +1,8 @@
 //! `ninebit vectors`.
 
+mod adopt;
 mod check;
+mod compare;
 mod diff;
 mod export;
 mod list;
@@ -42,6 +44,14 @@ pub(crate) enum Command {
     ///
     /// Exit status 0: they are the same; 1: some differ; 3: the tree is not valid.
     Digest(sweep::DigestArguments),
+    /// Hold what a card or a driver answered to its pack: exact, off by one or worse, by unit, tag and policy
+    ///
+    /// Exit status 0: everything is exact or waived; 1: it is not; 3: the pack or the results are not valid; 4: a file is missing.
+    Compare(compare::Arguments),
+    /// Record what a real card answered as truth, grade SILICON
+    ///
+    /// Software renderers are refused. Exit status 0: recorded; 3: refused; 4: a file is missing.
+    Adopt(adopt::Arguments),
 }
 
 /// Runs one of them.
@@ -54,6 +64,8 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Sweep(arguments) => sweep::sweep(arguments),
         Command::Merge(arguments) => sweep::merge(arguments),
         Command::Digest(arguments) => sweep::digest(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Adopt(arguments) => adopt::run(arguments),
     }
 }
 

@@ -18,6 +18,7 @@ use sha2::{Digest, Sha256};
 
 use super::cases::Level;
 use super::error::{VectorError, read_text};
+use super::gpu::write::Batches;
 use super::read::{self, Table};
 use super::table::{Contents, Writer};
 use super::view::{Content, Layout, TABLE, View};
@@ -108,10 +109,11 @@ impl Hashing {
         Ok(Hashing { path, file, hash: Sha256::new(), bytes: 0 })
     }
 
-    fn add(&mut self, text: &str) -> Result<(), VectorError> {
-        self.hash.update(text);
-        self.bytes += text.len() as u64;
-        Ok(self.file.write_all(text.as_bytes()).map_err(|error| self.file.refused(error))?)
+    fn add(&mut self, content: impl AsRef<[u8]>) -> Result<(), VectorError> {
+        let bytes = content.as_ref();
+        self.hash.update(bytes);
+        self.bytes += bytes.len() as u64;
+        Ok(self.file.write_all(bytes).map_err(|error| self.file.refused(error))?)
     }
 
     /// Puts the file in its place.
@@ -196,7 +198,11 @@ fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Res
         })?;
         files.push((file, content));
     }
+    let mut batches = options.views.contains(&View::Gpu).then(|| Batches::new(&writer));
     let rows = writer.each(deciding, |row| {
+        if let Some(batches) = &mut batches {
+            batches.take(row);
+        }
         for (file, content) in &mut files {
             if let Content::Rows(_, line) = content {
                 file.add(&(line(&layout, row) + "\n"))?;
@@ -206,7 +212,16 @@ fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Res
     })?;
     // A view without rows has none of its own.
     let own = |content| if matches!(content, Content::Rows(..)) { rows } else { 0 };
-    files.into_iter().map(|(file, content)| file.finish(unit.name(), own(content))).collect()
+    let files = files.into_iter().map(|(file, content)| file.finish(unit.name(), own(content)));
+    let mut files = files.collect::<Result<Vec<File>, _>>()?;
+    if let Some(drawn) = batches.and_then(Batches::finish) {
+        for (extension, bytes) in [("gpu.txt", drawn.text.as_bytes()), ("gpu.raw", &drawn.raw)] {
+            let mut file = Hashing::create(folder, format!("units/{}.{extension}", unit.name()))?;
+            file.add(bytes)?;
+            files.push(file.finish(unit.name(), drawn.rows)?);
+        }
+    }
+    Ok(files)
 }
 
 /// Reads the manifest of a pack.

@@ -1,7 +1,7 @@
 //! Views: the same rows for readers that want no text.
 //!
 //! `hex` packs a row into one word, the first column in its top bits, for `$readmemh`; `json`, `svh` and `h` say which bits a column has. `jsonl` has one
-//! object a row.
+//! object a row. `gpu` has draws ([`gpu`](super::gpu)).
 
 use std::fmt::Write;
 
@@ -18,6 +18,8 @@ named! {
         Hex,
         /// One JSON object a row.
         Jsonl,
+        /// Draws for a graphics card, of units that one can show.
+        Gpu,
     }
 }
 
@@ -43,6 +45,8 @@ impl View {
                 ("svh", Content::Whole(verilog_header)),
                 ("h", Content::Whole(c_header)),
             ],
+            // Rows are put together before any is written.
+            View::Gpu => Vec::new(),
             View::Jsonl => vec![("jsonl", Content::Rows(|_| String::new(), |layout, row| object(layout.writer, row)))],
         }
     }

@@ -37,6 +37,9 @@ pub(crate) struct Arguments {
     /// Also write a view: hex (packed words for $readmemh, with layouts for Verilog and C) or jsonl; may be given several times
     #[arg(long = "view", value_name = "VIEW", value_parser = super::named::<View>)]
     views: Vec<View>,
+    /// Also write draws for a graphics card, for the program in vectors/harness/gl: the view `gpu`
+    #[arg(long)]
+    gpu_batches: bool,
 }
 
 /// Writes a pack.
@@ -49,13 +52,17 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     chosen.retain(|unit| unit.profiles().contains(&profile));
     let mut seen = HashSet::new();
     chosen.retain(|unit| seen.insert(unit.name()));
+    let mut views = arguments.views.clone();
+    if arguments.gpu_batches && !views.contains(&View::Gpu) {
+        views.push(View::Gpu);
+    }
     let options = Options {
         profile,
         level: arguments.level,
         seed: arguments.seed,
         units: chosen,
         deciding: arguments.deciding,
-        views: arguments.views.clone(),
+        views,
     };
     let manifest = pack::export(&arguments.output, &options)?;
     let mut text = String::new();

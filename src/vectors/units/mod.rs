@@ -73,7 +73,7 @@ pub fn by_name(name: &str) -> Option<&'static dyn Unit> {
 }
 
 /// The variant of that number; the last one of those that do not exist.
-fn named<T: Named>(number: i64) -> T {
+pub(super) fn named<T: Named>(number: i64) -> T {
     T::ALL[usize::try_from(number).unwrap_or(0).min(T::ALL.len() - 1)]
 }
 
