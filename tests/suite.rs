@@ -52,6 +52,7 @@ mod readme;
 mod registers;
 mod scene_format;
 mod scene_hostile;
+mod techniques;
 mod texture_properties;
 mod textures;
 mod third_party_pipeline;
