@@ -88,6 +88,7 @@
 //! assert_eq!(frames.surfaces[0].words, [0xff80_8080]);
 //! ```
 
+pub mod accuracy;
 pub mod combiner;
 pub mod compare;
 pub mod diagnostic;
@@ -113,5 +114,7 @@ mod spelling;
 pub mod state;
 pub mod texture;
 pub mod trace;
+pub mod truth;
+mod vector;
 pub mod vectors;
 pub mod vertex;

@@ -11,6 +11,9 @@ use walkdir::WalkDir;
 /// How the names of expectations end.
 const EXPECTATION: &str = ".expect.ron";
 
+/// How the names of files end that scenes share.
+const FAMILY: &str = ".family.ron";
+
 /// Something that was found where scenes were looked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Entry {
@@ -47,7 +50,7 @@ pub struct FindError {
 
 /// Lists the scenes of `places`, sorted by name, each once: files as they are, folders with all below them.
 ///
-/// In a folder a scene is a file `NAME.ron` that is no expectation; what begins with a point is left out; links are followed. An
+/// In a folder a scene is a file `NAME.ron` that is no expectation and no family (`NAME.family.ron`); what begins with a point is left out; links are followed. An
 /// expectation (`NAME.expect.ron`) stands for nothing, but for an [`EntryKind::Orphan`] if its scene is not there.
 ///
 /// # Errors
@@ -71,7 +74,10 @@ pub fn find(places: &[PathBuf]) -> Result<Vec<Entry>, FindError> {
 
 /// What is below a folder.
 fn below(folder: &Path) -> Vec<Entry> {
-    let visible = |name: &std::ffi::OsStr| !name.to_string_lossy().starts_with('.');
+    let visible = |name: &std::ffi::OsStr| {
+        let name = name.to_string_lossy();
+        !name.starts_with('.') && !name.ends_with(FAMILY)
+    };
     let walk = WalkDir::new(folder).follow_links(true).sort_by_file_name();
     walk.into_iter()
         .filter_entry(|entry| entry.depth() == 0 || visible(entry.file_name()))
@@ -203,6 +209,17 @@ mod tests {
         for (path, expected) in [("a/b.ron", "a/b"), ("./a/../b.ron", "a/b"), ("/a/b.c.ron", "a/b.c"), ("x", "x")] {
             assert_eq!(name(Path::new(path)), expected, "{path}");
         }
+    }
+
+    #[test]
+    fn families_are_no_scenes() {
+        let folder = tempfile::tempdir().expect("temporary folder");
+        for name in ["a.ron", "all.family.ron", ".hidden.ron"] {
+            std::fs::write(folder.path().join(name), "()").expect("written");
+        }
+        let found = find(&[folder.path().to_path_buf()]).expect("all of different names");
+        let names: Vec<_> = found.iter().filter_map(|entry| entry.path.file_name()).collect();
+        assert_eq!(names, ["a.ron"]);
     }
 
     #[test]
