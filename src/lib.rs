@@ -88,6 +88,7 @@
 //! assert_eq!(frames.surfaces[0].words, [0xff80_8080]);
 //! ```
 
+pub mod chart;
 pub mod combiner;
 pub mod compare;
 pub mod diagnostic;
@@ -110,6 +111,7 @@ pub mod rop;
 pub mod scene;
 mod spelling;
 pub mod state;
+pub mod sweep;
 pub mod texture;
 pub mod trace;
 pub mod vectors;

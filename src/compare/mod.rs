@@ -146,3 +146,9 @@ pub fn compare(plan: &Plan, options: &CompareOptions) -> Comparison {
         Mode::PerOp => draw::run::<follow::PerOp>(plan, options),
     }
 }
+
+/// Evaluates the ideal alone, as [`Mode::Free`] does: R, G, B, A of a target in 255ths, row by row; `None` where it draws nothing.
+/// `threads` is that of [`CompareOptions`].
+pub fn real_frame(plan: &Plan, target: usize, threads: usize) -> Vec<Option<[f64; 4]>> {
+    draw::on_threads(threads, || draw::held::<free::Real>(plan, target))
+}
