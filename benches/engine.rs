@@ -3,7 +3,7 @@
 #![allow(missing_docs, clippy::float_arithmetic, clippy::unwrap_used, reason = "a benchmark")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use ninebit::compare::{CompareOptions, Mode, compare};
+use ninebit::compare::{ALL_CHANNELS, CompareOptions, Mode, compare};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
@@ -131,7 +131,7 @@ fn comparison(c: &mut Criterion) {
     group.throughput(Throughput::Elements(u64::from(WIDTH * HEIGHT))).sample_size(10);
     let plan = Plan::compile(&scene(true), &PlanOptions::default()).unwrap();
     for mode in Mode::ALL {
-        let options = CompareOptions { mode: *mode, target: 0, threads: 1 };
+        let options = CompareOptions { mode: *mode, target: 0, threads: 1, channels: ALL_CHANNELS };
         group.bench_function(mode.name(), |b| b.iter(|| compare(black_box(&plan), &options)));
     }
     group.finish();

@@ -88,6 +88,7 @@
 //! assert_eq!(frames.surfaces[0].words, [0xff80_8080]);
 //! ```
 
+pub mod accuracy;
 pub mod chart;
 pub mod combiner;
 pub mod compare;
@@ -114,5 +115,7 @@ pub mod state;
 pub mod sweep;
 pub mod texture;
 pub mod trace;
+pub mod truth;
+mod vector;
 pub mod vectors;
 pub mod vertex;

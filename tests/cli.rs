@@ -33,6 +33,8 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("registers --help").text(), file!["cli/help-registers.txt"]);
     assert_data_eq!(bench.run("compare --help").text(), file!["cli/help-compare.txt"]);
     assert_data_eq!(bench.run("generate normal-map --help").text(), file!["cli/help-generate-normal-map.txt"]);
+    assert_data_eq!(bench.run("measure --help").text(), file!["cli/help-measure.txt"]);
+    assert_data_eq!(bench.run("generate --help").text(), file!["cli/help-generate.txt"]);
     assert_data_eq!(bench.run("generate height-rocks --help").text(), file!["cli/help-generate-height-rocks.txt"]);
     assert_data_eq!(
         bench.run("generate hemisphere-normals --help").text(),
@@ -67,6 +69,12 @@ fn a_wrong_command_line_is_status_2() {
         bench.run(&command).failed(2, "not a finite number");
     }
     bench.run("generate hemisphere-normals -o h.png --seed 1.5").failed(2, "--seed");
+    bench.run("generate normalisation-cube -o c.dds --size 24").failed(2, "not a power of two from 1 to 1024");
+    bench.run("generate half-vector-cube -o c.dds").failed(2, "--light");
+    bench.run("generate half-vector-cube -o c.dds --light 0 0 0").failed(2, "points nowhere");
+    bench.run("generate power-table -o t.png --exponent 0").failed(2, "--exponent");
+    bench.run("generate height-noise -o h.png --octaves 9").failed(2, "--octaves");
+    assert!(!bench.path("c.dds").exists() && !bench.path("t.png").exists());
     assert!(!bench.path("h.png").exists());
     bench.run("generate normal-map height.png -o ./height.png").failed(2, "is the input");
     assert_eq!(fs::read(bench.path("height.png")).unwrap(), PNG);

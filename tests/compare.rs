@@ -3,7 +3,7 @@
 
 use crate::random_scene;
 
-use ninebit::compare::{CompareOptions, Comparison, Mode, compare};
+use ninebit::compare::{ALL_CHANNELS, CompareOptions, Comparison, Mode, compare};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
@@ -15,7 +15,7 @@ use proptest::test_runner::TestRunner;
 use std::path::{Path, PathBuf};
 
 fn options(mode: Mode) -> CompareOptions {
-    CompareOptions { mode, target: 0, threads: 1 }
+    CompareOptions { mode, target: 0, threads: 1, channels: ALL_CHANNELS }
 }
 
 /// Scenes of the repository, by path.

@@ -8,6 +8,7 @@
 //! | `timing.rs` | medians of frames |
 //! | `front.rs` | what nothing beats at both |
 //! | `picture.rs`, `labels.rs` | charts, and names that do not overlap |
+//! | `report.rs` | the files of the page |
 //! | `page.rs` | templates, tables, numbers as text |
 #![allow(clippy::float_arithmetic, reason = "times and errors; nothing of this is stored in a frame")]
 
@@ -16,5 +17,7 @@ pub mod front;
 pub mod labels;
 pub mod page;
 pub mod picture;
+pub mod report;
 pub mod surfaces;
+pub mod techniques;
 pub mod timing;

@@ -3,7 +3,9 @@
 use std::ffi::OsString;
 
 use clap::{Args, ValueEnum};
-use ninebit::compare::{CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map};
+use ninebit::compare::{
+    ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
+};
 use ninebit::output::{Compression, Destination, encode_png, write_stdout};
 
 use super::exit::{Exit, Failure, Report};
@@ -63,7 +65,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     };
     let (scene, plan) = arguments.scene.load(context)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
-    let comparison = compare(&plan, &CompareOptions { mode, target, threads: arguments.threads });
+    let comparison =
+        compare(&plan, &CompareOptions { mode, target, threads: arguments.threads, channels: ALL_CHANNELS });
     if let Some(destination) = destination {
         let (width, height, pixels) = heat_map(&comparison).map_err(|error| no_picture(&error))?;
         destination.write(&encode_png(width, height, &pixels, Compression::Small)?)?;

@@ -5,8 +5,9 @@ use std::path::PathBuf;
 
 use clap::builder::RangedI64ValueParser;
 use clap::{Args, Subcommand, ValueEnum};
+use ninebit::generate::cube::{self, Content};
 use ninebit::generate::normal_map::{self, HeightChannel};
-use ninebit::generate::{SIDES, height_field, hemisphere};
+use ninebit::generate::{SIDES, dds, height_field, hemisphere, occlusion, power_table};
 use ninebit::output::{Compression, Destination, encode_png};
 use ninebit::scene::image::{self, ImageLimits, Rgba};
 
@@ -33,15 +34,111 @@ pub(crate) enum Command {
     ///
     /// The same size, noise and seed give the same bytes on every machine.
     HemisphereNormals(HemisphereNormals),
+    /// Make a height field of smooth noise, which tiles without a seam
+    ///
+    /// The same arguments give the same bytes on every machine.
+    HeightNoise(HeightNoise),
+    /// Find out how much of the sky each texel of a height field sees
+    ///
+    /// Grey, the share of the sky weighed by the cosine; alpha holds it as well. Sixteen rays go out from each texel.
+    Occlusion(Occlusion),
+    /// Make a cube map that holds every direction at unit length
+    ///
+    /// The vectors are stored as in `normal-map`.
+    NormalisationCube(NormalisationCube),
+    /// Make a cube map that turns a direction into the half vector between it and a light
+    ///
+    /// A direction looked up points from the surface to the viewer. The vectors are stored as in `normal-map`.
+    HalfVectorCube(HalfVectorCube),
+    /// Make a table of powers for dependent reads
+    ///
+    /// Red, green and blue are v to the power of the exponent, alpha is u; v grows downward, both from 0 to 1 across the picture.
+    PowerTable(PowerTable),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HeightNoise {
+    /// The height field, a grey PNG; `-` is stdout
+    #[arg(short, long, value_name = "HEIGHT.png")]
+    output: OsString,
+    /// Columns and rows
+    #[arg(long, default_value_t = 128, value_parser = side())]
+    size: u32,
+    /// Cells of the coarsest noise along a side
+    #[arg(long, default_value_t = 4, value_parser = clap::value_parser!(u32).range(1..=256))]
+    cells: u32,
+    /// How many noises are added, each twice as fine and half as strong as the one before
+    #[arg(long, default_value_t = 3, value_parser = clap::value_parser!(u32).range(1..=8))]
+    octaves: u32,
+    /// Which noise
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Occlusion {
+    #[command(flatten)]
+    field: HeightField,
+    /// The occlusion, a PNG; `-` is stdout
+    #[arg(short, long, value_name = "OPEN.png")]
+    output: OsString,
+    /// Put it into the alpha of this normal map, which has the height field's size
+    #[arg(long, value_name = "NORMAL.png")]
+    normal_map: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NormalisationCube {
+    /// The cube map, a DDS file; `-` is stdout
+    #[arg(short, long, value_name = "CUBE.dds")]
+    output: OsString,
+    /// Columns and rows of a face: a power of two
+    #[arg(long, default_value_t = 32, value_parser = cube_side)]
+    size: u32,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HalfVectorCube {
+    #[command(flatten)]
+    cube: NormalisationCube,
+    /// The direction to the light, of any length
+    #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], required = true, value_parser = finite, allow_negative_numbers = true)]
+    light: Vec<f64>,
+    /// Directions looked up point from the viewer to the surface, as positions in camera space do
+    #[arg(long)]
+    from_viewer: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PowerTable {
+    /// The table, a PNG; `-` is stdout
+    #[arg(short, long, value_name = "TABLE.png")]
+    output: OsString,
+    /// The power
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
+    exponent: u32,
+    /// Columns
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    width: u32,
+    /// Rows
+    #[arg(long, default_value_t = 256, value_parser = clap::value_parser!(u32).range(1..=4096))]
+    height: u32,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct NormalMap {
-    /// The height field, PNG or TGA; 0 is the lowest
-    height: PathBuf,
+    #[command(flatten)]
+    field: HeightField,
     /// The normal map, a PNG; `-` is stdout
     #[arg(short, long, value_name = "NORMAL.png")]
     output: OsString,
+}
+
+/// A height field and how it is read.
+#[derive(Debug, Args)]
+pub(crate) struct HeightField {
+    /// The height field, PNG or TGA; 0 is the lowest
+    height: PathBuf,
     /// How many texels high a height of 255 is; negative turns hills into pits
     #[arg(long, default_value = "8", value_parser = finite, allow_negative_numbers = true)]
     scale: f64,
@@ -102,14 +199,29 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::NormalMap(arguments) => {
             let destination = Destination::from(arguments.output.as_os_str());
-            refuse_overwriting(&arguments.height, &destination)?;
-            let height = image::load(&arguments.height, &ImageLimits::default())?;
-            let channel = match arguments.channel {
-                Channel::Red => HeightChannel::Red,
-                Channel::Alpha => HeightChannel::Alpha,
-            };
-            let options = normal_map::Options { scale: arguments.scale, wrap: !arguments.no_wrap, channel };
+            let (height, options) = arguments.field.load(&destination)?;
             write(&normal_map::from_height(&height, &options), &destination)
+        }
+        Command::HeightNoise(arguments) => {
+            let destination = Destination::from(arguments.output.as_os_str());
+            let HeightNoise { size, cells, octaves, seed, .. } = arguments;
+            write(&height_field::noise_field(*size, *cells, *octaves, *seed), &destination)
+        }
+        Command::Occlusion(arguments) => occlude(arguments),
+        Command::NormalisationCube(arguments) => write_cube(arguments, Content::Direction),
+        Command::HalfVectorCube(arguments) => {
+            let light: [f64; 3] = std::array::from_fn(|n| arguments.light.get(n).copied().unwrap_or_default());
+            if light == [0.0; 3] {
+                return Err(Failure::usage(
+                    "the zero vector points nowhere",
+                    "write the direction to the light, of any length",
+                ));
+            }
+            write_cube(&arguments.cube, Content::Half { light, from_viewer: arguments.from_viewer })
+        }
+        Command::PowerTable(arguments) => {
+            let destination = Destination::from(arguments.output.as_os_str());
+            write(&power_table::table(arguments.width, arguments.height, arguments.exponent), &destination)
         }
         Command::HeightRocks(arguments) => {
             let destination = Destination::from(arguments.output.as_os_str());
@@ -128,6 +240,48 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     }
 }
 
+impl HeightField {
+    /// The picture, which must not be where the result goes, and how it is read.
+    fn load(&self, destination: &Destination) -> Result<(Rgba, normal_map::Options), Failure> {
+        refuse_overwriting(&self.height, destination)?;
+        let height = image::load(&self.height, &ImageLimits::default())?;
+        let channel = match self.channel {
+            Channel::Red => HeightChannel::Red,
+            Channel::Alpha => HeightChannel::Alpha,
+        };
+        Ok((height, normal_map::Options { scale: self.scale, wrap: !self.no_wrap, channel }))
+    }
+}
+
+fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
+    let destination = Destination::from(arguments.output.as_os_str());
+    let (height, options) = arguments.field.load(&destination)?;
+    let mut picture = occlusion::picture(&height, &options);
+    if let Some(path) = &arguments.normal_map {
+        refuse_overwriting(path, &destination)?;
+        let normals = image::load(path, &ImageLimits::default())?;
+        if (normals.width, normals.height) != (picture.width, picture.height) {
+            return Err(Failure::invalid(
+                "NB0521",
+                format!(
+                    "the normal map is {} x {}, the height field {} x {}",
+                    normals.width, normals.height, picture.width, picture.height
+                ),
+                "make the normal map from this height field",
+            ));
+        }
+        for (pixel, [r, g, b, _]) in picture.pixels.iter_mut().zip(&normals.pixels) {
+            *pixel = [*r, *g, *b, pixel[3]];
+        }
+    }
+    write(&picture, &destination)
+}
+
+fn write_cube(arguments: &NormalisationCube, content: Content) -> Result<(), Failure> {
+    let destination = Destination::from(arguments.output.as_os_str());
+    Ok(destination.write(&dds::cube(&cube::faces(arguments.size, content)))?)
+}
+
 fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {
     Ok(destination.write(&encode_png(image.width, image.height, &image.pixels, Compression::Small)?)?)
 }
@@ -142,6 +296,14 @@ fn noise(text: &str) -> Result<f64, String> {
     let most = hemisphere::MAXIMUM_NOISE;
     let amount = finite(text)?;
     if (0.0..=most).contains(&amount) { Ok(amount) } else { Err(format!("not a number from 0 to {most}")) }
+}
+
+/// Reads the side of a cube map's face.
+fn cube_side(text: &str) -> Result<u32, String> {
+    let (least, most) = (cube::CUBE_SIDES.start(), cube::CUBE_SIDES.end());
+    let side: Option<u32> = text.parse().ok();
+    side.filter(|side| side.is_power_of_two() && cube::CUBE_SIDES.contains(side))
+        .ok_or_else(|| format!("not a power of two from {least} to {most}"))
 }
 
 /// Reads the side of an image.

@@ -11,6 +11,7 @@ mod explain;
 mod generate;
 mod limits;
 mod lower;
+mod measure;
 mod op;
 mod policies;
 mod registers;
@@ -52,6 +53,10 @@ enum Command {
     Trace(trace::Arguments),
     /// Compare a scene with float64 arithmetic of the vendor's real-number text
     Compare(compare::Arguments),
+    /// Measure how far pictures are from what they ought to show, why, and what they cost the chip
+    ///
+    /// Each scene says in its `truth` which light, eye, material and surface are meant; the truth is the lighting equation in float64, per pixel.
+    Measure(measure::Arguments),
     /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
     Explain(explain::Arguments),
     /// Print the pixel programs of a scene in another form
@@ -79,7 +84,7 @@ enum Command {
     Limits,
     /// Time how long scenes take to draw
     Bench(bench::Arguments),
-    /// Make height fields and normal maps
+    /// Make textures: height fields, normal maps, cube maps of vectors, tables of powers
     #[command(subcommand)]
     Generate(generate::Command),
 }
@@ -125,6 +130,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
+        Command::Measure(arguments) => measure::run(&arguments, context),
         Command::Explain(arguments) => explain::run(&arguments, context),
         Command::Lower(arguments) => lower::run(&arguments, context),
         Command::Registers(arguments) => registers::run(&arguments, context),

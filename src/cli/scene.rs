@@ -6,8 +6,9 @@ use clap::Args;
 use ninebit::limits::Limits;
 use ninebit::output::Destination;
 use ninebit::plan::Plan;
-use ninebit::scene::{self, ErrorKind, SceneError};
+use ninebit::scene::{self, ErrorKind, Loaded, SceneError};
 use ninebit::state::{Draw, Policies, Scene};
+use ninebit::truth::Truth;
 
 use super::Context;
 use super::exit::{Exit, Failure, Report};
@@ -39,12 +40,34 @@ impl SceneArguments {
 
 /// Reads, checks and plans the scene file at `path`; warnings go to stderr.
 pub(crate) fn load(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Scene, Plan), Failure> {
+    let (loaded, policies) = read(path, policies, context)?;
+    Ok((loaded.scene, Plan { policies, ..loaded.plan }))
+}
+
+/// The same of a scene that says what its picture ought to show.
+pub(crate) fn load_with_truth(
+    path: &Path,
+    policies: &PolicyArguments,
+    context: Context,
+) -> Result<((Scene, Plan), Truth), Failure> {
+    let (loaded, policies) = read(path, policies, context)?;
+    let Some(truth) = loaded.truth else {
+        return Err(Failure::invalid(
+            "NB0396",
+            format!("`{}` does not say what its picture ought to show", path.display()),
+            "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it",
+        ));
+    };
+    Ok(((loaded.scene, Plan { policies, ..loaded.plan }), truth))
+}
+
+fn read(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Loaded, Policies), Failure> {
     let policies = policies.policies()?;
     let loaded = scene::load(path, &Limits::default()).map_err(|error| refused(&error, context))?;
     if !loaded.warnings.is_empty() {
         terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
     }
-    Ok((loaded.scene, Plan { policies, ..loaded.plan }))
+    Ok((loaded, policies))
 }
 
 impl PolicyArguments {

@@ -293,7 +293,7 @@ fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
 /// Compares what both sides hold at the end.
 fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M::Lane>) -> Outcome {
     let format = plan.targets[options.target].format;
-    let kept = surface::kept_channels(format);
+    let kept = surface::kept_channels(format) & options.channels;
     let mut out = Outcome { errors: Vec::with_capacity(surface.words.len()), ..Outcome::default() };
     let mut least = 0.0;
     for (at, (word, state)) in surface.words.iter().zip(&surface.states).enumerate() {
@@ -339,7 +339,7 @@ fn summed(plan: &Plan, options: &CompareOptions, outcome: Outcome) -> Comparison
     let mode = options.mode;
     let rules = outcome.counts.rules.iter().zip(Rule::ALL).filter(|(errors, _)| errors.count > 0);
     let decisions = outcome.counts.decisions.iter().zip(Decision::ALL).filter(|(counts, _)| counts[0] > 0);
-    let kept = surface::kept_channels(target.format);
+    let kept = surface::kept_channels(target.format) & options.channels;
     let frames = mode != Mode::PerOp;
     let channels = (0..4).filter(|n| frames && kept >> n & 1 != 0).map(|channel| {
         let (errors, histogram) = outcome.channels[channel];

@@ -18,7 +18,7 @@ mod report;
 mod statistics;
 
 pub use heat::{HeatError, heat_map};
-pub use report::{comparison_json, comparison_text};
+pub use report::{comparison_json, comparison_text, statistics_value};
 pub use statistics::{Histogram, Statistics};
 
 use crate::plan::Plan;
@@ -46,7 +46,12 @@ pub struct CompareOptions {
     pub target: usize,
     /// Threads; 0 takes one a core. The counts and extremes do not depend on it, sums only in their last bits.
     pub threads: usize,
+    /// Channels that count, bits R, G, B, A, as far as the surface keeps them; [`ALL_CHANNELS`] for all.
+    pub channels: u8,
 }
+
+/// R, G, B and A.
+pub const ALL_CHANNELS: u8 = 15;
 
 /// Errors of a channel.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -111,7 +111,7 @@ pub fn comparison_json(plan: &Plan, c: &Comparison) -> String {
     let channel = |error: &ChannelError| {
         let bins = (0..BINS).filter(|bin| error.histogram.0[*bin] > 0);
         let bins: Map<String, Value> = bins.map(|bin| (bin_name(bin), error.histogram.0[bin].into())).collect();
-        let mut value = statistics(&error.errors);
+        let mut value = statistics_value(&error.errors);
         value["histogram"] = bins.into();
         (channel_name(error.channel).to_string(), value)
     };
@@ -162,13 +162,13 @@ pub fn comparison_json(plan: &Plan, c: &Comparison) -> String {
 }
 
 fn named(name: &str, kind: &str, errors: &Statistics) -> Value {
-    let mut value = statistics(errors);
+    let mut value = statistics_value(errors);
     value[kind] = name.into();
     value
 }
 
-/// `psnr` is null where nothing is off.
-fn statistics(e: &Statistics) -> Value {
+/// Moments of errors as an object of a JSON document; `psnr` is null where nothing is off.
+pub fn statistics_value(e: &Statistics) -> Value {
     let psnr = Some(e.psnr()).filter(|psnr| psnr.is_finite());
     let (low, high) = if e.count == 0 { (0.0, 0.0) } else { (e.low, e.high) };
     json!({

@@ -1,4 +1,4 @@
-//! Height fields of weathered rock, in integers.
+//! Height fields of weathered rock, and of plain noise, in integers.
 //!
 //! Three things make the picture: blocks and chips (cells around scattered points, each a plane of its own level and tilt), the
 //! rounding of their edges, and weathering (fractal value noise, which also bends the edges of the cells). All of it is
@@ -28,6 +28,11 @@ pub fn rocks(side: u32, seed: u64) -> Rgba {
             heights.push(four.iter().sum::<i64>());
         }
     }
+    picture(side, heights)
+}
+
+/// Heights as bytes, over the whole range.
+fn picture(side: u32, heights: Vec<i64>) -> Rgba {
     let lowest = heights.iter().copied().min().unwrap_or(0);
     let span = (heights.iter().copied().max().unwrap_or(0) - lowest).max(1);
     let pixels = heights
@@ -38,6 +43,18 @@ pub fn rocks(side: u32, seed: u64) -> Rgba {
         })
         .collect();
     Rgba { width: side, height: side, pixels }
+}
+
+/// A tileable height field of value noise summed over `octaves`, the first of `cells` x `cells` cells, each further one twice as fine and
+/// half as strong. Grey as [`rocks`]; the lowest point is 0, the highest 255.
+///
+/// `side` is brought into [`SIDES`], `cells` into 1..=256, `octaves` into 1..=8.
+pub fn noise_field(side: u32, cells: u32, octaves: u32, seed: u64) -> Rgba {
+    let side = side.clamp(*SIDES.start(), *SIDES.end());
+    let (cells, octaves) = (i64::from(cells.clamp(1, 256)), octaves.clamp(1, 8));
+    let along = |index: u32| i64::from(index) * ONE / i64::from(side);
+    let points = (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
+    picture(side, points.map(|(x, y)| fractal(along(x), along(y), cells, octaves, seed)).collect())
 }
 
 /// Height at a point of the unit square, 16.16 as its coordinates.
@@ -158,6 +175,19 @@ mod tests {
         assert_eq!(field.pixels.iter().map(|p| p[0]).min(), Some(0));
         assert_eq!(field.pixels.iter().map(|p| p[0]).max(), Some(255));
         assert!(field.pixels.iter().all(|p| p[0] == p[1] && p[1] == p[2] && p[3] == 255));
+    }
+
+    #[test]
+    fn noise_uses_the_whole_range_and_tiles() {
+        let field = noise_field(32, 4, 3, 5);
+        assert_eq!(field.pixels.iter().map(|p| p[0]).min(), Some(0));
+        assert_eq!(field.pixels.iter().map(|p| p[0]).max(), Some(255));
+        // Across the seam it is no steeper than elsewhere.
+        let step = |a: usize, b: usize| i16::from(field.pixels[a][0]).abs_diff(i16::from(field.pixels[b][0]));
+        let seam = (0..32).map(|y| step(32 * y + 31, 32 * y)).max();
+        let inside = (0..32).flat_map(|y| (0..31).map(move |x| 32 * y + x)).map(|at| step(at, at + 1)).max();
+        assert!(seam <= inside, "{seam:?} {inside:?}");
+        assert_ne!(field, noise_field(32, 4, 3, 6));
     }
 
     #[test]

@@ -44,23 +44,43 @@ impl Default for Options {
 /// `options.size` is brought into [`SIDES`], `options.noise` into 0..=[`MAXIMUM_NOISE`]; NaN is no noise.
 pub fn normals(options: &Options) -> Rgba {
     let size = options.size.clamp(*SIDES.start(), *SIDES.end());
+    let pixels = vectors(options).into_iter().map(|normal| {
+        let [r, g, b] = encode(normal);
+        [r, g, b, 255]
+    });
+    Rgba { width: size, height: size, pixels: pixels.collect() }
+}
+
+/// The same normals before they become bytes, row by row from the top.
+pub fn vectors(options: &Options) -> Vec<[f64; 3]> {
+    let size = options.size.clamp(*SIDES.start(), *SIDES.end());
     let noise = if options.noise > 0.0 { options.noise.min(MAXIMUM_NOISE) } else { 0.0 };
-    let mut pixels = Vec::with_capacity((size * size) as usize);
+    let mut vectors = Vec::with_capacity((size * size) as usize);
     for row in 0..size {
         for column in 0..size {
-            let [r, g, b] = encode(match on_sphere(column, row, size) {
+            vectors.push(match on_sphere(column, row, size) {
                 Some(exact) => {
                     let random = hash(i64::from(column), i64::from(row), options.seed);
                     let amount = |n: usize| noise * signed_unit((random >> (16 * n)) as u16);
                     unit(std::array::from_fn(|n| exact[n] + amount(n)))
                 }
-                None if options.zero_outside => [0.0; 3],
-                None => [0.0, 0.0, 1.0],
+                None => outside(options.zero_outside),
             });
-            pixels.push([r, g, b, 255]);
         }
     }
-    Rgba { width: size, height: size, pixels }
+    vectors
+}
+
+/// The normal around the hemisphere.
+fn outside(zero: bool) -> [f64; 3] {
+    if zero { [0.0; 3] } else { [0.0, 0.0, 1.0] }
+}
+
+/// The normal at any point of the image, s and t from 0 to 1 across it; without noise.
+pub fn normal_at([s, t]: [f64; 2], zero_outside: bool) -> [f64; 3] {
+    let (x, y) = (2.0 * s - 1.0, 1.0 - 2.0 * t);
+    let square = x * x + y * y;
+    if square < 1.0 { [x, y, (1.0 - square).sqrt()] } else { outside(zero_outside) }
 }
 
 /// The normal of the sphere at the centre of a texel, unless the texel lies outside it.
@@ -92,7 +112,7 @@ mod tests {
         (f64::from(byte) - 128.0) / 127.0
     }
 
-    fn vectors(map: &Rgba) -> Vec<[f64; 3]> {
+    fn decoded(map: &Rgba) -> Vec<[f64; 3]> {
         map.pixels.iter().map(|&[r, g, b, _]| [r, g, b].map(decode)).collect()
     }
 
@@ -108,7 +128,7 @@ mod tests {
     #[test]
     fn the_bytes_hold_the_exact_normals() {
         let map = normals(&Options { size: 64, ..Options::default() });
-        for (index, vector) in vectors(&map).into_iter().enumerate() {
+        for (index, vector) in decoded(&map).into_iter().enumerate() {
             let (column, row) = (index as u32 % 64, index as u32 / 64);
             let exact = on_sphere(column, row, 64).unwrap_or([0.0, 0.0, 1.0]);
             for n in 0..3 {
@@ -125,7 +145,7 @@ mod tests {
     fn every_vector_is_of_unit_length_and_points_out() {
         for noise in [0.0, 0.004, 0.1, MAXIMUM_NOISE] {
             let map = normals(&Options { size: 128, noise, seed: 3, ..Options::default() });
-            for vector in vectors(&map) {
+            for vector in decoded(&map) {
                 assert!((length(vector) - 1.0).abs() <= rounding(), "{vector:?}");
                 assert!(vector[2] >= 0.0, "{vector:?}");
             }
@@ -165,9 +185,9 @@ mod tests {
 
     #[test]
     fn noise_moves_the_vectors_as_far_as_it_may() {
-        let clean = vectors(&normals(&Options { size: 64, ..Options::default() }));
+        let clean = decoded(&normals(&Options { size: 64, ..Options::default() }));
         let moved = |noise: f64| {
-            let noisy = vectors(&normals(&Options { size: 64, noise, ..Options::default() }));
+            let noisy = decoded(&normals(&Options { size: 64, noise, ..Options::default() }));
             let pairs = clean.iter().zip(&noisy);
             pairs.map(|(a, b)| length([a[0] - b[0], a[1] - b[1], a[2] - b[2]])).fold(0.0, f64::max)
         };
@@ -180,7 +200,7 @@ mod tests {
         assert!([0, 63, 64 * 63, 64 * 64 - 1].iter().all(|index| strongest.pixels[*index] == [128, 128, 255, 255]));
         // Up and down alike.
         let mean = |vectors: &[[f64; 3]]| vectors.iter().map(|v| v[0]).sum::<f64>() / vectors.len() as f64;
-        let noisy = vectors(&normals(&Options { size: 64, noise: 0.1, ..Options::default() }));
+        let noisy = decoded(&normals(&Options { size: 64, noise: 0.1, ..Options::default() }));
         assert!((mean(&noisy) - mean(&clean)).abs() < 0.005);
     }
 

@@ -1,11 +1,16 @@
-//! Textures made by the tool itself: height fields, normal maps from height fields, and the normal map of a hemisphere.
+//! Textures made by the tool itself: height fields, normal maps and occlusion from them, the normal map of a hemisphere, cube maps of
+//! vectors, tables of powers.
 //!
 //! Deterministic: the same arguments give the same bytes on every machine.
 
+pub mod cube;
+pub mod dds;
 pub(crate) mod hash;
 pub mod height_field;
 pub mod hemisphere;
 pub mod normal_map;
+pub mod occlusion;
+pub mod power_table;
 
 /// Sides of the square images that are made from nothing.
 pub const SIDES: std::ops::RangeInclusive<u32> = 16..=2048;

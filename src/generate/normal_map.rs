@@ -48,16 +48,30 @@ impl Default for Options {
 ///
 /// `options.scale` must be finite; its magnitude is limited to 2^20.
 pub fn from_height(height: &Rgba, options: &Options) -> Rgba {
+    let texels = normals(height, options).into_iter().zip(&height.pixels);
+    let pixels = texels.map(|(normal, height)| {
+        let [r, g, b] = encode(normal);
+        [r, g, b, byte(*height, options.channel)]
+    });
+    Rgba { width: height.width, height: height.height, pixels: pixels.collect() }
+}
+
+/// The height of a texel.
+fn byte([red, _, _, alpha]: [u8; 4], channel: HeightChannel) -> u8 {
+    match channel {
+        HeightChannel::Red => red,
+        HeightChannel::Alpha => alpha,
+    }
+}
+
+/// The unit normals of a height field's texels, before they become bytes; row by row from the top.
+///
+/// `options.scale` must be finite; its magnitude is limited to 2^20.
+pub fn normals(height: &Rgba, options: &Options) -> Vec<[f64; 3]> {
     let (columns, rows) = (height.width as usize, height.height as usize);
-    let at = |x: usize, y: usize| {
-        let [red, _, _, alpha] = height.pixels[y * columns + x];
-        match options.channel {
-            HeightChannel::Red => red,
-            HeightChannel::Alpha => alpha,
-        }
-    };
+    let at = |x: usize, y: usize| byte(height.pixels[y * columns + x], options.channel);
     let scale = if options.scale.is_finite() { options.scale.clamp(-1_048_576.0, 1_048_576.0) } else { 0.0 };
-    let mut pixels = Vec::with_capacity(height.pixels.len());
+    let mut normals = Vec::with_capacity(height.pixels.len());
     for y in 0..rows {
         for x in 0..columns {
             // Rise from `from` to `to`, in steps of the height byte.
@@ -72,11 +86,26 @@ pub fn from_height(height: &Rgba, options: &Options) -> Rgba {
                 (false, true) => rise(at(x, y), at(x, rows - 1)),
                 (false, false) => rise(at(x, (y + 1).min(rows - 1)), at(x, y)),
             };
-            let [r, g, b] = encode(normal(right * scale / 255.0, up * scale / 255.0));
-            pixels.push([r, g, b, at(x, y)]);
+            normals.push(normal(right * scale / 255.0, up * scale / 255.0));
         }
     }
-    Rgba { width: height.width, height: height.height, pixels }
+    normals
+}
+
+/// The height at a point, in texels from the centre of the first one: the bilinear mix of the texels around, 0 to 255.
+pub(super) fn height_at(height: &Rgba, options: &Options, x: f64, y: f64) -> f64 {
+    let (left, top) = (x.floor(), y.floor());
+    let at = |x: f64, y: f64| {
+        let index = |place: f64, count: u32| {
+            let (place, last) = (place as i64, i64::from(count) - 1);
+            (if options.wrap { place.rem_euclid(last + 1) } else { place.clamp(0, last) }) as usize
+        };
+        let (column, row) = (index(x, height.width), index(y, height.height));
+        f64::from(byte(height.pixels[row * height.width as usize + column], options.channel))
+    };
+    let mix = |a: f64, b: f64, weight: f64| a + (b - a) * weight;
+    let row = |y: f64| mix(at(left, y), at(left + 1.0, y), x - left);
+    mix(row(top), row(top + 1.0), y - top)
 }
 
 /// The normal of the triangle with the edges (1, 0, right) and (0, 1, up): their cross product (-right, -up, 1), normalised.
@@ -89,6 +118,11 @@ fn normal(right: f64, up: f64) -> [f64; 3] {
 pub fn encode(vector: [f64; 3]) -> [u8; 3] {
     // The sum is positive, so the conversion's truncation is a floor; out of range it saturates.
     vector.map(|n| (128.5 + 127.0 * n) as u8)
+}
+
+/// The vector that such bytes stand for.
+pub fn decode(bytes: [u8; 3]) -> [f64; 3] {
+    bytes.map(|byte| (f64::from(byte) - 128.0) / 127.0)
 }
 
 #[cfg(test)]

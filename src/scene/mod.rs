@@ -5,6 +5,7 @@
 
 pub mod code;
 pub mod dds;
+mod family;
 pub mod image;
 mod lower;
 pub mod mesh;
@@ -26,6 +27,7 @@ pub use crate::diagnostic::{Diagnostic, ErrorKind, SceneError, Severity, Source,
 use crate::limits::Limits;
 use crate::plan::Plan;
 use crate::state::Scene;
+use crate::truth::Truth;
 pub use lower::{DrawSpans, VertexSpans};
 pub use written::register_words;
 
@@ -42,6 +44,8 @@ pub struct Loaded {
     pub source: Source,
     /// Places of the draws, in their order.
     pub draw_spans: Vec<DrawSpans>,
+    /// What its picture ought to show, if it says so.
+    pub truth: Option<Truth>,
 }
 
 impl Loaded {
@@ -119,13 +123,29 @@ pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, Scene
         let source = Source { text: String::new(), ..source };
         return Err(SceneError { diagnostics: vec![too_large(limits.scene_bytes)], suppressed: 0, source });
     }
-    let mut reader = reader::Reader::new(text, limits);
     let folder = origin.parent().unwrap_or(Path::new(""));
-    let found = lower::scene(&mut reader, text, folder);
-    let mut diagnostics = reader.diagnostics;
+    let family = match family::find(text, folder, limits) {
+        Ok(family) => family,
+        Err(diagnostics) => return Err(SceneError { diagnostics, suppressed: 0, source }),
+    };
+    // Both texts in one, so that a place in either is a number of bytes.
+    let whole = family.as_ref().map(|family| format!("{text}\n{}", family.text()));
+    let whole = whole.as_deref().unwrap_or(text);
+    let mut reader = reader::Reader::new(whole, limits);
+    let shared = family.as_ref().map(|_| &whole[text.len() + 1..]);
+    let found = lower::scene(&mut reader, &whole[..text.len()], shared, folder);
+    let (mut diagnostics, suppressed) = (reader.diagnostics, reader.suppressed);
+    if let Some(family) = &family {
+        diagnostics = diagnostics.into_iter().map(|finding| family.place(finding, text)).collect();
+    }
     diagnostics.sort_by_key(Diagnostic::order);
     match found {
-        Some((scene, plan, draw_spans)) => Ok(Loaded { scene, plan, warnings: diagnostics, source, draw_spans }),
-        None => Err(SceneError { diagnostics, suppressed: reader.suppressed, source }),
+        Some(lower::Found { scene, plan, truth, mut spans }) => {
+            if let Some(family) = &family {
+                spans.iter_mut().for_each(|draw| family.keep_inside(draw, text));
+            }
+            Ok(Loaded { scene, plan, warnings: diagnostics, source, draw_spans: spans, truth })
+        }
+        None => Err(SceneError { diagnostics, suppressed, source }),
     }
 }

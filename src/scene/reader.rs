@@ -27,6 +27,8 @@ pub(super) struct Reader<'a> {
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) errors: usize,
     pub(super) suppressed: usize,
+    /// Vectors that are used by name.
+    pub(super) vectors: Vectors,
 }
 
 impl<'a> Reader<'a> {
@@ -36,7 +38,16 @@ impl<'a> Reader<'a> {
             .with_default_extension(Extensions::IMPLICIT_SOME)
             .with_recursion_limit(limits.nesting.saturating_mul(2));
         let diagnostics = Vec::new();
-        Reader { text, limits, profile: Profile::Nv2a, options, diagnostics, errors: 0, suppressed: 0 }
+        Reader {
+            text,
+            limits,
+            profile: Profile::Nv2a,
+            options,
+            diagnostics,
+            errors: 0,
+            suppressed: 0,
+            vectors: Vectors::default(),
+        }
     }
 
     pub(super) fn push(&mut self, diagnostic: Diagnostic) {
@@ -187,6 +198,9 @@ impl<'a> Reader<'a> {
         most: usize,
         defaults: [f32; 4],
     ) -> Option<([f32; 4], usize)> {
+        if raw.is_text() {
+            return self.named_vector(raw, what, least, most, defaults);
+        }
         if let Some(numbers) = Numbers::split(raw.text).or_else(|| self.attempt(raw.text))
             && (least..=most).contains(&numbers.count)
             && numbers.values.iter().all(|value| value.is_finite())
@@ -217,6 +231,37 @@ impl<'a> Reader<'a> {
             self.finite(part);
         }
         None
+    }
+
+    /// The numbers of a vector that is given by its name.
+    fn named_vector(
+        &mut self,
+        raw: &Raw<'a, Numbers>,
+        what: &str,
+        least: usize,
+        most: usize,
+        defaults: [f32; 4],
+    ) -> Option<([f32; 4], usize)> {
+        let name = self.read(&raw.as_other::<String>())?;
+        let place = self.span(raw);
+        let Some(vector) = self.vectors.0.iter_mut().find(|vector| vector.name == name) else {
+            let vectors = std::mem::take(&mut self.vectors);
+            let known = vectors.0.iter().map(|vector| vector.name.as_str());
+            unknown_name(self, place, "vector", &name, known, "define it in `names: (vectors: { ... })`");
+            self.vectors = vectors;
+            return None;
+        };
+        vector.used = true;
+        let (written, count) = vector.value?;
+        if !(least..=most).contains(&count) {
+            let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
+            let message = format!("{what} has {wanted} numbers, and the vector \"{}\" has {count}", shorten(&name));
+            self.push(Diagnostic::error("NB0211", place, message).label("does not fit here"));
+            return None;
+        }
+        let mut values = defaults;
+        values[..count].copy_from_slice(&written[..count]);
+        Some((values, count))
     }
 
     /// A number that is neither infinite nor NaN.
@@ -274,18 +319,31 @@ impl<'a> Reader<'a> {
 
     /// The entries of a table, without the ones whose key is wrong or was there before.
     pub(super) fn table<T>(&mut self, what: &str, field: &Option<Raw<'a, Entries<'a, T>>>) -> Vec<Entry<'a, T>> {
-        let Some(entries) = field.as_ref().and_then(|raw| self.read(raw)) else { return Vec::new() };
+        self.tables(what, field, &None)
+    }
+
+    /// The entries of a table of the scene and of one that it shares with others.
+    pub(super) fn tables<T>(
+        &mut self,
+        what: &str,
+        own: &Option<Raw<'a, Entries<'a, T>>>,
+        shared: &Option<Raw<'a, Entries<'a, T>>>,
+    ) -> Vec<Entry<'a, T>> {
         let mut seen: std::collections::HashMap<String, Range<usize>> = std::collections::HashMap::new();
-        let mut table = Vec::with_capacity(entries.0.len());
-        for (key, value) in entries.0 {
-            let place = self.span(&key);
-            let Some(name) = self.read(&key) else { continue };
-            if let Some(first) = seen.get(&name) {
-                let first = first.clone();
-                self.push(twice(what, &name, place, first));
-            } else {
-                seen.insert(name.clone(), place.clone());
-                table.push(Entry { name, place, value });
+        let mut table = Vec::new();
+        for (field, shared) in [(shared, true), (own, false)] {
+            let Some(entries) = field.as_ref().and_then(|raw| self.read(raw)) else { continue };
+            table.reserve(entries.0.len());
+            for (key, value) in entries.0 {
+                let place = self.span(&key);
+                let Some(name) = self.read(&key) else { continue };
+                if let Some(first) = seen.get(&name) {
+                    let first = first.clone();
+                    self.push(twice(what, &name, place, first));
+                } else {
+                    seen.insert(name.clone(), place.clone());
+                    table.push(Entry { name, place, value, shared });
+                }
             }
         }
         table
@@ -431,7 +489,49 @@ pub(super) struct Entry<'a, T> {
     /// Of the name.
     pub(super) place: Range<usize>,
     pub(super) value: Raw<'a, T>,
+    /// Other scenes may use it.
+    pub(super) shared: bool,
+}
+
+/// Vectors by name, in the order of the text.
+#[derive(Debug, Default)]
+pub(super) struct Vectors(pub(super) Vec<NamedVector>);
+
+/// A vector that is used by name.
+#[derive(Debug)]
+pub(super) struct NamedVector {
+    pub(super) name: String,
+    /// Of the name.
+    pub(super) place: Range<usize>,
+    /// Its numbers and how many there are; `None`: wrong, which has been recorded.
+    pub(super) value: Option<([f32; 4], usize)>,
+    pub(super) used: bool,
+    /// Other scenes may use it.
+    pub(super) shared: bool,
 }
 
 /// Marks a value that is a name out of the state enumeration `T`.
 pub(super) struct Name<T>(std::marker::PhantomData<fn() -> T>);
+
+/// The finding that a name is not defined.
+pub(super) fn unknown_name<'n>(
+    reader: &mut Reader<'_>,
+    place: Range<usize>,
+    what: &str,
+    name: &str,
+    known: impl Iterator<Item = &'n str> + Clone,
+    define: &str,
+) {
+    let help = match closest(name, known.clone()) {
+        Some(known) => format!("did you mean \"{}\"?", shorten(known)),
+        None => {
+            let list: Vec<String> = known.take(8).map(|name| format!("\"{}\"", shorten(name))).collect();
+            if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
+        }
+    };
+    reader.push(
+        Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
+            .label("not defined")
+            .help(help),
+    );
+}

@@ -11,6 +11,7 @@ use super::split;
 use crate::program::texture_environment;
 use crate::program::texture_stages::{Operation, ResultArgument};
 use crate::state;
+use crate::truth;
 use crate::vertex::fog::{FogEvaluation, FogSource};
 
 /// What a value of a type looks like, for "expected ...".
@@ -124,6 +125,8 @@ pub(super) struct Input;
 pub(super) struct FinalInput;
 /// A destination of a combiner portion.
 pub(super) struct Output;
+/// Where the normals of a truth come from.
+pub(super) struct NormalSource;
 /// An argument of a texture stage.
 pub(super) struct StageArgument;
 
@@ -142,10 +145,50 @@ source! {
         textures: Entries<'a, Texture<'a>>,
         palettes: Entries<'a, List<'a, String>>,
         draws: List<'a, Draw<'a>>,
-        truth: Reserved,
+        truth: Truth<'a>,
+        family: String,
     }
+    /// What several scenes share, in a file of its own.
+    struct Family {
+        names: Names<'a>,
+        targets: List<'a, Target<'a>>,
+        truth: Truth<'a>,
+    }
+    /// What the picture ought to show.
+    struct Truth {
+        equation: Word,
+        normal: NormalSource,
+        lights: List<'a, TruthLight<'a>>,
+        eye: TruthPlace<'a>,
+        material: TruthMaterial<'a>,
+        hemisphere: TruthHemisphere<'a>,
+        color_map: String,
+        shading_normal: ShadingNormal<'a>,
+    }
+    struct TruthLight { position: Numbers, direction: Numbers, color: Color }
+    struct TruthPlace { position: Numbers, direction: Numbers }
+    struct TruthMaterial {
+        ambient: Color,
+        diffuse: Color,
+        specular: Color,
+        exponent: u32,
+        model: Name<truth::Model>,
+        self_shadowing: bool,
+    }
+    struct TruthHemisphere {
+        axis: Numbers,
+        sky: Color,
+        ground: Color,
+        integral: Name<truth::Integral>,
+        occlusion: HeightFile<'a>,
+    }
+    struct ShadingNormal { register: Name<state::Register>, space: Name<truth::Space> }
+    struct RadialNormals { center: Numbers }
+    struct HemisphereNormals { zero_outside: bool, size: u32, noise: f32, seed: u32 }
+    struct HeightFile { file: String, scale: f32, channel: Word }
     /// Values that repeat.
     struct Names {
+        vectors: Entries<'a, Numbers>,
         colors: Entries<'a, Color>,
         matrices: Entries<'a, Matrix>,
         vertices: Entries<'a, VertexList>,
@@ -212,7 +255,7 @@ source! {
         texgen: List<'a, CoordinateSource>,
         viewer: Word,
         texture_matrices: List<'a, Matrix>,
-        truth: Reserved,
+        truth: bool,
     }
     struct Vertex {
         position: Numbers,
@@ -427,6 +470,22 @@ source! {
         invert_spare0: bool,
         invert_secondary: bool,
         constants: Tuple<'a, Color>,
+    }
+}
+
+impl<'a> Truth<'a> {
+    /// These fields, and where they are not written those of another.
+    pub(super) fn or(self, other: Self) -> Self {
+        Truth {
+            equation: self.equation.or(other.equation),
+            normal: self.normal.or(other.normal),
+            lights: self.lights.or(other.lights),
+            eye: self.eye.or(other.eye),
+            material: self.material.or(other.material),
+            hemisphere: self.hemisphere.or(other.hemisphere),
+            color_map: self.color_map.or(other.color_map),
+            shading_normal: self.shading_normal.or(other.shading_normal),
+        }
     }
 }
 

@@ -21,6 +21,7 @@ pub fn below(folder: &Path) -> Vec<PathBuf> {
             files.extend(below(&path));
         } else if name.ends_with(".ron")
             && !name.ends_with(".expect.ron")
+            && !name.ends_with(".family.ron")
             && !needs_captured(&std::fs::read_to_string(&path).unwrap())
         {
             files.push(path);

@@ -73,15 +73,15 @@ pub(super) fn source<'a>(
         4 => Source::TextureCoordinates,
         5 => {
             let fields = reader.read(&Raw::<source::LightVector<'a>>::new(rest))?;
-            let light = light(reader, rest, &fields.position, &fields.direction);
+            let light = place(reader, rest, "light", &fields.position, &fields.direction);
             let tangent_space = space(reader, &fields.space);
             Source::Light { light: light?, tangent_space: tangent_space? }
         }
         _ => {
             let fields = reader.read(&Raw::<source::HalfVector<'a>>::new(rest))?;
-            let light = light(reader, rest, &fields.position, &fields.direction);
-            let place = reader.range(rest.get(..1).unwrap_or(rest));
-            let viewer = reader.required(&fields.viewer, "viewer", "half vector", place);
+            let light = place(reader, rest, "light", &fields.position, &fields.direction);
+            let opening = reader.range(rest.get(..1).unwrap_or(rest));
+            let viewer = reader.required(&fields.viewer, "viewer", "half vector", opening);
             let viewer = viewer.and_then(|raw| point(reader, &raw, "the viewer's position"));
             let tangent_space = space(reader, &fields.space);
             Source::Half { light: light?, viewer: viewer?, tangent_space: tangent_space? }
@@ -93,26 +93,26 @@ fn point<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, what: &str) -> Opt
     reader.numbers(raw, what, 3, 3, [0.0; 4]).map(|[x, y, z, _]| [x, y, z])
 }
 
-fn light<'a>(
+/// Where a light or an eye is: exactly one of the two is given. `None` once the reason that it is not has been recorded.
+pub(super) fn place<'a>(
     reader: &mut Reader<'a>,
     text: &'a str,
+    what: &str,
     position: &Option<Raw<'a, Numbers>>,
     direction: &Option<Raw<'a, Numbers>>,
 ) -> Option<Light> {
     match (position, direction) {
-        (Some(raw), None) => point(reader, raw, "a light's position").map(Light::Position),
-        (None, Some(raw)) => point(reader, raw, "a light's direction").map(Light::Direction),
+        (Some(raw), None) => point(reader, raw, &format!("a position of this {what}")).map(Light::Position),
+        (None, Some(raw)) => point(reader, raw, &format!("a direction of this {what}")).map(Light::Direction),
         (both, _) => {
             let message = match both {
-                Some(_) => "a light has a position or a direction, not both",
-                None => "this light has neither `position` nor `direction`",
+                Some(_) => format!("this {what} has a position and a direction; one of them is enough"),
+                None => format!("this {what} has neither `position` nor `direction`"),
             };
             let place = reader.range(text.get(..1).unwrap_or(text));
-            reader.push(
-                Diagnostic::error("NB0202", place, message)
-                    .label("in here")
-                    .help("write `position: (x, y, z)` for a lamp, `direction: (x, y, z)` for a far sun (toward it)"),
-            );
+            reader.push(Diagnostic::error("NB0202", place, message).label("in here").help(
+                "write `position: (x, y, z)` for one that is near, `direction: (x, y, z)` (toward it) for one far away",
+            ));
             None
         }
     }

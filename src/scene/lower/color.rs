@@ -80,6 +80,11 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
     if head.is_empty() && raw.text.starts_with('(') {
         return bytes(reader, raw);
     }
+    if head == "Vector" {
+        let vector = texture_source::only::<Numbers>(reader, rest, "a vector or its name")?;
+        let [x, y, z, _] = reader.numbers(&vector, "a vector as a colour", 3, 3, [0.0; 4])?;
+        return Some(VertexColor::Floats([0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.5 + 0.5 * z, 1.0]));
+    }
     if head != "Float" {
         let found = if head.is_empty() { raw.text } else { head };
         let place = reader.range(found);
@@ -87,7 +92,7 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
             Diagnostic::error("NB0205", place, format!("expected a colour, found `{}`", shorten(found)))
                 .label("not a colour")
                 .help(
-                    "write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, or \"the name of a colour\"",
+                    "write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, `Vector((0, 0, 1))`, or \"the name of a colour\"",
                 ),
         );
         return None;

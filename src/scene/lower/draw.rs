@@ -1,6 +1,7 @@
 //! Draws, in the order of the text.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::api_program::Around;
 use super::geometry::{geometry, vertex_side};
@@ -9,10 +10,21 @@ use super::program::Program;
 use super::target::Targets;
 use super::texture::Textures;
 use super::*;
+use crate::scene::mesh::Mesh;
 use crate::state::{
     Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
     Topology,
 };
+
+/// A draw and what else is known of it.
+pub(super) struct Drawn {
+    pub(super) draw: Draw,
+    pub(super) spans: DrawSpans,
+    /// The mesh that its vertices are of.
+    pub(super) mesh: Option<Arc<Mesh>>,
+    /// Whether it takes part in the scene's truth, if it says so, and where it does.
+    pub(super) truth: Option<(bool, Range<usize>)>,
+}
 
 /// Reads the draws, with their places.
 pub(super) fn draws<'a>(
@@ -21,7 +33,7 @@ pub(super) fn draws<'a>(
     targets: &Targets,
     textures: &mut Textures,
     raw: &Option<Raw<'a, source::List<'a, source::Draw<'a>>>>,
-) -> Vec<(Draw, DrawSpans)> {
+) -> Vec<Drawn> {
     let list = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     if let Some(raw) = raw
         && list.len() > reader.limits.draws
@@ -34,7 +46,7 @@ pub(super) fn draws<'a>(
         );
         return Vec::new();
     }
-    let mut draws: Vec<(Draw, DrawSpans)> = Vec::with_capacity(list.len());
+    let mut draws: Vec<Drawn> = Vec::with_capacity(list.len());
     let mut seen: HashMap<String, Range<usize>> = HashMap::new();
     let mut written = vec![false; targets.list.len()];
     let mut budget = Budget { vertices: reader.limits.vertices, indices: reader.limits.indices, spent: false };
@@ -56,7 +68,7 @@ pub(super) fn draws<'a>(
         }
         let header = Header { name, place, opening };
         if let Some(draw) = draw(reader, names, targets, textures, &fields, header, &mut budget, &written) {
-            if let Some(flag) = written.get_mut(draw.0.target) {
+            if let Some(flag) = written.get_mut(draw.draw.target) {
                 *flag = true;
             }
             draws.push(draw);
@@ -91,12 +103,12 @@ fn draw<'a>(
     header: Header,
     budget: &mut Budget,
     written: &[bool],
-) -> Option<(Draw, DrawSpans)> {
+) -> Option<Drawn> {
     let target = match &fields.target {
         Some(raw) => targets.find(reader, raw),
         None => Some(0),
     };
-    reader.reserve(&fields.truth, "the draw's truth (light, viewer, material)");
+    let truth = fields.truth.as_ref().and_then(|raw| Some((reader.read(raw)?, reader.span(raw))));
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
     let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
@@ -178,7 +190,8 @@ fn draw<'a>(
     draw.indices = indices(reader, fields, geometry.triangles, draw.vertices.len(), topology)?;
     target?;
     budget.take(reader, &draw, &header.place)?;
-    Some((draw, DrawSpans { draw: header.place, vertices: geometry.spans }))
+    let spans = DrawSpans { draw: header.place, vertices: geometry.spans };
+    Some(Drawn { draw, spans, mesh: geometry.mesh, truth })
 }
 
 impl Budget {

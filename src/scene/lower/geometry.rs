@@ -1,9 +1,12 @@
 //! Where the vertices of a draw come from, and what the vertex side makes of them.
 
+use std::sync::Arc;
+
 use super::attribute::{Outputs, Source};
 use super::names::Names;
 use super::target::Targets;
 use super::*;
+use crate::scene::mesh::Mesh;
 use crate::state::{Positions, VertexColor, VertexProgram, Viewport};
 use crate::vertex::fog::{FogEvaluation, FogSource, vertex_factor};
 use crate::vertex::texgen::CoordinateSet;
@@ -16,6 +19,8 @@ pub(super) struct Geometry {
     pub(super) spans: VertexSpans,
     /// Of a mesh.
     pub(super) triangles: Option<Vec<u32>>,
+    /// The mesh that they are of.
+    pub(super) mesh: Option<Arc<Mesh>>,
     /// What generated coordinates and fog start from.
     pub(super) objects: Vec<ObjectVertex>,
     pub(super) model_view: Rows,
@@ -148,6 +153,7 @@ pub(super) fn geometry<'a>(
                 vertices: data.vertices.clone(),
                 spans: data.spans.clone(),
                 triangles: None,
+                mesh: None,
                 objects: listed(&data),
                 model_view: matrix::IDENTITY,
                 program: None,
@@ -174,7 +180,7 @@ fn matrix_geometry<'a>(
         None => Some(matrix::IDENTITY),
     };
     let viewport = viewport(reader, &fields.viewport, targets, target);
-    let (mut vertices, spans, triangles, objects) = match (&fields.vertices, &fields.mesh) {
+    let (mut vertices, spans, mesh, objects) = match (&fields.vertices, &fields.mesh) {
         (Some(raw), None) => {
             let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
             if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
@@ -200,7 +206,7 @@ fn matrix_geometry<'a>(
                 dimensions,
             };
             let objects = vertices.iter().zip(&mesh.normals).map(object).collect();
-            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh.indices.clone()), objects)
+            (vertices, VertexSpans::All(reader.span(raw)), Some(mesh), objects)
         }
         (both, _) => {
             reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
@@ -225,7 +231,8 @@ fn matrix_geometry<'a>(
         positions: Positions::Clip(viewport),
         vertices,
         spans,
-        triangles,
+        triangles: mesh.as_ref().map(|mesh| mesh.indices.clone()),
+        mesh,
         objects,
         model_view,
         program: None,

@@ -1,6 +1,6 @@
 //! Meshes: generated, listed, from files.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::names::Names;
 use super::program_text::ProgramText;
@@ -15,7 +15,7 @@ pub(super) fn mesh<'a>(
     reader: &mut Reader<'a>,
     names: &Names<'a>,
     raw: &Raw<'a, source::MeshSource>,
-) -> Option<Rc<Mesh>> {
+) -> Option<Arc<Mesh>> {
     let (kind, rest) = reader.variant(raw, "mesh", KINDS)?;
     let made = match KINDS[kind] {
         "Grid" => grid(reader, rest),
@@ -29,7 +29,7 @@ pub(super) fn mesh<'a>(
         Ok(mesh) => {
             let mesh = mesh?;
             if mesh.positions.len() <= reader.limits.vertices {
-                return Some(Rc::new(mesh));
+                return Some(Arc::new(mesh));
             }
             let place = reader.span(raw);
             reader.push(vertex::too_many(place, mesh.positions.len(), reader.limits.vertices));
@@ -168,7 +168,7 @@ fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
 }
 
 /// A file is read once, however many draws name it.
-fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Rc<Mesh>> {
+fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Arc<Mesh>> {
     let opening = reader.range(text.get(..1).unwrap_or(text));
     let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
     let raw = reader.required(&fields.file, "file", "mesh", opening)?;
@@ -178,7 +178,7 @@ fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
     }
     let file = ProgramText::file_up_to(reader, names, &raw, reader.limits.mesh_file_bytes);
     let mesh = file.and_then(|file| match mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices) {
-        Ok(surface) => Some(Rc::new(mesh::mesh(&surface))),
+        Ok(surface) => Some(Arc::new(mesh::mesh(&surface))),
         Err(findings) => {
             findings.into_iter().for_each(|finding| reader.push(file.place(finding)));
             None

@@ -26,6 +26,7 @@ mod texture_legal;
 mod texture_levels;
 mod texture_source;
 mod texture_stages;
+mod truth;
 mod unit;
 mod unit_texture;
 mod vertex;
@@ -33,14 +34,17 @@ mod vertex_program;
 
 use std::ops::Range;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
 use super::raw::Raw;
-use super::reader::Reader;
+use super::reader::{Reader, unknown_name};
 use super::source;
-use super::wording::{closest, shorten};
+use super::wording::shorten;
+use crate::diagnostic::File;
 use crate::plan::{Plan, PlanOptions};
 use crate::state::{Profile, Scene};
+use crate::truth::Truth;
 use names::Names;
 
 /// Where the draws of a scene stand in its text, for errors that are found later.
@@ -77,12 +81,27 @@ impl DrawSpans {
     }
 }
 
-/// Reads and checks a whole scene. Findings are in the reader; `None` if there are errors.
+/// A whole scene.
+pub(super) struct Found {
+    pub(super) scene: Scene,
+    pub(super) plan: Plan,
+    pub(super) truth: Option<Truth>,
+    /// Places of the draws.
+    pub(super) spans: Vec<DrawSpans>,
+}
+
+/// The text of what a scene shares with others. `None` once the reason that it cannot be read has been recorded.
+pub(super) fn shared_text<'a>(reader: &mut Reader<'a>, folder: &Path, named: &Raw<'a, String>) -> Option<Arc<File>> {
+    program_text::text_file(reader, folder, named, reader.limits.program_bytes)
+}
+
+/// Reads and checks a whole scene; `family` is the text of the file that it names for what it shares with others. Findings are in the reader; `None` if there are errors.
 pub(super) fn scene<'a>(
     reader: &mut Reader<'a>,
     text: &'a str,
+    family: Option<&'a str>,
     folder: &Path,
-) -> Option<(Scene, Plan, Vec<DrawSpans>)> {
+) -> Option<Found> {
     let raw = Raw::<source::Scene<'a>>::new(text);
     if raw.text.is_empty() {
         reader.push(
@@ -99,18 +118,27 @@ pub(super) fn scene<'a>(
     }
     let profile = reader.required(&file.profile, "profile", "scene", opening);
     reader.profile = profile.and_then(|raw| reader.name(&raw)).unwrap_or(Profile::Nv2a);
-    reader.reserve(&file.truth, "the scene's truth (light, viewer, material)");
+    if let Some(raw) = &file.family {
+        // What it names has been read; this finds what is no name.
+        reader.read(raw);
+    }
+    let shared = family.and_then(|text| reader.parse(&Raw::<source::Family<'a>>::new(text)));
+    let (shared_names, shared_targets, shared_truth) = match shared {
+        Some(source::Family { names, targets, truth }) => (names, targets, truth),
+        None => (None, None, None),
+    };
 
-    let mut names = Names::read(reader, &file.names, folder);
-    let targets = target::targets(reader, &names, &file.targets);
+    let mut names = Names::read(reader, &file.names, &shared_names, folder);
+    let targets = target::targets(reader, &names, &file.targets.or(shared_targets));
     let mut textures = texture::textures(reader, &names, &targets, &file, folder);
     let draws = draw::draws(reader, &mut names, &targets, &mut textures, &file.draws);
+    let truth = truth::truth(reader, &names, &file.truth, &shared_truth, &draws);
     names.warn_unused(reader);
     textures.warn_unused(reader);
     if reader.errors > 0 {
         return None;
     }
-    let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().unzip();
+    let (draws, spans): (Vec<_>, Vec<_>) = draws.into_iter().map(|drawn| (drawn.draw, drawn.spans)).unzip();
     let scene = Scene {
         profile: reader.profile,
         targets: targets.list,
@@ -118,7 +146,7 @@ pub(super) fn scene<'a>(
         palettes: textures.palettes.list,
         draws,
     };
-    plan(reader, &scene, &spans).map(|plan| (scene, plan, spans))
+    plan(reader, &scene, &spans).map(|plan| Found { scene, plan, truth, spans })
 }
 
 /// The parenthesis that opens the scene: before it may stand attributes and the scene's type.
@@ -173,27 +201,4 @@ fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> Option<P
         reader.push(Diagnostic::error("NB0322", span, error.message).label(label).rule(error.rule).help(error.help));
     }
     None
-}
-
-/// The finding that a name is not defined.
-fn unknown_name<'n>(
-    reader: &mut Reader<'_>,
-    place: Range<usize>,
-    what: &str,
-    name: &str,
-    known: impl Iterator<Item = &'n str> + Clone,
-    define: &str,
-) {
-    let help = match closest(name, known.clone()) {
-        Some(known) => format!("did you mean \"{}\"?", shorten(known)),
-        None => {
-            let list: Vec<String> = known.take(8).map(|name| format!("\"{}\"", shorten(name))).collect();
-            if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
-        }
-    };
-    reader.push(
-        Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
-            .label("not defined")
-            .help(help),
-    );
 }

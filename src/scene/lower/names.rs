@@ -4,12 +4,14 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use super::program::Program;
 use super::vertex::VertexData;
 use super::*;
 use crate::scene::mesh::Mesh;
-use crate::scene::reader::Entry;
+use crate::scene::raw::{Entries, Numbers};
+use crate::scene::reader::{Entry, NamedVector};
 use crate::state::{Blend, VertexColor};
 use crate::vertex::Rows;
 
@@ -114,7 +116,7 @@ impl<'a, S, T: Clone> Table<'a, S, T> {
 
     fn warn_unused(&self, reader: &mut Reader<'a>) {
         for (entry, used) in self.entries.iter().zip(&*self.used.borrow()) {
-            if !used {
+            if !used && !entry.shared {
                 reader.push(unused(self.what, &entry.name, entry.place.clone()));
             }
         }
@@ -133,25 +135,31 @@ pub(super) struct Names<'a> {
     /// Where the files lie that programs name.
     pub(super) folder: PathBuf,
     /// Mesh files that have been read, by their names; `None`: one that cannot be, which has been recorded.
-    pub(super) mesh_files: RefCell<HashMap<String, Option<Rc<Mesh>>>>,
+    pub(super) mesh_files: RefCell<HashMap<String, Option<Arc<Mesh>>>>,
     colors: Table<'a, source::Color, VertexColor>,
     matrices: Table<'a, source::Matrix, Rows>,
     vertices: Table<'a, source::VertexList, Rc<VertexData>>,
-    meshes: Table<'a, source::MeshSource, Rc<Mesh>>,
+    meshes: Table<'a, source::MeshSource, Arc<Mesh>>,
     programs: Table<'a, source::Program, Rc<Program>>,
     blends: Table<'a, source::BlendSource, Blend>,
 }
 
 impl<'a> Names<'a> {
     /// Reads every table and every definition.
-    pub(super) fn read(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Names<'a>>>, folder: &Path) -> Self {
-        let tables = raw.as_ref().and_then(|raw| reader.read(raw));
+    pub(super) fn read(
+        reader: &mut Reader<'a>,
+        own: &Option<Raw<'a, source::Names<'a>>>,
+        shared: &Option<Raw<'a, source::Names<'a>>>,
+        folder: &Path,
+    ) -> Self {
+        let own = own.as_ref().and_then(|raw| reader.read(raw));
+        let shared = shared.as_ref().and_then(|raw| reader.read(raw));
+        let field = |of: &Option<source::Names<'a>>| of.as_ref().and_then(|tables| tables.vectors);
+        read_vectors(reader, &field(&own), &field(&shared));
         macro_rules! table {
             ($field:ident, $what:literal) => {{
-                let entries = match &tables {
-                    Some(tables) => reader.table($what, &tables.$field),
-                    None => Vec::new(),
-                };
+                let of = |of: &Option<source::Names<'a>>| of.as_ref().and_then(|tables| tables.$field);
+                let entries = reader.tables($what, &of(&own), &of(&shared));
                 Table::new($what, stringify!($field), entries)
             }};
         }
@@ -206,7 +214,7 @@ impl<'a> Names<'a> {
         }
     }
 
-    pub(super) fn mesh(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Rc<Mesh>> {
+    pub(super) fn mesh(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Arc<Mesh>> {
         if raw.is_text() { self.meshes.get(reader, raw, &|_, _, _, _| None, 0) } else { mesh::mesh(reader, self, raw) }
     }
 
@@ -228,12 +236,29 @@ impl<'a> Names<'a> {
 
     /// Warns of what nothing refers to.
     pub(super) fn warn_unused(&self, reader: &mut Reader<'a>) {
+        for vector in std::mem::take(&mut reader.vectors).0.into_iter().filter(|vector| !vector.used && !vector.shared)
+        {
+            reader.push(unused("vector", &vector.name, vector.place));
+        }
         self.colors.warn_unused(reader);
         self.matrices.warn_unused(reader);
         self.vertices.warn_unused(reader);
         self.meshes.warn_unused(reader);
         self.programs.warn_unused(reader);
         self.blends.warn_unused(reader);
+    }
+}
+
+/// Vectors first: every other value may be made of them.
+fn read_vectors<'a>(
+    reader: &mut Reader<'a>,
+    own: &Option<Raw<'a, Entries<'a, Numbers>>>,
+    shared: &Option<Raw<'a, Entries<'a, Numbers>>>,
+) {
+    for Entry { name, place, value: raw, shared } in reader.tables("vector", own, shared) {
+        let value =
+            value(reader, &raw).and_then(|()| reader.numbers_written(&raw, "a vector", 1, 4, [0.0, 0.0, 0.0, 1.0]));
+        reader.vectors.0.push(NamedVector { name, place, value, used: false, shared });
     }
 }
 

@@ -173,12 +173,23 @@ fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
 }
 
 fn named<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>, most: u64) -> Option<ProgramText> {
+    let file = text_file(reader, &names.folder, raw, most)?;
+    Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file) })
+}
+
+/// A text in a file of the scene's folder, of at most `most` bytes. `None` once the reason that it cannot be read has been recorded.
+pub(super) fn text_file<'a>(
+    reader: &mut Reader<'a>,
+    folder: &Path,
+    raw: &Raw<'a, String>,
+    most: u64,
+) -> Option<Arc<diagnostic::File>> {
     let name = reader.read(raw)?;
     let named = reader.span(raw);
     let refuse = |code, message: String, help: &str| {
         Diagnostic::error(code, named.clone(), message).label("this file").help(help)
     };
-    let path = match path::resolve(&names.folder, &name) {
+    let path = match path::resolve(folder, &name) {
         Ok(path) => path,
         Err(error) => {
             reader.push(refuse(error.code(), error.to_string(), error.help()));
@@ -203,9 +214,8 @@ fn named<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>, 
         return None;
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
-    let shown = names.folder.join(&name).display().to_string();
-    let source = Source { name: shown, text: text.clone() };
-    Some(ProgramText { text, origin: Origin::File(Arc::new(diagnostic::File { source, named })) })
+    let source = Source { name: folder.join(&name).display().to_string(), text };
+    Some(Arc::new(diagnostic::File { source, named }))
 }
 
 /// One byte more than allowed tells a file at the limit from one beyond it.

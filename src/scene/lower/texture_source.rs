@@ -11,6 +11,8 @@ use crate::state::{CUBE_FACES, Named, TextureFormat};
 mod made;
 mod stored;
 
+pub(super) use stored::read_file;
+
 /// What a source gives.
 pub(super) struct Given {
     pub(super) format: TextureFormat,

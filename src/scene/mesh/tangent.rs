@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 
 use super::Mesh;
+use crate::vector::{Vector, cross, dot, minus, scaled, unit, wide};
 
 /// Vertices and triangles without tangents.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,38 +22,10 @@ pub struct Surface {
     pub indices: Vec<u32>,
 }
 
-type Vector = [f64; 3];
-
-fn wide(v: [f32; 3]) -> Vector {
-    v.map(f64::from)
-}
-
-fn minus(a: Vector, b: Vector) -> Vector {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-fn dot(a: Vector, b: Vector) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: Vector, b: Vector) -> Vector {
-    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
-}
-
-fn scaled(v: Vector, by: f64) -> Vector {
-    v.map(|c| c * by)
-}
-
 fn add(to: &mut Vector, v: Vector) {
     for (sum, c) in to.iter_mut().zip(v) {
         *sum += c;
     }
-}
-
-/// Of unit length; `None` for a vector that has none, next to `scale`.
-fn unit(v: Vector, scale: f64) -> Option<Vector> {
-    let length = dot(v, v).sqrt();
-    (length > scale * 1e-12).then(|| v.map(|c| c / length))
 }
 
 /// What a triangle says of its surface.

@@ -20,7 +20,7 @@ impl<'a> Sources<'_, 'a> {
             maximum_decoded_bytes: self.left,
             maximum_file_bytes: reader.limits.image_file_bytes,
         };
-        let contents = self.read_file(reader, &raw, |path| image::open(path, &limits))?;
+        let contents = read_file(reader, self.folder, &raw, |path| image::open(path, &limits))?;
         let place = reader.span(&raw);
         let dds = match contents {
             Contents::Picture(image) => {
@@ -62,7 +62,7 @@ impl<'a> Sources<'_, 'a> {
         let words = u64::from(request.faces) * face as u64;
         self.afford(reader, place.clone(), words)?;
         let limit = reader.limits.image_file_bytes;
-        let bytes = self.read_file(reader, &file, |path| image::read(path, limit))?;
+        let bytes = read_file(reader, self.folder, &file, |path| image::read(path, limit))?;
         let expected = words * u64::from(format.bytes().min(4));
         if bytes.len() as u64 != expected {
             let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
@@ -84,33 +84,32 @@ impl<'a> Sources<'_, 'a> {
         let faces = divide(words, format, inside, request.faces, levels, request.border);
         Some(Given { format, width, height, faces, palette: None, place })
     }
+}
 
-    /// Finds the file of that name and does something with it.
-    fn read_file<T>(
-        &mut self,
-        reader: &mut Reader<'a>,
-        raw: &Raw<'a, String>,
-        read: impl FnOnce(&Path) -> Result<T, ImageError>,
-    ) -> Option<T> {
-        let name = reader.read(raw)?;
-        let place = reader.span(raw);
-        let path = match path::resolve(self.folder, &name) {
-            Ok(path) => path,
-            Err(error) => {
-                reader.push(
-                    Diagnostic::error(error.code(), place, error.to_string()).label("this file").help(error.help()),
-                );
-                return None;
-            }
-        };
-        match read(&path) {
-            Ok(contents) => Some(contents),
-            Err(error) => {
-                // The name as the scene has it: where the folder lies does not matter here.
-                let message = error.to_string().replace(&path.display().to_string(), &name);
-                reader.push(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()));
-                None
-            }
+/// Finds the file of that name and does something with it.
+pub(in crate::scene::lower) fn read_file<'a, T>(
+    reader: &mut Reader<'a>,
+    folder: &Path,
+    raw: &Raw<'a, String>,
+    read: impl FnOnce(&Path) -> Result<T, ImageError>,
+) -> Option<T> {
+    let name = reader.read(raw)?;
+    let place = reader.span(raw);
+    let path = match path::resolve(folder, &name) {
+        Ok(path) => path,
+        Err(error) => {
+            reader
+                .push(Diagnostic::error(error.code(), place, error.to_string()).label("this file").help(error.help()));
+            return None;
+        }
+    };
+    match read(&path) {
+        Ok(contents) => Some(contents),
+        Err(error) => {
+            // The name as the scene has it: where the folder lies does not matter here.
+            let message = error.to_string().replace(&path.display().to_string(), &name);
+            reader.push(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()));
+            None
         }
     }
 }

@@ -1,6 +1,6 @@
 //! What the input registers of a vertex program hold.
 
-use std::rc::Rc;
+use std::sync::Arc;
 
 use super::super::attribute::{self, Source};
 use super::*;
@@ -10,7 +10,7 @@ use crate::vertex::shader::INPUTS;
 /// The vertices that a program takes: of a mesh, or listed.
 pub(super) struct Given {
     pub(super) spans: VertexSpans,
-    pub(super) mesh: Option<Rc<Mesh>>,
+    pub(super) mesh: Option<Arc<Mesh>>,
     /// Of listed vertices.
     pub(super) objects: Vec<ObjectVertex>,
     pub(super) vertices: Vec<Vertex>,

@@ -1,0 +1,98 @@
+//! What several scenes share, in a file of its own: `family: "name.family.ron"`.
+//!
+//! The file's text is put behind the scene's, and both are read as one: names, targets and truth of the family are then values like
+//! others. Findings about the second text are taken to the file.
+
+use std::ops::Range;
+use std::path::Path;
+use std::sync::Arc;
+
+use super::lower::{DrawSpans, VertexSpans, shared_text};
+use super::raw::Raw;
+use super::reader::Reader;
+use super::source;
+use crate::diagnostic::{Diagnostic, File, Source};
+use crate::limits::Limits;
+
+/// A family that has been read and is well formed.
+pub(super) struct Family {
+    file: Arc<File>,
+}
+
+/// The family that a scene names. Nothing is said of a scene that is broken: reading it will.
+///
+/// # Errors
+/// What is wrong with the file.
+pub(super) fn find(text: &str, folder: &Path, limits: &Limits) -> Result<Option<Family>, Vec<Diagnostic>> {
+    // Most scenes have none: they are not read twice.
+    if !text.contains("family") {
+        return Ok(None);
+    }
+    let mut reader = Reader::new(text, limits);
+    let named = reader.attempt::<source::Scene<'_>>(text).and_then(|scene| scene.family).filter(Raw::is_text);
+    let Some(named) = named else { return Ok(None) };
+    let Some(file) = shared_text(&mut reader, folder, &named) else { return Err(reader.diagnostics) };
+    let mut inside = Reader::new(&file.source.text, limits);
+    if inside.parse(&Raw::<source::Family<'_>>::new(&file.source.text)).is_none() {
+        return Err(inside.diagnostics.into_iter().map(|finding| finding.inside(&file)).collect());
+    }
+    Ok(Some(Family { file }))
+}
+
+impl Family {
+    /// The file's text.
+    pub(super) fn text(&self) -> &str {
+        &self.file.source.text
+    }
+
+    /// A finding about both texts, one behind the other, as one about the scene or about the file.
+    pub(super) fn place(&self, mut finding: Diagnostic, scene: &str) -> Diagnostic {
+        let start = scene.len() + 1;
+        if let Some(file) = &finding.file {
+            // A third text, which the family names.
+            if file.named.start >= start {
+                let named = self.file.named.clone();
+                finding.file = Some(Arc::new(File { source: file.source.clone(), named }));
+            }
+            return finding;
+        }
+        let inside = finding.span.as_ref().is_some_and(|span| span.start >= start);
+        let shift = |span: Range<usize>| span.start - start..span.end - start;
+        let related = std::mem::take(&mut finding.related);
+        for (span, label) in related {
+            match (span.start >= start, inside) {
+                (true, true) => finding.related.push((shift(span), label)),
+                (false, false) => finding.related.push((span, label)),
+                (true, false) => finding.notes.push(said(&self.file.source, shift(span).start, &label)),
+                (false, true) => {
+                    let scene = Source { name: "the scene".to_owned(), text: scene.to_owned() };
+                    finding.notes.push(said(&scene, span.start, &label));
+                }
+            }
+        }
+        if inside {
+            finding.span = finding.span.map(shift);
+            finding = finding.inside(&self.file);
+        }
+        finding
+    }
+
+    /// Places in the family become the place where the scene names it.
+    pub(super) fn keep_inside(&self, spans: &mut DrawSpans, scene: &str) {
+        let keep = |span: &mut Range<usize>| {
+            if span.start > scene.len() {
+                *span = self.file.named.clone();
+            }
+        };
+        match &mut spans.vertices {
+            VertexSpans::Each(list) => list.iter_mut().for_each(keep),
+            VertexSpans::All(span) => keep(span),
+        }
+    }
+}
+
+/// A place of another text, in words.
+fn said(source: &Source, at: usize, label: &str) -> String {
+    let (line, column) = source.position(at);
+    format!("{}:{line}:{column}: {label}", source.name)
+}

@@ -1,0 +1,405 @@
+//! What the picture ought to show: light, eye, material and surface of the scene's `truth`.
+#![allow(clippy::float_arithmetic, reason = "describes a float64 reference; nothing of this is stored")]
+
+use std::sync::Arc;
+
+use super::attribute::{self, Light as Place};
+use super::draw::Drawn;
+use super::names::Names;
+use super::texture_source::only;
+use super::*;
+use crate::generate::normal_map::{self, HeightChannel};
+use crate::generate::{hemisphere, occlusion};
+use crate::scene::image::{self, ImageLimits, Rgba};
+use crate::scene::raw::{Numbers, Tuple};
+use crate::scene::reader::Name;
+use crate::state::{Named, Register, VertexColor};
+use crate::truth::{
+    Equation, Eye, Field, HemisphereLight, Integral, Interpolated, Light, Material, Model, NormalSource, ShadingNormal,
+    Space, Truth,
+};
+
+/// The largest exponent of a highlight.
+const LARGEST_EXPONENT: u32 = 65_536;
+
+/// Reads the truth of a scene. `None`: it has none, or the reason that it cannot be read has been recorded.
+pub(super) fn truth<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    own: &Option<Raw<'a, source::Truth<'a>>>,
+    shared: &Option<Raw<'a, source::Truth<'a>>>,
+    draws: &[Drawn],
+) -> Option<Truth> {
+    let Some(raw) = own.as_ref().or(shared.as_ref()) else {
+        without_truth(reader, draws);
+        return None;
+    };
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let mut fields = reader.read(raw)?;
+    if let (Some(_), Some(shared)) = (own, shared) {
+        fields = fields.or(reader.read(shared)?);
+    }
+    let equation = match &fields.equation {
+        Some(raw) => equation(reader, raw),
+        None => Some(Equation::Lighting),
+    };
+    if let (Some(equation), Some(raw)) = (equation, &fields.equation) {
+        let place = reader.span(raw);
+        only_lighting(reader, equation, &fields, place);
+    }
+    let normal = fields.normal.as_ref().map_or(Some(NormalSource::Mesh), |raw| normal(reader, names, raw));
+    let eye = fields.eye.as_ref().map(|raw| eye(reader, raw));
+    let material = material(reader, names, &fields.material);
+    let lights = fields.lights.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    let lights: Vec<Light> = lights.iter().filter_map(|raw| light(reader, names, raw)).collect();
+    let (hemisphere, occlusion) = match &fields.hemisphere {
+        Some(raw) => hemisphere_light(reader, names, raw),
+        None => (None, None),
+    };
+    let color_map = fields.color_map.as_ref().and_then(|raw| {
+        let image = picture(reader, names, raw)?;
+        Some(Arc::new(field(&image, |[r, g, b, _]| [r, g, b].map(|byte| f64::from(byte) / 255.0))))
+    });
+    let shading_normal = fields.shading_normal.as_ref().and_then(|raw| shading_normal(reader, raw));
+    if eye.is_none() && material.specular != [0.0; 3] && !lights.is_empty() {
+        reader.push(
+            Diagnostic::error("NB0391", opening.clone(), "a truth with highlights has no eye")
+                .label("`specular` is not zero, and nothing says from where it is seen")
+                .help("add `eye: (position: (x, y, z))`, or `eye: (direction: (x, y, z))` for one far away"),
+        );
+    }
+    if equation == Some(Equation::Lighting) && lights.is_empty() && hemisphere.is_none() && fields.lights.is_none() {
+        reader.push(
+            Diagnostic::error("NB0391", opening, "a truth without any light")
+                .label("neither `lights` nor `hemisphere`")
+                .help("add `lights: [(direction: (x, y, z))]`, or say with `equation` what else is computed"),
+        );
+    }
+    let meshes = draws.iter().map(|drawn| mesh(reader, drawn)).collect();
+    Some(Truth {
+        equation: equation?,
+        normal: normal?,
+        lights,
+        eye: match eye {
+            Some(eye) => Some(eye?),
+            None => None,
+        },
+        material,
+        hemisphere,
+        occlusion,
+        color_map,
+        shading_normal,
+        meshes,
+    })
+}
+
+/// Draws cannot be taken out of a truth that is not there.
+fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
+    for (_, place) in draws.iter().filter_map(|drawn| drawn.truth.clone()) {
+        reader.push(
+            Diagnostic::error("NB0394", place, "the scene has no truth that a draw could take part in")
+                .label("says nothing here")
+                .help("leave it out, or give the scene a `truth: (...)`"),
+        );
+    }
+}
+
+/// The mesh of a draw that takes part.
+fn mesh(reader: &mut Reader<'_>, drawn: &Drawn) -> Option<Arc<crate::scene::mesh::Mesh>> {
+    let wanted = drawn.truth.as_ref().is_none_or(|(wanted, _)| *wanted);
+    if !wanted || drawn.draw.target != 0 {
+        return None;
+    }
+    if drawn.mesh.is_none() {
+        reader.push(
+            Diagnostic::error("NB0390", drawn.spans.draw.clone(), "this draw has no mesh, so there is no truth of it")
+                .label("its vertices are listed")
+                .note("the truth needs positions, normals and tangents in object space")
+                .help("use a mesh, such as `mesh: Triangles(vertices: [...])`, or write `truth: false` in the draw"),
+        );
+    }
+    drawn.mesh.clone()
+}
+
+fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Equation> {
+    const KINDS: &[&str] = &["Lighting", "SignedProduct", "Difference", "DotProduct"];
+    let (kind, rest) = reader.variant(raw, "equation", KINDS)?;
+    if kind < 3 && !rest.is_empty() {
+        reader.unknown_variant(raw, "equation", KINDS);
+        return None;
+    }
+    Some(match kind {
+        0 => Equation::Lighting,
+        1 => Equation::SignedProduct,
+        2 => Equation::Difference,
+        _ => {
+            let list = Raw::<Tuple<'a, Name<Interpolated>>>::new(rest);
+            let parts = reader.read(&list)?.0;
+            let [a, b] = parts[..] else {
+                reader.push(
+                    Diagnostic::error("NB0211", reader.span(&list), "a dot product has two vectors")
+                        .label("here")
+                        .help("write `DotProduct(PrimaryColor, SecondaryColor)`"),
+                );
+                return None;
+            };
+            Equation::DotProduct(reader.name(&a)?, reader.name(&b)?)
+        }
+    })
+}
+
+/// What only light has a use for.
+fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &source::Truth<'a>, place: Range<usize>) {
+    if equation == Equation::Lighting {
+        return;
+    }
+    let spans = [
+        ("normal", fields.normal.as_ref().map(|raw| reader.span(raw))),
+        ("lights", fields.lights.as_ref().map(|raw| reader.span(raw))),
+        ("eye", fields.eye.as_ref().map(|raw| reader.span(raw))),
+        ("material", fields.material.as_ref().map(|raw| reader.span(raw))),
+        ("hemisphere", fields.hemisphere.as_ref().map(|raw| reader.span(raw))),
+        ("color_map", fields.color_map.as_ref().map(|raw| reader.span(raw))),
+        ("shading_normal", fields.shading_normal.as_ref().map(|raw| reader.span(raw))),
+    ];
+    for (name, span) in spans {
+        let Some(span) = span else { continue };
+        reader.push(
+            Diagnostic::error("NB0393", span, format!("`{name}` belongs to `equation: Lighting`"))
+                .label("not read by this equation")
+                .related(place.clone(), "this one")
+                .help("leave one of the two out"),
+        );
+    }
+}
+
+fn wide(v: [f32; 3]) -> [f64; 3] {
+    v.map(f64::from)
+}
+
+/// A light's place or an eye's; a direction has a length.
+fn place<'a>(
+    reader: &mut Reader<'a>,
+    text: &'a str,
+    what: &str,
+    position: &Option<Raw<'a, Numbers>>,
+    direction: &Option<Raw<'a, Numbers>>,
+) -> Option<crate::truth::Place> {
+    let place = attribute::place(reader, text, what, position, direction)?;
+    Some(match place {
+        Place::Position(position) => crate::truth::Place::Position(wide(position)),
+        Place::Direction(vector) => {
+            if let Some(raw) = direction {
+                long(reader, raw, vector)?;
+            }
+            crate::truth::Place::Direction(wide(vector))
+        }
+    })
+}
+
+/// Refuses a direction without length.
+fn long<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, vector: [f32; 3]) -> Option<()> {
+    if vector.iter().any(|c| *c != 0.0) {
+        return Some(());
+    }
+    reader.push(
+        Diagnostic::error("NB0392", reader.span(raw), "the zero vector points nowhere")
+            .label("has no direction")
+            .help("write the direction toward it, of any length"),
+    );
+    None
+}
+
+fn light<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::TruthLight<'a>>) -> Option<Light> {
+    let fields = reader.read(raw)?;
+    let place = place(reader, raw.text, "light", &fields.position, &fields.direction);
+    let color = color(reader, names, &fields.color, [1.0; 3]);
+    Some(Light { place: place?, color })
+}
+
+fn eye<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::TruthPlace<'a>>) -> Option<Eye> {
+    let fields = reader.read(raw)?;
+    place(reader, raw.text, "eye", &fields.position, &fields.direction).map(Eye)
+}
+
+fn color<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Option<Raw<'a, source::Color>>,
+    default: [f64; 3],
+) -> [f64; 3] {
+    let color = raw.as_ref().and_then(|raw| color::vertex_color(reader, names, raw));
+    color.map_or(default, |color| {
+        let channels = match color {
+            VertexColor::Floats(floats) => floats.map(f64::from),
+            VertexColor::Bytes(bytes) => bytes.map(|byte| f64::from(byte) / 255.0),
+        };
+        [channels[0], channels[1], channels[2]]
+    })
+}
+
+fn material<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Option<Raw<'a, source::TruthMaterial<'a>>>,
+) -> Material {
+    let default = Material::default();
+    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return default };
+    let exponent = fields.exponent.as_ref();
+    let exponent = exponent.and_then(|raw| reader.whole(raw, "the exponent of a highlight", 1..=LARGEST_EXPONENT));
+    Material {
+        ambient: color(reader, names, &fields.ambient, default.ambient),
+        diffuse: color(reader, names, &fields.diffuse, default.diffuse),
+        specular: color(reader, names, &fields.specular, default.specular),
+        exponent: exponent.unwrap_or(default.exponent),
+        model: reader.name_or(&fields.model, Model::Blinn),
+        self_shadowing: reader.or(&fields.self_shadowing, default.self_shadowing),
+    }
+}
+
+type Occlusion = Option<Arc<Field<1>>>;
+
+fn hemisphere_light<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::TruthHemisphere<'a>>,
+) -> (Option<HemisphereLight>, Occlusion) {
+    let Some(fields) = reader.read(raw) else { return (None, None) };
+    let axis = match &fields.axis {
+        Some(raw) => reader.numbers(raw, "the axis of a sky", 3, 3, [0.0; 4]).and_then(|[x, y, z, _]| {
+            long(reader, raw, [x, y, z])?;
+            Some(wide([x, y, z]))
+        }),
+        None => Some([0.0, 1.0, 0.0]),
+    };
+    let light = HemisphereLight {
+        axis: axis.unwrap_or([0.0, 1.0, 0.0]),
+        sky: color(reader, names, &fields.sky, [1.0; 3]),
+        ground: color(reader, names, &fields.ground, [0.0; 3]),
+        integral: reader.name_or(&fields.integral, Integral::Simplified),
+    };
+    let occlusion = fields.occlusion.as_ref().and_then(|raw| {
+        let (height, options) = height_file(reader, names, raw)?;
+        let texels = occlusion::open_sky(&height, &options).into_iter().map(|open| [open]).collect();
+        Some(Arc::new(Field { width: height.width, height: height.height, texels, wrap: options.wrap }))
+    });
+    (Some(light), occlusion)
+}
+
+fn normal<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::NormalSource>) -> Option<NormalSource> {
+    const KINDS: &[&str] = &["Mesh", "Radial", "Hemisphere", "Height", "NormalMap"];
+    let (kind, rest) = reader.variant(raw, "source of normals", KINDS)?;
+    match KINDS[kind] {
+        "Mesh" if rest.is_empty() => Some(NormalSource::Mesh),
+        "Mesh" => {
+            reader.unknown_variant(raw, "source of normals", KINDS);
+            None
+        }
+        "Radial" => {
+            let fields =
+                reader.read(&Raw::<source::RadialNormals<'a>>::new(if rest.is_empty() { "()" } else { rest }))?;
+            let center = match &fields.center {
+                Some(raw) => reader.numbers(raw, "a centre", 3, 3, [0.0; 4])?,
+                None => [0.0; 4],
+            };
+            Some(NormalSource::Radial { center: wide([center[0], center[1], center[2]]) })
+        }
+        "Hemisphere" => hemisphere_normals(reader, if rest.is_empty() { "()" } else { rest }),
+        "Height" => {
+            let (height, options) = height_file(reader, names, &Raw::new(rest))?;
+            let texels = normal_map::normals(&height, &options);
+            let field = Field { width: height.width, height: height.height, texels, wrap: options.wrap };
+            Some(NormalSource::Map(Arc::new(field)))
+        }
+        _ => {
+            let file = only::<String>(reader, rest, "the name of one file")?;
+            let image = picture(reader, names, &file)?;
+            Some(NormalSource::Map(Arc::new(field(&image, |[r, g, b, _]| normal_map::decode([r, g, b])))))
+        }
+    }
+}
+
+/// A hemisphere: exact without noise, else the generator's normals before they become bytes.
+fn hemisphere_normals<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<NormalSource> {
+    let fields = reader.read(&Raw::<source::HemisphereNormals<'a>>::new(text))?;
+    let zero_outside = reader.or(&fields.zero_outside, false);
+    let default = hemisphere::Options::default();
+    let sides = crate::generate::SIDES;
+    let size =
+        fields.size.as_ref().map_or(Some(default.size), |raw| reader.whole(raw, "the side of an image", sides))?;
+    let seed = reader.or(&fields.seed, 1);
+    let noise = match &fields.noise {
+        Some(raw) => reader.finite(raw)?,
+        None => return Some(NormalSource::Hemisphere { zero_outside }),
+    };
+    let options = hemisphere::Options { size, noise: f64::from(noise), seed: u64::from(seed), zero_outside };
+    let texels = hemisphere::vectors(&options);
+    Some(NormalSource::Map(Arc::new(Field { width: size, height: size, texels, wrap: false })))
+}
+
+/// A height field, and how it is read.
+fn height_file<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::HeightFile<'a>>,
+) -> Option<(Rgba, normal_map::Options)> {
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let fields = reader.read(raw)?;
+    let file = reader.required(&fields.file, "file", "height field", opening)?;
+    let image = picture(reader, names, &file)?;
+    let default = normal_map::Options::default();
+    let scale = match &fields.scale {
+        Some(raw) => f64::from(reader.finite(raw)?),
+        None => default.scale,
+    };
+    let channel = match &fields.channel {
+        Some(raw) => match reader.variant(raw, "channel of heights", &["Red", "Alpha"])?.0 {
+            0 => HeightChannel::Red,
+            _ => HeightChannel::Alpha,
+        },
+        None => default.channel,
+    };
+    Some((image, normal_map::Options { scale, channel, ..default }))
+}
+
+/// A picture in the scene's folder.
+fn picture<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<Rgba> {
+    let limits = ImageLimits {
+        maximum_side: reader.limits.texture_side,
+        maximum_decoded_bytes: reader.limits.texture_bytes,
+        maximum_file_bytes: reader.limits.image_file_bytes,
+    };
+    texture_source::read_file(reader, &names.folder, raw, |path| image::load(path, &limits))
+}
+
+fn field<const N: usize>(image: &Rgba, of: impl Fn([u8; 4]) -> [f64; N]) -> Field<N> {
+    let texels = image.pixels.iter().map(|pixel| of(*pixel)).collect();
+    Field { width: image.width, height: image.height, texels, wrap: true }
+}
+
+fn shading_normal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShadingNormal<'a>>) -> Option<ShadingNormal> {
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let fields = reader.read(raw)?;
+    let written = reader.required(&fields.register, "register", "shading normal", opening)?;
+    let register = reader.name(&written)?;
+    if !is_input(register) {
+        reader.push(
+            Diagnostic::error(
+                "NB0393",
+                reader.span(&written),
+                format!("{} holds no normals when a pixel begins", register.name()),
+            )
+            .label("not a texture or a colour")
+            .help("write Texture0 to Texture3, PrimaryColor or SecondaryColor"),
+        );
+        return None;
+    }
+    let space = reader.name_or(&fields.space, Space::Tangent);
+    Some(ShadingNormal { register, space })
+}
+
+/// Whether a register holds something that the vertices or a texture gave.
+fn is_input(register: Register) -> bool {
+    use Register::{PrimaryColor, SecondaryColor, Texture0, Texture1, Texture2, Texture3};
+    matches!(register, Texture0 | Texture1 | Texture2 | Texture3 | PrimaryColor | SecondaryColor)
+}

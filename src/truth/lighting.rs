@@ -1,0 +1,111 @@
+//! The lighting equation, per point, in float64 with vectors of unit length.
+//!
+//! Only + - * / and square roots: every machine gets the same bits.
+
+use super::{Eye, HemisphereLight, Integral, Light, Material, Model, Place};
+use crate::generate::power_table::power;
+use crate::vector::{Vector, dot, minus, plus, scaled, unit_or_zero};
+
+/// A point of a surface, seen from a light or an eye.
+fn toward(place: &Place, point: Vector) -> Vector {
+    unit_or_zero(match place {
+        Place::Position(position) => minus(*position, point),
+        Place::Direction(direction) => *direction,
+    })
+}
+
+/// What a light adds to R, G, B at a point with unit normal `normal`.
+pub(super) fn light(light: &Light, eye: Option<&Eye>, material: &Material, point: Vector, normal: Vector) -> [f64; 3] {
+    let to_light = toward(&light.place, point);
+    let facing = dot(normal, to_light);
+    let mut terms = material.diffuse.map(|c| c * facing.max(0.0));
+    if let Some(Eye(eye)) = eye
+        && (facing > 0.0 || !material.self_shadowing)
+    {
+        let to_eye = toward(eye, point);
+        let cosine = match material.model {
+            Model::Blinn => dot(normal, unit_or_zero(plus(to_light, to_eye))),
+            Model::Phong => dot(minus(scaled(normal, 2.0 * facing), to_light), to_eye),
+        };
+        let highlight = power(cosine.max(0.0), material.exponent);
+        for (term, specular) in terms.iter_mut().zip(material.specular) {
+            *term += specular * highlight;
+        }
+    }
+    [0, 1, 2].map(|n| terms[n] * light.color[n])
+}
+
+/// The light of two half spaces, one color each.
+pub(super) fn hemisphere(light: &HemisphereLight, normal: Vector) -> [f64; 3] {
+    let cosine = dot(normal, unit_or_zero(light.axis)).clamp(-1.0, 1.0);
+    let sky = match light.integral {
+        Integral::Simplified => 0.5 + 0.5 * cosine,
+        Integral::Exact => {
+            let half_sine = 0.5 * (1.0 - cosine * cosine).sqrt();
+            if cosine >= 0.0 { 1.0 - half_sine } else { half_sine }
+        }
+    };
+    [0, 1, 2].map(|n| sky * light.sky[n] + (1.0 - sky) * light.ground[n])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const UP: Vector = [0.0, 0.0, 1.0];
+
+    fn sun(direction: Vector) -> Light {
+        Light { place: Place::Direction(direction), color: [1.0, 0.5, 0.25] }
+    }
+
+    #[test]
+    fn diffuse_light_is_the_cosine() {
+        let material = Material { diffuse: [0.8, 1.0, 1.0], ..Material::default() };
+        // 3-4-5: cosine 0.8, whatever the length.
+        let lit = light(&sun([6.0, 0.0, 8.0]), None, &material, [0.0; 3], UP);
+        assert_eq!(lit.map(|c| (c * 1e9).round() / 1e9), [0.64, 0.4, 0.2]);
+        assert_eq!(light(&sun([0.0, 0.0, -1.0]), None, &material, [0.0; 3], UP), [0.0; 3]);
+    }
+
+    #[test]
+    fn lamps_and_eyes_have_places() {
+        let material = Material { diffuse: [0.0; 3], specular: [1.0; 3], exponent: 2, ..Material::default() };
+        let lamp = Light { place: Place::Position([1.0, 0.0, 1.0]), color: [1.0; 3] };
+        // Light and eye mirror each other: the half vector is the normal, and so the reflection meets the eye.
+        let eye = Eye(Place::Position([-1.0, 0.0, 1.0]));
+        for model in [Model::Blinn, Model::Phong] {
+            let lit = light(&lamp, Some(&eye), &Material { model, ..material }, [0.0; 3], UP);
+            assert!((lit[0] - 1.0).abs() < 1e-12, "{model:?}: {lit:?}");
+        }
+        // An eye straight above, light at 60 degrees: Blinn cos^2 30, Phong cos^2 60.
+        let (eye, sun) = (Eye(Place::Direction(UP)), sun([3.0_f64.sqrt(), 0.0, 1.0]));
+        let lit = |model| light(&sun, Some(&eye), &Material { model, ..material }, [0.0; 3], UP)[0];
+        assert!((lit(Model::Blinn) - 0.75).abs() < 1e-12 && (lit(Model::Phong) - 0.25).abs() < 1e-12);
+    }
+
+    #[test]
+    fn surfaces_that_shade_themselves_have_no_highlight_behind() {
+        let material = Material { diffuse: [0.0; 3], specular: [1.0; 3], exponent: 1, ..Material::default() };
+        let (eye, behind) = (Eye(Place::Direction(UP)), sun([1.0, 0.0, -0.1]));
+        assert!(light(&behind, Some(&eye), &material, [0.0; 3], UP)[0] > 0.6);
+        let shading = Material { self_shadowing: true, ..material };
+        assert_eq!(light(&behind, Some(&eye), &shading, [0.0; 3], UP)[0], 0.0);
+    }
+
+    #[test]
+    fn the_two_integrals_agree_at_the_poles_and_the_equator() {
+        let of = |integral, normal| {
+            let light = HemisphereLight { axis: UP, sky: [1.0, 0.0, 0.5], ground: [0.0, 1.0, 0.5], integral };
+            hemisphere(&light, normal)
+        };
+        for integral in [Integral::Exact, Integral::Simplified] {
+            assert_eq!(of(integral, UP), [1.0, 0.0, 0.5]);
+            assert_eq!(of(integral, [0.0, 0.0, -1.0]), [0.0, 1.0, 0.5]);
+            assert_eq!(of(integral, [1.0, 0.0, 0.0]), [0.5, 0.5, 0.5]);
+        }
+        // Between them they do not: at 30 degrees 0.75 and 0.933.
+        let tilted = [0.5, 0.0, 0.75_f64.sqrt()];
+        assert!((of(Integral::Exact, tilted)[0] - 0.75).abs() < 1e-12);
+        assert!((of(Integral::Simplified, tilted)[0] - 0.933_012_701_892_219).abs() < 1e-12);
+    }
+}
