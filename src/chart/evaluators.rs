@@ -6,6 +6,7 @@ use super::surfaces::Surface;
 use super::timing::{Effort, Spread, frames};
 use crate::compare::{CompareOptions, Mode, compare, real_frame};
 use crate::engine::{self, Engine, Isa, RenderOptions, render};
+use crate::number::Ideal;
 use crate::plan::Plan;
 use crate::scene::SceneError;
 use crate::state::Named;
@@ -60,10 +61,10 @@ pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<
         add("scalar".to_owned(), "the stored bytes", frames(&plan, &scalar, pixels, effort), same);
         let (time, error) = traced(&plan, side, effort);
         add("traced".to_owned(), "every integer of each pixel", time, error);
-        let real = effort.measure(pixels, || drop(real_frame(&plan, 0, 1)));
-        let frame: Vec<[f64; 3]> =
-            real_frame(&plan, 0, 1).iter().map(|pixel| pixel.map_or([f64::NAN; 3], |[r, g, b, _]| [r, g, b])).collect();
-        add("float64".to_owned(), "the real-number text", real, against(&plan, &frame));
+        let (time, error) = real::<f32>(&plan, pixels, effort);
+        add("float32".to_owned(), "the real-number text, single precision", time, error);
+        let (time, error) = real::<f64>(&plan, pixels, effort);
+        add("float64".to_owned(), "the real-number text", time, error);
         for mode in Mode::ALL {
             let options = CompareOptions { mode: *mode, target: 0, threads: 1, channels: 15 };
             let time = effort.measure(pixels, || drop(compare(&plan, &options)));
@@ -76,7 +77,7 @@ pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<
 /// How many evaluators [`measure`] times.
 pub fn count() -> usize {
     let widths = Isa::ALL.iter().filter(|isa| isa.is_available()).count();
-    workloads().len() * (widths + 3 + Mode::ALL.len())
+    workloads().len() * (widths + 4 + Mode::ALL.len())
 }
 
 /// R, G, B that an engine stores.
@@ -93,6 +94,14 @@ fn against(plan: &Plan, frame: &[[f64; 3]]) -> (f64, f64) {
     let errors: Vec<f64> = errors.filter(|error| !error.is_nan()).collect();
     let mean = errors.iter().map(|error| error * error).sum::<f64>() / errors.len().max(1) as f64;
     (mean.sqrt(), errors.iter().fold(0.0, |most: f64, error| most.max(error.abs())))
+}
+
+/// The ideal in a lane of real numbers.
+fn real<L: Ideal + Send + Sync>(plan: &Plan, pixels: u64, effort: &Effort) -> (Spread, (f64, f64)) {
+    let time = effort.measure(pixels, || drop(real_frame::<L>(plan, 0, 1)));
+    let colors = |pixel: &Option<[L; 4]>| pixel.map_or([f64::NAN; 3], |[r, g, b, _]| [r, g, b].map(L::real));
+    let frame: Vec<[f64; 3]> = real_frame::<L>(plan, 0, 1).iter().map(colors).collect();
+    (time, against(plan, &frame))
 }
 
 /// Traces of pixels spread over the frame.

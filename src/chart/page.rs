@@ -41,13 +41,13 @@ pub fn comma_separated(rows: &[Vec<String>]) -> String {
     rows.iter().map(|row| row.iter().map(cell).collect::<Vec<_>>().join(",") + "\n").collect()
 }
 
-/// A number with three digits that count, or all of its whole ones.
+/// A number with three digits that count; all of its whole ones, and no others if it is whole.
 pub fn number(value: f64) -> String {
     if !value.is_finite() {
         return "-".to_owned();
     }
     let decimals = match value.abs() {
-        v if v >= 99.95 || v == 0.0 => 0,
+        v if v >= 99.95 || v.fract() == 0.0 => 0,
         v if v >= 9.995 => 1,
         v if v >= 0.9995 => 2,
         _ => 3,
@@ -69,6 +69,7 @@ pub fn replace_section(page: &str, name: &str, section: &str) -> Option<String> 
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 
@@ -92,10 +93,7 @@ mod tests {
 
     #[test]
     fn numbers_keep_three_digits() {
-        assert_eq!(
-            [0.0, 0.01234, 1.0, 12.345, 99.96, 1234.5].map(number),
-            ["0", "0.012", "1.00", "12.3", "100", "1234"]
-        );
+        assert_eq!([0.0, 0.01234, 1.0, 12.345, 99.96, 1234.5].map(number), ["0", "0.012", "1", "12.3", "100", "1234"]);
         assert_eq!(number(f64::NAN), "-");
         assert_eq!([2.0, 0.125, 4.1].map(plain), ["2", "0.125", "4.1"]);
     }

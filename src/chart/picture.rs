@@ -30,11 +30,15 @@ pub struct Axis {
 }
 
 impl Axis {
-    /// A logarithmic axis around values above 0, with some room on both sides.
+    /// A logarithmic axis around values above 0, from a tick to a tick.
     pub fn logarithmic(label: impl Into<String>, values: impl Iterator<Item = f64>) -> Axis {
         let (low, high) = ends(values.filter(|value| *value > 0.0), 1.0);
-        let room = (high / low).powf(0.06).max(1.15);
-        Axis { label: label.into(), low: low / room, high: high * room, logarithmic: true }
+        Axis {
+            label: label.into(),
+            low: tick_below(low / 1.05),
+            high: 1.0 / tick_below(1.0 / (high * 1.05)),
+            logarithmic: true,
+        }
     }
 
     /// A linear axis around values, or around those and 0.
@@ -53,6 +57,12 @@ impl Axis {
             (value - self.low) / (self.high - self.low)
         }
     }
+}
+
+/// The largest 1, 2 or 5 times a power of ten that is not above a positive number.
+fn tick_below(value: f64) -> f64 {
+    let power = 10.0_f64.powf(value.log10().floor());
+    [5.0, 2.0].into_iter().map(|n| n * power).find(|tick| *tick <= value).unwrap_or(power)
 }
 
 /// The least and the largest of finite values; `empty` twice of none.
@@ -311,5 +321,50 @@ impl Series {
             ));
         }
         plots
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logarithmic_axes_end_at_ticks() {
+        let axis = |values: &[f64]| {
+            let axis = Axis::logarithmic("", values.iter().copied());
+            (axis.low, (axis.high * 1e6).round() / 1e6)
+        };
+        assert_eq!(axis(&[3.0, 70.0]), (2.0, 100.0));
+        assert_eq!(axis(&[1.06, 1.5, 0.0, f64::NAN]), (1.0, 2.0));
+        assert_eq!(axis(&[1.0, 20.0]), (0.5, 50.0));
+        assert_eq!(axis(&[]), (0.5, 2.0));
+    }
+
+    #[test]
+    fn a_drawing_holds_its_names_and_both_formats_are_the_same_each_time() {
+        let mark = |x: f64, y: f64, name: &str| Mark { x, y, name: name.to_owned() };
+        let series = Series {
+            label: "a family".to_owned(),
+            color: COLORS[0],
+            shape: Shape::Circle,
+            join: Join::Dashed,
+            marks: vec![mark(1.0, 2.0, "one < two"), mark(5.0, 8.0, "other")],
+        };
+        let drawing = Drawing {
+            title: "title".to_owned(),
+            x: Axis::logarithmic("ns", [1.0, 5.0].into_iter()),
+            y: Axis::linear("error", [2.0, 8.0].into_iter(), true),
+            series: vec![series],
+            levels: vec![(4.0, "limit 4".to_owned())],
+            size: [400.0, 300.0],
+        };
+        let picture = drawing.draw().unwrap();
+        for text in ["title", "a family", "one &lt; two", "other", "limit 4"] {
+            assert!(picture.svg.contains(text), "{text}");
+        }
+        let png = image::load_from_memory(&picture.png).unwrap();
+        assert_eq!((png.width(), png.height()), (800, 600));
+        assert_eq!(drawing.draw().unwrap(), picture);
     }
 }

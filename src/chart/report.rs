@@ -26,7 +26,7 @@ const TIME: &str = "ns per final pixel, one thread";
 const ERROR: &str = "rms error against the truth, 8-bit steps";
 
 /// Everything that the page shows.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Measured {
     /// Scenes with a truth, by family.
     pub techniques: Vec<Technique>,

@@ -87,17 +87,16 @@ impl Surface {
             true => format!(", alpha: (a: {a}, b: {b}, ab: Spare0)"),
             false => String::new(),
         };
-        let lit = format!("(rgb: (a: ExpandNormal({first}), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true)");
-        let colored = format!("(rgb: (a: Spare0, b: {second}, ab: Spare0)");
+        let stage = |rgb: &str, a: &str, b: &str| format!("(rgb: ({rgb}){})", alpha(a, b));
+        let dot = |b: &str| format!("a: ExpandNormal({first}), b: ExpandNormal({b}), ab: Spare0, ab_dot: true");
         let mut stages = match self.stages {
             0 => "()".to_owned(),
-            1 if self.units > 1 => {
-                // Both units in one stage: a dot product and a product, added by the final combiner.
-                let both = format!("{}, c: {second}, d: PrimaryColor, cd: Spare1)", lit.trim_end_matches(')'));
-                format!("{both}{})", alpha(first, second))
+            1 => stage(&dot(second), first, second),
+            _ => {
+                stage(&dot("PrimaryColor"), first, "PrimaryColor")
+                    + ", "
+                    + &stage(&format!("a: Spare0, b: {second}, ab: Spare0"), "Spare0", second)
             }
-            1 => format!("{lit}{})", alpha(first, "PrimaryColor")),
-            _ => format!("{lit}{}), {colored}{})", alpha(first, "PrimaryColor"), alpha("Spare0", second)),
         };
         if self.unused {
             stages += ", (rgb: (a: Texture1, b: Texture1, ab: Spare1))";
@@ -107,12 +106,7 @@ impl Surface {
             (0, _) => "Texture0",
             _ => "Spare0",
         };
-        let rest = if self.stages == 1 && self.units > 1 { ", d: Spare1" } else { "" };
-        let color = match (self.fog, rest) {
-            (true, _) => format!("a: (Fog, Alpha), b: {shown}, c: Fog{rest}"),
-            (false, "") => format!("d: {shown}"),
-            (false, _) => format!("a: Invert(Zero), b: {shown}{rest}"),
-        };
+        let color = if self.fog { format!("a: (Fog, Alpha), b: {shown}, c: Fog") } else { format!("d: {shown}") };
         let alpha = if self.alpha { ", g: Spare0" } else { "" };
         let side = side.to_string();
         let parts = [
@@ -155,6 +149,7 @@ impl Surface {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

@@ -1,10 +1,13 @@
 //! The ideal decides for itself: two evaluations side by side, each with a surface of its own.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
+use std::marker::PhantomData;
+
 use super::draw::{Band, Images, Method};
 use super::meter::{Counts, Log};
 use crate::engine::pixel::{Fragment, TriangleContext};
 use crate::engine::walk;
+use crate::number::{Ideal, Lane};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::ideal::Outline;
 use crate::state::{Cull, FrontFace, Named};
@@ -116,13 +119,13 @@ fn pixel(
 }
 
 /// The ideal's side of a pixel that it covers.
-fn real_side(
+fn real_side<L: Lane>(
     planned: &PlannedDraw,
     context: &TriangleContext<'_>,
     outline: &Outline,
     (i, j): (i64, i64),
-    images: &Images<'_, f64>,
-    band: &mut Band<'_, f64>,
+    images: &Images<'_, L>,
+    band: &mut Band<'_, L>,
     observer: &mut impl Observer,
 ) {
     let at = band.at(i, j);
@@ -134,7 +137,7 @@ fn real_side(
         stored_depth: band.states[at].depth,
         weights: Some(outline.weights(i, j)),
     };
-    if let Some(stored) = context.shade::<f64, _>(&fragment, Some(band.held[at]), &images.lane, observer) {
+    if let Some(stored) = context.shade::<L, _>(&fragment, Some(band.held[at]), &images.lane, observer) {
         band.states[at].drawn = true;
         band.states[at].depth = stored.depth.unwrap_or(band.states[at].depth);
         for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
@@ -143,13 +146,13 @@ fn real_side(
     }
 }
 
-/// The ideal alone.
-pub(super) struct Real;
+/// The ideal alone, in a lane of real numbers.
+pub(super) struct Real<L>(PhantomData<L>);
 
-impl Method for Real {
-    type Lane = f64;
+impl<L: Ideal + Send + Sync> Method for Real<L> {
+    type Lane = L;
 
-    fn draw(plan: &Plan, planned: &PlannedDraw, images: &Images<'_, f64>, band: &mut Band<'_, f64>, _: &mut Counts) {
+    fn draw(plan: &Plan, planned: &PlannedDraw, images: &Images<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
         let (rows, columns) = walk::window(planned, band.rows());
         if planned.folded.invisible.is_some() || rows.0 >= rows.1 || columns.0 >= columns.1 {
             return;
@@ -166,7 +169,7 @@ impl Method for Real {
         }
     }
 
-    fn channel(_shown: u8, held: f64, _counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
-        (held, None)
+    fn channel(_shown: u8, held: L, _counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
+        (held.real(), None)
     }
 }

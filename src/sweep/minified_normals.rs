@@ -18,14 +18,14 @@ pub(super) fn sweep() -> Sweep {
             Ok(root_mean_square(&errors(&pixels, 0, |at| seen(at, texels, squarings))))
         }),
         works: 1.0,
-        fails: 32.0,
+        fails: 12.0,
     };
     Sweep {
         name: "minified-normals",
         title: "A highlight on bumps that get smaller",
         parameter: "texels a pixel",
         error: "rms error, 8-bit steps",
-        limit: 16.0,
+        limit: 20.0,
         scale: Scale::Real(0.02),
         shown: (0..=40).map(|n| (f64::from(n) / 8.0).exp2()).collect(),
         methods: vec![

@@ -33,7 +33,7 @@ fn text(tilt: f64, additions_first: bool) -> String {
     };
     let textures = component("+x", f64::sin) + &component("-x", |angle| -angle.sin()) + &component("+z", f64::cos);
     let (across, up) = (byte(tilt.sin()), byte(tilt.cos()));
-    let mut passes = vec![pass("+x", across, "Add"), pass("+z", up, "Add"), pass("-x", across, "ReverseSubtract")];
+    let mut passes = [pass("+x", across, "Add"), pass("+z", up, "Add"), pass("-x", across, "ReverseSubtract")];
     if !additions_first {
         passes.reverse();
     }
