@@ -59,6 +59,24 @@ impl Axis {
     }
 }
 
+/// The library counts clipped regions through all drawings of a process; here each drawing begins anew, so that its bytes are its own.
+fn numbered_anew(svg: &str) -> String {
+    const NAME: &str = "kuva-clip-";
+    let mut pieces = svg.split(NAME);
+    let mut text = pieces.next().unwrap_or_default().to_owned();
+    let mut known: Vec<&str> = Vec::new();
+    for piece in pieces {
+        let digits = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
+        let (number, rest) = piece.split_at(digits);
+        let place = known.iter().position(|other| *other == number).unwrap_or_else(|| {
+            known.push(number);
+            known.len() - 1
+        });
+        text += &format!("plot-{place}{rest}");
+    }
+    text
+}
+
 /// The largest 1, 2 or 5 times a power of ten that is not above a positive number.
 fn tick_below(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.log10().floor());
@@ -228,7 +246,7 @@ impl Drawing {
             height: (self.size[1] * f64::from(SCALE)) as u32,
             reason,
         })?;
-        Ok(Picture { svg: SvgBackend::new().render_scene(&scene) + "\n", png })
+        Ok(Picture { svg: numbered_anew(&SvgBackend::new().render_scene(&scene)) + "\n", png })
     }
 
     fn legend(&self) -> Vec<LegendEntry> {
