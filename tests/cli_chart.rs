@@ -53,6 +53,8 @@ fn deleting_the_folder_and_charting_restores_every_file() {
     let page = fs::read_to_string(bench.path("out/speed-accuracy.md")).unwrap();
     assert!(!page.contains("{{"), "{page}");
     assert!(page.contains("### Flat surfaces\n") && page.contains("| tone 16 | "), "{page}");
+    // Two squares of a family have the same truth, that of the other family stands alone.
+    assert!(page.contains("\n| tone 4, tone 16 | tone 4 (2.31 steps) | none | none | tone 4 ("), "{page}");
     // The error is that of red alone: 2, 4 and 16 steps, over the root of three.
     for technique in ["| tone | 1.15 | 2 |", "| tone 4 | 2.31 | 4 |", "| tone 16 | 9.24 | 16 |"] {
         assert!(page.contains(technique), "{technique}: {page}");

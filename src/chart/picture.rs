@@ -11,6 +11,7 @@ use kuva::render::annotations::ReferenceLine;
 use kuva::render::layout::{Layout, TickFormat};
 use kuva::render::plots::Plot;
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
+use kuva::render::theme::Theme;
 
 use super::labels::{self, Named, Rect};
 use super::page::plain;
@@ -194,6 +195,8 @@ const MARGINS: [f64; 4] = [78.0, 24.0, 44.0, 62.0];
 /// Height of a letter of names.
 const NAME: u32 = 11;
 const BODY: u32 = 12;
+/// Lines of the grid, pale: names stand on them.
+const GRID: &str = "#e4e4e4";
 /// Columns of the PNG for one of the SVG.
 const SCALE: f32 = 2.0;
 
@@ -222,7 +225,8 @@ impl Drawing {
             .with_title_size(15)
             .with_label_size(13)
             .with_tick_size(11)
-            .with_body_size(BODY);
+            .with_body_size(BODY)
+            .with_theme(Theme { grid_color: GRID.to_owned(), ..Theme::light() });
         if self.x.logarithmic {
             layout = layout.with_log_x().with_x_tick_format(TickFormat::Custom(Arc::new(plain)));
         }

@@ -45,7 +45,7 @@ type Column = (&'static str, fn(&Technique) -> f64);
 
 /// What is said of each technique.
 const COLUMNS: [Column; 17] = [
-    ("rms", |t| t.accuracy.errors.rms()),
+    ("rms", rms),
     ("max", |t| t.accuracy.errors.max()),
     ("bias", |t| t.accuracy.errors.bias()),
     ("PSNR, dB", |t| t.accuracy.errors.psnr()),
@@ -127,7 +127,8 @@ impl Measured {
     /// The techniques of a family; parameters of one technique are joined.
     fn family_drawing(&self, family: &str) -> Drawing {
         let all: Vec<&Technique> = self.of(family).collect();
-        let mut series = vec![front_series(&all)];
+        // Names stand at the marks: no legend, and more room for them.
+        let mut series = vec![Series { label: String::new(), ..front_series(&all) }];
         let mut names: Vec<&str> = all.iter().map(|technique| technique.entry.technique.as_str()).collect();
         names.dedup();
         for (n, name) in names.iter().enumerate() {
@@ -187,23 +188,37 @@ impl Measured {
         std::iter::once(heading.map(str::to_owned).collect()).chain(self.of(family).map(row)).collect()
     }
 
-    /// The fastest technique of each family within each budget.
+    /// Of each light that there are several ways to, the fastest one within each budget.
     fn budget_rows(&self) -> Vec<Vec<String>> {
-        let heading = std::iter::once("family".to_owned())
-            .chain(BUDGETS.iter().map(|budget| format!("rms up to {} steps", number(*budget))))
-            .collect();
-        let mut rows = vec![heading];
-        for (family, title) in &self.titles {
-            let fastest = |budget: &f64| {
-                let within = self.of(family).filter(|technique| technique.accuracy.errors.rms() <= *budget);
-                let best = within.min_by(|a, b| a.time.median.total_cmp(&b.time.median));
-                best.map_or("none".to_owned(), |best| {
-                    format!("{} ({} ns)", best.entry.name(), number(best.time.median))
-                })
+        let mut lights: Vec<Vec<&Technique>> = Vec::new();
+        for technique in &self.techniques {
+            let same = |light: &&mut Vec<&Technique>| {
+                light.iter().all(|other| other.truth == technique.truth && other.entry.family == technique.entry.family)
             };
-            rows.push(std::iter::once(title.clone()).chain(BUDGETS.iter().map(fastest)).collect());
+            match lights.iter_mut().find(same) {
+                Some(light) => light.push(technique),
+                None => lights.push(vec![technique]),
+            }
         }
-        rows
+        lights.retain(|light| light.len() > 1);
+        let heading = ["ways to the same light".to_owned(), "most exact".to_owned()]
+            .into_iter()
+            .chain(BUDGETS.iter().map(|budget| format!("rms up to {}", number(*budget))));
+        let named = |technique: &Technique, of: fn(&Technique) -> f64, unit: &str| {
+            format!("{} ({} {unit})", technique.entry.name(), number(of(technique)))
+        };
+        let row = |light: &Vec<&Technique>| {
+            let names: Vec<String> = light.iter().map(|technique| technique.entry.name()).collect();
+            let exact = light.iter().min_by(|a, b| rms(a).total_cmp(&rms(b)));
+            let exact = exact.map_or(String::new(), |best| named(best, rms, "steps"));
+            let fastest = |budget: &f64| {
+                let within = light.iter().filter(|technique| rms(technique) <= *budget);
+                let best = within.min_by(|a, b| a.time.median.total_cmp(&b.time.median));
+                best.map_or("none".to_owned(), |best| named(best, |technique| technique.time.median, "ns"))
+            };
+            [names.join(", "), exact].into_iter().chain(BUDGETS.iter().map(fastest)).collect()
+        };
+        std::iter::once(heading.collect()).chain(lights.iter().map(row)).collect()
     }
 
     fn evaluator_rows(&self) -> Vec<Vec<String>> {
@@ -276,13 +291,18 @@ impl Measured {
     }
 }
 
+/// The error that charts show.
+fn rms(technique: &Technique) -> f64 {
+    technique.accuracy.errors.rms()
+}
+
 /// A median with the ends of the middle half.
 fn spread(spread: Spread) -> String {
     format!("{} ({} to {})", number(spread.median), number(spread.lower), number(spread.upper))
 }
 
 fn mark(technique: &Technique, name: String) -> Mark {
-    Mark { x: technique.time.median, y: technique.accuracy.errors.rms(), name }
+    Mark { x: technique.time.median, y: rms(technique), name }
 }
 
 fn marks_series(label: String, n: usize, marks: Vec<Mark>) -> Series {
@@ -292,8 +312,7 @@ fn marks_series(label: String, n: usize, marks: Vec<Mark>) -> Series {
 
 /// The techniques that nothing beats at both.
 fn front_series(all: &[&Technique]) -> Series {
-    let points: Vec<[f64; 2]> =
-        all.iter().map(|technique| [technique.time.median, technique.accuracy.errors.rms()]).collect();
+    let points: Vec<[f64; 2]> = all.iter().map(|technique| [technique.time.median, rms(technique)]).collect();
     let marks = front(&points).into_iter().map(|n| mark(all[n], String::new())).collect();
     let label = "nothing is faster and more exact".to_owned();
     Series { label, color: "#888888", shape: Shape::None, join: Join::Dashed, marks }
@@ -303,7 +322,7 @@ fn drawing(title: &str, all: &[&Technique], series: Vec<Series>, size: [f64; 2])
     Drawing {
         title: title.to_owned(),
         x: Axis::logarithmic(TIME, all.iter().map(|technique| technique.time.median)),
-        y: Axis::logarithmic(ERROR, all.iter().map(|technique| technique.accuracy.errors.rms())),
+        y: Axis::logarithmic(ERROR, all.iter().map(|technique| rms(technique))),
         series,
         levels: Vec::new(),
         size,

@@ -9,6 +9,7 @@ use crate::accuracy::{self, Accuracy};
 use crate::engine::RenderOptions;
 use crate::limits::Limits;
 use crate::scene::{SceneError, load};
+use crate::truth::Truth;
 
 /// A scene to be measured.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -36,6 +37,9 @@ impl Entry {
 pub struct Technique {
     /// The scene.
     pub entry: Entry,
+    /// What its picture ought to show, without what tells how the technique does it. Scenes of which this is equal are ways to the same
+    /// light.
+    pub truth: Truth,
     /// How far its picture is from its truth, and what it costs the chip.
     pub accuracy: Accuracy,
     /// Drawing it here, nanoseconds per final pixel, fast engine, one thread.
@@ -104,7 +108,8 @@ pub fn measure(entry: &Entry, effort: &Effort) -> Result<Option<Technique>, Tech
         return Err(TechniqueError::Unseen(entry.path.clone()));
     };
     let time = frames(&loaded.plan, &RenderOptions::default(), accuracy.pixels, effort);
-    Ok(Some(Technique { entry: entry.clone(), accuracy, time }))
+    let truth = Truth { shading_normal: None, meshes: Vec::new(), ..truth.clone() };
+    Ok(Some(Technique { entry: entry.clone(), truth, accuracy, time }))
 }
 
 #[cfg(test)]
