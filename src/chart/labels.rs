@@ -53,6 +53,8 @@ pub struct Named {
 
 /// Half the side of the square that a mark covers.
 const MARK: f64 = 6.0;
+/// Names further from their marks than this get a line.
+const LED: f64 = 14.0;
 /// Distances of a name from its mark.
 const DISTANCES: [f64; 8] = [8.0, 13.0, 20.0, 30.0, 42.0, 56.0, 74.0, 95.0];
 /// Directions, best first: right, left, above, below, and between them.
@@ -90,21 +92,25 @@ pub fn place(marks: &[Named], bounds: &Rect, lines: &[([f64; 2], [f64; 2])]) -> 
         for n in 0..marks.len() {
             let cost = |place: &Rect, distance: f64, direction: usize| {
                 let roomy = place.grown(1.5);
-                let names = places.iter().enumerate().filter(|(k, _)| *k != n).filter_map(|(_, other)| *other);
-                let covered: f64 = names.map(|other| roomy.overlap(&other)).sum();
+                let others =
+                    || places.iter().enumerate().filter(|(k, _)| *k != n).filter_map(|(k, o)| Some((k, (*o)?)));
+                let covered: f64 = others().map(|(_, other)| roomy.overlap(&other)).sum();
                 let marked: f64 = squares.iter().map(|square| place.overlap(square)).sum();
                 let crossed: f64 = lines.iter().map(|line| place.crossed(*line)).sum();
-                let leader = (marks[n].at, nearest(place, marks[n].at));
-                let leads: f64 = places
-                    .iter()
-                    .enumerate()
-                    .filter(|(k, _)| *k != n && distance > DISTANCES[1])
-                    .filter_map(|(_, other)| other.map(|other| other.crossed(leader)))
+                // Lines between marks and names cross no names, neither this one's the others nor theirs this one.
+                let leads: f64 = others()
+                    .map(|(k, other)| {
+                        let own = leader(&marks[n], place).map_or(0.0, |line| other.crossed(line));
+                        own + leader(&marks[k], &other).map_or(0.0, |line| place.crossed(line))
+                    })
                     .sum();
+                let passed: f64 = leader(&marks[n], place).map_or(0.0, |line| {
+                    squares.iter().enumerate().filter(|(k, _)| *k != n).map(|(_, square)| square.crossed(line)).sum()
+                });
                 60.0 * covered
                     + 30.0 * marked
                     + 100.0 * place.outside(bounds)
-                    + 8.0 * leads
+                    + 25.0 * (leads + passed)
                     + 2.0 * crossed
                     + distance
                     + direction as f64 * 0.5
@@ -148,8 +154,17 @@ fn beside(mark: &Named, [dx, dy]: [f64; 2], distance: f64) -> Rect {
     }
 }
 
+/// The line from a mark to its name, if they stand so far apart that one is drawn.
+pub fn leader(mark: &Named, place: &Rect) -> Option<([f64; 2], [f64; 2])> {
+    let end = nearest(place, mark.at);
+    let apart = ((end[0] - mark.at[0]).powi(2) + (end[1] - mark.at[1]).powi(2)).sqrt();
+    let share = MARK / apart;
+    let start = [0, 1].map(|n| mark.at[n] + (end[n] - mark.at[n]) * share);
+    (apart > LED).then_some((start, end))
+}
+
 /// The point of a rectangle nearest to another point.
-pub fn nearest(rect: &Rect, [x, y]: [f64; 2]) -> [f64; 2] {
+fn nearest(rect: &Rect, [x, y]: [f64; 2]) -> [f64; 2] {
     [x.clamp(rect.x, rect.x + rect.width), y.clamp(rect.y, rect.y + rect.height)]
 }
 

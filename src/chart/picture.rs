@@ -291,19 +291,9 @@ impl Drawing {
             if mark.name.is_empty() {
                 continue;
             }
-            let end = labels::nearest(place, named.at);
-            let apart = ((end[0] - named.at[0]).powi(2) + (end[1] - named.at[1]).powi(2)).sqrt();
-            if apart > 14.0 {
-                let share = 6.0 / apart;
-                scene.add(Primitive::Line {
-                    x1: named.at[0] + (end[0] - named.at[0]) * share,
-                    y1: named.at[1] + (end[1] - named.at[1]) * share,
-                    x2: end[0],
-                    y2: end[1],
-                    stroke: "#999999".into(),
-                    stroke_width: 0.7,
-                    stroke_dasharray: None,
-                });
+            if let Some(([x1, y1], [x2, y2])) = labels::leader(named, place) {
+                let stroke = "#999999".into();
+                scene.add(Primitive::Line { x1, y1, x2, y2, stroke, stroke_width: 0.7, stroke_dasharray: None });
             }
             // Text that is narrower than was reckoned stays near its mark.
             let (x, anchor) = if place.x + place.width <= named.at[0] {

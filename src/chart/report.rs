@@ -102,8 +102,7 @@ impl Measured {
     }
 
     fn machine(&self) -> String {
-        let effort =
-            if self.quick { "three frames each, to see that it works" } else { "medians of at least 21 frames" };
+        let effort = if self.quick { "one frame each, to see that it works" } else { "medians of at least 21 frames" };
         format!(
             "Measured by ninebit {} on {} {}, instruction set {}, one thread, {effort}.",
             env!("CARGO_PKG_VERSION"),
@@ -242,7 +241,7 @@ impl Measured {
         Drawing {
             title: "Ways of evaluating a scene".to_owned(),
             x: Axis::logarithmic("ns per pixel, one thread", self.evaluators.iter().map(|e| e.time.median)),
-            y: Axis::linear("rms error against the stored bytes, 8-bit steps", errors, false),
+            y: Axis { low: -0.35, ..Axis::linear("rms error against the stored bytes, 8-bit steps", errors, true) },
             series: series.collect(),
             levels: Vec::new(),
             size: [1080.0, 460.0],

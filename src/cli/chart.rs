@@ -24,7 +24,7 @@ const SECTION: &str = "sweeps";
 
 /// Pixels along the sides of the surfaces that evaluators are timed on.
 const SIDE: usize = 256;
-const QUICK_SIDE: usize = 32;
+const QUICK_SIDE: usize = 16;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
