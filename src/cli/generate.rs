@@ -7,7 +7,7 @@ use clap::builder::RangedI64ValueParser;
 use clap::{Args, Subcommand, ValueEnum};
 use ninebit::generate::cube::{self, Content};
 use ninebit::generate::normal_map::{self, HeightChannel};
-use ninebit::generate::{SIDES, dds, height_field, hemisphere, occlusion, power_table};
+use ninebit::generate::{SIDES, dds, half_components, height_field, hemisphere, occlusion, power_table};
 use ninebit::output::{Compression, Destination, encode_png};
 use ninebit::scene::image::{self, ImageLimits, Rgba};
 
@@ -50,6 +50,10 @@ pub(crate) enum Command {
     ///
     /// A direction looked up points from the surface to the viewer. The vectors are stored as in `normal-map`.
     HalfVectorCube(HalfVectorCube),
+    /// Take what is positive, or negative, of one component of a normal map as an unsigned texture
+    ///
+    /// All four channels hold it: 255 is 1. Chips without signed arithmetic multiply such halves.
+    HalfComponent(HalfComponent),
     /// Make a table of powers for dependent reads
     ///
     /// Red, green and blue are v to the power of the exponent, alpha is u; v grows downward, both from 0 to 1 across the picture.
@@ -107,6 +111,31 @@ pub(crate) struct HalfVectorCube {
     /// Directions looked up point from the viewer to the surface, as positions in camera space do
     #[arg(long)]
     from_viewer: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HalfComponent {
+    /// The normal map, PNG or TGA
+    normals: PathBuf,
+    /// The half component, a PNG; `-` is stdout
+    #[arg(short, long, value_name = "HALF.png")]
+    output: OsString,
+    /// Which component
+    #[arg(long, value_enum)]
+    axis: Axis,
+    /// What is negative, its sign turned; otherwise what is positive
+    #[arg(long)]
+    negative: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Axis {
+    /// Red
+    X,
+    /// Green
+    Y,
+    /// Blue
+    Z,
 }
 
 #[derive(Debug, Args)]
@@ -218,6 +247,12 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
                 ));
             }
             write_cube(&arguments.cube, Content::Half { light, from_viewer: arguments.from_viewer })
+        }
+        Command::HalfComponent(arguments) => {
+            let destination = Destination::from(arguments.output.as_os_str());
+            refuse_overwriting(&arguments.normals, &destination)?;
+            let normals = image::load(&arguments.normals, &ImageLimits::default())?;
+            write(&half_components::of_normals(&normals, arguments.axis as usize, arguments.negative), &destination)
         }
         Command::PowerTable(arguments) => {
             let destination = Destination::from(arguments.output.as_os_str());
