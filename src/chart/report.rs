@@ -104,7 +104,7 @@ impl Measured {
     fn machine(&self) -> String {
         let effort = if self.quick { "one frame each, to see that it works" } else { "medians of at least 21 frames" };
         format!(
-            "Measured by ninebit {} on {} {}, instruction set {}, one thread, {effort}.",
+            "Measured by ninebit {} on {} {}, instruction set {}, one thread, processor time, {effort}.",
             env!("CARGO_PKG_VERSION"),
             std::env::consts::ARCH,
             std::env::consts::OS,

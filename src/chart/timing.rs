@@ -1,7 +1,8 @@
-//! How long drawing takes here.
+//! How long drawing takes here, in processor time: what other programs take meanwhile does not count.
 
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
+use cpu_time::ProcessTime;
 use serde::Serialize;
 
 use crate::engine::{RenderOptions, Renderer};
@@ -45,12 +46,13 @@ impl Effort {
     /// To see that everything works.
     pub const QUICK: Effort = Effort { times: 1, duration: Duration::ZERO };
 
-    /// Times `work` again and again, once before that unmeasured; nanoseconds for each of `pixels`.
+    /// Times `work` again and again, once before that unmeasured; nanoseconds for each of `pixels`. Work runs on one thread, whichever:
+    /// the time is that of the whole process.
     pub fn measure(&self, pixels: u64, mut work: impl FnMut()) -> Spread {
         work();
-        let (begin, mut times) = (Instant::now(), Vec::new());
+        let (begin, mut times) = (ProcessTime::now(), Vec::new());
         while times.len() < self.times || (begin.elapsed() < self.duration && times.len() < 100 * self.times) {
-            let start = Instant::now();
+            let start = ProcessTime::now();
             work();
             times.push(start.elapsed().as_secs_f64() * 1e9 / pixels.max(1) as f64);
         }
