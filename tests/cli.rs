@@ -20,6 +20,7 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
     assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
     assert_data_eq!(bench.run("bench --help").text(), file!["cli/help-bench.txt"]);
+    assert_data_eq!(bench.run("chart --help").text(), file!["cli/help-chart.txt"]);
     assert_data_eq!(bench.run("diff --help").text(), file!["cli/help-diff.txt"]);
     for operation in ["combiner", "final", "blend", "filter", "address"] {
         let text = bench.run(&format!("op {operation} --help")).text();

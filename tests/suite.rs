@@ -34,6 +34,7 @@ mod assets_output;
 mod assets_scenes;
 mod bad_scenes;
 mod cli;
+mod cli_chart;
 mod cli_compare;
 mod cli_measure;
 mod cli_texture;
