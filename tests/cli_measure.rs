@@ -44,8 +44,17 @@ fn generators_write_files_that_scenes_read() {
     bench.run("generate occlusion height.png --normal-map normal.png -o both.png").text();
     bench.run("generate normalisation-cube -o cube.dds --size 8").text();
     bench.run("generate half-vector-cube -o half.dds --size 8 --light 1 -2 0.5 --from-viewer").text();
+    bench
+        .run("generate sky-cube -o sky.dds --size 8 --axis 0 0 -1 --sky 9 8 7 --ground 0 0 0 --integral simplified")
+        .text();
     bench.run("generate power-table -o table.png --exponent 16 --width 2 --height 64").text();
-    for (file, said) in [("cube.dds", "cube"), ("half.dds", "cube"), ("table.png", "2 x 64"), ("both.png", "32 x 32")] {
+    for (file, said) in [
+        ("cube.dds", "cube"),
+        ("half.dds", "cube"),
+        ("sky.dds", "cube"),
+        ("table.png", "2 x 64"),
+        ("both.png", "32 x 32"),
+    ] {
         let text = bench.run(&format!("texture {file}")).text();
         assert!(text.to_lowercase().contains(said), "{file}: {text}");
     }

@@ -48,6 +48,7 @@ mod error_codes;
 mod explain;
 mod op;
 mod oracle;
+mod per_pixel_lighting;
 mod readme;
 mod registers;
 mod scene_format;

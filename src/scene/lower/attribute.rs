@@ -53,10 +53,10 @@ pub(super) fn source<'a>(
     color: bool,
 ) -> Option<Source> {
     let (head, _) = raw.split();
-    if color && (raw.is_text() || head.is_empty() || head == "Float") {
+    if color && (raw.is_text() || matches!(head, "" | "Float" | "Vector")) {
         return color::vertex_color(reader, names, &raw.as_other()).map(Source::Color);
     }
-    if !color && raw.text.starts_with('(') {
+    if !color && (raw.text.starts_with('(') || raw.is_text()) {
         return vertex::coordinates(reader, &raw.as_other())
             .map(|(values, written)| Source::Coordinates(values, written));
     }

@@ -167,7 +167,7 @@ fn index(key: &str) -> Option<usize> {
 }
 
 fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::ShaderConstant>) -> Option<Value> {
-    if raw.text.starts_with('(') {
+    if raw.text.starts_with('(') || raw.is_text() {
         return reader.numbers(&raw.as_other::<Numbers>(), "a constant", 1, 4, [0.0; 4]).map(Value::Vector);
     }
     let (kind, rest) = reader.variant(raw, "constant", &["Matrix", "Color"])?;

@@ -1,0 +1,9 @@
+vs.1.1                          ; the direction to the light in tangent space, as a colour
+; c0: world, view and projection, c12: toward the light, c20: one half
+m4x4 oPos, v0, c0
+dp3 r6.x, v8, c12
+dp3 r6.y, v9, c12
+dp3 r6.z, v3, c12
+mad oD0.xyz, r6.xyz, c20.xyz, c20.xyz
+mov oT0.xy, v7.xy
+mov oT1.xy, v7.xy
