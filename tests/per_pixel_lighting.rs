@@ -61,6 +61,7 @@ const BOUNDS: &[(&str, f64, f64)] = &[
     ("specular-table-400-256", 13.0, 19.0),
     ("specular-table-diffuse", 4.9, 7.5),
     ("tangent-space-diffuse", 2.3, 3.6),
+    ("tangent-space-diffuse-cross", 2.3, 3.6),
     ("tangent-space-diffuse-stone", 1.2, 1.9),
     ("world-space-diffuse", 1.1, 1.7),
 ];
@@ -131,6 +132,11 @@ fn the_fallback_by_dot_product_shows_what_the_pixel_shader_shows() {
         let (count, largest) = difference(names.each_ref().map(String::as_str));
         assert!(count <= 20 && largest <= 4, "{end}: {count} {largest}");
     }
+}
+
+#[test]
+fn a_binormal_made_by_a_cross_product_is_the_mesh_s() {
+    assert_eq!(difference(["tangent-space-diffuse", "tangent-space-diffuse-cross"]), (0, 0));
 }
 
 /// The third stage reads nine bits with a sign, blending the eight of the frame buffer.
