@@ -44,6 +44,9 @@ fn generators_write_files_that_scenes_read() {
     bench.run("generate occlusion height.png --normal-map normal.png -o both.png").text();
     bench.run("generate normalisation-cube -o cube.dds --size 8").text();
     bench.run("generate half-vector-cube -o half.dds --size 8 --light 1 -2 0.5 --from-viewer").text();
+    bench.run("generate half-component normal.png --axis x --negative -o half.png").text();
+    bench.run("generate half-component normal.png --axis w -o x.png").failed(2, "--axis");
+    bench.run("generate half-component normal.png --axis x -o normal.png").failed(2, "is the input");
     bench
         .run("generate sky-cube -o sky.dds --size 8 --axis 0 0 -1 --sky 9 8 7 --ground 0 0 0 --integral simplified")
         .text();

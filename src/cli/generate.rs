@@ -8,7 +8,7 @@ use clap::{Args, Subcommand, ValueEnum};
 use ninebit::generate::cube::{self, Content};
 use ninebit::generate::normal_map::{self, HeightChannel};
 use ninebit::generate::sky::{self, HemisphereLight};
-use ninebit::generate::{SIDES, dds, height_field, hemisphere, occlusion, power_table};
+use ninebit::generate::{SIDES, dds, half_components, height_field, hemisphere, occlusion, power_table};
 use ninebit::output::{Compression, Destination, encode_png};
 use ninebit::scene::image::{self, ImageLimits, Rgba};
 
@@ -53,6 +53,10 @@ pub(crate) enum Command {
     HalfVectorCube(HalfVectorCube),
     /// Make a cube map of the light of a sky and a ground, looked up with a normal
     SkyCube(SkyCube),
+    /// Take what is positive, or negative, of one component of a normal map as an unsigned texture
+    ///
+    /// All four channels hold it: 255 is 1. Chips without signed arithmetic multiply such halves.
+    HalfComponent(HalfComponent),
     /// Make a table of powers for dependent reads
     ///
     /// Red, green and blue are v to the power of the exponent, alpha is u; v grows downward, both from 0 to 1 across the picture.
@@ -136,6 +140,31 @@ enum Integral {
     Exact,
     /// 1/2 + cos q / 2
     Simplified,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct HalfComponent {
+    /// The normal map, PNG or TGA
+    normals: PathBuf,
+    /// The half component, a PNG; `-` is stdout
+    #[arg(short, long, value_name = "HALF.png")]
+    output: OsString,
+    /// Which component
+    #[arg(long, value_enum)]
+    axis: Axis,
+    /// What is negative, its sign turned; otherwise what is positive
+    #[arg(long)]
+    negative: bool,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Axis {
+    /// Red
+    X,
+    /// Green
+    Y,
+    /// Blue
+    Z,
 }
 
 #[derive(Debug, Args)]
@@ -250,6 +279,12 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
             };
             let axis = direction(&arguments.axis, "the middle of the sky")?;
             write_cube(&arguments.cube, Content::Sky(HemisphereLight { axis, sky, ground, integral }))
+        }
+        Command::HalfComponent(arguments) => {
+            let destination = Destination::from(arguments.output.as_os_str());
+            refuse_overwriting(&arguments.normals, &destination)?;
+            let normals = image::load(&arguments.normals, &ImageLimits::default())?;
+            write(&half_components::of_normals(&normals, arguments.axis as usize, arguments.negative), &destination)
         }
         Command::PowerTable(arguments) => {
             let destination = Destination::from(arguments.output.as_os_str());

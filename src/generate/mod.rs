@@ -5,6 +5,7 @@
 
 pub mod cube;
 pub mod dds;
+pub mod half_components;
 pub(crate) mod hash;
 pub mod height_field;
 pub mod hemisphere;

@@ -1,6 +1,6 @@
 //! How much of the sky each texel of a height field sees.
 //!
-//! Around a texel rays go out in [`RAYS`] directions, up to [`REACH`] texels far; the steepest slope along a ray is its horizon. A flat
+//! Around a texel rays go out in sixteen directions, up to 24 texels far; the steepest slope along a ray is its horizon. A flat
 //! surface weighs the sky by the cosine, so what is left above a horizon at angle h is cos^2 h of a direction's share.
 #![allow(
     clippy::float_arithmetic,

@@ -4,9 +4,11 @@ use crate::combiner::final_combiner;
 use crate::combiner::general::source_channel;
 use crate::combiner::registers::{bit, bits, initially_undefined};
 use crate::state::{
-    Bias, Blend, BlendEquation, BlendFactor, CombinerInput, Component, Draw, FinalInput, FinalRegister, GeneralStage,
-    InputMapping, Portion, Register, ShaderOperation, VertexColor,
+    AddressMode, Bias, Blend, BlendEquation, BlendFactor, CombinerInput, Component, Draw, FinalInput, FinalRegister,
+    GeneralStage, InputMapping, Portion, Register, ShaderOperation, Texture, TextureFormat, TextureImage, TextureUnit,
+    VertexColor,
 };
+use crate::texture::format::expand;
 
 /// The factor's byte, if it is the same for every pixel and every one of the channels.
 fn constant(factor: BlendFactor, constant: [u8; 4], channels: u8) -> Option<u8> {
@@ -37,15 +39,36 @@ pub(super) fn keeps(blend: &Blend, blend_constant: [u8; 4], channels: u8, zero: 
     let factor = |f| constant(f, blend_constant, channels);
     let nothing = zero || factor(blend.source) == Some(0);
     match blend.equation {
-        BlendEquation::Add | BlendEquation::ReverseSubtract => nothing && factor(blend.destination) == Some(255),
+        BlendEquation::Add | BlendEquation::ReverseSubtract => {
+            let whole = zero && blend.destination == BlendFactor::OneMinusSourceColor;
+            nothing && (whole || factor(blend.destination) == Some(255))
+        }
         BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract | BlendEquation::Max => zero,
         BlendEquation::Subtract | BlendEquation::Min => false,
     }
 }
 
-/// Channels of the fragment that are 0 whatever the pixel, bits R, G, B, A.
-pub(super) fn zero_fragment(draw: &Draw) -> u8 {
-    let mut zero = initially_zero(draw);
+/// Channels of a texture that are 0 in every texel, bits R, G, B, A. None of blocks, indices and halves of sixteen bits is looked into.
+pub(super) fn black_channels(texture: &Texture) -> u8 {
+    let TextureImage::Texels(texels) = &texture.image else { return 0 };
+    let format = texture.format;
+    if format.is_compressed() || matches!(format, TextureFormat::P8 | TextureFormat::R16B16 | TextureFormat::Y16) {
+        return 0;
+    }
+    let mut black = 15;
+    for word in texels.words.iter() {
+        let shown = expand(format, *word);
+        black &= (0..4).filter(|n| shown[*n] == 0).fold(0, |bits, n| bits | 1 << n);
+        if black == 0 {
+            break;
+        }
+    }
+    black
+}
+
+/// Channels of the fragment that are 0 whatever the pixel, bits R, G, B, A. `black` are the textures' [`black_channels`].
+pub(super) fn zero_fragment(draw: &Draw, black: &[u8]) -> u8 {
+    let mut zero = initially_zero(draw, black);
     for stage in &draw.combiners.stages {
         zero = after_stage(stage, with_constants(zero, stage.constants));
     }
@@ -86,7 +109,7 @@ pub(super) fn zero_fragment(draw: &Draw) -> u8 {
 }
 
 /// Registers that hold 0 in every pixel before the first stage, as bits of registers and channels.
-fn initially_zero(draw: &Draw) -> u64 {
+fn initially_zero(draw: &Draw, black: &[u8]) -> u64 {
     let mut zero = bits(Register::Zero) | initially_undefined();
     let colors = |color: fn(&crate::state::Vertex) -> &VertexColor, channel: usize| {
         draw.vertices.iter().all(|v| match color(v) {
@@ -104,7 +127,15 @@ fn initially_zero(draw: &Draw) -> u64 {
         // TEX-16, and what stages without a texture yield.
         let units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         for (register, (unit, stage)) in units.into_iter().zip(draw.textures.iter().zip(&draw.texture_shader)) {
+            // A filter's mix of zeros is zero, whichever texels it takes.
+            let sampled = |unit: &TextureUnit| {
+                let inside = [AddressMode::Wrap, AddressMode::Mirror, AddressMode::ClampToEdge];
+                let bordered = [unit.address_s, unit.address_t].iter().any(|mode| !inside.contains(mode));
+                let black = black.get(unit.texture).is_some_and(|black| black >> channel & 1 != 0);
+                black && !unit.signed.contains(&true) && (!bordered || unit.border_color[channel] == 0)
+            };
             let black = match stage.operation {
+                ShaderOperation::Sample if unit.as_ref().is_some_and(sampled) => true,
                 ShaderOperation::PassThrough => false,
                 ShaderOperation::None | ShaderOperation::CullFragment { .. } => channel < 3,
                 ShaderOperation::DotProduct => true,

@@ -175,10 +175,11 @@ impl Plan {
     pub fn compile(scene: &Scene, options: &PlanOptions) -> Result<Plan, Vec<PlanError>> {
         let mut errors = Vec::new();
         let mut draws = Vec::with_capacity(scene.draws.len());
+        let black: Vec<u8> = scene.textures.iter().map(fold::black_channels).collect();
         for (index, draw) in scene.draws.iter().enumerate() {
             check_coordinates(scene, index, draw, &mut errors);
             match assemble(draw) {
-                Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, options)),
+                Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, &black, options)),
                 Err(positions) => errors.extend(positions.into_iter().map(|p| {
                     PlanError {
                         draw: index,
@@ -259,7 +260,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
     }
 }
 
-fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptions) -> PlannedDraw {
+fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], options: &PlanOptions) -> PlannedDraw {
     let target = &scene.targets[draw.target];
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let window = draw.scissor.map_or(whole, |s| {
@@ -273,7 +274,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, options: &PlanOptio
     let mut folded = Folded::default();
     if options.prune {
         let written = written_channels(target.format, state_mask);
-        folded.zero = fold::zero_fragment(draw);
+        folded.zero = fold::zero_fragment(draw, black);
         if let Some(blend) = &state_blend {
             let zero = written & !folded.zero == 0;
             folded.replaces = fold::replaces(blend, draw.blend_constant, written);

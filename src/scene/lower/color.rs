@@ -97,7 +97,11 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
         );
         return None;
     }
-    reader.numbers(&Raw::<Numbers>::new(rest), "a colour", 3, 4, [0.0, 0.0, 0.0, 1.0]).map(VertexColor::Floats)
+    let mut numbers = Raw::<Numbers>::new(rest);
+    if Raw::<Numbers>::new(rest.strip_prefix('(').unwrap_or(rest)).is_text() {
+        numbers = texture_source::only(reader, rest, "the name of a vector")?;
+    }
+    reader.numbers(&numbers, "a colour", 3, 4, [0.0, 0.0, 0.0, 1.0]).map(VertexColor::Floats)
 }
 
 /// Three or four bytes.

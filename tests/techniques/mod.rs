@@ -1,0 +1,102 @@
+//! The lighting techniques under `vectors/scenes/techniques`: each is measured, and their textures are what the generators make.
+//!
+//! `BLESS=1 cargo test --test suite techniques::` rewrites the figures; look at the difference before committing.
+
+mod listings;
+mod passes;
+mod per_pixel_lighting;
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use ninebit::accuracy::measure;
+use ninebit::limits::Limits;
+use ninebit::scene;
+use rayon::prelude::*;
+
+use crate::bench::Bench;
+use crate::scene_files;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/techniques")
+}
+
+/// The folders of the families, sorted.
+fn families() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder()).unwrap().map(|entry| entry.unwrap().path());
+    let mut families: Vec<PathBuf> = entries.filter(|path| path.is_dir()).collect();
+    families.sort();
+    families
+}
+
+/// One line: the scene, its errors, its bands and its passes.
+fn figures(path: &Path) -> String {
+    let loaded = scene::load(path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(loaded.render_warnings(false), "", "{}", path.display());
+    let truth = loaded.truth.as_ref().unwrap_or_else(|| panic!("{} has no truth", path.display()));
+    let accuracy = measure(&loaded.scene, &loaded.plan, truth).unwrap();
+    // The causes add up, as far as all that is drawn has a truth.
+    if accuracy.without == 0 {
+        let sum: f64 = accuracy.causes.iter().map(|cause| cause.errors.bias()).sum();
+        assert!((sum - accuracy.errors.bias()).abs() < 1e-3, "{}: {sum}", path.display());
+    }
+    let name = path.strip_prefix(folder()).unwrap().with_extension("").display().to_string().replace('\\', "/");
+    let (e, b, c) = (&accuracy.errors, &accuracy.banding, &accuracy.cost);
+    let (rms, max, bias) = (e.rms(), e.max(), e.bias());
+    let degrees = accuracy.normals.map_or("-".to_owned(), |normals| format!("{:.2}", normals.degrees.mean()));
+    format!(
+        "{name}\t{rms:.3}\t{max:.2}\t{bias:.3}\t{degrees}\t{}\t{}\t{}\t{}\t{:.1}",
+        b.levels, b.truth_levels, b.flat_run, c.passes, c.frame_buffer_bytes
+    )
+}
+
+#[test]
+fn techniques_are_as_exact_as_they_were() {
+    let files = scene_files::below(&folder());
+    assert!(files.len() >= 15);
+    let mut text =
+        "scene\trms\tmax\tbias\tdegrees\tlevels\ttruth levels\tflat run\tpasses\tframe-buffer bytes\n".to_owned();
+    let lines: Vec<String> = files.par_iter().map(|file| figures(file)).collect();
+    lines.iter().for_each(|line| writeln!(text, "{line}").unwrap());
+    let pinned = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/techniques/figures.tsv");
+    if std::env::var_os("BLESS").is_some() {
+        std::fs::write(&pinned, &text).unwrap();
+    }
+    let expected = std::fs::read_to_string(&pinned).unwrap_or_default();
+    let changed: Vec<&str> = text.lines().filter(|line| !expected.lines().any(|known| known == *line)).collect();
+    assert!(text == expected, "{}\nBLESS=1 accepts these figures", changed.join("\n"));
+}
+
+#[test]
+fn every_scene_has_a_line_in_its_readme() {
+    for file in scene_files::below(&folder()) {
+        let readme = std::fs::read_to_string(file.parent().unwrap().join("README.md")).unwrap();
+        let name = file.file_name().unwrap().to_string_lossy().into_owned();
+        assert!(readme.contains(&format!("`{name}`")), "{}", file.display());
+    }
+}
+
+/// The commands of each folder's page, run in order, make the files that are stored, and all of them.
+#[test]
+fn textures_are_what_the_generators_make() {
+    for family in families() {
+        let readme = std::fs::read_to_string(family.join("README.md")).unwrap();
+        let bench = Bench::new();
+        let mut made = Vec::new();
+        for command in readme.lines().filter_map(|line| line.strip_prefix("    ninebit ")) {
+            bench.run(command).text();
+            let output = command.split(" -o ").nth(1).unwrap_or_else(|| panic!("{command}"));
+            let (stored, fresh) = (family.join(output), bench.path(output));
+            let [stored, fresh] =
+                [stored, fresh].map(|path| std::fs::read(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())));
+            assert!(stored == fresh, "{}: ninebit {command}", family.display());
+            made.push(output.to_owned());
+        }
+        for entry in std::fs::read_dir(&family).unwrap() {
+            let name = entry.unwrap().file_name().to_string_lossy().into_owned();
+            if name.ends_with(".png") || name.ends_with(".dds") {
+                assert!(made.contains(&name), "no command of {} makes {name}", family.display());
+            }
+        }
+    }
+}
