@@ -73,6 +73,9 @@ fn a_wrong_command_line_is_status_2() {
     bench.run("generate normalisation-cube -o c.dds --size 24").failed(2, "not a power of two from 1 to 1024");
     bench.run("generate half-vector-cube -o c.dds").failed(2, "--light");
     bench.run("generate half-vector-cube -o c.dds --light 0 0 0").failed(2, "points nowhere");
+    bench.run("generate sky-cube -o c.dds --sky 1 2 3").failed(2, "--ground");
+    bench.run("generate sky-cube -o c.dds --sky 1 2 256 --ground 0 0 0").failed(2, "256");
+    bench.run("generate sky-cube -o c.dds --sky 1 2 3 --ground 0 0 0 --axis 0 0 0").failed(2, "points nowhere");
     bench.run("generate power-table -o t.png --exponent 0").failed(2, "--exponent");
     bench.run("generate height-noise -o h.png --octaves 9").failed(2, "--octaves");
     assert!(!bench.path("c.dds").exists() && !bench.path("t.png").exists());
