@@ -9,9 +9,10 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
+use crate::diagnostic::ErrorKind;
 use crate::frame::Surface;
 use crate::picture::digest;
-use crate::scene::image::{self, ImageError, ImageLimits};
+use crate::scene::image::{self, ImageError, ImageLimits, Rgba};
 use crate::scene::path::{PathError, resolve};
 
 /// The version of the format that is written and read.
@@ -47,6 +48,13 @@ pub struct Expectation {
     /// What may differ all the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub allowance: Option<Allowance>,
+    /// An image in the same folder, of the same size: the picture of this digest, to show where another one differs.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub picture: Option<String>,
+    /// Files in the same folder that the scene needs and that are not handed out with it. Where one is not there, the scene is not
+    /// drawn.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub needs: Vec<String>,
 }
 
 /// Differences that are put up with, and why.
@@ -133,6 +141,40 @@ pub enum ExpectationError {
     },
 }
 
+impl ExpectationError {
+    /// Stable code.
+    pub fn code(&self) -> &'static str {
+        match self {
+            ExpectationError::Path(error) => error.code(),
+            ExpectationError::Image(error) => error.code(),
+            _ => "NB1205",
+        }
+    }
+
+    /// What to do about it.
+    pub fn help(&self) -> &'static str {
+        match self {
+            ExpectationError::Text(_) => {
+                "its fields are in `docs/scene-format.md`; `ninebit replay --bless` writes one"
+            }
+            ExpectationError::Path(error) => error.help(),
+            ExpectationError::Image(error) => error.help(),
+            ExpectationError::Pixels { .. } => "take the mask that belongs to it, or mend `pixels`",
+            ExpectationError::Size { .. } => "masks and pictures are of the size that the expectation states",
+        }
+    }
+
+    /// What a caller does about it.
+    pub fn kind(&self) -> ErrorKind {
+        match self {
+            ExpectationError::Path(error) if error.is_missing() => ErrorKind::Missing,
+            ExpectationError::Image(error) if error.is_missing() => ErrorKind::Missing,
+            ExpectationError::Image(error) if error.is_limit() => ErrorKind::Limit,
+            _ => ErrorKind::Invalid,
+        }
+    }
+}
+
 impl Expectation {
     /// The strict expectation that `surface` meets.
     pub fn of(target: &str, surface: &Surface) -> Self {
@@ -146,6 +188,8 @@ impl Expectation {
             pixels: None,
             mask: None,
             allowance: None,
+            picture: None,
+            needs: Vec::new(),
         }
     }
 
@@ -191,7 +235,8 @@ impl Expectation {
         }
         let Some(allowance) = &self.allowance else { return Ok(Some(Mismatch::Digest { sha256 })) };
         let expected = self.image(folder, &allowance.picture)?;
-        let differing = pixels.iter().zip(&expected).enumerate().filter(|(index, (a, b))| compared[*index] && a != b);
+        let differing =
+            pixels.iter().zip(&expected.pixels).enumerate().filter(|(index, (a, b))| compared[*index] && a != b);
         let (mut count, mut difference, mut first) = (0, 0, None);
         for (index, (a, b)) in differing {
             count += 1;
@@ -210,7 +255,7 @@ impl Expectation {
     /// The mask cannot be used, or leaves another number of pixels than is stated.
     pub fn compared(&self, folder: &Path) -> Result<Vec<bool>, ExpectationError> {
         let compared = match &self.mask {
-            Some(name) => self.image(folder, name)?.iter().map(|pixel| pixel[0] != 0).collect(),
+            Some(name) => self.image(folder, name)?.pixels.iter().map(|pixel| pixel[0] != 0).collect(),
             None => vec![true; self.width as usize * self.height as usize],
         };
         let found = compared.iter().filter(|compared| **compared).count() as u64;
@@ -220,14 +265,33 @@ impl Expectation {
         }
     }
 
-    /// Pixels of an image of the expected size.
-    fn image(&self, folder: &Path, name: &str) -> Result<Vec<[u8; 4]>, ExpectationError> {
+    /// The files of [`needs`](Self::needs) that are not in `folder`.
+    ///
+    /// # Errors
+    /// A name that is no plain one, or a place that the file system refuses.
+    pub fn missing(&self, folder: &Path) -> Result<Vec<&str>, ExpectationError> {
+        let mut missing = Vec::new();
+        for name in &self.needs {
+            match resolve(folder, name) {
+                Ok(_) => {}
+                Err(error) if error.is_missing() => missing.push(name.as_str()),
+                Err(error) => return Err(error.into()),
+            }
+        }
+        Ok(missing)
+    }
+
+    /// An image in `folder` that has the expected size.
+    ///
+    /// # Errors
+    /// The image cannot be used, or has another size.
+    pub fn image(&self, folder: &Path, name: &str) -> Result<Rgba, ExpectationError> {
         let image = image::load(&resolve(folder, name)?, &ImageLimits::default())?;
         if [image.width, image.height] != [self.width, self.height] {
             let (width, height) = (image.width, image.height);
             return Err(ExpectationError::Size { name: name.to_owned(), width, height });
         }
-        Ok(image.pixels)
+        Ok(image)
     }
 }
 
@@ -263,6 +327,24 @@ mod tests {
         assert!(Expectation::parse(&expectation.to_text().replace("version: 1", "version: 2")).is_err());
         assert!(Expectation::parse("(version: 1, colour: 2)").is_err());
         assert!(Expectation::parse(&" ".repeat(MAXIMUM_BYTES + 1)).is_err());
+        // However deep the brackets are, the form is refused at the first that does not belong.
+        for start in ["", "(version: ", "(needs: [", "(colour: ", "(allowance: (picture: "] {
+            assert!(Expectation::parse(&(start.to_owned() + &"([".repeat(30_000))).is_err(), "{start}");
+        }
+    }
+
+    #[test]
+    fn files_that_are_not_handed_out_are_missed() {
+        let folder = tempfile::tempdir().expect("folder");
+        write_file(&folder.path().join("here.png"), b"").expect("writes");
+        let needs = |names: &[&str]| Expectation {
+            needs: names.iter().map(|name| (*name).to_owned()).collect(),
+            ..Expectation::of("frame", &surface(&[1, 2]))
+        };
+        let expectation = needs(&["here.png", "captured/a.png", "b.png"]);
+        assert_eq!(expectation.missing(folder.path()).expect("plain names"), ["captured/a.png", "b.png"]);
+        assert!(needs(&["../here.png"]).missing(folder.path()).is_err());
+        assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
     }
 
     #[test]

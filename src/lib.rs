@@ -18,7 +18,7 @@
 //! * [`number`] holds the lanes: the integers of the definition, the real numbers of the ideal, and both side by side. Each rule is one
 //!   text, generic over the lane.
 //! * [`trace`] is how the blocks report what they do; [`report`] prints it.
-//! * [`diff`] holds two pictures against each other.
+//! * [`diff`] holds two pictures against each other, [`replay`] scenes against what is expected of them.
 //!
 //! Every rule has an id (`CMB-3`), a grade that says how well it is known, a source and a test: `docs/numerics.md`.
 //!
@@ -105,6 +105,7 @@ pub mod picture;
 pub mod plan;
 pub mod program;
 pub mod raster;
+pub mod replay;
 pub mod report;
 pub mod rop;
 pub mod scene;

@@ -64,12 +64,14 @@ fn meanings_and_exit_codes_are_those_of_the_program() {
         let exit = if code.starts_with("NB09") { 0 } else { finding.kind().exit_code() };
         assert_eq!(page[code], (meaning.to_string(), exit), "{code}");
     }
-    // Outputs, faults and packs of vectors are no findings about a scene.
+    // Outputs, faults, packs of vectors and replays are no findings about a scene.
     for (code, (_, exit)) in page.iter().filter(|(code, _)| !CODES.iter().any(|(known, _)| known == code)) {
         let expected = match &code[..4] {
             "NB07" => 7,
             "NB10" if code == "NB1001" => 4,
             "NB10" => 3,
+            "NB12" if ["NB1201", "NB1202", "NB1203"].contains(&code.as_str()) => 4,
+            "NB12" => 3,
             _ => 6,
         };
         assert_eq!(*exit, expected, "{code}");

@@ -25,6 +25,15 @@ pub(crate) enum Exit {
     Output = 7,
 }
 
+impl Exit {
+    /// The exit of that status; [`Exit::Internal`] if there is none.
+    pub(crate) fn from_code(code: u8) -> Self {
+        use Exit::{Difference, Internal, Invalid, Limit, Missing, Output, Success, Usage};
+        let all = [Success, Difference, Usage, Invalid, Missing, Limit, Output];
+        all.into_iter().find(|exit| *exit as u8 == code).unwrap_or(Internal)
+    }
+}
+
 /// The exit statuses as help tells them.
 pub(crate) const HELP: &str = "Exit status:
   0  as expected

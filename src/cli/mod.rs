@@ -15,6 +15,7 @@ mod op;
 mod policies;
 mod registers;
 mod render;
+mod replay;
 mod scene;
 mod terminal;
 mod texture;
@@ -73,6 +74,11 @@ enum Command {
     /// Conformance vectors: tables of what the units of the chip yield
     #[command(subcommand)]
     Vectors(vectors::Command),
+    /// Replay scenes: draw each and compare it with the expectation beside it
+    ///
+    /// Exit status: that of the worst scene, the highest number. 0: all are as expected; 1: one differs; 3: one is invalid; 4: something is
+    /// missing, such as an expectation; 5: a limit; 7: a report or picture was not written.
+    Replay(replay::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
     /// List the limits that scenes are held to
@@ -132,6 +138,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Op(command) => op::run(&command, context),
         Command::Texture(arguments) => texture::run(&arguments, context),
         Command::Vectors(command) => vectors::run(&command),
+        Command::Replay(arguments) => replay::run(&arguments, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Bench(arguments) => bench::run(&arguments, context),

@@ -6,10 +6,13 @@
 mod histogram;
 mod picture;
 mod region;
+mod words;
 
+pub(crate) use histogram::ranges;
 pub use histogram::{Bucket, Histogram};
 pub use picture::{Highlighted, highlight};
 pub use region::Region;
+pub use words::{CHANNELS, histogram_text, pixels, share};
 
 use crate::scene::image::Rgba;
 use region::Regions;

@@ -95,7 +95,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
 }
 
 /// An integer; the bits of a single-precision number in hexadecimal.
-fn integer(value: i64, per_one: i64) -> String {
+pub(super) fn integer(value: i64, per_one: i64) -> String {
     if per_one == SINGLE { format!("{value:#010x}") } else { value.to_string() }
 }
 
@@ -105,7 +105,7 @@ fn shown(operand: &Operand) -> String {
 }
 
 /// How a value came about, with the operands' integers.
-fn expression(step: &Step) -> String {
+pub(super) fn expression(step: &Step) -> String {
     let value = |n: usize| step.inputs.get(n).map_or(String::new(), shown);
     let pairs = |inputs: &[Operand]| {
         let products: Vec<String> =

@@ -1,31 +1,29 @@
 //! The scenes of the repository.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
+
+use ninebit::expectation::Expectation;
+use ninebit::replay::find;
 
 /// The folder of images that are not part of the repository, beside the scenes that need them.
 pub const CAPTURED: &str = "captured/";
 
-/// Whether a scene needs such images.
-pub fn needs_captured(text: &str) -> bool {
-    text.contains(&format!("\"{CAPTURED}"))
+/// The images of that folder that a scene names.
+pub fn captured(text: &str) -> Vec<String> {
+    let strings = text.split('"').skip(1).step_by(2);
+    let names: BTreeSet<&str> = strings.filter(|name| name.starts_with(CAPTURED)).collect();
+    names.into_iter().map(str::to_owned).collect()
 }
 
 /// Every scene below a folder that can be drawn with what the repository has, sorted.
 #[allow(dead_code, reason = "not every test that shares this file lists scenes")]
 pub fn below(folder: &Path) -> Vec<PathBuf> {
-    let mut files = Vec::new();
-    for entry in std::fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display())) {
-        let path = entry.unwrap().path();
-        let name = path.file_name().unwrap().to_string_lossy().into_owned();
-        if path.is_dir() {
-            files.extend(below(&path));
-        } else if name.ends_with(".ron")
-            && !name.ends_with(".expect.ron")
-            && !needs_captured(&std::fs::read_to_string(&path).unwrap())
-        {
-            files.push(path);
-        }
-    }
-    files.sort();
-    files
+    let entries = find(&[folder.to_path_buf()]).unwrap_or_else(|error| panic!("{error}"));
+    let complete = |path: &PathBuf| {
+        let text = std::fs::read_to_string(path.with_extension("expect.ron")).unwrap_or_default();
+        let expectation = Expectation::parse(&text).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
+        expectation.missing(path.parent().unwrap()).is_ok_and(|missing| missing.is_empty())
+    };
+    entries.into_iter().map(|entry| entry.path).filter(complete).collect()
 }

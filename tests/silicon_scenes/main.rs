@@ -60,6 +60,7 @@ fn captures() -> Option<PathBuf> {
 
 /// A scene as it was drawn.
 struct Drawn {
+    text: String,
     plan: Plan,
     surface: Surface,
 }
@@ -69,13 +70,13 @@ fn draw(case: &Case) -> Option<Drawn> {
     let file = folder().join(case.name).with_extension("ron");
     let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
     let place;
-    let file = if scene_files::needs_captured(&text) {
+    let file = if !scene_files::captured(&text).is_empty() {
         place = tempfile::tempdir().unwrap();
         let assets = captures()?.join("assets");
         copy(&folder().join("textures"), &place.path().join("textures"));
         copy(&assets, &place.path().join(scene_files::CAPTURED));
         let copied = place.path().join("scene.ron");
-        std::fs::write(&copied, text).unwrap();
+        std::fs::write(&copied, &text).unwrap();
         copied
     } else {
         file
@@ -83,7 +84,7 @@ fn draw(case: &Case) -> Option<Drawn> {
     let loaded = scene::load(&file, &Limits::default()).unwrap_or_else(|error| panic!("{}", error.render(false)));
     assert!(loaded.warnings.is_empty(), "{}: a warning", case.name);
     let surface = render(&loaded.plan, &RenderOptions::default()).surfaces.remove(0);
-    Some(Drawn { plan: loaded.plan, surface })
+    Some(Drawn { text, plan: loaded.plan, surface })
 }
 
 fn copy(from: &Path, to: &Path) {
@@ -136,6 +137,7 @@ fn check(case: &Case) -> Result<(), String> {
             capture: Some(case.capture.to_string()),
             pixels: Some(pixels),
             mask: Some(format!("masks/{}.png", case.name)),
+            needs: scene_files::captured(&drawn.text),
             ..Expectation::of("frame", &drawn.surface)
         };
         if bless() {

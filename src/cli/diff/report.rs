@@ -2,13 +2,11 @@
 
 use std::fmt::Write;
 
-use ninebit::diff::{Difference, Histogram, Region};
+use ninebit::diff::{CHANNELS, Difference, Histogram, Region, histogram_text, pixels, share};
 use ninebit::report::{trace_text, trace_value};
 use serde_json::{Value, json};
 
 use super::{Findings, SceneFindings};
-
-const CHANNELS: [&str; 4] = ["red", "green", "blue", "alpha"];
 
 /// The channels that were compared, with their names.
 fn channels<'a>(findings: &'a Findings<'_>) -> Vec<(&'static str, &'a Histogram)> {
@@ -59,7 +57,7 @@ fn write_difference(out: &mut String, findings: &Findings<'_>) -> std::fmt::Resu
     let difference = &findings.difference;
     let (different, all) = (difference.different, difference.pixels());
     writeln!(out, "\n{different} of {} ({}), by {} at most", pixels(all), share(different, all), difference.largest())?;
-    write_histogram(out, &channels(findings))?;
+    write!(out, "\n{}", histogram_text("B - A", &channels(findings)))?;
     write_regions(out, difference)?;
     for (number, trace) in (1..).zip(findings.scene.iter().flat_map(|scene| &scene.traces)) {
         let Some(scene) = &findings.scene else { break };
@@ -67,34 +65,6 @@ fn write_difference(out: &mut String, findings: &Findings<'_>) -> std::fmt::Resu
         write!(out, "{}", trace_text(&scene.plan, trace))?;
     }
     Ok(())
-}
-
-fn write_histogram(out: &mut String, channels: &[(&str, &Histogram)]) -> std::fmt::Result {
-    write!(out, "\n{:>12}", "B - A")?;
-    for (name, _) in channels {
-        write!(out, "{name:>10}")?;
-    }
-    let mut ranges: Vec<(i16, i16)> =
-        channels.iter().flat_map(|(_, h)| h.buckets()).map(|bucket| (bucket.from, bucket.to)).collect();
-    ranges.sort_unstable();
-    ranges.dedup();
-    for (from, to) in ranges {
-        let label = if from == to { format!("{from:+}") } else { format!("{from:+} to {to:+}") };
-        write!(out, "\n{label:>12}")?;
-        for (_, histogram) in channels {
-            match histogram.between(from, to) {
-                0 => write!(out, "{:>10}", ".")?,
-                count => write!(out, "{count:>10}")?,
-            }
-        }
-    }
-    let mut line = |label: &str, value: fn(&Histogram) -> u64| {
-        write!(out, "\n{label:>12}")?;
-        channels.iter().try_for_each(|(_, histogram)| write!(out, "{:>10}", value(histogram)))
-    };
-    line("pixels", Histogram::different)?;
-    line("largest", |histogram| u64::from(histogram.largest()))?;
-    writeln!(out)
 }
 
 fn write_regions(out: &mut String, difference: &Difference) -> std::fmt::Result {
@@ -121,20 +91,6 @@ fn write_regions(out: &mut String, difference: &Difference) -> std::fmt::Result 
     match difference.region_count - shown {
         0 => Ok(()),
         more => writeln!(out, "and {more} more; `--regions N` lists more"),
-    }
-}
-
-fn pixels(count: u64) -> String {
-    format!("{count} pixel{}", if count == 1 { "" } else { "s" })
-}
-
-/// A share in percent, rounded to two digits; what is not nothing, and not all, is not shown as such.
-fn share(part: u64, whole: u64) -> String {
-    let hundredths = (u128::from(part) * 20_000 + u128::from(whole)) / (2 * u128::from(whole.max(1)));
-    match hundredths {
-        0 if part > 0 => "less than 0.01 %".to_owned(),
-        10_000 if part < whole => "more than 99.99 %".to_owned(),
-        _ => format!("{}.{:02} %", hundredths / 100, hundredths % 100),
     }
 }
 
@@ -184,17 +140,4 @@ pub(super) fn json(findings: &Findings<'_>) -> Value {
         "scene": scene,
         "picture": picture,
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::share;
-
-    #[test]
-    fn shares_are_rounded_but_never_to_nothing() {
-        assert_eq!(share(1, 3), "33.33 %");
-        assert_eq!(share(3, 3), "100.00 %");
-        assert_eq!(share(1, 1_000_000), "less than 0.01 %");
-        assert_eq!(share(999_999, 1_000_000), "more than 99.99 %");
-    }
 }

@@ -1,0 +1,125 @@
+//! Two traces of one pixel beside each other.
+
+use std::fmt::Write;
+
+use similar::{Algorithm, DiffOp, capture_diff_slices};
+
+use super::text::{expression, integer};
+use crate::engine::{DrawTrace, PixelTrace};
+use crate::trace::Step;
+
+/// A line of two traces: what one of them, or both, computed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BesideLine {
+    /// The draw and the hardware block, where they begin with this line.
+    pub heading: Option<String>,
+    /// What was computed.
+    pub name: String,
+    /// Its rule; may be empty.
+    pub rule: &'static str,
+    /// How, and the integer, in the first trace.
+    pub first: Option<(String, String)>,
+    /// How, and the integer, in the second trace.
+    pub second: Option<(String, String)>,
+}
+
+impl BesideLine {
+    /// Whether the traces differ here in what they yield.
+    pub fn differs(&self) -> bool {
+        let integer = |side: &Option<(String, String)>| side.as_ref().map(|(_, integer)| integer.clone());
+        integer(&self.first) != integer(&self.second)
+    }
+}
+
+/// The lines of two traces of the same pixel, steps of the same name on one line.
+pub fn beside(first: &PixelTrace, second: &PixelTrace) -> Vec<BesideLine> {
+    let mut lines = Vec::new();
+    let same = |a: &DrawTrace, b: &DrawTrace| (a.draw, a.triangle) == (b.draw, b.triangle);
+    for draw in &first.draws {
+        let other = second.draws.iter().find(|other| same(draw, other));
+        draw_lines(&mut lines, draw, &draw.steps, other.map_or(&[][..], |other| &other.steps));
+    }
+    for draw in second.draws.iter().filter(|draw| !first.draws.iter().any(|other| same(draw, other))) {
+        draw_lines(&mut lines, draw, &[], &draw.steps);
+    }
+    lines
+}
+
+fn draw_lines(lines: &mut Vec<BesideLine>, draw: &DrawTrace, first: &[Step], second: &[Step]) {
+    let names = |steps: &[Step]| -> Vec<(String, String)> {
+        steps.iter().map(|step| (step.block.clone(), step.name.clone())).collect()
+    };
+    let mut block: Option<String> = None;
+    let mut line = |a: Option<&Step>, b: Option<&Step>| {
+        let Some(step) = a.or(b) else { return };
+        let heading = (block.as_deref() != Some(step.block.as_str())).then(|| {
+            let draw = if block.is_none() { format!("draw {} `{}`: ", draw.draw, draw.name) } else { String::new() };
+            format!("{draw}{}", step.block)
+        });
+        block = Some(step.block.clone());
+        let side = |step: &Step| (expression(step), integer(step.value, step.per_one));
+        lines.push(BesideLine {
+            heading,
+            name: step.name.clone(),
+            rule: step.rule,
+            first: a.map(side),
+            second: b.map(side),
+        });
+    };
+    for op in capture_diff_slices(Algorithm::Myers, &names(first), &names(second)) {
+        match op {
+            DiffOp::Equal { old_index, new_index, len } => {
+                (0..len).for_each(|n| line(first.get(old_index + n), second.get(new_index + n)));
+            }
+            DiffOp::Delete { old_index, old_len, .. } => {
+                (0..old_len).for_each(|n| line(first.get(old_index + n), None));
+            }
+            DiffOp::Insert { new_index, new_len, .. } => {
+                (0..new_len).for_each(|n| line(None, second.get(new_index + n)));
+            }
+            DiffOp::Replace { old_index, old_len, new_index, new_len } => {
+                (0..old_len).for_each(|n| line(first.get(old_index + n), None));
+                (0..new_len).for_each(|n| line(None, second.get(new_index + n)));
+            }
+        }
+    }
+}
+
+/// The lines as a table for people. `titles` head the columns of the first and the second trace. Lines in which they differ begin
+/// with `>`.
+pub fn beside_text(titles: [&str; 2], lines: &[BesideLine]) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(&mut out, titles, lines);
+    out
+}
+
+fn write(out: &mut String, titles: [&str; 2], lines: &[BesideLine]) -> std::fmt::Result {
+    let integer =
+        |side: &Option<(String, String)>| side.as_ref().map_or("-".to_owned(), |(_, integer)| integer.clone());
+    let widest = |f: &dyn Fn(&BesideLine) -> usize, least: usize| lines.iter().map(f).max().unwrap_or(0).max(least);
+    let name = widest(&|line| line.name.chars().count(), 4);
+    let a = widest(&|line| integer(&line.first).len(), titles[0].len());
+    let b = widest(&|line| integer(&line.second).len(), titles[1].len());
+    writeln!(out, "    {:name$}  {:>a$}  {:>b$}  {:8}how", "what", titles[0], titles[1], "rule")?;
+    for line in lines {
+        if let Some(heading) = &line.heading {
+            writeln!(out, "  {heading}")?;
+        }
+        let mark = if line.differs() { '>' } else { ' ' };
+        let how = match (&line.first, &line.second) {
+            (Some((a, _)), Some((b, _))) if a != b && !(a.is_empty() && b.is_empty()) => format!("{a}   |   {b}"),
+            (Some((how, _)), _) | (_, Some((how, _))) => how.clone(),
+            _ => String::new(),
+        };
+        let row = format!(
+            "  {mark} {:name$}  {:>a$}  {:>b$}  {:8}{how}",
+            line.name,
+            integer(&line.first),
+            integer(&line.second),
+            line.rule
+        );
+        writeln!(out, "{}", row.trim_end())?;
+    }
+    Ok(())
+}

@@ -1,0 +1,141 @@
+//! The scenes of `vectors/scenes/deciding`: each tells the values of one policy apart at a glance, and no other policy changes it.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use std::path::{Path, PathBuf};
+
+use ninebit::diff::{self, compare};
+use ninebit::engine::{RenderOptions, render, trace};
+use ninebit::limits::Limits;
+use ninebit::output::{Compression, encode_png};
+use ninebit::plan::Plan;
+use ninebit::replay::{Options, find, replay};
+use ninebit::scene;
+use ninebit::scene::image::Rgba;
+use ninebit::state::{POLICIES, Policies, Policy};
+
+/// Levels by which two pictures must differ, and in how many pixels that touch.
+const LEVELS: u8 = 32;
+const PIXELS: u64 = 4096;
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/deciding")
+}
+
+/// The scene that decides a policy.
+fn scene_of(policy: &Policy) -> Plan {
+    let prefix = format!("{}-", policy.rule);
+    let named = |path: &Path| path.file_name().unwrap().to_string_lossy().starts_with(&prefix);
+    let entries = find(&[folder()]).unwrap();
+    let files: Vec<_> = entries.iter().filter(|entry| named(&entry.path)).collect();
+    assert_eq!(files.len(), 1, "scenes for {}", policy.rule);
+    let loaded = scene::load(&files[0].path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    assert!(loaded.warnings.is_empty(), "{}", loaded.render_warnings(false));
+    loaded.plan
+}
+
+fn picture(plan: &Plan, rule: &str, value: usize) -> Rgba {
+    let mut plan = plan.clone();
+    plan.policies = Policies::DEFAULT;
+    plan.policies.choose(rule, value);
+    let surface = render(&plan, &RenderOptions::default()).surfaces.swap_remove(0);
+    Rgba { width: surface.width, height: surface.height, pixels: surface.rgba8() }
+}
+
+/// Pixels of the largest region in which a channel of each pixel differs by `LEVELS` or more.
+fn apart(a: &Rgba, b: &Rgba) -> u64 {
+    let far = |(a, b): (&[u8; 4], &[u8; 4])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) >= LEVELS);
+    let marks = a.pixels.iter().zip(&b.pixels).map(far).map(|far| if far { [255; 4] } else { [0; 4] }).collect();
+    let nothing = Rgba { pixels: vec![[0; 4]; a.pixels.len()], ..a.clone() };
+    let found = compare(&nothing, &Rgba { pixels: marks, ..a.clone() }, &diff::Options::default()).unwrap();
+    found.regions.first().map_or(0, |region| region.pixels)
+}
+
+#[test]
+fn values_of_a_policy_look_different() {
+    for policy in POLICIES {
+        let plan = scene_of(policy);
+        let pictures: Vec<Rgba> = (0..policy.values.len()).map(|value| picture(&plan, policy.rule, value)).collect();
+        for (n, a) in pictures.iter().enumerate() {
+            for (m, b) in pictures.iter().enumerate().skip(n + 1) {
+                let (first, second) = (policy.values[n].0, policy.values[m].0);
+                assert!(apart(a, b) >= PIXELS, "{}: {first} and {second}: {}", policy.rule, apart(a, b));
+            }
+        }
+    }
+}
+
+/// Columns and rows of cells, and the pixels of a cell's side.
+const CELLS: [u32; 2] = [8, 3];
+const CELL: [u32; 2] = [32, 64];
+
+/// The colour in the middle of each cell.
+fn cells(plan: &Plan, rule: &str, value: usize) -> Vec<[u8; 4]> {
+    let mut plan = plan.clone();
+    plan.policies = Policies::DEFAULT;
+    plan.policies.choose(rule, value);
+    let middle = |n: u32| (n % CELLS[0] * CELL[0] + CELL[0] / 2, n / CELLS[0] * CELL[1] + CELL[1] / 2);
+    (0..CELLS[0] * CELLS[1]).map(|n| trace(&plan, 0, middle(n), None).unwrap().shown).collect()
+}
+
+#[test]
+fn a_scene_asks_one_question() {
+    for policy in POLICIES {
+        let plan = scene_of(policy);
+        let default = cells(&plan, policy.rule, 0);
+        assert!((1..policy.values.len()).all(|value| cells(&plan, policy.rule, value) != default), "{}", policy.rule);
+        for other in POLICIES.iter().filter(|other| other.rule != policy.rule) {
+            for value in 1..other.values.len() {
+                let same = cells(&plan, other.rule, value) == default;
+                assert!(same, "{}={} changes the scene of {}", other.rule, other.values[value].0, policy.rule);
+            }
+        }
+    }
+}
+
+/// The first row is white under the default, the second is not: what the scenes and their page say.
+#[test]
+fn rows_name_the_answer() {
+    for policy in POLICIES {
+        let picture = picture(&scene_of(policy), policy.rule, 0);
+        let lit = |y: u32| picture.pixels[(y * 256) as usize..][..256].iter().all(|pixel| *pixel == [255; 4]);
+        let dark = |y: u32| picture.pixels[(y * 256) as usize..][..256].iter().all(|pixel| pixel[..3] == [0; 3]);
+        assert!((0..64).all(lit) && (64..128).all(dark), "{}", policy.rule);
+    }
+}
+
+/// Runs of white in a row of a picture.
+fn bars(picture: &Rgba, y: u32) -> Vec<usize> {
+    let row = &picture.pixels[(y * picture.width) as usize..][..picture.width as usize];
+    let runs = row.chunk_by(|a, b| a == b).filter(|run| run[0] == [255; 4]);
+    runs.map(<[_]>::len).collect()
+}
+
+#[test]
+fn weights_of_eight_bits_show_as_a_wide_bar() {
+    let loaded = scene::load(&folder().join("INT-2-ramp.ron"), &Limits::default()).unwrap();
+    let picture = picture(&loaded.plan, "", 0);
+    for (rows, width) in [(0..64, 4), (64..128, 8), (128..192, 4)] {
+        assert!(rows.clone().all(|y| bars(&picture, y) == [width]), "{rows:?}");
+    }
+}
+
+/// What `docs/hardware.md` says becomes of a capture: replay names the policy that draws it.
+#[test]
+fn a_capture_is_recognised() {
+    let place = tempfile::tempdir().unwrap();
+    let file = place.path().join("scene.ron");
+    std::fs::copy(folder().join("CMB-4-half-bias.ron"), &file).unwrap();
+    let plan = scene::load(&file, &Limits::default()).unwrap().plan;
+    let allowance = r#"(picture: "captured.png", pixels: 0, difference: 0, reason: "a card")"#;
+    let expectation =
+        format!(r#"(version: 1, target: "frame", width: 256, height: 192, sha256: "", allowance: {allowance})"#);
+    std::fs::write(place.path().join("scene.expect.ron"), expectation).unwrap();
+    for (value, says) in [(0, None), (1, Some("CMB-4=127 draws")), (2, Some("CMB-4=127.5 draws"))] {
+        let captured = picture(&plan, "CMB-4", value);
+        let png = encode_png(captured.width, captured.height, &captured.pixels, Compression::Fast).unwrap();
+        std::fs::write(place.path().join("captured.png"), png).unwrap();
+        let replayed = replay(&find(std::slice::from_ref(&file)).unwrap(), &Options::default(), &|_| {});
+        let message = replayed[0].message();
+        assert!(says.map_or(message.is_empty(), |says| message.contains(says)), "{value}: {message}");
+    }
+}
