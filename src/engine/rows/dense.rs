@@ -208,7 +208,8 @@ fn rows_interpolate_what_the_definition_does() {
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
         let vertices = (0..64).flat_map(|_| triangle(&mut random)).collect();
         let Ok(plan) = Plan::compile(&scene(vertices, filter), &PlanOptions::default()) else { continue };
-        let compiled = Rows::compile(&plan).unwrap().draw(&plan, 0, &[]);
+        let rows_of_plan = Rows::compile(&plan).unwrap();
+        let compiled = rows_of_plan.draw(&plan, 0, &[]);
         assert_eq!(compiled.samplers.len(), 2);
         let draw = &plan.draws[0];
         let (mut varying, mut rows) = (Varying::default(), vec![Row::of(0); compiled.rows.len()]);
