@@ -89,6 +89,7 @@
 //! ```
 
 pub mod accuracy;
+pub mod chart;
 pub mod combiner;
 pub mod compare;
 pub mod diagnostic;
@@ -112,6 +113,7 @@ pub mod rop;
 pub mod scene;
 mod spelling;
 pub mod state;
+pub mod sweep;
 pub mod texture;
 pub mod trace;
 pub mod truth;

@@ -20,6 +20,7 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("check --help").text(), file!["cli/help-check.txt"]);
     assert_data_eq!(bench.run("render --help").text(), file!["cli/help-render.txt"]);
     assert_data_eq!(bench.run("bench --help").text(), file!["cli/help-bench.txt"]);
+    assert_data_eq!(bench.run("chart --help").text(), file!["cli/help-chart.txt"]);
     assert_data_eq!(bench.run("diff --help").text(), file!["cli/help-diff.txt"]);
     for operation in ["combiner", "final", "blend", "filter", "address"] {
         let text = bench.run(&format!("op {operation} --help")).text();
@@ -268,6 +269,11 @@ fn scenes_are_timed() {
         scenes.len() == 2
             && scenes.iter().all(|scene| scene["frames"] == 3 && scene["shaded_pixels"].as_u64() > Some(0))
     );
+    let spread = &scenes[0]["ns_per_shaded_pixel"];
+    assert!(["median", "p10", "p90"].iter().all(|part| spread[part].as_f64() > Some(0.0)), "{spread}");
+    bench.write("scene.expect.ron", "()");
+    assert!(!bench.run("bench scene.expect.ron scene.ron --frames 1").text().contains("expect"));
+    bench.run("bench scene.expect.ron").failed(2, "nothing to measure");
     bench.run("bench").failed(2, "<SCENE>...");
     bench.run("bench scene.ron --isa z80").failed(2, "x86-64-v3");
     bench.run("bench scene.ron --frames 0").failed(2, "0 is not in 1..=1000000");

@@ -1,5 +1,7 @@
 //! How commands end.
 
+use std::path::Path;
+
 use ninebit::output::OutputError;
 use ninebit::scene::image::ImageError;
 
@@ -82,6 +84,15 @@ impl Failure {
     pub(crate) fn invalid(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
         let report = Report::Message { code: Some(code), message: message.into(), help: Some(help.into()) };
         Failure { exit: Exit::Invalid, report }
+    }
+
+    /// Nothing of a scene can be measured.
+    pub(crate) fn unseen(scene: &Path) -> Self {
+        Failure::invalid(
+            "NB0395",
+            format!("no pixel of `{}` that has a truth is drawn", scene.display()),
+            "look at the picture: is the mesh in view, and drawn into the first target?",
+        )
     }
 
     /// The command line is wrong.

@@ -52,11 +52,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let (loaded, truth) = load_with_truth(path, &arguments.policies, context)?;
         let (scene, plan) = loaded;
         let Some(accuracy) = measure(&scene, &plan, &truth) else {
-            return Err(Failure::invalid(
-                "NB0395",
-                format!("no pixel of `{}` that has a truth is drawn", path.display()),
-                "look at the picture: is the mesh in view, and drawn into the first target?",
-            ));
+            return Err(Failure::unseen(path));
         };
         if let Some(picture) = &picture {
             write_truth(&plan, &truth, picture)?;

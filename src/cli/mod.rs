@@ -1,6 +1,7 @@
 //! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
 
 mod bench;
+mod chart;
 mod check;
 mod compare;
 mod cost;
@@ -90,6 +91,11 @@ enum Command {
     Limits,
     /// Time how long scenes take to draw
     Bench(bench::Arguments),
+    /// Measure every technique afresh: pages and charts of speed, accuracy, and where methods fail
+    ///
+    /// Scenes are those with a truth in folders, each of which is a family; a number at the end of a file's name is the technique's
+    /// parameter. Written are `speed-accuracy.md`, its pictures and data, and the section of `stability.md` on where methods fail.
+    Chart(chart::Arguments),
     /// Make textures: height fields, normal maps, cube maps of vectors, tables of powers
     #[command(subcommand)]
     Generate(generate::Command),
@@ -148,6 +154,7 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),
         Command::Bench(arguments) => bench::run(&arguments, context),
+        Command::Chart(arguments) => chart::run(&arguments, context),
         Command::Generate(command) => generate::run(&command),
     };
     match result {

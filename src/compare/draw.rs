@@ -180,13 +180,16 @@ pub(super) fn run<M: Method>(plan: &Plan, options: &CompareOptions) -> Compariso
     let work = || {
         if plan.draws.iter().any(reads_targets) { whole::<M>(plan, options) } else { banded::<M>(plan, options) }
     };
-    let pool =
-        (options.threads != 0).then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok());
-    let outcome = match pool.flatten() {
+    summed(plan, options, on_threads(options.threads, work))
+}
+
+/// Does work with so many threads, 0 being one a core.
+pub(super) fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = (threads != 0).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
+    match pool.flatten() {
         Some(pool) => pool.install(work),
         None => work(),
-    };
-    summed(plan, options, outcome)
+    }
 }
 
 /// No draw reads a surface: each band goes through all draws by itself, and other targets do not matter.
@@ -218,6 +221,21 @@ fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
 
 /// Draw after draw on whole surfaces.
 fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
+    let (surfaces, counts) = surfaces::<M>(plan);
+    let mut outcome = outcome::<M>(plan, options, &surfaces[options.target]);
+    outcome.counts.merge(&counts);
+    outcome
+}
+
+/// What the lane holds of a target in the end, R, G, B, A row by row; `None` where nothing was drawn.
+pub(super) fn held<M: Method>(plan: &Plan, target: usize) -> Vec<Option<[M::Lane; 4]>> {
+    let (surfaces, _) = surfaces::<M>(plan);
+    let surface = &surfaces[target];
+    surface.held.iter().zip(&surface.states).map(|(held, state)| state.drawn.then_some(*held)).collect()
+}
+
+/// All targets after all draws.
+fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
     let rows = |target: usize| (0, plan.targets[target].height as usize);
     let mut surfaces: Vec<Surface<M::Lane>> =
         (0..plan.targets.len()).map(|target| Surface::new(plan, target, rows(target))).collect();
@@ -239,9 +257,7 @@ fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
         drawn.iter().for_each(|band| counts.merge(band));
         surfaces[planned.target] = surface;
     }
-    let mut outcome = outcome::<M>(plan, options, &surfaces[options.target]);
-    outcome.counts.merge(&counts);
-    outcome
+    (surfaces, counts)
 }
 
 /// The textures now. Without surfaces nothing reads those that are targets.

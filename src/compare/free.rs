@@ -1,14 +1,17 @@
 //! The ideal decides for itself: two evaluations side by side, each with a surface of its own.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
+use std::marker::PhantomData;
+
 use super::draw::{Band, Images, Method};
 use super::meter::{Counts, Log};
 use crate::engine::pixel::{Fragment, TriangleContext};
 use crate::engine::walk;
+use crate::number::{Ideal, Lane};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::ideal::Outline;
 use crate::state::{Cull, FrontFace, Named};
-use crate::trace::{Decision, Part};
+use crate::trace::{Decision, Observer, Part, Silent};
 
 /// Two evaluations.
 pub(super) struct Free;
@@ -101,21 +104,7 @@ fn pixel(
     }
     // Where the definition has no such triangle the pixel is left out whatever the ideal holds.
     if let (true, Some(outline), Some(context)) = (covered.1, outline, fixed) {
-        let fragment = Fragment {
-            pixel: (i, j),
-            // Any sample will do: the ideal goes by its own weights.
-            e: [context.triangle.doubled_area, 0, 0],
-            stored: band.words[at],
-            stored_depth: band.states[at].depth,
-            weights: Some(outline.weights(i, j)),
-        };
-        if let Some(stored) = context.shade::<f64, _>(&fragment, Some(band.held[at]), &images.lane, ideal) {
-            band.states[at].drawn = true;
-            band.states[at].depth = stored.depth.unwrap_or(band.states[at].depth);
-            for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
-                band.held[at][n] = stored.channels[n];
-            }
-        }
+        real_side(planned, context, outline, (i, j), images, band, ideal);
     }
     if covered == (true, true) {
         for (definition, ideal) in definition.decisions.iter().zip(&ideal.decisions) {
@@ -127,4 +116,60 @@ fn pixel(
     }
     band.states[at].diverged |= diverged || definition.tainted || ideal.tainted;
     band.states[at].drawn |= band.states[at].diverged;
+}
+
+/// The ideal's side of a pixel that it covers.
+fn real_side<L: Lane>(
+    planned: &PlannedDraw,
+    context: &TriangleContext<'_>,
+    outline: &Outline,
+    (i, j): (i64, i64),
+    images: &Images<'_, L>,
+    band: &mut Band<'_, L>,
+    observer: &mut impl Observer,
+) {
+    let at = band.at(i, j);
+    let fragment = Fragment {
+        pixel: (i, j),
+        // Any sample will do: the ideal goes by its own weights.
+        e: [context.triangle.doubled_area, 0, 0],
+        stored: band.words[at],
+        stored_depth: band.states[at].depth,
+        weights: Some(outline.weights(i, j)),
+    };
+    if let Some(stored) = context.shade::<L, _>(&fragment, Some(band.held[at]), &images.lane, observer) {
+        band.states[at].drawn = true;
+        band.states[at].depth = stored.depth.unwrap_or(band.states[at].depth);
+        for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
+            band.held[at][n] = stored.channels[n];
+        }
+    }
+}
+
+/// The ideal alone, in a lane of real numbers.
+pub(super) struct Real<L>(PhantomData<L>);
+
+impl<L: Ideal + Send + Sync> Method for Real<L> {
+    type Lane = L;
+
+    fn draw(plan: &Plan, planned: &PlannedDraw, images: &Images<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
+        let (rows, columns) = walk::window(planned, band.rows());
+        if planned.folded.invisible.is_some() || rows.0 >= rows.1 || columns.0 >= columns.1 {
+            return;
+        }
+        for number in 0..planned.assembly.triangles.len() {
+            let Some(outline) = outline(planned, number) else { continue };
+            let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
+            for j in rows.0.max(outline.rows.0)..rows.1.min(outline.rows.1) {
+                let (low, high) = outline.span(j, columns);
+                for i in low..high {
+                    real_side(planned, &context, &outline, (i, j), images, band, &mut Silent);
+                }
+            }
+        }
+    }
+
+    fn channel(_shown: u8, held: L, _counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
+        (held.real(), None)
+    }
 }

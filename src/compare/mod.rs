@@ -21,6 +21,7 @@ pub use heat::{HeatError, heat_map};
 pub use report::{comparison_json, comparison_text, statistics_value};
 pub use statistics::{Histogram, Statistics};
 
+use crate::number::Ideal;
 use crate::plan::Plan;
 use crate::state::named;
 use crate::trace::{Decision, Part, Rule};
@@ -150,4 +151,10 @@ pub fn compare(plan: &Plan, options: &CompareOptions) -> Comparison {
         Mode::Follow => draw::run::<follow::Follow>(plan, options),
         Mode::PerOp => draw::run::<follow::PerOp>(plan, options),
     }
+}
+
+/// Evaluates the ideal alone, as [`Mode::Free`] does, in `f64` or `f32`: R, G, B, A of a target in 255ths, row by row; `None` where it draws
+/// nothing. `threads` is that of [`CompareOptions`].
+pub fn real_frame<L: Ideal + Send + Sync>(plan: &Plan, target: usize, threads: usize) -> Vec<Option<[L; 4]>> {
+    draw::on_threads(threads, || draw::held::<free::Real<L>>(plan, target))
 }

@@ -1,5 +1,6 @@
 //! `docs/stability.md`, where sampling fails: every number, picture and chart of the page is made here again and compared.
 //!
+//! `ninebit chart --only stability` writes the section on methods. For the rest
 //! `BLESS=1 cargo test --test stability` writes the tables of the page, the pictures under `docs/pictures/stability` and the textures of
 //! `vectors/scenes/stability`; look at them before committing. What an item measures is in the file of its name.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
@@ -18,6 +19,7 @@ mod level_of_detail;
 mod minified;
 mod near_eye;
 mod one_texel;
+mod sweeps;
 
 #[test]
 fn textures() {
@@ -67,4 +69,14 @@ fn level_of_detail() {
 #[test]
 fn page_shows_no_other_files() {
     page::check_files();
+}
+
+#[test]
+fn methods_work_and_fail_where_they_did() {
+    sweeps::both_sides();
+}
+
+#[test]
+fn the_section_on_methods_is_what_sweeps_yield() {
+    sweeps::page();
 }

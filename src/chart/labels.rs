@@ -1,0 +1,228 @@
+//! Where the names of marks stand, so that they cover neither one another nor the marks.
+
+/// A rectangle, in pixels from the top left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rect {
+    /// Left edge.
+    pub x: f64,
+    /// Top edge.
+    pub y: f64,
+    /// Width.
+    pub width: f64,
+    /// Height.
+    pub height: f64,
+}
+
+impl Rect {
+    /// How many square pixels two rectangles share.
+    pub fn overlap(&self, other: &Rect) -> f64 {
+        let along = |a: f64, aw: f64, b: f64, bw: f64| ((a + aw).min(b + bw) - a.max(b)).max(0.0);
+        along(self.x, self.width, other.x, other.width) * along(self.y, self.height, other.y, other.height)
+    }
+
+    /// How many square pixels lie outside `bounds`.
+    fn outside(&self, bounds: &Rect) -> f64 {
+        self.width * self.height - self.overlap(bounds)
+    }
+
+    /// About how many pixels of the segment lie inside.
+    fn crossed(&self, (from, to): ([f64; 2], [f64; 2])) -> f64 {
+        let length = ((to[0] - from[0]).powi(2) + (to[1] - from[1]).powi(2)).sqrt();
+        let steps = (length / 3.0).ceil().clamp(1.0, 400.0);
+        let inside = (0..=steps as usize).filter(|step| {
+            let at = *step as f64 / steps;
+            let (x, y) = (from[0] + (to[0] - from[0]) * at, from[1] + (to[1] - from[1]) * at);
+            x >= self.x && x <= self.x + self.width && y >= self.y && y <= self.y + self.height
+        });
+        inside.count() as f64 * length / steps
+    }
+
+    fn grown(&self, by: f64) -> Rect {
+        Rect { x: self.x - by, y: self.y - by, width: self.width + 2.0 * by, height: self.height + 2.0 * by }
+    }
+}
+
+/// A mark with a name of so many pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Named {
+    /// Centre of the mark.
+    pub at: [f64; 2],
+    /// Width and height of the name; no name where the width is 0.
+    pub size: [f64; 2],
+}
+
+/// Half the side of the square that a mark covers.
+const MARK: f64 = 6.0;
+/// Names further from their marks than this get a line.
+const LED: f64 = 14.0;
+/// Distances of a name from its mark.
+const DISTANCES: [f64; 8] = [8.0, 13.0, 20.0, 30.0, 42.0, 56.0, 74.0, 95.0];
+/// Directions, best first: right, left, above, below, and between them.
+const DIRECTIONS: [[f64; 2]; 16] = [
+    [1.0, 0.0],
+    [-1.0, 0.0],
+    [0.0, -1.0],
+    [0.0, 1.0],
+    [0.7, -0.7],
+    [0.7, 0.7],
+    [-0.7, -0.7],
+    [-0.7, 0.7],
+    [0.92, -0.38],
+    [0.92, 0.38],
+    [-0.92, -0.38],
+    [-0.92, 0.38],
+    [0.38, -0.92],
+    [0.38, 0.92],
+    [-0.38, -0.92],
+    [-0.38, 0.92],
+];
+/// Names are moved until nothing gets better, at most so often.
+const ROUNDS: usize = 12;
+
+/// A place for each name inside `bounds`, away from names, marks and, if there is room, from `lines`. The order of `marks` decides
+/// between places that are equally good, nothing else does.
+pub fn place(marks: &[Named], bounds: &Rect, lines: &[([f64; 2], [f64; 2])]) -> Vec<Rect> {
+    let squares: Vec<Rect> = marks
+        .iter()
+        .map(|mark| Rect { x: mark.at[0] - MARK, y: mark.at[1] - MARK, width: 2.0 * MARK, height: 2.0 * MARK })
+        .collect();
+    let mut places: Vec<Option<Rect>> = vec![None; marks.len()];
+    for _ in 0..ROUNDS {
+        let mut moved = false;
+        for n in 0..marks.len() {
+            let cost = |place: &Rect, distance: f64, direction: usize| {
+                let roomy = place.grown(1.5);
+                let others =
+                    || places.iter().enumerate().filter(|(k, _)| *k != n).filter_map(|(k, o)| Some((k, (*o)?)));
+                let covered: f64 = others().map(|(_, other)| roomy.overlap(&other)).sum();
+                let marked: f64 = squares.iter().map(|square| place.overlap(square)).sum();
+                let crossed: f64 = lines.iter().map(|line| place.crossed(*line)).sum();
+                // Lines between marks and names cross no names, neither this one's the others nor theirs this one.
+                let leads: f64 = others()
+                    .map(|(k, other)| {
+                        let own = leader(&marks[n], place).map_or(0.0, |line| other.crossed(line));
+                        own + leader(&marks[k], &other).map_or(0.0, |line| place.crossed(line))
+                    })
+                    .sum();
+                let passed: f64 = leader(&marks[n], place).map_or(0.0, |line| {
+                    squares.iter().enumerate().filter(|(k, _)| *k != n).map(|(_, square)| square.crossed(line)).sum()
+                });
+                60.0 * covered
+                    + 30.0 * marked
+                    + 100.0 * place.outside(bounds)
+                    + 25.0 * (leads + passed)
+                    + 2.0 * crossed
+                    + distance
+                    + direction as f64 * 0.5
+            };
+            let mut best: Option<(f64, Rect)> = None;
+            for distance in DISTANCES {
+                for (direction, toward) in DIRECTIONS.iter().enumerate() {
+                    let place = beside(&marks[n], *toward, distance);
+                    let cost = cost(&place, distance, direction);
+                    if best.is_none_or(|(least, _)| cost < least) {
+                        best = Some((cost, place));
+                    }
+                }
+            }
+            let best = best.map(|(_, place)| place);
+            moved |= best != places[n];
+            places[n] = best;
+        }
+        if !moved {
+            break;
+        }
+    }
+    let nowhere = Rect { x: 0.0, y: 0.0, width: 0.0, height: 0.0 };
+    places.into_iter().map(|place| place.unwrap_or(nowhere)).collect()
+}
+
+/// The name's rectangle when it lies in that direction of its mark.
+fn beside(mark: &Named, [dx, dy]: [f64; 2], distance: f64) -> Rect {
+    let [width, height] = mark.size;
+    // The nearest edge or corner of the name is what stands at the distance.
+    let side = |d: f64, size: f64| match d {
+        d if d > 0.2 => 0.0,
+        d if d < -0.2 => -size,
+        _ => -size / 2.0,
+    };
+    Rect {
+        x: mark.at[0] + dx * distance + side(dx, width),
+        y: mark.at[1] + dy * distance + if dx.abs() > 0.9 { -height / 2.0 } else { side(dy, height) },
+        width,
+        height,
+    }
+}
+
+/// The line from a mark to its name, if they stand so far apart that one is drawn.
+pub fn leader(mark: &Named, place: &Rect) -> Option<([f64; 2], [f64; 2])> {
+    let end = nearest(place, mark.at);
+    let apart = ((end[0] - mark.at[0]).powi(2) + (end[1] - mark.at[1]).powi(2)).sqrt();
+    let share = MARK / apart;
+    let start = [0, 1].map(|n| mark.at[n] + (end[n] - mark.at[n]) * share);
+    (apart > LED).then_some((start, end))
+}
+
+/// The point of a rectangle nearest to another point.
+fn nearest(rect: &Rect, [x, y]: [f64; 2]) -> [f64; 2] {
+    [x.clamp(rect.x, rect.x + rect.width), y.clamp(rect.y, rect.y + rect.height)]
+}
+
+/// About how wide a text is in a sans-serif face of that size, rather too much than too little.
+pub fn text_width(text: &str, size: f64) -> f64 {
+    let advance = |c: char| match c {
+        'i' | 'j' | 'l' | '.' | ',' | ':' | '\'' | '|' | ' ' => 0.33,
+        'f' | 'r' | 't' | '-' | '(' | ')' | '/' => 0.43,
+        'm' | 'w' | 'M' | 'W' => 0.99,
+        c if c.is_uppercase() => 0.74,
+        _ => 0.64,
+    };
+    text.chars().map(advance).sum::<f64>() * size
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BOUNDS: Rect = Rect { x: 0.0, y: 0.0, width: 600.0, height: 400.0 };
+
+    #[test]
+    fn a_crowd_of_names_stays_apart_and_inside() {
+        // Thirty marks on a curve, some of them nearly at the same place.
+        let marks: Vec<Named> = (0..30)
+            .map(|n| {
+                let t = f64::from(n) / 30.0;
+                let at = [40.0 + 520.0 * t * t, 380.0 - 360.0 * t + f64::from(n % 3) * 4.0];
+                Named { at, size: [text_width("squaring 16", 11.0), 13.0] }
+            })
+            .collect();
+        let places = place(&marks, &BOUNDS, &[]);
+        for (n, place) in places.iter().enumerate() {
+            assert!(place.outside(&BOUNDS) < 1e-6, "{place:?}");
+            for other in &places[n + 1..] {
+                assert_eq!(place.overlap(other), 0.0, "{place:?} and {other:?}");
+            }
+        }
+        assert_eq!(places, super::place(&marks, &BOUNDS, &[]));
+    }
+
+    #[test]
+    fn a_lone_name_stands_to_the_right_and_off_a_line() {
+        let mark = Named { at: [300.0, 200.0], size: [50.0, 12.0] };
+        let right = place(&[mark], &BOUNDS, &[])[0];
+        assert_eq!((right.x, right.y), (308.0, 194.0));
+        let line = ([300.0, 200.0], [600.0, 200.0]);
+        assert!(place(&[mark], &BOUNDS, &[line])[0].crossed(line) == 0.0);
+        let edge = Named { at: [595.0, 200.0], ..mark };
+        assert!(place(&[edge], &BOUNDS, &[])[0].x < 595.0);
+    }
+
+    #[test]
+    fn rectangles_share_areas() {
+        let square = |x, y| Rect { x, y, width: 10.0, height: 10.0 };
+        assert_eq!(square(0.0, 0.0).overlap(&square(4.0, 8.0)), 12.0);
+        assert_eq!(square(0.0, 0.0).overlap(&square(10.0, 0.0)), 0.0);
+        assert_eq!(square(-5.0, 0.0).outside(&BOUNDS), 50.0);
+        assert_eq!(nearest(&square(0.0, 0.0), [20.0, 5.0]), [10.0, 5.0]);
+    }
+}

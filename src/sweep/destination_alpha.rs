@@ -1,0 +1,46 @@
+//! Numbers that are gathered in destination alpha, eight bits a pass.
+
+use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, scene, whole_row};
+use super::{Method, Scale, Sweep};
+
+pub(super) fn sweep() -> Sweep {
+    let method = |name: &str, blend: &'static str, part: fn(f64, f64) -> f64| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |passes| {
+            let pixels = draw(&text(passes, blend, part))?;
+            Ok(largest(&errors(&pixels, 3, |at| at)))
+        }),
+        works: 1.0,
+        fails: 128.0,
+    };
+    Sweep {
+        name: "destination-alpha",
+        title: "A number gathered in destination alpha",
+        parameter: "passes",
+        error: "largest error, 8-bit steps",
+        limit: 4.0,
+        scale: Scale::Whole,
+        shown: [1, 2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 128].map(f64::from).into(),
+        methods: vec![
+            method("sum of equal parts", "(source: One, destination: One)", |value, passes| value / passes),
+            method("product of equal factors", "(source: Zero, destination: SourceAlpha)", |value, passes| {
+                value.powf(1.0 / passes)
+            }),
+        ],
+    }
+}
+
+/// Each pass brings the same part of what is to come out, as a byte.
+fn text(passes: f64, blend: &str, part: fn(f64, f64) -> f64) -> String {
+    let texels: Vec<u8> = (0..WIDTH).map(|x| byte(part(centre(x, WIDTH), passes))).collect();
+    let pass = |blend: &str| {
+        format!(
+            "({}, textures: [(texture: \"part\", mag_filter: Nearest)], program: Combiners(stages: [()], \
+             final_combiner: (g: Texture0)), color_mask: (false, false, false, true), blend: {blend}), ",
+            whole_row(WIDTH)
+        )
+    };
+    // The first pass replaces what was there.
+    let draws = pass("()") + &pass(blend).repeat(passes as usize - 1);
+    scene("Nv10", WIDTH, "", &bytes("part", WIDTH, &texels), &draws)
+}

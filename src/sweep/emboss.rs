@@ -1,0 +1,56 @@
+//! Embossing: the slope of a height field as the difference of two fetches.
+
+use super::strip::{WIDTH, byte, bytes, draw, errors, largest, row, scene};
+use super::{Method, Scale, Sweep};
+
+/// Texels of the height field, and of one wave of it.
+const TEXELS: usize = 64;
+const WAVE: f64 = 16.0;
+/// Height of the waves, half of it above and half below the middle.
+const AMPLITUDE: f64 = 0.4;
+
+pub(super) fn sweep() -> Sweep {
+    let method = |name: &str, back: f64| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |offset| {
+            let pixels = draw(&text(offset, back))?;
+            let steepest = 255.0 * offset * 0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE;
+            // What the slope alone would give: one half, less the rise over the offset.
+            let ideal = |at: f64| 0.5 - offset * slope(at * TEXELS as f64);
+            Ok(100.0 * largest(&errors(&pixels, 0, ideal)) / steepest)
+        }),
+        works: 1.0,
+        fails: 7.0,
+    };
+    Sweep {
+        name: "emboss",
+        title: "Embossing with offsets of several texels",
+        parameter: "offset, texels",
+        error: "largest error, per cent of the steepest slope",
+        limit: 25.0,
+        scale: Scale::Real(0.02),
+        shown: (1..=56).map(|n| f64::from(n) / 8.0).collect(),
+        methods: vec![method("h(s) - h(s + d)", 0.0), method("h(s - d/2) - h(s + d/2)", 0.5)],
+    }
+}
+
+/// Rise a texel of the height field at a place in texels.
+fn slope(at: f64) -> f64 {
+    0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE * (std::f64::consts::TAU * at / WAVE).cos()
+}
+
+fn text(offset: f64, back: f64) -> String {
+    let height = |n: usize| {
+        let at = n as f64 + 0.5;
+        byte(0.5 + 0.5 * AMPLITUDE * (std::f64::consts::TAU * at / WAVE).sin())
+    };
+    let heights: Vec<u8> = (0..TEXELS).map(height).collect();
+    let [near, far] = [-back * offset, (1.0 - back) * offset].map(|texels| texels / TEXELS as f64);
+    let end = |s: f64| format!("t0: ({}, 0), t1: ({}, 0)", s + near, s + far);
+    let draw = format!(
+        "({}, textures: [\"height\", \"height\"], program: Combiners(stages: [(rgb: (a: Texture0, b: UnsignedInvert(Zero), \
+         c: UnsignedInvert(Texture1), d: UnsignedInvert(Zero), sum: Spare0, bias: NegativeHalf))], final_combiner: (d: Spare0)))",
+        row(WIDTH, &end(0.0), &end(1.0))
+    );
+    scene("Nv10", WIDTH, "", &bytes("height", TEXELS, &heights), &draw)
+}

@@ -1,0 +1,67 @@
+//! Half vectors that are computed at the vertices and interpolated.
+
+use super::strip::{WIDTH, draw, errors, largest, scene};
+use super::{Method, Scale, Sweep};
+use std::fmt::Write;
+
+/// Where light and viewer stand over a floor, x and height.
+const LIGHT: [f64; 2] = [0.6, 1.0];
+const EYE: [f64; 2] = [-0.6, 1.0];
+/// log2 of the exponent.
+const SQUARINGS: usize = 3;
+
+pub(super) fn sweep() -> Sweep {
+    let method = |name: &str, parts: usize| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |extent| {
+            let pixels = draw(&text(extent, parts))?;
+            Ok(largest(&errors(&pixels, 0, |at| half_vector(place(at, extent))[1].powi(1 << SQUARINGS))))
+        }),
+        works: 0.1,
+        fails: 8.0,
+    };
+    Sweep {
+        name: "half-vectors",
+        title: "Half vectors of the vertices across triangles",
+        parameter: "length of the floor, heights of the lamp",
+        error: "largest error of (N . H)^8, 8-bit steps",
+        limit: 32.0,
+        scale: Scale::Real(0.01),
+        shown: (0..=36).map(|n| 0.1 * (f64::from(n) / 5.7).exp2()).collect(),
+        methods: vec![method("one quad", 1), method("2 quads", 2), method("4 quads", 4), method("16 quads", 16)],
+    }
+}
+
+/// From share of the strip to x on the floor.
+fn place(at: f64, extent: f64) -> f64 {
+    extent * (at - 0.5)
+}
+
+/// The unit vector half-way between the directions to light and viewer, along the floor and up.
+fn half_vector(x: f64) -> [f64; 2] {
+    let unit = |[x, z]: [f64; 2]| {
+        let length = (x * x + z * z).sqrt();
+        [x / length, z / length]
+    };
+    let [light, eye] = [LIGHT, EYE].map(|place| unit([place[0] - x, place[1]]));
+    unit([light[0] + eye[0], light[1] + eye[1]])
+}
+
+fn text(extent: f64, parts: usize) -> String {
+    let mut vertices = String::new();
+    for part in 0..parts {
+        let [left, right] = [part, part + 1].map(|n| n as f64 / parts as f64);
+        for (at, y) in [(left, 0), (right, 0), (right, 1), (left, 1)] {
+            let [x, z] = half_vector(place(at, extent)).map(|n| 0.5 + 0.5 * n);
+            // Writing to a string cannot fail.
+            let _ = write!(vertices, "(position: ({}, {y}), diffuse: Float({x}, 0.5, {z}, 1)), ", at * WIDTH as f64);
+        }
+    }
+    let draw = format!(
+        "(vertices: Window([{vertices}]), topology: Quads, program: Combiners(constants: ((128, 128, 255)), stages: [(rgb: \
+         (a: ExpandNormal(PrimaryColor), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true)), {}], \
+         final_combiner: (d: Spare0)))",
+        "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ".repeat(SQUARINGS)
+    );
+    scene("Nv2a", WIDTH, "", "", &draw)
+}

@@ -1,0 +1,51 @@
+//! A signed dot product as passes that add and passes that subtract.
+
+use super::strip::{WIDTH, angle, byte, bytes, centre, draw, errors, largest, scene, whole_row};
+use super::{Method, Scale, Sweep, steps};
+
+pub(super) fn sweep() -> Sweep {
+    let method = |name: &str, additions_first: bool| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |tilt: f64| {
+            let pixels = draw(&text(tilt.to_radians(), additions_first))?;
+            Ok(largest(&errors(&pixels, 0, |at| (angle(-90.0, 90.0, at) - tilt.to_radians()).cos())))
+        }),
+        works: 0.0,
+        fails: 45.0,
+    };
+    Sweep {
+        name: "order",
+        title: "Passes of a signed dot product in two orders",
+        parameter: "tilt of the light, degrees",
+        error: "largest error, 8-bit steps",
+        limit: 4.0,
+        scale: Scale::Real(0.125),
+        shown: steps(0.0, 90.0, 46),
+        methods: vec![method("additions first", true), method("subtractions first", false)],
+    }
+}
+
+/// Normals over half a circle, lit from `tilt`: each product of half components is a pass.
+fn text(tilt: f64, additions_first: bool) -> String {
+    let component = |name: &str, of: fn(f64) -> f64| {
+        let texels: Vec<u8> = (0..WIDTH).map(|x| byte(of(angle(-90.0, 90.0, centre(x, WIDTH))).max(0.0))).collect();
+        bytes(name, WIDTH, &texels)
+    };
+    let textures = component("+x", f64::sin) + &component("-x", |angle| -angle.sin()) + &component("+z", f64::cos);
+    let (across, up) = (byte(tilt.sin()), byte(tilt.cos()));
+    let mut passes = [pass("+x", across, "Add"), pass("+z", up, "Add"), pass("-x", across, "ReverseSubtract")];
+    if !additions_first {
+        passes.reverse();
+    }
+    scene("Nv2a", WIDTH, "", &textures, &passes.concat())
+}
+
+/// A pass that adds or subtracts a texture times the byte of a half component of the light.
+pub(super) fn pass(texture: &str, light: u8, equation: &str) -> String {
+    format!(
+        "({}, textures: [(texture: \"{texture}\", mag_filter: Nearest)], program: Combiners(constants: (({light}, {light}, \
+         {light})), stages: [(rgb: (a: Texture0, b: ConstantColor0, ab: Spare0))], final_combiner: (d: Spare0)), \
+         blend: (equation: {equation}, source: One, destination: One)), ",
+        whole_row(WIDTH)
+    )
+}

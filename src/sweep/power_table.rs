@@ -1,0 +1,42 @@
+//! Highlights by a table of powers in a texture.
+
+use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, row, scene};
+use super::{Method, Scale, Sweep};
+
+/// Pixels: more than the largest table has texels.
+const PIXELS: usize = 8 * WIDTH;
+/// The smallest cosine that is looked up; the steep end of a power is the other one.
+const FROM: f64 = 0.75;
+
+pub(super) fn sweep() -> Sweep {
+    let method = |texels: usize| Method {
+        name: format!("{texels} texels, filtered"),
+        measure: Box::new(move |exponent| {
+            let pixels = draw(&text(texels, exponent))?;
+            Ok(largest(&errors(&pixels, 0, |at| (FROM + (1.0 - FROM) * at).powf(exponent))))
+        }),
+        works: 1.0,
+        fails: 4096.0,
+    };
+    Sweep {
+        name: "power-table",
+        title: "Highlight by a table of powers",
+        parameter: "exponent",
+        error: "largest error, 8-bit steps",
+        limit: 32.0,
+        scale: Scale::Whole,
+        shown: (0..=24).map(|n| (f64::from(n) / 2.0).exp2().round()).collect(),
+        methods: [32, 64, 128, 256, 512, 1024].map(method).into(),
+    }
+}
+
+/// The cosine along the strip looks its power up.
+fn text(texels: usize, exponent: f64) -> String {
+    let table: Vec<u8> = (0..texels).map(|n| byte(centre(n, texels).powf(exponent))).collect();
+    let draw = format!(
+        "({}, textures: [(texture: \"powers\", address: ClampToEdge)], \
+         program: Combiners(stages: [()], final_combiner: (d: Texture0)))",
+        row(PIXELS, &format!("t0: ({FROM}, 0)"), "t0: (1, 0)")
+    );
+    scene("Nv2a", PIXELS, "", &bytes("powers", texels, &table), &draw)
+}
