@@ -122,46 +122,103 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
 /// # Errors
 /// As [`write_file`].
 pub fn write_file_with<T>(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> Result<T, OutputError> {
-    let refused = |error: io::Error| OutputError::Write { path: path.to_path_buf(), source: error };
-    let existing = path.metadata().ok();
-    if existing.as_ref().is_some_and(std::fs::Metadata::is_dir) {
-        return Err(OutputError::Folder { path: path.to_path_buf() });
-    }
-    if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
-        return std::fs::OpenOptions::new()
-            .write(true)
-            .open(path)
-            .and_then(|mut device| fill(&mut device))
-            .map_err(refused);
-    }
-    if existing.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
-        // A rename would replace it all the same; whoever protected it meant the name.
-        return Err(refused(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only")));
-    }
-    let place = if existing.is_some() { path.canonicalize().map_err(refused)? } else { path.to_path_buf() };
-    let folder = match place.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let temporary_refused = |error: io::Error| refused(without_path(error));
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".ninebit-").suffix(".part");
-    let permissions = match &existing {
-        Some(metadata) => Some(metadata.permissions()),
-        None => ordinary_permissions(),
-    };
-    if let Some(permissions) = permissions {
-        // On systems where the mode of a new file is subject to the user's mask, so is this one.
-        builder.permissions(permissions);
-    }
-    let mut temporary = builder.tempfile_in(folder).map_err(temporary_refused)?;
-    let mut buffered = BufWriter::new(&mut temporary);
-    let result = fill(&mut buffered).map_err(temporary_refused)?;
-    buffered.flush().map_err(temporary_refused)?;
-    drop(buffered);
-    temporary.as_file().sync_all().map_err(refused)?;
-    temporary.persist(&place).map_err(|error| refused(error.error))?;
+    let mut file = PendingFile::create(path)?;
+    let result = fill(&mut file).map_err(|error| file.refused(error))?;
+    file.commit()?;
     Ok(result)
+}
+
+/// A file under construction: nothing is at its place until it is [committed](Self::commit), and nothing is left of it if it is not.
+#[derive(Debug)]
+pub struct PendingFile {
+    path: PathBuf,
+    target: Target,
+}
+
+/// Where the bytes go.
+#[derive(Debug)]
+enum Target {
+    /// A temporary file and what it will replace.
+    Temporary(BufWriter<tempfile::NamedTempFile>, PathBuf),
+    /// A place that is no regular file.
+    Device(std::fs::File),
+}
+
+impl PendingFile {
+    /// Begins a file; see [`write_file`].
+    ///
+    /// # Errors
+    /// The place is a folder, a read-only file, its folder is missing or not writable.
+    pub fn create(path: &Path) -> Result<PendingFile, OutputError> {
+        let refused = |error: io::Error| OutputError::Write { path: path.to_path_buf(), source: error };
+        let existing = path.metadata().ok();
+        if existing.as_ref().is_some_and(std::fs::Metadata::is_dir) {
+            return Err(OutputError::Folder { path: path.to_path_buf() });
+        }
+        if existing.as_ref().is_some_and(|metadata| !metadata.is_file()) {
+            let device = std::fs::OpenOptions::new().write(true).open(path).map_err(refused)?;
+            return Ok(PendingFile { path: path.to_path_buf(), target: Target::Device(device) });
+        }
+        if existing.as_ref().is_some_and(|metadata| metadata.permissions().readonly()) {
+            // A rename would replace it all the same; whoever protected it meant the name.
+            return Err(refused(io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only")));
+        }
+        let place = if existing.is_some() { path.canonicalize().map_err(refused)? } else { path.to_path_buf() };
+        let folder = match place.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(".ninebit-").suffix(".part");
+        let permissions = match &existing {
+            Some(metadata) => Some(metadata.permissions()),
+            None => ordinary_permissions(),
+        };
+        if let Some(permissions) = permissions {
+            // On systems where the mode of a new file is subject to the user's mask, so is this one.
+            builder.permissions(permissions);
+        }
+        let temporary = builder.tempfile_in(folder).map_err(|error| refused(without_path(error)))?;
+        Ok(PendingFile { path: path.to_path_buf(), target: Target::Temporary(BufWriter::new(temporary), place) })
+    }
+
+    /// An error of writing to it, for people.
+    pub fn refused(&self, error: io::Error) -> OutputError {
+        OutputError::Write { path: self.path.clone(), source: without_path(error) }
+    }
+
+    /// Puts the file in its place.
+    ///
+    /// # Errors
+    /// The disk is full, or the place refuses.
+    pub fn commit(self) -> Result<(), OutputError> {
+        let path = self.path;
+        let refused = |error: io::Error| OutputError::Write { path: path.clone(), source: without_path(error) };
+        match self.target {
+            Target::Device(mut device) => device.flush().map_err(refused),
+            Target::Temporary(buffered, place) => {
+                let temporary = buffered.into_inner().map_err(|error| refused(error.into_error()))?;
+                temporary.as_file().sync_all().map_err(refused)?;
+                temporary.persist(&place).map(|_| ()).map_err(|error| refused(error.error))
+            }
+        }
+    }
+}
+
+impl Write for PendingFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        match &mut self.target {
+            Target::Temporary(buffered, _) => buffered.write(bytes),
+            Target::Device(device) => device.write(bytes),
+        }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        match &mut self.target {
+            Target::Temporary(buffered, _) => buffered.flush(),
+            Target::Device(device) => device.flush(),
+        }
+    }
 }
 
 /// The temporary file's errors name a file that the user has never heard of: what is said is their kind.

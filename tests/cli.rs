@@ -73,6 +73,9 @@ fn a_wrong_command_line_is_status_2() {
     bench.run("generate normalisation-cube -o c.dds --size 24").failed(2, "not a power of two from 1 to 1024");
     bench.run("generate half-vector-cube -o c.dds").failed(2, "--light");
     bench.run("generate half-vector-cube -o c.dds --light 0 0 0").failed(2, "points nowhere");
+    bench.run("generate sky-cube -o c.dds --sky 1 2 3").failed(2, "--ground");
+    bench.run("generate sky-cube -o c.dds --sky 1 2 256 --ground 0 0 0").failed(2, "256");
+    bench.run("generate sky-cube -o c.dds --sky 1 2 3 --ground 0 0 0 --axis 0 0 0").failed(2, "points nowhere");
     bench.run("generate power-table -o t.png --exponent 0").failed(2, "--exponent");
     bench.run("generate height-noise -o h.png --octaves 9").failed(2, "--octaves");
     assert!(!bench.path("c.dds").exists() && !bench.path("t.png").exists());
@@ -266,6 +269,11 @@ fn scenes_are_timed() {
         scenes.len() == 2
             && scenes.iter().all(|scene| scene["frames"] == 3 && scene["shaded_pixels"].as_u64() > Some(0))
     );
+    let spread = &scenes[0]["ns_per_shaded_pixel"];
+    assert!(["median", "p10", "p90"].iter().all(|part| spread[part].as_f64() > Some(0.0)), "{spread}");
+    bench.write("scene.expect.ron", "()");
+    assert!(!bench.run("bench scene.expect.ron scene.ron --frames 1").text().contains("expect"));
+    bench.run("bench scene.expect.ron").failed(2, "nothing to measure");
     bench.run("bench").failed(2, "<SCENE>...");
     bench.run("bench scene.ron --isa z80").failed(2, "x86-64-v3");
     bench.run("bench scene.ron --frames 0").failed(2, "0 is not in 1..=1000000");

@@ -47,8 +47,17 @@ fn generators_write_files_that_scenes_read() {
     bench.run("generate half-component normal.png --axis x --negative -o half.png").text();
     bench.run("generate half-component normal.png --axis w -o x.png").failed(2, "--axis");
     bench.run("generate half-component normal.png --axis x -o normal.png").failed(2, "is the input");
+    bench
+        .run("generate sky-cube -o sky.dds --size 8 --axis 0 0 -1 --sky 9 8 7 --ground 0 0 0 --integral simplified")
+        .text();
     bench.run("generate power-table -o table.png --exponent 16 --width 2 --height 64").text();
-    for (file, said) in [("cube.dds", "cube"), ("half.dds", "cube"), ("table.png", "2 x 64"), ("both.png", "32 x 32")] {
+    for (file, said) in [
+        ("cube.dds", "cube"),
+        ("half.dds", "cube"),
+        ("sky.dds", "cube"),
+        ("table.png", "2 x 64"),
+        ("both.png", "32 x 32"),
+    ] {
         let text = bench.run(&format!("texture {file}")).text();
         assert!(text.to_lowercase().contains(said), "{file}: {text}");
     }

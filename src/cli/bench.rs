@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "times")]
 
 use std::fmt::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
@@ -18,7 +18,7 @@ use super::scene::{PolicyArguments, load};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The scene files
+    /// The scene files; expectations (`*.expect.ron`) among them are passed over
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     #[command(flatten)]
@@ -46,14 +46,32 @@ struct Measured {
     prepare_microseconds: f64,
     /// The draws of a frame, without the clear.
     frame_microseconds: Spread,
-    nanoseconds_per_pixel: Spread,
+    /// The same for a shaded pixel: a pixel counts once for each draw that shades it.
+    ns_per_shaded_pixel: Spread,
+    /// The most memory that the process held resident while the scene was measured, where the system tells.
+    peak_memory_bytes: Option<u64>,
 }
 
-/// The middle of some times, and the least.
+/// How some times are spread.
 #[derive(Clone, Copy, Debug, Serialize)]
 struct Spread {
-    median: f64,
     least: f64,
+    p10: f64,
+    median: f64,
+    p90: f64,
+}
+
+impl Spread {
+    /// Of times in ascending order, at least one.
+    fn of(times: &[f64]) -> Spread {
+        let at = |tenths: usize| times[(times.len() - 1) * tenths / 10];
+        Spread { least: times[0], p10: at(1), median: at(5), p90: at(9) }
+    }
+
+    /// Everything times a factor.
+    fn times(self, by: f64) -> Spread {
+        Spread { least: self.least * by, p10: self.p10 * by, median: self.median * by, p90: self.p90 * by }
+    }
 }
 
 #[derive(Debug, Serialize)]
@@ -77,7 +95,16 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         threads: options.threads,
         scenes: Vec::new(),
     };
-    for path in &arguments.scenes {
+    let is_scene = |path: &&PathBuf| !path.to_string_lossy().ends_with(".expect.ron");
+    let scenes: Vec<&PathBuf> = arguments.scenes.iter().filter(is_scene).collect();
+    if scenes.is_empty() {
+        return Err(Failure::usage(
+            "nothing to measure",
+            "expectations (`*.expect.ron`) are no scenes; name the scene",
+        ));
+    }
+    for path in scenes {
+        forget_peak_memory();
         let mut last = Instant::now();
         let mut lap = || {
             let now = Instant::now();
@@ -100,8 +127,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             })
             .collect();
         times.sort_by(f64::total_cmp);
-        let frame_microseconds = Spread { median: times[times.len() / 2], least: times[0] };
-        let pixel = |microseconds: f64| 1e3 * microseconds / (shaded_pixels.max(1) as f64);
+        let frame_microseconds = Spread::of(&times);
         document.scenes.push(Measured {
             scene: path.display().to_string(),
             shaded_pixels,
@@ -109,10 +135,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             load_microseconds,
             prepare_microseconds,
             frame_microseconds,
-            nanoseconds_per_pixel: Spread {
-                median: pixel(frame_microseconds.median),
-                least: pixel(frame_microseconds.least),
-            },
+            ns_per_shaded_pixel: frame_microseconds.times(1e3 / (shaded_pixels.max(1) as f64)),
+            peak_memory_bytes: peak_memory(),
         });
     }
     let text = if arguments.json {
@@ -123,20 +147,36 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     Ok(write_stdout(text.as_bytes())?)
 }
 
+/// Starts the peak of resident memory anew, where the system allows it; where not, earlier scenes count.
+fn forget_peak_memory() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The most memory resident so far, in bytes.
+fn peak_memory() -> Option<u64> {
+    let status = std::fs::read_to_string(Path::new("/proc/self/status")).ok()?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(1024 * line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?)
+}
+
 fn text(document: &Document) -> String {
     let mut text = format!(
-        "engine {}, {}, {} thread(s); 0 is one a core. Medians of the frames, least in brackets.\n\
-         {:>10} {:>18} {:>18}  scene\n",
-        document.engine, document.isa, document.threads, "pixels", "ms a frame", "ns a pixel"
+        "engine {}, {}, {} thread(s); 0 is one a core. ns a shaded pixel: median (10 % of the frames below, 90 % below).\n\
+         {:>10} {:>10} {:>10} {:>10} {:>22}  scene\n",
+        document.engine, document.isa, document.threads, "pixels", "ms set-up", "MB peak", "ms a frame", "ns a pixel"
     );
     for measured in &document.scenes {
-        let spread = |spread: Spread, unit: f64| format!("{:.3} ({:.3})", spread.median / unit, spread.least / unit);
+        let pixel = measured.ns_per_shaded_pixel;
+        let spread = format!("{:.3} ({:.3}, {:.3})", pixel.median, pixel.p10, pixel.p90);
+        let peak = measured.peak_memory_bytes.map_or_else(|| "-".to_owned(), |n| format!("{:.1}", n as f64 / 1e6));
         let _ = writeln!(
             text,
-            "{:>10} {:>18} {:>18}  {}",
+            "{:>10} {:>10.3} {:>10} {:>10.3} {:>22}  {}",
             measured.shaded_pixels,
-            spread(measured.frame_microseconds, 1e3),
-            spread(measured.nanoseconds_per_pixel, 1.0),
+            (measured.load_microseconds + measured.prepare_microseconds) / 1e3,
+            peak,
+            measured.frame_microseconds.median / 1e3,
+            spread,
             measured.scene
         );
     }

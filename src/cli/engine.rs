@@ -32,7 +32,7 @@ impl EngineArguments {
             ));
         }
         let engine = Engine::from_name(&self.engine).unwrap_or(Engine::Fast);
-        Ok(RenderOptions { threads: self.threads, engine, isa })
+        Ok(RenderOptions { threads: self.threads, engine, isa, band: None })
     }
 }
 

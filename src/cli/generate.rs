@@ -7,6 +7,7 @@ use clap::builder::RangedI64ValueParser;
 use clap::{Args, Subcommand, ValueEnum};
 use ninebit::generate::cube::{self, Content};
 use ninebit::generate::normal_map::{self, HeightChannel};
+use ninebit::generate::sky::{self, HemisphereLight};
 use ninebit::generate::{SIDES, dds, half_components, height_field, hemisphere, occlusion, power_table};
 use ninebit::output::{Compression, Destination, encode_png};
 use ninebit::scene::image::{self, ImageLimits, Rgba};
@@ -50,6 +51,8 @@ pub(crate) enum Command {
     ///
     /// A direction looked up points from the surface to the viewer. The vectors are stored as in `normal-map`.
     HalfVectorCube(HalfVectorCube),
+    /// Make a cube map of the light of a sky and a ground, looked up with a normal
+    SkyCube(SkyCube),
     /// Take what is positive, or negative, of one component of a normal map as an unsigned texture
     ///
     /// All four channels hold it: 255 is 1. Chips without signed arithmetic multiply such halves.
@@ -111,6 +114,32 @@ pub(crate) struct HalfVectorCube {
     /// Directions looked up point from the viewer to the surface, as positions in camera space do
     #[arg(long)]
     from_viewer: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SkyCube {
+    #[command(flatten)]
+    cube: NormalisationCube,
+    /// The direction to the middle of the sky, of any length
+    #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], default_values = ["0", "1", "0"], value_parser = finite, allow_negative_numbers = true)]
+    axis: Vec<f64>,
+    /// The colour of the sky, 0 to 255
+    #[arg(long, num_args = 3, value_names = ["R", "G", "B"], required = true)]
+    sky: Vec<u8>,
+    /// The colour of the ground
+    #[arg(long, num_args = 3, value_names = ["R", "G", "B"], required = true)]
+    ground: Vec<u8>,
+    /// How the share of the sky follows from the angle q between normal and axis
+    #[arg(long, value_enum, default_value_t = Integral::Exact)]
+    integral: Integral,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Integral {
+    /// 1 - sin q / 2 above the horizon, sin q / 2 below
+    Exact,
+    /// 1/2 + cos q / 2
+    Simplified,
 }
 
 #[derive(Debug, Args)]
@@ -239,14 +268,17 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Occlusion(arguments) => occlude(arguments),
         Command::NormalisationCube(arguments) => write_cube(arguments, Content::Direction),
         Command::HalfVectorCube(arguments) => {
-            let light: [f64; 3] = std::array::from_fn(|n| arguments.light.get(n).copied().unwrap_or_default());
-            if light == [0.0; 3] {
-                return Err(Failure::usage(
-                    "the zero vector points nowhere",
-                    "write the direction to the light, of any length",
-                ));
-            }
+            let light = direction(&arguments.light, "the light")?;
             write_cube(&arguments.cube, Content::Half { light, from_viewer: arguments.from_viewer })
+        }
+        Command::SkyCube(arguments) => {
+            let [sky, ground] = [&arguments.sky, &arguments.ground].map(|bytes| sky::color(three(bytes)));
+            let integral = match arguments.integral {
+                Integral::Exact => sky::Integral::Exact,
+                Integral::Simplified => sky::Integral::Simplified,
+            };
+            let axis = direction(&arguments.axis, "the middle of the sky")?;
+            write_cube(&arguments.cube, Content::Sky(HemisphereLight { axis, sky, ground, integral }))
         }
         Command::HalfComponent(arguments) => {
             let destination = Destination::from(arguments.output.as_os_str());
@@ -319,6 +351,21 @@ fn write_cube(arguments: &NormalisationCube, content: Content) -> Result<(), Fai
 
 fn write(image: &Rgba, destination: &Destination) -> Result<(), Failure> {
     Ok(destination.write(&encode_png(image.width, image.height, &image.pixels, Compression::Small)?)?)
+}
+
+/// The three values of an argument, of which clap has seen to it that there are three.
+fn three<T: Copy + Default>(values: &[T]) -> [T; 3] {
+    std::array::from_fn(|n| values.get(n).copied().unwrap_or_default())
+}
+
+/// A direction, which must not be the zero vector.
+fn direction(values: &[f64], what: &str) -> Result<[f64; 3], Failure> {
+    let vector = three(values);
+    if vector == [0.0; 3] {
+        let advice = format!("write the direction to {what}, of any length");
+        return Err(Failure::usage("the zero vector points nowhere", advice));
+    }
+    Ok(vector)
 }
 
 /// Reads a finite number.

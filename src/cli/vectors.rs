@@ -1,9 +1,12 @@
 //! `ninebit vectors`.
 
+mod adopt;
 mod check;
+mod compare;
 mod diff;
 mod export;
 mod list;
+mod sweep;
 
 use clap::Subcommand;
 use ninebit::state::{Named, Profile};
@@ -28,6 +31,27 @@ pub(crate) enum Command {
     ///
     /// Rows are found by their ids. Exit status 0: the packs have the same rows; 1: they differ.
     Diff(diff::Arguments),
+    /// Compute the digests of every row of a unit, or of a shard of them
+    ///
+    /// Workers share nothing but the folder; one that was stopped is started again and goes on. Leaves that are there and whole are kept.
+    Sweep(sweep::SweepArguments),
+    /// Join the leaves of a sweep to a tree
+    ///
+    /// The root is the same for every number of shards. Exit status 3: a leaf is there twice, was changed, or is of another sweep or
+    /// version; 4: leaves are missing.
+    Merge(sweep::MergeArguments),
+    /// Compute digests again and compare them with a tree
+    ///
+    /// Exit status 0: they are the same; 1: some differ; 3: the tree is not valid.
+    Digest(sweep::DigestArguments),
+    /// Hold what a card or a driver answered to its pack: exact, off by one or worse, by unit, tag and policy
+    ///
+    /// Exit status 0: everything is exact or waived; 1: it is not; 3: the pack or the results are not valid; 4: a file is missing.
+    Compare(compare::Arguments),
+    /// Record what a real card answered as truth, grade SILICON
+    ///
+    /// Software renderers are refused. Exit status 0: recorded; 3: refused; 4: a file is missing.
+    Adopt(adopt::Arguments),
 }
 
 /// Runs one of them.
@@ -37,6 +61,11 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
         Command::Export(arguments) => export::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Diff(arguments) => diff::run(arguments),
+        Command::Sweep(arguments) => sweep::sweep(arguments),
+        Command::Merge(arguments) => sweep::merge(arguments),
+        Command::Digest(arguments) => sweep::digest(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
+        Command::Adopt(arguments) => adopt::run(arguments),
     }
 }
 
@@ -50,6 +79,14 @@ impl From<VectorError> for Failure {
         let (code, message, help) = (Some(error.code()), error.to_string(), Some(error.help().to_owned()));
         Failure { exit, report: Report::Message { code, message, help } }
     }
+}
+
+/// A chip lacks a unit.
+fn lacks(unit: &dyn Unit, profile: Profile) -> Failure {
+    Failure::usage(
+        format!("{} has no unit `{}`", profile.name(), unit.name()),
+        "`ninebit vectors list` says which chips have a unit",
+    )
 }
 
 /// Reads the name of a unit.

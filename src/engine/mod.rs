@@ -16,14 +16,15 @@ pub use rows::Isa;
 pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
 
 use crate::frame::{Frames, Surface};
-use crate::plan::{Plan, PlannedDraw};
+use crate::plan::Plan;
 use crate::rop::surface;
 use crate::state::{Target, Texture, TextureImage, named};
 use crate::texture::unit::Image;
 use crate::trace::Silent;
-use rayon::prelude::*;
 use rows::Rows;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
 
 named! {
     /// Which engine draws. The bytes do not depend on it.
@@ -44,11 +45,13 @@ pub struct RenderOptions {
     pub engine: Engine,
     /// The instruction set of the fast engine; `None` takes the widest. One that the machine lacks is taken as the baseline.
     pub isa: Option<Isa>,
+    /// Rows of a band, the unit that threads share; `None` takes what suits. The result does not depend on it.
+    pub band: Option<usize>,
 }
 
 impl Default for RenderOptions {
     fn default() -> Self {
-        RenderOptions { threads: 1, engine: Engine::Fast, isa: None }
+        RenderOptions { threads: 1, engine: Engine::Fast, isa: None, band: None }
     }
 }
 
@@ -59,11 +62,17 @@ pub struct Statistics {
     pub shaded_pixels: Vec<u64>,
 }
 
-/// Rows of a band: the unit of work that threads share. Even, so that quads stay whole.
+/// Least rows of a band, unless asked for: the unit of work that threads share.
 const BAND: usize = 16;
 
-/// Below this many pixels a draw stays on one thread.
+/// Below this many pixels draws stay on one thread.
 const SMALL: usize = 16_384;
+
+/// Pixels of a band that stays in cache while several draws pass over it.
+const CACHED: usize = 32_768;
+
+/// Up to so many triangles a draw, setting each up for every band costs nothing to speak of.
+const FEW: usize = 16;
 
 /// Renders every draw.
 pub fn render(plan: &Plan, options: &RenderOptions) -> Frames {
@@ -78,7 +87,7 @@ pub fn render_counted(
 ) -> (Frames, Statistics) {
     let mut frames = cleared(plan);
     let renderer = Renderer::new(plan, options);
-    let total = plan.draws.iter().map(|draw| renderer.bands(draw)).sum();
+    let total = renderer.groups().map(|draws| draws.len() * renderer.bands(&draws)).sum();
     let done = AtomicUsize::new(0);
     let band_done = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
     let statistics = renderer.draw_all(&mut frames, &band_done);
@@ -91,6 +100,7 @@ pub struct Renderer<'a> {
     plan: &'a Plan,
     rows: Option<Rows>,
     isa: Isa,
+    band: Option<usize>,
     threads: usize,
     pool: Option<rayon::ThreadPool>,
 }
@@ -98,16 +108,20 @@ pub struct Renderer<'a> {
 impl<'a> Renderer<'a> {
     /// Decodes textures and compiles draws, as far as the engine wants that, and starts the threads.
     pub fn new(plan: &'a Plan, options: &RenderOptions) -> Renderer<'a> {
-        let pool = (options.threads != 1)
-            .then(|| rayon::ThreadPoolBuilder::new().num_threads(options.threads).build().ok())
-            .flatten();
+        let threads = match options.threads {
+            0 => std::thread::available_parallelism().map_or(1, usize::from),
+            threads => threads,
+        };
+        // The caller's thread draws too.
+        let pool =
+            (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads - 1).build().ok()).flatten();
         let isa = options
             .isa
             .filter(|isa| isa.is_available())
             .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
         let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan)).flatten();
-        let threads = pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads);
-        Renderer { plan, rows, isa, threads, pool }
+        let threads = pool.as_ref().map_or(1, |pool| pool.current_num_threads() + 1);
+        Renderer { plan, rows, isa, band: options.band, threads, pool }
     }
 
     /// The instruction set that the fast engine uses.
@@ -128,41 +142,75 @@ impl<'a> Renderer<'a> {
     }
 
     fn draw_all(&self, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Statistics {
-        let draws = 0..self.plan.draws.len();
-        Statistics { shaded_pixels: draws.map(|index| self.draw(index, frames, band_done)).collect() }
+        let shaded_pixels = self.groups().flat_map(|draws| self.draw_group(draws, frames, band_done)).collect();
+        Statistics { shaded_pixels }
     }
 
-    /// Rows of a band of a draw.
-    fn band(&self, draw: &PlannedDraw) -> usize {
-        let height = self.plan.targets[draw.target].height as usize;
-        match (&self.rows, self.threads) {
+    /// Neighbouring draws on one target: they are drawn band by band, all of them on one before any on the next, so that the band stays in
+    /// cache. None reads what another has drawn except through the surface itself.
+    fn groups(&self) -> impl Iterator<Item = Range<usize>> {
+        let draws = &self.plan.draws;
+        let mut first = 0;
+        std::iter::from_fn(move || {
+            let target = draws.get(first)?.target;
+            let count = draws[first..].iter().take_while(|draw| draw.target == target).count();
+            first += count;
+            Some(first - count..first)
+        })
+    }
+
+    /// Rows of a band of some draws.
+    fn band(&self, draws: &Range<usize>) -> usize {
+        let target = &self.plan.targets[self.plan.draws[draws.start].target];
+        let (width, height) = (target.width as usize, target.height as usize);
+        let triangles: usize = self.plan.draws[draws.clone()].iter().map(|draw| draw.assembly.triangles.len()).sum();
+        let rows = match (&self.rows, self.threads) {
             (None, _) => BAND,
             // What is set up for a triangle is set up for each band that it meets.
-            (Some(_), 1) => height.next_multiple_of(2).max(2),
-            (Some(_), threads) => height.div_ceil(4 * threads).next_multiple_of(2).max(BAND),
-        }
-    }
-
-    fn bands(&self, draw: &PlannedDraw) -> usize {
-        (self.plan.targets[draw.target].height as usize).div_ceil(self.band(draw))
-    }
-
-    /// Runs one draw on its target; covered pixels.
-    fn draw(&self, index: usize, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> u64 {
-        let planned = &self.plan.draws[index];
-        let compiled = self.rows.as_ref().map(|rows| rows.draw(self.plan, index, &frames.surfaces));
-        let run = |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>| {
-            let shaded = match &compiled {
-                Some(compiled) => {
-                    let job = rows::Job { plan: self.plan, draw: planned, compiled, textures };
-                    rows::isa::run(self.isa, job, band)
-                }
-                None => walk::draw(self.plan, planned, textures, band, &mut Silent).0,
-            };
-            band_done();
-            shaded
+            (Some(_), 1) if draws.len() == 1 || triangles > FEW * draws.len() => height,
+            (Some(_), 1) => CACHED / width,
+            (Some(_), threads) => height.div_ceil(4 * threads),
         };
-        draw(self.plan, index, self.band(planned), frames, self.pool.as_ref(), &run)
+        // Even, so that quads stay whole.
+        self.band.unwrap_or(rows.min(height).max(BAND)).max(1).next_multiple_of(2)
+    }
+
+    fn bands(&self, draws: &Range<usize>) -> usize {
+        let target = &self.plan.targets[self.plan.draws[draws.start].target];
+        (target.height as usize).div_ceil(self.band(draws))
+    }
+
+    /// Runs some draws on their target; covered pixels of each.
+    fn draw_group(&self, draws: Range<usize>, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Vec<u64> {
+        let plan = self.plan;
+        let compiled: Vec<_> = draws
+            .clone()
+            .map(|index| self.rows.as_ref().map(|rows| rows.draw(plan, index, &frames.surfaces)))
+            .collect();
+        let window = |index: usize| {
+            let window = &plan.draws[index].window;
+            window.width as usize * window.height as usize
+        };
+        let pool = self.pool.as_ref().filter(|_| draws.clone().map(window).sum::<usize>() >= SMALL);
+        let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
+        let run = |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, block: &mut rows::Block| {
+            for ((index, compiled), shaded) in draws.clone().zip(&compiled).zip(&shaded) {
+                let draw = &plan.draws[index];
+                let pixels = match compiled {
+                    Some(compiled) => rows::isa::run(
+                        self.isa,
+                        rows::Job { plan, draw, compiled: compiled.as_ref(), textures },
+                        band,
+                        block,
+                    ),
+                    None => walk::draw(plan, draw, textures, band, &mut Silent).0,
+                };
+                shaded.fetch_add(pixels, Ordering::Relaxed);
+                band_done();
+            }
+        };
+        draw_bands(plan, plan.draws[draws.start].target, self.band(&draws), frames, pool, &run);
+        shaded.into_iter().map(AtomicU64::into_inner).collect()
     }
 }
 
@@ -198,46 +246,57 @@ pub(crate) fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Imag
     plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
 }
 
-/// What runs a draw in one band.
-type RunBand<'r> = dyn Fn(&[Image<'_, i32>], &mut walk::Band<'_>) -> u64 + Sync + 'r;
+/// What draws in one band.
+type RunBand<'r> = dyn Fn(&[Image<'_, i32>], &mut walk::Band<'_>, &mut rows::Block) + Sync + 'r;
 
-/// Runs one draw on its target, in bands of so many rows; covered pixels.
-fn draw(
+/// Draws on a target, in bands of so many rows, which threads take one after the other.
+fn draw_bands(
     plan: &Plan,
-    index: usize,
+    target: usize,
     height: usize,
     frames: &mut Frames,
     pool: Option<&rayon::ThreadPool>,
     run_band: &RunBand<'_>,
-) -> u64 {
-    let planned = &plan.draws[index];
-    let target = &mut frames.surfaces[planned.target];
-    let width = target.width as usize;
+) {
+    let surface = &mut frames.surfaces[target];
+    let width = surface.width as usize;
     // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
-    let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
+    let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
     let textures = images(plan, &frames.surfaces);
-    let band_of = |number: usize, words, depth| walk::Band { first_row: number * height, width, words, depth };
-    let shaded = {
-        let bands: Vec<walk::Band<'_>> = if depth.is_empty() {
-            words.chunks_mut(height * width).enumerate().map(|(n, w)| band_of(n, w, &mut [][..])).collect()
-        } else {
-            let pairs = words.chunks_mut(height * width).zip(depth.chunks_mut(height * width));
-            pairs.enumerate().map(|(n, (w, d))| band_of(n, w, d)).collect()
-        };
-        let pixels = planned.window.width as usize * planned.window.height as usize;
-        let run = |mut band: walk::Band<'_>| run_band(&textures, &mut band);
-        match pool {
-            Some(pool) if pixels >= SMALL => pool.install(|| bands.into_par_iter().map(run).sum()),
-            _ => bands.into_iter().map(run).sum(),
+    let mut depths = depth.chunks_mut(height * width);
+    let bands = words.chunks_mut(height * width).enumerate().map(|(number, words)| walk::Band {
+        first_row: number * height,
+        width,
+        words,
+        depth: depths.next().unwrap_or_default(),
+    });
+    let bands = Mutex::new(bands);
+    let work = || {
+        let mut block = rows::Block::default();
+        loop {
+            // A panic elsewhere ends the render anyway.
+            let band = bands.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some(mut band) = band else { return };
+            run_band(&textures, &mut band, &mut block);
         }
     };
-    let target = &mut frames.surfaces[planned.target];
-    (target.words, target.depth) = (words, depth);
-    shaded
+    match pool {
+        Some(pool) => pool.in_place_scope(|scope| {
+            for _ in 0..pool.current_num_threads() {
+                scope.spawn(|_| work());
+            }
+            work();
+        }),
+        None => work(),
+    }
+    let surface = &mut frames.surfaces[target];
+    (surface.words, surface.depth) = (words, depth);
 }
 
 /// Runs one draw by the definition, on one thread.
 pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
-    let planned = &plan.draws[index];
-    draw(plan, index, BAND, frames, None, &|textures, band| walk::draw(plan, planned, textures, band, &mut Silent).0);
+    let draw = &plan.draws[index];
+    draw_bands(plan, draw.target, BAND, frames, None, &|textures, band, _| {
+        walk::draw(plan, draw, textures, band, &mut Silent);
+    });
 }

@@ -1,13 +1,14 @@
-//! Cube maps of vectors: of the direction itself, brought to unit length, and of half vectors.
+//! Cube maps: of the direction itself, brought to unit length, of half vectors, and of the light of a sky.
 //!
-//! A texel's direction is the one that meets its centre (TEX-12). Vectors are stored as in [`normal_map`](super::normal_map), with 255 in
-//! alpha.
+//! A texel's direction is the one that meets its centre (TEX-12). Vectors are stored as in [`normal_map`](super::normal_map), colours as
+//! 0..255 for 0..1; alpha is 255.
 #![allow(
     clippy::float_arithmetic,
     reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
 )]
 
 use super::normal_map::encode;
+use super::sky::HemisphereLight;
 use crate::scene::image::Rgba;
 use crate::state::Named;
 use crate::texture::cube::Face;
@@ -28,6 +29,8 @@ pub enum Content {
         /// The map is looked up with the direction *from* the viewer instead, as positions in camera space are.
         from_viewer: bool,
     },
+    /// The light that meets a surface whose normal is the direction.
+    Sky(HemisphereLight),
 }
 
 /// The six faces, in the order in which a cube map stores them. `side` is brought into [`CUBE_SIDES`].
@@ -36,7 +39,7 @@ pub fn faces(side: u32, content: Content) -> Vec<Rgba> {
     let face = |face: &Face| {
         let texels = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
         let pixels = texels.map(|(column, row)| {
-            let [r, g, b] = encode(vector(direction(*face, column, row, side), content));
+            let [r, g, b] = texel(direction(*face, column, row, side), content);
             [r, g, b, 255]
         });
         Rgba { width: side, height: side, pixels: pixels.collect() }
@@ -54,12 +57,19 @@ fn direction(face: Face, column: u32, row: u32, side: u32) -> Vector {
     unit_or_zero(direction)
 }
 
-fn vector(direction: Vector, content: Content) -> Vector {
+/// The bytes for a unit direction.
+fn texel(direction: Vector, content: Content) -> [u8; 3] {
     match content {
-        Content::Direction => direction,
-        Content::Half { light, from_viewer: false } => unit_or_zero(plus(unit_or_zero(light), direction)),
-        Content::Half { light, from_viewer: true } => unit_or_zero(minus(unit_or_zero(light), direction)),
+        Content::Direction => encode(direction),
+        Content::Half { light, from_viewer } => encode(half(direction, light, from_viewer)),
+        Content::Sky(light) => light.at(direction).map(|c| (255.0 * c.clamp(0.0, 1.0) + 0.5) as u8),
     }
+}
+
+/// The unit vector half-way between a direction, toward the viewer or from it, and that to a light; zero if nothing lies half-way.
+fn half(direction: Vector, light: [f64; 3], from_viewer: bool) -> Vector {
+    let combine = if from_viewer { minus } else { plus };
+    unit_or_zero(combine(unit_or_zero(light), direction))
 }
 
 #[cfg(test)]
@@ -85,12 +95,11 @@ mod tests {
     #[test]
     fn half_vectors_lie_half_way() {
         let light = [0.0, 0.0, 5.0];
-        let half = vector([1.0, 0.0, 0.0], Content::Half { light, from_viewer: false });
-        assert!((half[0] - half[2]).abs() < 1e-12 && half[0] > 0.7);
-        let other = vector([-1.0, 0.0, 0.0], Content::Half { light, from_viewer: true });
-        assert_eq!(half, other);
+        let between = half([1.0, 0.0, 0.0], light, false);
+        assert!((between[0] - between[2]).abs() < 1e-12 && between[0] > 0.7);
+        assert_eq!(half([-1.0, 0.0, 0.0], light, true), between);
         // The light behind the viewer's line: nothing lies half-way.
-        assert_eq!(vector([0.0, 0.0, -1.0], Content::Half { light, from_viewer: false }), [0.0; 3]);
+        assert_eq!(half([0.0, 0.0, -1.0], light, false), [0.0; 3]);
     }
 
     #[test]
@@ -101,5 +110,21 @@ mod tests {
         assert_eq!(middles[1], [1, 128, 128, 255]);
         assert_eq!(middles[3], [128, 1, 128, 255]);
         assert_eq!(middles[4], [128, 128, 255, 255]);
+    }
+
+    #[test]
+    fn a_sky_shows_on_the_faces_of_its_cube() {
+        use crate::generate::sky::Integral;
+        let light = HemisphereLight {
+            axis: [0.0, 1.0, 0.0],
+            sky: [1.0, 0.5, 0.0],
+            ground: [0.0; 3],
+            integral: Integral::Exact,
+        };
+        let faces = faces(1, Content::Sky(light));
+        let middles: Vec<[u8; 4]> = faces.iter().map(|face| face.pixels[0]).collect();
+        assert_eq!(middles[2], [255, 128, 0, 255]);
+        assert_eq!(middles[3], [0, 0, 0, 255]);
+        assert_eq!(middles[4], [128, 64, 0, 255]);
     }
 }

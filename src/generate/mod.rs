@@ -1,5 +1,5 @@
 //! Textures made by the tool itself: height fields, normal maps and occlusion from them, the normal map of a hemisphere, cube maps of
-//! vectors, tables of powers.
+//! vectors and of the light of a sky, tables of powers.
 //!
 //! Deterministic: the same arguments give the same bytes on every machine.
 
@@ -12,6 +12,7 @@ pub mod hemisphere;
 pub mod normal_map;
 pub mod occlusion;
 pub mod power_table;
+pub mod sky;
 
 /// Sides of the square images that are made from nothing.
 pub const SIDES: std::ops::RangeInclusive<u32> = 16..=2048;

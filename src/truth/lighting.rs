@@ -2,7 +2,7 @@
 //!
 //! Only + - * / and square roots: every machine gets the same bits.
 
-use super::{Eye, HemisphereLight, Integral, Light, Material, Model, Place};
+use super::{Eye, Light, Material, Model, Place};
 use crate::generate::power_table::power;
 use crate::vector::{Vector, dot, minus, plus, scaled, unit_or_zero};
 
@@ -33,19 +33,6 @@ pub(super) fn light(light: &Light, eye: Option<&Eye>, material: &Material, point
         }
     }
     [0, 1, 2].map(|n| terms[n] * light.color[n])
-}
-
-/// The light of two half spaces, one color each.
-pub(super) fn hemisphere(light: &HemisphereLight, normal: Vector) -> [f64; 3] {
-    let cosine = dot(normal, unit_or_zero(light.axis)).clamp(-1.0, 1.0);
-    let sky = match light.integral {
-        Integral::Simplified => 0.5 + 0.5 * cosine,
-        Integral::Exact => {
-            let half_sine = 0.5 * (1.0 - cosine * cosine).sqrt();
-            if cosine >= 0.0 { 1.0 - half_sine } else { half_sine }
-        }
-    };
-    [0, 1, 2].map(|n| sky * light.sky[n] + (1.0 - sky) * light.ground[n])
 }
 
 #[cfg(test)]
@@ -90,22 +77,5 @@ mod tests {
         assert!(light(&behind, Some(&eye), &material, [0.0; 3], UP)[0] > 0.6);
         let shading = Material { self_shadowing: true, ..material };
         assert_eq!(light(&behind, Some(&eye), &shading, [0.0; 3], UP)[0], 0.0);
-    }
-
-    #[test]
-    fn the_two_integrals_agree_at_the_poles_and_the_equator() {
-        let of = |integral, normal| {
-            let light = HemisphereLight { axis: UP, sky: [1.0, 0.0, 0.5], ground: [0.0, 1.0, 0.5], integral };
-            hemisphere(&light, normal)
-        };
-        for integral in [Integral::Exact, Integral::Simplified] {
-            assert_eq!(of(integral, UP), [1.0, 0.0, 0.5]);
-            assert_eq!(of(integral, [0.0, 0.0, -1.0]), [0.0, 1.0, 0.5]);
-            assert_eq!(of(integral, [1.0, 0.0, 0.0]), [0.5, 0.5, 0.5]);
-        }
-        // Between them they do not: at 30 degrees 0.75 and 0.933.
-        let tilted = [0.5, 0.0, 0.75_f64.sqrt()];
-        assert!((of(Integral::Exact, tilted)[0] - 0.75).abs() < 1e-12);
-        assert!((of(Integral::Simplified, tilted)[0] - 0.933_012_701_892_219).abs() < 1e-12);
     }
 }

@@ -18,6 +18,7 @@ use std::sync::Arc;
 pub use field::Field;
 pub use pixels::{Pixel, TruthFrame, evaluate, evaluate_with_normals};
 
+pub use crate::generate::sky::{HemisphereLight, Integral};
 use crate::scene::mesh::Mesh;
 use crate::state::{Register, named};
 
@@ -28,15 +29,6 @@ named! {
         Blinn,
         /// The reflected light's cosine with the direction to the eye.
         Phong,
-    }
-}
-named! {
-    /// How much of the sky a surface sees, over the angle q between its normal and the sky's axis.
-    pub enum Integral {
-        /// 1 - sin q / 2 on the upper half, sin q / 2 on the lower.
-        Exact,
-        /// 1/2 + cos q / 2.
-        Simplified,
     }
 }
 named! {
@@ -110,19 +102,6 @@ impl Default for Material {
         let (ambient, diffuse, specular) = ([0.0; 3], [1.0; 3], [0.0; 3]);
         Material { ambient, diffuse, specular, exponent: 1, model: Model::Blinn, self_shadowing: false }
     }
-}
-
-/// Light from all around: a sky and a ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HemisphereLight {
-    /// Toward the middle of the sky, in object space; any length.
-    pub axis: [f64; 3],
-    /// R, G, B of the sky.
-    pub sky: [f64; 3],
-    /// R, G, B of the ground.
-    pub ground: [f64; 3],
-    /// How much of the sky a surface sees.
-    pub integral: Integral,
 }
 
 /// Where the surface's normals come from. Those of maps stand along tangent, binormal and normal of the mesh.

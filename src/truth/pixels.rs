@@ -230,7 +230,7 @@ fn light(truth: &Truth, point: &Point, normal: Vector) -> [f64; 3] {
     }
     if let Some(hemisphere) = &truth.hemisphere {
         let reached = truth.occlusion.as_ref().map_or(1.0, |field: &Arc<Field<1>>| field.at(point.coordinates)[0]);
-        add(lighting::hemisphere(hemisphere, normal).map(|c| c * reached));
+        add(hemisphere.at(normal).map(|c| c * reached));
     }
     let map = truth.color_map.as_ref().map_or([1.0; 3], |field| field.at(point.coordinates));
     [0, 1, 2].map(|n| sum[n] * map[n])

@@ -42,14 +42,21 @@ impl Kind {
         }
     }
 
-    /// Whether a number can be written.
-    pub fn holds(&self, value: i64) -> bool {
+    /// The least and the greatest number that can be written.
+    pub fn range(&self) -> (i64, i64) {
         let bits = self.bits();
         match self {
-            Kind::Unsigned(_) | Kind::Hex(_) => value >= 0 && (bits >= 63 || value < 1 << bits),
-            Kind::Signed(_) | Kind::Halves(_) => bits >= 64 || (-(1 << (bits - 1))..1 << (bits - 1)).contains(&value),
-            Kind::Name(names) => usize::try_from(value).is_ok_and(|n| n < names.len()),
+            Kind::Unsigned(_) | Kind::Hex(_) => (0, if bits >= 63 { i64::MAX } else { (1 << bits) - 1 }),
+            Kind::Signed(_) | Kind::Halves(_) if bits >= 64 => (i64::MIN, i64::MAX),
+            Kind::Signed(_) | Kind::Halves(_) => (-(1 << (bits - 1)), (1 << (bits - 1)) - 1),
+            Kind::Name(names) => (0, names.len() as i64 - 1),
         }
+    }
+
+    /// Whether a number can be written.
+    pub fn holds(&self, value: i64) -> bool {
+        let (least, greatest) = self.range();
+        (least..=greatest).contains(&value)
     }
 
     /// A number as text.
@@ -181,8 +188,7 @@ impl Column {
             Some(Domain::Interval(first, last)) => (last - first + 1) as u128,
             Some(Domain::Listed(values)) => values.len() as u128,
             Some(Domain::Word(bits)) => 1 << bits,
-            // Every pattern counts, those of too large or negative numbers too: floats are never enumerated by this.
-            Some(Domain::Float(..)) => 1 << 32,
+            Some(Domain::Float(negative, limit)) => (positive_floats(*limit) as u128) << u32::from(*negative),
         }
     }
 
@@ -192,7 +198,11 @@ impl Column {
             None => 0,
             Some(Domain::Interval(first, _)) => first + place as i64,
             Some(Domain::Listed(values)) => values.get(place as usize).copied().unwrap_or_default(),
-            Some(Domain::Word(_) | Domain::Float(..)) => place as i64,
+            Some(Domain::Word(_)) => place as i64,
+            Some(Domain::Float(_, limit)) => {
+                let (positive, place) = (positive_floats(*limit), place as i64);
+                if place < positive { place } else { 0x8000_0000 | (place - positive) }
+            }
         }
     }
 
@@ -230,6 +240,11 @@ impl Column {
         values.dedup();
         values
     }
+}
+
+/// How many floats, 0 included, lie below 2^limit.
+fn positive_floats(limit: i32) -> i64 {
+    i64::from(127 + limit) << 23
 }
 
 /// Bits of notable floats of a magnitude below 2^limit.

@@ -49,6 +49,17 @@ fn place(path: &Path, line: usize) -> String {
 }
 
 impl VectorError {
+    /// A file that does not say what it should; `line` is 0 for the file as a whole.
+    pub fn invalid(
+        code: &'static str,
+        path: &Path,
+        line: usize,
+        message: impl Into<String>,
+        help: &'static str,
+    ) -> VectorError {
+        VectorError::Invalid { code, path: path.to_path_buf(), line, message: message.into(), help }
+    }
+
     /// Stable code.
     pub fn code(&self) -> &'static str {
         match self {

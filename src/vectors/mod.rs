@@ -6,11 +6,15 @@
 pub mod cases;
 pub mod column;
 pub mod error;
+pub mod gpu;
 pub mod handbook;
 pub mod pack;
 pub mod random;
 pub mod read;
+pub mod results;
+pub mod sweep;
 pub mod table;
+pub mod tree;
 pub mod unit;
 pub mod units;
 pub mod view;

@@ -3,6 +3,8 @@
 //! ```text
 //! MANIFEST.json           what there is: versions, seed, counts, digests
 //! SHA256SUMS              the digests again, for `sha256sum --check`
+//! LICENSE                 CC0 1.0
+//! schema/*.schema.json    what the JSON files hold
 //! units/UNIT.tsv          the rows
 //! units/UNIT.hex, .json, .svh, .h, .jsonl    views, where asked for
 //! ```
@@ -16,16 +18,20 @@ use sha2::{Digest, Sha256};
 
 use super::cases::Level;
 use super::error::{VectorError, read_text};
+use super::gpu::write::Batches;
 use super::read::{self, Table};
 use super::table::{Contents, Writer};
-use super::view::View;
+use super::view::{Content, Layout, TABLE, View};
 use super::{BEHAVIOUR, Unit};
-use crate::output::{write_file, write_file_with};
+use crate::output::{PendingFile, write_file};
 use crate::picture::hexadecimal;
 use crate::state::{Named, Profile};
 
 /// `format` of a manifest.
 pub const FORMAT: &str = "ninebit-vectors-1";
+
+/// Folders of a pack.
+const FOLDERS: [&str; 2] = ["schema", "units"];
 
 /// Name of the manifest.
 pub const MANIFEST: &str = "MANIFEST.json";
@@ -62,11 +68,11 @@ pub struct Manifest {
 pub struct File {
     /// Inside the pack, with `/`.
     pub path: String,
-    /// The unit.
+    /// The unit; empty for licence and schemas.
     pub unit: String,
     /// Its size.
     pub bytes: u64,
-    /// Rows of the unit's table.
+    /// Rows in it.
     pub rows: usize,
     /// SHA-256.
     pub sha256: String,
@@ -89,25 +95,44 @@ pub struct Options {
     pub views: Vec<View>,
 }
 
-/// Hashes and counts what goes through.
-struct Hashing<'w> {
-    out: &'w mut dyn Write,
+/// A file of a pack under construction: hashes and counts what goes through.
+struct Hashing {
+    path: String,
+    file: PendingFile,
     hash: Sha256,
     bytes: u64,
 }
 
-impl Write for Hashing<'_> {
-    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
-        let written = self.out.write(bytes)?;
-        self.hash.update(&bytes[..written]);
-        self.bytes += written as u64;
-        Ok(written)
+impl Hashing {
+    fn create(folder: &Path, path: String) -> Result<Hashing, VectorError> {
+        let file = PendingFile::create(&folder.join(&path))?;
+        Ok(Hashing { path, file, hash: Sha256::new(), bytes: 0 })
     }
 
-    fn flush(&mut self) -> std::io::Result<()> {
-        self.out.flush()
+    fn add(&mut self, content: impl AsRef<[u8]>) -> Result<(), VectorError> {
+        let bytes = content.as_ref();
+        self.hash.update(bytes);
+        self.bytes += bytes.len() as u64;
+        Ok(self.file.write_all(bytes).map_err(|error| self.file.refused(error))?)
+    }
+
+    /// Puts the file in its place.
+    fn finish(self, unit: &str, rows: usize) -> Result<File, VectorError> {
+        self.file.commit()?;
+        let sha256 = hexadecimal(&self.hash.finalize());
+        Ok(File { path: self.path, unit: unit.to_owned(), bytes: self.bytes, rows, sha256 })
     }
 }
+
+/// What every pack has besides tables: path and text.
+const ALWAYS: [(&str, &str); 6] = [
+    ("LICENSE", include_str!("../../vectors/LICENSE")),
+    ("schema/layout.schema.json", include_str!("../../vectors/schema/layout.schema.json")),
+    ("schema/leaf.schema.json", include_str!("../../vectors/schema/leaf.schema.json")),
+    ("schema/manifest.schema.json", include_str!("../../vectors/schema/manifest.schema.json")),
+    ("schema/row.schema.json", include_str!("../../vectors/schema/row.schema.json")),
+    ("schema/sweep.schema.json", include_str!("../../vectors/schema/sweep.schema.json")),
+];
 
 /// Lines as `sha256sum` writes them.
 fn sums(files: &[File]) -> String {
@@ -123,8 +148,10 @@ pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError>
         let path = path.to_path_buf();
         move |source| VectorError::Output(crate::output::OutputError::Write { path, source })
     };
-    let units = folder.join("units");
-    std::fs::create_dir_all(&units).map_err(refused(&units))?;
+    for part in FOLDERS {
+        let part = folder.join(part);
+        std::fs::create_dir_all(&part).map_err(refused(&part))?;
+    }
     let manifest_path = folder.join(MANIFEST);
     if manifest_path.exists() {
         // What an earlier export left is no pack from now on.
@@ -133,6 +160,11 @@ pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError>
     let written: Vec<Vec<File>> =
         options.units.par_iter().map(|unit| export_unit(folder, *unit, options)).collect::<Result<_, _>>()?;
     let mut files: Vec<File> = written.into_iter().flatten().collect();
+    for (path, text) in ALWAYS {
+        let mut file = Hashing::create(folder, path.to_owned())?;
+        file.add(text)?;
+        files.push(file.finish("", 0)?);
+    }
     files.sort_by(|a, b| a.path.cmp(&b.path));
     let manifest = Manifest {
         format: FORMAT.to_owned(),
@@ -152,26 +184,41 @@ pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError>
     Ok(manifest)
 }
 
-/// A unit's table and its views.
+/// A unit's table and its views; each row is computed once.
 fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Result<Vec<File>, VectorError> {
     let Options { profile, level, seed, deciding, .. } = *options;
     let writer = Writer::new(Contents { unit, profile, level, seed });
+    let layout = Layout::new(&writer);
     let mut files = Vec::new();
-    let mut add =
-        |extension: &str, fill: &dyn Fn(&mut dyn Write) -> std::io::Result<usize>| -> Result<(), VectorError> {
-            let path = format!("units/{}.{extension}", unit.name());
-            let (rows, sha256, bytes) = write_file_with(&folder.join(&path), |out| {
-                let mut hashing = Hashing { out, hash: Sha256::new(), bytes: 0 };
-                let rows = fill(&mut hashing)?;
-                Ok((rows, hexadecimal(&hashing.hash.finalize()), hashing.bytes))
-            })?;
-            files.push(File { path, unit: unit.name().to_owned(), bytes, rows, sha256 });
-            Ok(())
-        };
-    add("tsv", &|out| writer.write(deciding, out))?;
-    for view in &options.views {
-        for (extension, write) in view.files() {
-            add(extension, &|out| write(&writer, deciding, out))?;
+    for (extension, content) in [TABLE].into_iter().chain(options.views.iter().flat_map(|view| view.files())) {
+        let mut file = Hashing::create(folder, format!("units/{}.{extension}", unit.name()))?;
+        file.add(&match content {
+            Content::Whole(text) => text(&layout),
+            Content::Rows(head, _) => head(&writer),
+        })?;
+        files.push((file, content));
+    }
+    let mut batches = options.views.contains(&View::Gpu).then(|| Batches::new(&writer));
+    let rows = writer.each(deciding, |row| {
+        if let Some(batches) = &mut batches {
+            batches.take(row);
+        }
+        for (file, content) in &mut files {
+            if let Content::Rows(_, line) = content {
+                file.add(&(line(&layout, row) + "\n"))?;
+            }
+        }
+        Ok::<(), VectorError>(())
+    })?;
+    // A view without rows has none of its own.
+    let own = |content| if matches!(content, Content::Rows(..)) { rows } else { 0 };
+    let files = files.into_iter().map(|(file, content)| file.finish(unit.name(), own(content)));
+    let mut files = files.collect::<Result<Vec<File>, _>>()?;
+    if let Some(drawn) = batches.and_then(Batches::finish) {
+        for (extension, bytes) in [("gpu.txt", drawn.text.as_bytes()), ("gpu.raw", &drawn.raw)] {
+            let mut file = Hashing::create(folder, format!("units/{}.{extension}", unit.name()))?;
+            file.add(bytes)?;
+            files.push(file.finish(unit.name(), drawn.rows)?);
         }
     }
     Ok(files)
@@ -198,13 +245,15 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
         .map_err(|error| invalid("NB1010", format!("not a manifest: {error}"), "export the pack again"))?;
     let inside = |file: &File| {
         let name = file.path.strip_prefix("units/").unwrap_or_default();
-        !name.is_empty()
-            && name.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_'))
-            && !name.contains("..")
+        let plain = name.bytes().all(|b| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_'));
+        (!name.is_empty() && plain && !name.contains("..")) || ALWAYS.iter().any(|(path, _)| *path == file.path)
     };
     if let Some(file) = manifest.files.iter().find(|file| !inside(file)) {
         let message = format!("`{}` is no file of a pack", file.path.chars().take(60).collect::<String>());
         return Err(invalid("NB1010", message, "export the pack again"));
+    }
+    if !manifest.files.is_sorted_by(|a, b| a.path < b.path) {
+        return Err(invalid("NB1010", "a file stands twice, or not in order".to_owned(), "export the pack again"));
     }
     if hexadecimal(&Sha256::digest(sums(&manifest.files))) != manifest.root {
         return Err(invalid(
@@ -242,21 +291,19 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
             return Err(invalid("NB1011", path, message, "it was changed or cut off since the export: export again"));
         }
     }
-    let units = folder.join("units");
-    let entries = std::fs::read_dir(&units).map_err(|_| VectorError::Missing {
-        path: units.clone(),
-        help: "the manifest lists files in it: the pack is not whole",
-    })?;
-    let mut others: Vec<PathBuf> =
-        entries.flatten().map(|entry| entry.path()).filter(|path| !listed.contains(path)).collect();
+    let mut others = Vec::new();
+    for part in FOLDERS {
+        let part = folder.join(part);
+        let entries = std::fs::read_dir(&part).map_err(|_| VectorError::Missing {
+            path: part.clone(),
+            help: "the manifest lists files in it: the pack is not whole",
+        })?;
+        others.extend(entries.flatten().map(|entry| entry.path()).filter(|path| !listed.contains(path)));
+    }
     others.sort();
     if let Some(path) = others.first() {
-        return Err(invalid(
-            "NB1012",
-            path,
-            "the manifest does not list this file".to_owned(),
-            "take it out of the pack",
-        ));
+        let message = "the manifest does not list this file".to_owned();
+        return Err(invalid("NB1012", path, message, "take it out of the pack"));
     }
     let tables: Vec<Table> = listed
         .par_iter()

@@ -91,6 +91,10 @@ fn invalid(path: &Path, line: usize, code: &'static str, message: String, help: 
 /// Not a table, another version, an unknown unit, a line that this program would not have written, a row that is there twice or whose id is
 /// not that of its inputs, an end in the middle of a line.
 pub fn parse(text: &str, path: &Path) -> Result<Table, VectorError> {
+    if text.contains('\r') {
+        let message = "lines end in CR LF, or have a CR; those of a table end in LF".to_owned();
+        return Err(invalid(path, 0, "NB1004", message, "a program has converted the file: export the pack again"));
+    }
     let mut lines = Lines { path, lines: text.split('\n').enumerate() };
     let (_, first) = lines.next("the format")?;
     if first != FORMAT {

@@ -15,8 +15,6 @@
 //!
 //! A reader skips what begins with `#`, takes the names from the next line, and finds its columns by them.
 
-use std::io::{self, Write};
-
 use sha2::{Digest, Sha256};
 
 use super::cases::{self, Level, Origin};
@@ -134,11 +132,14 @@ impl Writer {
         let numbers = self.inputs.iter().zip(&row.inputs).chain(self.results.iter().zip(&row.results));
         let mut fields = vec![self.id(&row.inputs)];
         fields.extend(numbers.map(|(column, value)| column.kind.write(*value)));
-        fields.push(tags(row));
-        fields.push(self.grade.to_owned());
-        fields.push(self.contents.unit.reach(&row.inputs, &row.results).word().to_owned());
-        fields.push(self.alternatives(row));
+        fields.extend(self.last(row));
         fields.join("\t")
+    }
+
+    /// The values of the columns [`LAST`].
+    pub fn last(&self, row: &Row) -> [String; 4] {
+        let reach = self.contents.unit.reach(&row.inputs, &row.results).word();
+        [tags(row), self.grade.to_owned(), reach.to_owned(), self.alternatives(row)]
     }
 
     /// `RULE=value:out.x=1,out.y=2;...`: what differs of the results; `-` if nothing.
@@ -158,20 +159,11 @@ impl Writer {
         if texts.is_empty() { "-".to_owned() } else { texts.join(";") }
     }
 
-    /// Writes the whole table; with `deciding`, only rows that some policy changes. Returns the number of rows.
-    ///
-    /// # Errors
-    /// The destination refuses.
-    pub fn write(&self, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
-        out.write_all(self.head().as_bytes())?;
-        self.each(deciding, |row| writeln!(out, "{}", self.line(row)))
-    }
-
     /// Hands over every row of the table, with `deciding` only those that some policy changes, until one is refused. Returns their number.
     ///
     /// # Errors
     /// What `take` refuses.
-    pub fn each(&self, deciding: bool, mut take: impl FnMut(&Row) -> io::Result<()>) -> io::Result<usize> {
+    pub fn each<E>(&self, deciding: bool, mut take: impl FnMut(&Row) -> Result<(), E>) -> Result<usize, E> {
         let (mut rows, mut result) = (0, Ok(()));
         let Contents { unit, profile, level, seed } = self.contents;
         cases::visit(unit, profile, level, seed, |inputs, origin| {

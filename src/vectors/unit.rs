@@ -37,6 +37,13 @@ pub trait Unit: Sync + std::fmt::Debug {
     /// Computes the results of one row; both slices are as long as their columns.
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]);
 
+    /// Computes many rows at once, in block lanes, where the unit has a form for it: rows whose inputs but the last are `leading`, the last being
+    /// `first` and the numbers after it. For units with one result column in `out.`, of at most sixteen bits: its numbers, low byte first.
+    /// Returns how many of them are the least and the greatest that the column's type holds; `None`: there is no such form.
+    fn block(&self, _leading: &[i64], _first: i64, _out: &mut [[u8; 2]]) -> Option<[u64; 2]> {
+        None
+    }
+
     /// Whether the inputs make sense together on this chip.
     fn accepts(&self, _inputs: &[i64], _profile: Profile) -> bool {
         true

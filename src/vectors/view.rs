@@ -1,14 +1,14 @@
 //! Views: the same rows for readers that want no text.
 //!
 //! `hex` packs a row into one word, the first column in its top bits, for `$readmemh`; `json`, `svh` and `h` say which bits a column has. `jsonl` has one
-//! object a row.
+//! object a row. `gpu` has draws ([`gpu`](super::gpu)).
 
-use std::io::{self, Write};
+use std::fmt::Write;
 
 use serde_json::{Map, Value, json};
 
 use super::column::{Column, Kind};
-use super::table::{Row, Writer};
+use super::table::{LAST, Row, Writer};
 use crate::state::named;
 
 named! {
@@ -18,18 +18,36 @@ named! {
         Hex,
         /// One JSON object a row.
         Jsonl,
+        /// Draws for a graphics card, of units that one can show.
+        Gpu,
     }
 }
 
-/// Writes a file and tells how many rows it has.
-type WriteFile = fn(&Writer, bool, &mut dyn Write) -> io::Result<usize>;
+/// What of a table goes into a file.
+#[derive(Clone, Copy, Debug)]
+pub enum Content {
+    /// Text that needs no rows.
+    Whole(fn(&Layout) -> String),
+    /// A head, and a line for each row.
+    Rows(fn(&Writer) -> String, fn(&Layout, &Row) -> String),
+}
+
+/// The canonical table.
+pub const TABLE: (&str, Content) = ("tsv", Content::Rows(Writer::head, |layout, row| layout.writer.line(row)));
 
 impl View {
-    /// The files of the view: extension, and what writes it.
-    pub fn files(self) -> Vec<(&'static str, WriteFile)> {
+    /// The files of the view: extension and content.
+    pub fn files(self) -> Vec<(&'static str, Content)> {
         match self {
-            View::Hex => vec![("hex", hex), ("layout.json", layout_json), ("svh", verilog_header), ("h", c_header)],
-            View::Jsonl => vec![("jsonl", jsonl)],
+            View::Hex => vec![
+                ("hex", Content::Rows(|_| String::new(), packed)),
+                ("layout.json", Content::Whole(layout_json)),
+                ("svh", Content::Whole(verilog_header)),
+                ("h", Content::Whole(c_header)),
+            ],
+            // Rows are put together before any is written.
+            View::Gpu => Vec::new(),
+            View::Jsonl => vec![("jsonl", Content::Rows(|_| String::new(), |layout, row| object(layout.writer, row)))],
         }
     }
 }
@@ -45,24 +63,41 @@ pub struct Slice {
     pub low: u32,
 }
 
-/// Where the columns lie in a packed row, and the bits of the row.
-pub fn layout(writer: &Writer) -> (Vec<Slice>, u32) {
-    let columns = || writer.inputs().iter().chain(writer.results());
-    let width: u32 = columns().map(|column| column.kind.bits()).sum();
-    let mut high = width;
-    let slices = columns().map(|column| {
-        let low = high - column.kind.bits();
-        let slice = Slice { column: column.clone(), high: high - 1, low };
-        high = low;
-        slice
-    });
-    (slices.collect(), width)
+/// Where the columns of a table lie in a packed row.
+#[derive(Debug)]
+pub struct Layout<'w> {
+    /// The table.
+    pub writer: &'w Writer,
+    /// The columns in order.
+    pub slices: Vec<Slice>,
+    /// Bits of a row.
+    pub width: u32,
+}
+
+impl<'w> Layout<'w> {
+    /// Of a table: the first column in the top bits.
+    pub fn new(writer: &'w Writer) -> Layout<'w> {
+        let columns = || writer.inputs().iter().chain(writer.results());
+        let width: u32 = columns().map(|column| column.kind.bits()).sum();
+        let mut high = width;
+        let slices = columns().map(|column| {
+            let low = high - column.kind.bits();
+            let slice = Slice { column: column.clone(), high: high - 1, low };
+            high = low;
+            slice
+        });
+        Layout { writer, slices: slices.collect(), width }
+    }
+
+    fn unit(&self) -> &'static str {
+        self.writer.contents().unit.name()
+    }
 }
 
 /// A row as one hexadecimal word.
-pub fn packed(slices: &[Slice], width: u32, row: &Row) -> String {
-    let mut digits = vec![0_u8; width.div_ceil(4) as usize];
-    for (slice, value) in slices.iter().zip(row.inputs.iter().chain(&row.results)) {
+pub fn packed(layout: &Layout, row: &Row) -> String {
+    let mut digits = vec![0_u8; layout.width.div_ceil(4) as usize];
+    for (slice, value) in layout.slices.iter().zip(row.inputs.iter().chain(&row.results)) {
         for bit in slice.low..=slice.high {
             if value >> (bit - slice.low) & 1 != 0 {
                 digits[(bit / 4) as usize] |= 1 << (bit % 4);
@@ -72,30 +107,27 @@ pub fn packed(slices: &[Slice], width: u32, row: &Row) -> String {
     digits.iter().rev().map(|digit| char::from_digit(u32::from(*digit), 16).unwrap_or('0')).collect()
 }
 
-fn hex(writer: &Writer, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
-    let (slices, width) = layout(writer);
-    writer.each(deciding, |row| writeln!(out, "{}", packed(&slices, width, row)))
+/// A row as a JSON object.
+fn object(writer: &Writer, row: &Row) -> String {
+    let mut object = Map::new();
+    object.insert("id".to_owned(), json!(writer.id(&row.inputs)));
+    let numbers = row.inputs.iter().chain(&row.results);
+    for (column, value) in writer.inputs().iter().chain(writer.results()).zip(numbers) {
+        let value = match column.kind {
+            Kind::Name(_) | Kind::Halves(_) => Value::from(column.kind.write(*value)),
+            Kind::Unsigned(_) | Kind::Signed(_) | Kind::Hex(_) => json!(value),
+        };
+        object.insert(column.name.clone(), value);
+    }
+    for (name, text) in LAST.into_iter().zip(writer.last(row)) {
+        object.insert(name.to_owned(), Value::from(text));
+    }
+    Value::Object(object).to_string()
 }
 
-fn jsonl(writer: &Writer, deciding: bool, out: &mut dyn Write) -> io::Result<usize> {
-    writer.each(deciding, |row| {
-        let mut object = Map::new();
-        object.insert("id".to_owned(), json!(writer.id(&row.inputs)));
-        let numbers = row.inputs.iter().chain(&row.results);
-        for (column, value) in writer.inputs().iter().chain(writer.results()).zip(numbers) {
-            let value = match column.kind {
-                Kind::Name(_) | Kind::Halves(_) => Value::from(column.kind.write(*value)),
-                Kind::Unsigned(_) | Kind::Signed(_) | Kind::Hex(_) => json!(value),
-            };
-            object.insert(column.name.clone(), value);
-        }
-        writeln!(out, "{}", Value::Object(object))
-    })
-}
-
-fn layout_json(writer: &Writer, _: bool, out: &mut dyn Write) -> io::Result<usize> {
-    let (slices, width) = layout(writer);
-    let fields: Vec<Value> = slices
+fn layout_json(layout: &Layout) -> String {
+    let fields: Vec<Value> = layout
+        .slices
         .iter()
         .map(|slice| {
             let names = if let Kind::Name(names) = slice.column.kind { json!(names) } else { Value::Null };
@@ -109,10 +141,8 @@ fn layout_json(writer: &Writer, _: bool, out: &mut dyn Write) -> io::Result<usiz
             })
         })
         .collect();
-    let value =
-        json!({ "format": "ninebit-layout-1", "unit": writer.contents().unit.name(), "bits": width, "fields": fields });
-    writeln!(out, "{value:#}")?;
-    Ok(0)
+    let value = json!({ "format": "ninebit-layout-1", "unit": layout.unit(), "bits": layout.width, "fields": fields });
+    format!("{value:#}\n")
 }
 
 /// A column's name as an identifier: `cfg.mapping_a` is `CFG_MAPPING_A`.
@@ -120,36 +150,36 @@ fn identifier(name: &str) -> String {
     name.replace(['.', '-'], "_").to_uppercase()
 }
 
-fn verilog_header(writer: &Writer, _: bool, out: &mut dyn Write) -> io::Result<usize> {
-    let (slices, width) = layout(writer);
-    writeln!(out, "// Bits of a row of {}.hex", writer.contents().unit.name())?;
-    writeln!(out, "localparam ROW_BITS = {width};")?;
-    for slice in &slices {
+fn verilog_header(layout: &Layout) -> String {
+    let mut text = format!("// Bits of a row of {}.hex\nlocalparam ROW_BITS = {};\n", layout.unit(), layout.width);
+    for slice in &layout.slices {
         let name = identifier(&slice.column.name);
-        writeln!(out, "localparam {name}_HIGH = {}, {name}_LOW = {};", slice.high, slice.low)?;
+        let _ = writeln!(text, "localparam {name}_HIGH = {}, {name}_LOW = {};", slice.high, slice.low);
         if let Kind::Name(names) = slice.column.kind {
             for (value, variant) in names.iter().enumerate() {
-                writeln!(out, "localparam {name}_{} = {value};", identifier(variant))?;
+                let _ = writeln!(text, "localparam {name}_{} = {value};", identifier(variant));
             }
         }
     }
-    Ok(0)
+    text
 }
 
-fn c_header(writer: &Writer, _: bool, out: &mut dyn Write) -> io::Result<usize> {
-    let (slices, width) = layout(writer);
-    let unit = identifier(writer.contents().unit.name());
-    writeln!(out, "/* Columns of {0}.tsv, and their bits in a row of {0}.hex. */", writer.contents().unit.name())?;
-    writeln!(out, "#ifndef NINEBIT_{unit}_H\n#define NINEBIT_{unit}_H\n\n#define {unit}_ROW_BITS {width}")?;
-    for (number, slice) in slices.iter().enumerate() {
+fn c_header(layout: &Layout) -> String {
+    let (file, unit) = (layout.unit(), identifier(layout.unit()));
+    let mut text = format!(
+        "/* Columns of {file}.tsv, and their bits in a row of {file}.hex. */\n#ifndef NINEBIT_{unit}_H\n#define NINEBIT_{unit}_H\n\n#define {unit}_ROW_BITS {}\n",
+        layout.width
+    );
+    for (number, slice) in layout.slices.iter().enumerate() {
         let name = format!("{unit}_{}", identifier(&slice.column.name));
-        writeln!(out, "#define {name} {number}\n#define {name}_HIGH {}\n#define {name}_LOW {}", slice.high, slice.low)?;
+        let (high, low) = (slice.high, slice.low);
+        let _ = writeln!(text, "#define {name} {number}\n#define {name}_HIGH {high}\n#define {name}_LOW {low}");
         if let Kind::Name(names) = slice.column.kind {
             for (value, variant) in names.iter().enumerate() {
-                writeln!(out, "#define {name}_{} {value}", identifier(variant))?;
+                let _ = writeln!(text, "#define {name}_{} {value}", identifier(variant));
             }
         }
     }
-    writeln!(out, "\n#endif")?;
-    Ok(0)
+    text.push_str("\n#endif\n");
+    text
 }

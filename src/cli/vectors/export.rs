@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use ninebit::output::write_stdout;
-use ninebit::state::{Named, Profile};
+use ninebit::state::Profile;
 use ninebit::vectors::cases::Level;
 use ninebit::vectors::pack::{self, Options};
 use ninebit::vectors::view::View;
@@ -37,6 +37,9 @@ pub(crate) struct Arguments {
     /// Also write a view: hex (packed words for $readmemh, with layouts for Verilog and C) or jsonl; may be given several times
     #[arg(long = "view", value_name = "VIEW", value_parser = super::named::<View>)]
     views: Vec<View>,
+    /// Also write draws for a graphics card, for the program in vectors/harness/gl: the view `gpu`
+    #[arg(long)]
+    gpu_batches: bool,
 }
 
 /// Writes a pack.
@@ -44,21 +47,22 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let profile = arguments.profile;
     let mut chosen = if arguments.units.is_empty() { units::all() } else { arguments.units.clone() };
     if let Some(unit) = arguments.units.iter().find(|unit| !unit.profiles().contains(&profile)) {
-        return Err(Failure::usage(
-            format!("{} has no unit `{}`", profile.name(), unit.name()),
-            "`ninebit vectors list` says which chips have a unit",
-        ));
+        return Err(super::lacks(*unit, profile));
     }
     chosen.retain(|unit| unit.profiles().contains(&profile));
     let mut seen = HashSet::new();
     chosen.retain(|unit| seen.insert(unit.name()));
+    let mut views = arguments.views.clone();
+    if arguments.gpu_batches && !views.contains(&View::Gpu) {
+        views.push(View::Gpu);
+    }
     let options = Options {
         profile,
         level: arguments.level,
         seed: arguments.seed,
         units: chosen,
         deciding: arguments.deciding,
-        views: arguments.views.clone(),
+        views,
     };
     let manifest = pack::export(&arguments.output, &options)?;
     let mut text = String::new();

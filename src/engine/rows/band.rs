@@ -1,14 +1,14 @@
 //! Triangles to pieces, pieces to blocks, blocks to the surface.
 
 use super::fetch::{self, Workspace};
-use super::kernels::{self, Row};
+use super::kernels::{self, LANES, Row};
+use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{IOTA, Positions};
-use super::triangle::{Piece, Setup, Varying, whole_steps};
+use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
 use super::{BLOCK, Compiled, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band};
 use crate::plan::{Plan, PlannedDraw};
-use crate::raster::setup::Triangle;
 use crate::texture::unit::Image;
 
 /// Some lanes of a block that lie side by side on the surface.
@@ -21,18 +21,42 @@ struct Run {
     count: usize,
 }
 
-/// What a thread works in.
-struct Block {
+/// What a thread works in, draw after draw.
+#[derive(Debug)]
+pub(crate) struct Block {
     rows: Vec<Row>,
     varying: Varying,
     work: Workspace,
+    patch: Patch,
+    planes: Vec<Planes>,
     runs: Vec<Run>,
     /// Lanes in use.
     used: usize,
-    words: [u32; BLOCK],
-    stored: [u32; BLOCK],
+    /// A bit for each pixel of the band: the block has a lane for it. Only while what the surface holds is read.
+    taken: Vec<u64>,
+    words: [u32; LANES],
+    stored: [u32; LANES],
     depth: [u32; BLOCK],
     alive: [bool; BLOCK],
+}
+
+impl Default for Block {
+    fn default() -> Self {
+        Block {
+            rows: Vec::new(),
+            varying: Varying::default(),
+            work: Workspace::default(),
+            patch: Patch::default(),
+            planes: Vec::new(),
+            runs: Vec::with_capacity(BLOCK),
+            used: 0,
+            taken: Vec::new(),
+            words: [0; LANES],
+            stored: [0; LANES],
+            depth: [0; BLOCK],
+            alive: [true; BLOCK],
+        }
+    }
 }
 
 /// Everything of a draw that is the same for all of its blocks.
@@ -46,7 +70,7 @@ pub(crate) struct Job<'a> {
 
 /// Draws what of a draw falls into a band; covered pixels.
 #[inline(always)]
-pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>) -> u64 {
+pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let Job { plan, draw, compiled, textures } = job;
     let mut shaded = 0;
     if draw.folded.invisible.is_some() {
@@ -56,36 +80,39 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>) -> u64 {
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
         return shaded;
     }
-    let mut block = Block {
-        rows: compiled.rows.clone(),
-        varying: Varying::default(),
-        work: Workspace::default(),
-        runs: Vec::with_capacity(BLOCK),
-        used: 0,
-        words: [0; BLOCK],
-        stored: [0; BLOCK],
-        depth: [0; BLOCK],
-        alive: [true; BLOCK],
-    };
-    let mut planes = Vec::new();
+    block.rows.resize(compiled.rows.len(), Row::of(0));
+    for (row, constant) in block.rows.iter_mut().zip(&compiled.rows) {
+        row.fill(*constant);
+    }
+    // Earlier draws have dropped fragments.
+    block.alive.fill(true);
+    block.varying.alive.fill(true);
+    if compiled.reads_surface {
+        block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
+    }
     for number in 0..draw.assembly.triangles.len() {
+        if misses(draw, number, rows) {
+            continue;
+        }
         let Some(context) = TriangleContext::new(plan, draw, number, rows) else { continue };
-        let setup = Setup::new(context, compiled, planes);
+        let setup = Setup::new(context, compiled, std::mem::take(&mut block.planes));
         let triangle = &setup.context.triangle;
         let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
         if is_small(triangle) {
-            let patch = Patch::of(triangle, rows, columns);
-            if patch.count > BLOCK - block.used {
-                flush(job, &mut block, band);
-            }
-            if patch.count > 0 {
-                let lanes = whole_steps(patch.count);
+            block.patch.cover(triangle, rows, columns);
+            let (first, count) = (block.patch.first, block.patch.count);
+            if count > 0 {
+                if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
+                    flush(job, block, band);
+                }
+                let Block { varying, rows, patch, used, .. } = &mut *block;
+                let lanes = whole_steps(count);
                 let at = Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
-                let (first, count) = (patch.first, patch.count);
-                let piece = Piece { first, at, count, lane: block.used, extent: (SIDE as i32, SIDE as i32) };
-                setup.interpolate::<FMA, false>(piece, compiled, textures, &mut block.varying, &mut block.rows);
-                for (j, i, count) in &patch.runs[..patch.filled] {
-                    block.append(band, (*i, *j), *count);
+                let piece = Piece { first, at, count, lane: *used, extent: (SIDE as i32, SIDE as i32) };
+                setup.interpolate::<FMA, false>(piece, compiled, textures, varying, rows);
+                for n in 0..block.patch.filled {
+                    let (j, i, count) = block.patch.runs[n];
+                    block.append(band, (i, j), count, compiled.reads_surface);
                 }
                 shaded += count as u64;
             }
@@ -95,138 +122,140 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>) -> u64 {
                 // Where rows of lanes begin, so that no step lies across two cache lines.
                 block.used = whole_steps(block.used);
                 while i < end {
-                    if block.used == BLOCK {
-                        flush(job, &mut block, band);
+                    let wanted = ((end - i) as usize).min(BLOCK);
+                    if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
+                        flush(job, block, band);
                     }
-                    let count = ((end - i) as usize).min(BLOCK - block.used);
+                    let count = wanted.min(BLOCK - block.used);
                     let lanes = whole_steps(count);
                     let last = count as i32 - 1;
                     let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
                     let piece = Piece { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
-                    setup.interpolate::<FMA, true>(piece, compiled, textures, &mut block.varying, &mut block.rows);
-                    block.append(band, (i, j), count);
+                    let Block { varying, rows, .. } = &mut *block;
+                    setup.interpolate::<FMA, true>(piece, compiled, textures, varying, rows);
+                    block.append(band, (i, j), count, compiled.reads_surface);
                     shaded += count as u64;
                     i += count as i64;
                 }
             }
         }
-        // The next triangle may cover the same pixels.
-        if compiled.reads_surface {
-            flush(job, &mut block, band);
-        }
-        planes = setup.given_back();
+        block.planes = setup.given_back();
     }
-    flush(job, &mut block, band);
+    flush(job, block, band);
     shaded
 }
 
-/// Most columns and rows of the box of a small triangle. It covers half of the box and its diagonal: a block holds it.
-pub(super) const SIDE: i64 = 12;
-
-/// Whether a triangle is handled as one piece instead of row by row.
+/// Whether all vertices of a triangle lie above or below some rows, without setting it up.
 #[inline(always)]
-pub(super) fn is_small(triangle: &Triangle) -> bool {
-    triangle.rows.1 - triangle.rows.0 <= SIDE && triangle.columns.1 - triangle.columns.0 <= SIDE
-}
-
-/// The pixels of a small triangle.
-pub(super) struct Patch {
-    /// Column and row of the first pixel.
-    pub(super) first: (i64, i64),
-    /// Where the others lie from it; past the end the last one again.
-    pub(super) x: [i32; kernels::LANES],
-    pub(super) y: [i32; kernels::LANES],
-    pub(super) count: usize,
-    /// Row, first column and number of the pixels of each row.
-    runs: [(i64, i64, usize); SIDE as usize],
-    filled: usize,
-}
-
-impl Patch {
-    /// RAS-3 for a box of pixels, a row at a time. Edge functions of small triangles fit in 32 bits.
-    #[inline(always)]
-    pub(super) fn of(triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) -> Patch {
-        let mut patch = Patch {
-            first: (0, 0),
-            x: [0; kernels::LANES],
-            y: [0; kernels::LANES],
-            count: 0,
-            runs: [(0, 0, 0); SIDE as usize],
-            filled: 0,
-        };
-        let left = triangle.columns.0;
-        let a = [triangle.a[0] as i32, triangle.a[1] as i32, triangle.a[2] as i32];
-        let window = |bit: i64| columns.0 <= left + bit && left + bit < columns.1;
-        let visible = (0..SIDE).filter(|bit| window(*bit)).fold(0_u32, |mask, bit| mask | 1 << bit);
-        for j in rows.0..rows.1 {
-            let e = triangle.edges(left, j);
-            // Not negative inside: one less where a sample on the edge is another triangle's.
-            let e = [0, 1, 2].map(|k: usize| e[k] as i32 - i32::from(!triangle.owns[k]));
-            let mut inside = 0;
-            for n in 0..SIDE as i32 {
-                let outside = (e[0] + a[0] * n) | (e[1] + a[1] * n) | (e[2] + a[2] * n);
-                inside |= u32::from(outside >= 0) << n;
-            }
-            inside &= visible;
-            if inside == 0 {
-                continue;
-            }
-            let (start, count) = (left + i64::from(inside.trailing_zeros()), inside.count_ones() as usize);
-            if patch.count == 0 {
-                patch.first = (start, j);
-            }
-            let (x, y) = ((start - patch.first.0) as i32, (j - patch.first.1) as i32);
-            let lanes = patch.count..patch.count + kernels::STEP;
-            for (n, (to_x, to_y)) in patch.x[lanes.clone()].iter_mut().zip(&mut patch.y[lanes]).enumerate() {
-                (*to_x, *to_y) = (x + n as i32, y);
-            }
-            patch.runs[patch.filled] = (j, start, count);
-            patch.filled += 1;
-            patch.count += count;
-        }
-        if let Some(last) = patch.count.checked_sub(1) {
-            let (x, y) = (patch.x[last], patch.y[last]);
-            patch.x[patch.count..][..kernels::STEP].fill(x);
-            patch.y[patch.count..][..kernels::STEP].fill(y);
-        }
-        patch
-    }
+fn misses(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
+    let [a, b, c] = draw.assembly.triangles[number].vertices;
+    let all = &draw.assembly.vertices;
+    let (a, b, c) = (all[a as usize].position[1], all[b as usize].position[1], all[c as usize].position[1]);
+    // Positions are snapped later, by less than a pixel.
+    let (above, below) = ((rows.0 - 1) as f32, (rows.1 + 1) as f32);
+    (a < above && b < above && c < above) || (a > below && b > below && c > below)
 }
 
 impl Block {
-    /// Lanes for pixels that lie side by side.
+    /// Lanes for pixels that lie side by side; `marks` them as taken.
     #[inline(always)]
-    fn append(&mut self, band: &Band<'_>, (i, j): (i64, i64), count: usize) {
-        let at = (j as usize - band.first_row) * band.width + i as usize;
+    fn append(&mut self, band: &Band<'_>, pixel: (i64, i64), count: usize, marks: bool) {
+        let at = index(band, pixel);
         self.runs.push(Run { lane: self.used, at, count });
         self.used += count;
+        if marks {
+            mark(&mut self.taken, at, count);
+        }
+    }
+
+    /// Whether the block has lanes for some of the pixels already.
+    #[inline(always)]
+    fn is_taken(&self, band: &Band<'_>, pixel: (i64, i64), count: usize) -> bool {
+        let at = index(band, pixel);
+        (at / 64..=(at + count - 1) / 64).any(|word| self.taken[word] & bits(word, at, count) != 0)
+    }
+
+    #[inline(always)]
+    fn is_patch_taken(&self, band: &Band<'_>) -> bool {
+        let runs = &self.patch.runs[..self.patch.filled];
+        runs.iter().any(|(j, i, count)| self.is_taken(band, (*i, *j), *count))
     }
 }
 
-static ZEROS: [i32; kernels::LANES] = [0; kernels::LANES];
+/// The index of a pixel in a band.
+#[inline(always)]
+fn index(band: &Band<'_>, (i, j): (i64, i64)) -> usize {
+    (j as usize - band.first_row) * band.width + i as usize
+}
+
+/// The bits of a word that stand for some pixels, of which it has at least one.
+#[inline(always)]
+fn bits(word: usize, at: usize, count: usize) -> u64 {
+    let (first, last) = (word * 64, word * 64 + 63);
+    let low = if at > first { u64::MAX << (at - first) } else { u64::MAX };
+    let end = at + count - 1;
+    if end < last { low & (u64::MAX >> (last - end)) } else { low }
+}
+
+/// Changes the bits of some pixels.
+#[inline(always)]
+fn mark(taken: &mut [u64], at: usize, count: usize) {
+    for word in at / 64..=(at + count - 1) / 64 {
+        taken[word] ^= bits(word, at, count);
+    }
+}
+
+/// Pixels that are copied at once, where a run is shorter and there is room.
+const SHORT: usize = 16;
+
+/// Copies a run from one slice to another. Most are short: copied without a call.
+#[inline(always)]
+fn copy(from: &[u32], to: &mut [u32], count: usize) {
+    if count <= SHORT
+        && let (Some(from), Some(to)) = (from.first_chunk::<SHORT>(), to.first_chunk_mut::<SHORT>())
+    {
+        for n in 0..SHORT {
+            to[n] = if n < count { from[n] } else { to[n] };
+        }
+    } else {
+        to[..count].copy_from_slice(&from[..count]);
+    }
+}
 
 /// Computes and stores a block.
 #[inline(always)]
 fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Job { draw, compiled, .. } = job;
-    let Block { rows, varying, work, runs, used, words, stored, depth, alive } = block;
+    let Block { rows, varying, work, runs, used, taken, words, stored, depth, alive, .. } = block;
     if *used == 0 {
         return;
     }
+    let (Some(words), Some(stored)) = (words.first_chunk_mut::<BLOCK>(), stored.first_chunk_mut::<BLOCK>()) else {
+        return;
+    };
     for (n, sampler) in compiled.samplers.iter().enumerate() {
         let Some(table) = &sampler.table else { continue };
         let faces = sampler.cube.then_some(&varying.faces[n]);
         let wanted = compiled.textures[sampler.unit];
-        fetch::sample(table, &varying.coordinates[n], faces, sampler.signed, wanted, work, rows);
+        fetch::sample(table, &mut varying.coordinates[n], faces, sampler.signed, wanted, work, rows);
     }
     if compiled.reads_surface {
         for run in runs.iter() {
-            stored[run.lane..][..run.count].copy_from_slice(&band.words[run.at..][..run.count]);
+            copy(&band.words[run.at..], &mut stored[run.lane..], run.count);
+            mark(taken, run.at, run.count);
         }
         store::read(draw, compiled, stored, rows);
     }
     for (node, at) in &compiled.operations {
         kernels::run(node, *at, rows);
+    }
+    if let ([run], false) = (&runs[..], compiled.merges)
+        && let Some(out) = band.words[run.at..][..run.count].first_chunk_mut::<BLOCK>()
+    {
+        store::pack(draw, compiled, rows, out);
+        runs.clear();
+        *used = 0;
+        return;
     }
     store::pack(draw, compiled, rows, words);
     if compiled.drops {
@@ -254,8 +283,10 @@ fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
         store::merge(draw.write_mask, alive, stored, words);
     }
     for run in runs.iter() {
-        band.words[run.at..][..run.count].copy_from_slice(&words[run.lane..][..run.count]);
+        copy(&words[run.lane..], &mut band.words[run.at..], run.count);
     }
     runs.clear();
     *used = 0;
 }
+
+static ZEROS: [i32; kernels::LANES] = [0; kernels::LANES];

@@ -1,10 +1,13 @@
 //! From a planned draw to the graph of its pixels: which rule is applied to what. The arithmetic itself is the kernels'.
 
+use super::Sampler;
 use super::graph::{Graph, Input, Value};
+use super::table::Channel;
 use crate::combiner::final_combiner;
 use crate::combiner::general::{PlannedPortion, PlannedStage, source_channel};
 use crate::combiner::registers::REGISTERS;
 use crate::engine::pixel::color_bytes;
+use crate::number::Lane;
 use crate::plan::PlannedDraw;
 use crate::rop::surface;
 use crate::state::{
@@ -26,10 +29,10 @@ pub(super) struct Built {
 /// Registers of one moment.
 type Registers = [[Value; 4]; REGISTERS];
 
-/// Builds the graph of a draw. `plain` units are sampled by rows, the others pixel by pixel.
-pub(super) fn build(draw: &PlannedDraw, plain: bool) -> Built {
+/// Builds the graph of a draw. Its units are sampled by `samplers`, or pixel by pixel.
+pub(super) fn build(draw: &PlannedDraw, samplers: Option<&[Sampler]>) -> Built {
     let mut graph = Graph::default();
-    let mut registers = inputs(draw, plain, &mut graph);
+    let mut registers = inputs(draw, samplers, &mut graph);
     for planned in &draw.stages {
         stage(planned, draw.mux_select, &mut registers, &mut graph);
     }
@@ -43,7 +46,7 @@ pub(super) fn build(draw: &PlannedDraw, plain: bool) -> Built {
 }
 
 /// The registers as a pixel brings them (CMB-13).
-fn inputs(draw: &PlannedDraw, plain: bool, graph: &mut Graph) -> Registers {
+fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -> Registers {
     let zero = graph.constant(0);
     let mut registers = [[zero; 4]; REGISTERS];
     registers[Register::PrimaryColor as usize] = color(draw, |v| &v.diffuse, Input::Primary, graph);
@@ -60,8 +63,9 @@ fn inputs(draw: &PlannedDraw, plain: bool, graph: &mut Graph) -> Registers {
             registers[register as usize][3] = graph.constant(255);
         }
         let unit = draw.units.iter().find(|unit| unit.index == n);
-        registers[register as usize] = match unit {
-            Some(unit) if plain => texture(unit, graph),
+        let sampler = samplers.and_then(|all| all.iter().find(|sampler| sampler.unit == n));
+        registers[register as usize] = match (unit, sampler) {
+            (Some(unit), Some(sampler)) => texture(unit, sampler, graph),
             _ if draw.shader.is_some() || unit.is_some() => {
                 [0, 1, 2, 3].map(|channel| graph.input(Input::Texture(n, channel), (-256, 255)))
             }
@@ -92,20 +96,26 @@ fn color(
     })
 }
 
-/// What a unit yields: channels that its format makes equal are one value, constant ones a constant.
-fn texture(unit: &PlannedUnit, graph: &mut Graph) -> [Value; 4] {
+/// What a unit yields: channels that its format or its texels make equal are one value, constant ones a constant.
+fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 4] {
+    let signed = unit.state.signed;
+    let range = |channel: usize| if signed[channel] { (-256, 254) } else { (0, 255) };
+    if let Some(table) = &sampler.table {
+        return [0, 1, 2, 3].map(|channel: usize| match table.channels[channel] {
+            Channel::Constant(byte) if signed[channel] => graph.constant((i32::from(byte) - 128).signed_texel() as i16),
+            Channel::Constant(byte) => graph.constant(i16::from(byte)),
+            Channel::Of(other) => graph.input(Input::Texture(unit.index, other), range(other)),
+        });
+    }
     let stays_inside = unit.kind == TextureKind::Cube
         || unit.border
         || [unit.state.address_s, unit.state.address_t].iter().all(|mode| *mode != AddressMode::ClampToBorder);
-    let plain = unit.state.signed == [false; 4] && stays_inside;
+    let plain = signed == [false; 4] && stays_inside;
     [0, 1, 2, 3].map(|channel: usize| {
         let from = if plain { source(unit.format, channel) } else { Source::Channel(channel) };
         match from {
             Source::One => graph.constant(255),
-            Source::Channel(source) => {
-                let range = if unit.state.signed[channel] { (-256, 254) } else { (0, 255) };
-                graph.input(Input::Texture(unit.index, source), range)
-            }
+            Source::Channel(source) => graph.input(Input::Texture(unit.index, source), range(channel)),
         }
     })
 }

@@ -4,8 +4,8 @@
 //! the variable a small part of it runs.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::band::{Patch, SIDE, is_small};
 use super::kernels::Row;
+use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{self, IOTA};
 use super::triangle::{Piece, Setup, Varying, whole_steps};
 use super::{BLOCK, Rows};
@@ -104,7 +104,7 @@ fn scene(vertices: Vec<Vertex>, filter: Filter) -> Scene {
             height: side,
             levels: 1,
             border: false,
-            words: vec![0; (side * side * faces) as usize].into(),
+            words: (0..side * side * faces).map(|n| n.wrapping_mul(0x9e37_79b9)).collect::<Vec<u32>>().into(),
         }),
     };
     let unit = |texture| Some(TextureUnit { min_filter: filter, mag_filter: filter, ..TextureUnit::new(texture) });
@@ -202,15 +202,17 @@ fn rows_interpolate_what_the_definition_does() {
     let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
     let (mut pixels, mut patches, mut round) = (0, 0, 0_u64);
+    let mut patch = Patch::default();
     while pixels < wanted {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
         let vertices = (0..64).flat_map(|_| triangle(&mut random)).collect();
         let Ok(plan) = Plan::compile(&scene(vertices, filter), &PlanOptions::default()) else { continue };
-        let compiled = Rows::compile(&plan).unwrap().draw(&plan, 0, &[]);
+        let rows_of_plan = Rows::compile(&plan).unwrap();
+        let compiled = rows_of_plan.draw(&plan, 0, &[]);
         assert_eq!(compiled.samplers.len(), 2);
         let draw = &plan.draws[0];
-        let (mut varying, mut rows) = (Varying::default(), compiled.rows.clone());
+        let (mut varying, mut rows) = (Varying::default(), vec![Row::of(0); compiled.rows.len()]);
         let mut planes = Vec::new();
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {
@@ -219,7 +221,7 @@ fn rows_interpolate_what_the_definition_does() {
             let triangle = &setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
             if is_small(triangle) {
-                let patch = Patch::of(triangle, window, columns);
+                patch.cover(triangle, window, columns);
                 let lanes = whole_steps(patch.count);
                 let at = quotient::Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
                 let extent = (SIDE as i32, SIDE as i32);
@@ -236,7 +238,7 @@ fn rows_interpolate_what_the_definition_does() {
                 for j in window.0..window.1 {
                     let (mut i, end) = triangle.span(j, columns);
                     while i < end {
-                        let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 16);
+                        let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 32);
                         let lanes = whole_steps(count);
                         let (last, zeros) = (count as i32 - 1, [0; super::kernels::LANES]);
                         let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };

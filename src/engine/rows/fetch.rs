@@ -4,7 +4,7 @@ use super::BLOCK;
 use super::kernels::{LANES, Row};
 use super::table::{Axis, Table, Texels};
 use crate::number::{Lane, Two};
-use crate::texture::filter::bilinear;
+use crate::texture::filter::{bilinear, lerp};
 
 /// One number for each pixel of a block.
 pub(super) type Numbers<T> = [T; LANES];
@@ -13,70 +13,74 @@ pub(super) type Numbers<T> = [T; LANES];
 #[derive(Clone, Debug)]
 pub(super) struct Workspace {
     entries: [u32; BLOCK],
-    along: [u32; BLOCK],
-    down: [u32; BLOCK],
+    texels: [u32; BLOCK],
     upper: [[u32; 2]; BLOCK],
     lower: [[u32; 2]; BLOCK],
 }
 
 impl Default for Workspace {
     fn default() -> Self {
-        Workspace {
-            entries: [0; BLOCK],
-            along: [0; BLOCK],
-            down: [0; BLOCK],
-            upper: [[0; 2]; BLOCK],
-            lower: [[0; 2]; BLOCK],
-        }
+        Workspace { entries: [0; BLOCK], texels: [0; BLOCK], upper: [[0; 2]; BLOCK], lower: [[0; 2]; BLOCK] }
     }
 }
 
 /// Samples a unit at `u`, `v` (1/256 texel; less half a texel where it is filtered) on `faces`, and leaves the channels in `rows`, each in
-/// its own where that is wanted.
+/// its own where that is wanted. Coordinates are limited on the way.
 #[inline(always)]
 pub(super) fn sample(
     table: &Table,
-    [u, v]: &[Numbers<i32>; 2],
+    [u, v]: &mut [Numbers<i32>; 2],
     faces: Option<&Numbers<u32>>,
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
     rows: &mut [Row],
 ) {
-    let Workspace { entries, along, down, upper, lower } = work;
-    if table.axes[0].repeats() && table.axes[1].repeats() {
-        address::<false>(&table.axes, u, v, entries, along, down);
-    } else {
-        address::<true>(&table.axes, u, v, entries, along, down);
-    }
+    let Workspace { entries, texels: found, upper, lower } = work;
+    let (Some(u), Some(v)) = (u.first_chunk_mut::<BLOCK>(), v.first_chunk_mut::<BLOCK>()) else { return };
+    limit(&table.axes[0], u);
+    limit(&table.axes[1], v);
+    address(&table.axes, table.pitch, u, v, entries);
     if let Some(faces) = faces {
         for (entry, face) in entries.iter_mut().zip(faces) {
             *entry += *face * table.face;
         }
     }
-    let kind = wanted.iter().rposition(Option::is_some).unwrap_or(0);
+    let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
     // What nobody wants goes to the first rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     match &table.texels {
         Texels::Single(texels) => {
-            for n in 0..BLOCK {
-                along[n] = texels[entries[n] as usize];
+            fetch(texels, entries, found);
+            match last {
+                0 => unpack::<1>(found, red, green, blue, alpha),
+                1 | 2 => unpack::<3>(found, red, green, blue, alpha),
+                _ => unpack::<4>(found, red, green, blue, alpha),
             }
-            unpack(along, red, green, blue, alpha);
         }
-        Texels::Pairs(texels) => {
-            fetch(texels, table.axes[0].count as usize, entries, upper, lower);
-            match kind {
-                0 => filter::<1>(upper, lower, along, down, red, green, blue, alpha),
-                1 | 2 => filter::<3>(upper, lower, along, down, red, green, blue, alpha),
-                _ => filter::<4>(upper, lower, along, down, red, green, blue, alpha),
+        Texels::One(channel, texels) => {
+            fetch(texels, entries, found);
+            let out = match channel {
+                0 => red,
+                1 => green,
+                2 => blue,
+                _ => alpha,
+            };
+            filter_one(found, u, v, out);
+        }
+        Texels::Footprints(texels) => {
+            fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
+            match last {
+                0 => filter::<1>(upper, lower, u, v, red, green, blue, alpha),
+                1 | 2 => filter::<3>(upper, lower, u, v, red, green, blue, alpha),
+                _ => filter::<4>(upper, lower, u, v, red, green, blue, alpha),
             }
         }
     }
     for (n, signed) in signed.into_iter().enumerate() {
-        if signed {
+        if signed && wanted[n].is_some() {
             // TEX-18: the 128 that the table added is taken off again.
             for out in rows[slot(n)].block_mut() {
                 *out = (i32::from(*out) - 128).signed_texel() as i16;
@@ -85,45 +89,61 @@ pub(super) fn sample(
     }
 }
 
-/// The entry of a coordinate along an axis, and the weight of the next one.
+/// Limits coordinates, where the axis has limits.
 #[inline(always)]
-fn entry(axis: &Axis, coordinate: i32, limits: bool) -> (i32, u32) {
-    let limited = if limits { coordinate.clamp(axis.low, axis.high) } else { coordinate };
-    (((limited >> 8) - axis.first) & axis.mask, (limited & 255) as u32)
-}
-
-#[inline(always)]
-fn address<const LIMITS: bool>(
-    [columns, rows]: &[Axis; 2],
-    u: &Numbers<i32>,
-    v: &Numbers<i32>,
-    entries: &mut [u32; BLOCK],
-    along: &mut [u32; BLOCK],
-    down: &mut [u32; BLOCK],
-) {
-    let (columns, rows) = (*columns, *rows);
-    for n in 0..BLOCK {
-        let ((x, wx), (y, wy)) = (entry(&columns, u[n], LIMITS), entry(&rows, v[n], LIMITS));
-        entries[n] = (y * columns.count + x) as u32;
-        along[n] = wx;
-        down[n] = wy;
+fn limit(axis: &Axis, coordinates: &mut [i32; BLOCK]) {
+    if !axis.repeats() {
+        for coordinate in coordinates {
+            // Not `clamp`: what can panic is not a loop of lanes.
+            *coordinate = (*coordinate).max(axis.low).min(axis.high);
+        }
     }
 }
 
-/// The texels of both rows of the footprint. One length serves both, so that one comparison does.
+/// The entry of a coordinate within the limits along an axis.
 #[inline(always)]
-fn fetch(
-    texels: &[[u32; 2]],
+fn entry(axis: &Axis, coordinate: i32) -> i32 {
+    ((coordinate >> 8) - axis.first) & axis.mask
+}
+
+/// The weight of the next entry.
+#[inline(always)]
+fn weight(coordinate: i32) -> u32 {
+    (coordinate & 255) as u32
+}
+
+#[inline(always)]
+fn address([columns, rows]: &[Axis; 2], pitch: i32, u: &[i32; BLOCK], v: &[i32; BLOCK], entries: &mut [u32; BLOCK]) {
+    let (columns, rows) = (*columns, *rows);
+    for n in 0..BLOCK {
+        entries[n] = (entry(&rows, v[n]) * pitch + entry(&columns, u[n])) as u32;
+    }
+}
+
+/// Not inlined: nothing here is wider than a texel, and a loop of its own keeps its addresses in registers.
+#[inline(never)]
+fn fetch(texels: &[u32], entries: &[u32; BLOCK], found: &mut [u32; BLOCK]) {
+    for (entry, found) in entries.iter().zip(found) {
+        *found = texels[*entry as usize];
+    }
+}
+
+/// The texels of both rows of the footprint. One length serves all four, so that one comparison does.
+#[inline(never)]
+fn fetch_footprints(
+    texels: &[u32],
     pitch: usize,
     entries: &[u32; BLOCK],
     upper: &mut [[u32; 2]; BLOCK],
     lower: &mut [[u32; 2]; BLOCK],
 ) {
-    let count = texels.len() - pitch;
-    let (here, below) = (&texels[..count], &texels[pitch..][..count]);
+    let Some(count) = texels.len().checked_sub(pitch + 1) else { return };
+    let (a, b) = (&texels[..count], &texels[1..][..count]);
+    let (c, d) = (&texels[pitch..][..count], &texels[pitch + 1..][..count]);
     for ((entry, upper), lower) in entries.iter().zip(upper).zip(lower) {
-        *upper = here[*entry as usize];
-        *lower = below[*entry as usize];
+        let at = *entry as usize;
+        *upper = [a[at], b[at]];
+        *lower = [c[at], d[at]];
     }
 }
 
@@ -133,8 +153,8 @@ fn fetch(
 fn filter<const COUNT: usize>(
     upper: &[[u32; 2]; BLOCK],
     lower: &[[u32; 2]; BLOCK],
-    along: &[u32; BLOCK],
-    down: &[u32; BLOCK],
+    u: &[i32; BLOCK],
+    v: &[i32; BLOCK],
     red: &mut [i16; BLOCK],
     green: &mut [i16; BLOCK],
     blue: &mut [i16; BLOCK],
@@ -142,10 +162,11 @@ fn filter<const COUNT: usize>(
 ) {
     for n in 0..BLOCK {
         let ([a, b], [c, d]) = (upper[n], lower[n]);
-        let even = bilinear([first(a), first(b), first(c), first(d)], along[n], down[n], |v| v);
+        let (along, down) = (weight(u[n]), weight(v[n]));
+        let even = bilinear([first(a), first(b), first(c), first(d)], along, down, |v| v);
         red[n] = (even.0 & 255) as i16;
         if COUNT > 1 {
-            let odd = bilinear([first(a >> 8), first(b >> 8), first(c >> 8), first(d >> 8)], along[n], down[n], |v| v);
+            let odd = bilinear([first(a >> 8), first(b >> 8), first(c >> 8), first(d >> 8)], along, down, |v| v);
             green[n] = (odd.0 & 255) as i16;
             blue[n] = (even.0 >> 16) as i16;
             if COUNT > 3 {
@@ -155,14 +176,24 @@ fn filter<const COUNT: usize>(
     }
 }
 
-/// R and B of a texel; of one shifted by 8, G and A.
+/// TEX-6 of the only channel: both rows at once along u, then along v.
+#[inline(always)]
+fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &mut [i16; BLOCK]) {
+    for n in 0..BLOCK {
+        let rows = lerp(first(texels[n]), first(texels[n] >> 8), weight(u[n]));
+        out[n] = lerp(Two(rows.0 & 255), Two(rows.0 >> 16), weight(v[n])).0 as i16;
+    }
+}
+
+/// R and B of a texel, of one shifted by 8, G and A; likewise the left and the right texels of a footprint.
 #[inline(always)]
 fn first(texel: u32) -> Two {
     Two(texel & 0x00ff_00ff)
 }
 
+/// The first `COUNT` channels.
 #[inline(always)]
-fn unpack(
+fn unpack<const COUNT: usize>(
     texels: &[u32; BLOCK],
     red: &mut [i16; BLOCK],
     green: &mut [i16; BLOCK],
@@ -170,15 +201,21 @@ fn unpack(
     alpha: &mut [i16; BLOCK],
 ) {
     for n in 0..BLOCK {
-        let byte = |shift: u32| (texels[n] >> shift & 255) as i16;
-        (red[n], green[n], blue[n], alpha[n]) = (byte(0), byte(8), byte(16), byte(24));
+        red[n] = (texels[n] & 255) as i16;
+        if COUNT > 1 {
+            green[n] = (texels[n] >> 8 & 255) as i16;
+            blue[n] = (texels[n] >> 16 & 255) as i16;
+            if COUNT > 3 {
+                alpha[n] = (texels[n] >> 24) as i16;
+            }
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::texture::filter::{lerp, linear, nearest};
+    use crate::texture::filter::{linear, nearest};
 
     /// A step of signed texels is a step of the same with 128 added, less 128.
     #[test]
@@ -199,9 +236,9 @@ mod tests {
         let axis = Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: 63, count: 64 };
         for u in -40_000..40_000_i32 {
             let (texel, weight) = linear(i64::from(u));
-            let (at, w) = entry(&axis, u - 128, false);
+            let (at, w) = (entry(&axis, u - 128), super::weight(u - 128));
             assert_eq!((i64::from(at), w as i32), (texel & 63, weight));
-            assert_eq!(i64::from(entry(&axis, u, false).0), nearest(i64::from(u)) & 63);
+            assert_eq!(i64::from(entry(&axis, u)), nearest(i64::from(u)) & 63);
         }
     }
 }

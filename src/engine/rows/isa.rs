@@ -1,6 +1,6 @@
 //! One text, compiled for several instruction sets, and the choice among them.
 
-use super::band::{self, Job};
+use super::band::{self, Block, Job};
 use crate::engine::walk::Band;
 use crate::state::{Named, named};
 use multiversion::multiversion;
@@ -46,8 +46,8 @@ macro_rules! version {
         }
 
         #[multiversion(targets($target))]
-        fn $run(job: Job<'_>, band: &mut Band<'_>) -> Option<u64> {
-            match_target! { $target => Some(band::run::<$fma>(job, band)), _ => { let _ = (job, band); None } }
+        fn $run(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> Option<u64> {
+            match_target! { $target => Some(band::run::<$fma>(job, band, block)), _ => { let _ = (job, band, block); None } }
         }
     };
 }
@@ -65,17 +65,17 @@ version!(
     true
 );
 
-fn run_baseline(job: Job<'_>, band: &mut Band<'_>) -> u64 {
-    band::run::<false>(job, band)
+fn run_baseline(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+    band::run::<false>(job, band, block)
 }
 
 /// Draws what of a draw falls into a band, by an instruction set that the machine has; covered pixels.
-pub(crate) fn run(isa: Isa, job: Job<'_>, band: &mut Band<'_>) -> u64 {
+pub(crate) fn run(isa: Isa, job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let shaded = match isa {
         Isa::Baseline => None,
-        Isa::V2 => run_v2(job, band),
-        Isa::V3 => run_v3(job, band),
-        Isa::V4 => run_v4(job, band),
+        Isa::V2 => run_v2(job, band, block),
+        Isa::V3 => run_v3(job, band, block),
+        Isa::V4 => run_v4(job, band, block),
     };
-    shaded.unwrap_or_else(|| run_baseline(job, band))
+    shaded.unwrap_or_else(|| run_baseline(job, band, block))
 }

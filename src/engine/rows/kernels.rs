@@ -25,6 +25,10 @@ impl Row {
         Row([value; LANES])
     }
 
+    pub(super) fn fill(&mut self, value: i16) {
+        self.0.fill(value);
+    }
+
     /// The lanes of the block.
     #[inline(always)]
     pub(super) fn block(&self) -> &[i16; BLOCK] {
@@ -160,11 +164,11 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
             each(out, |n| byte_product(a[n], b[n]));
         }
         Node::Difference(v) => {
-            let [a, b, c, d] = v.map(row);
+            let [a, b, c, d] = [row(v[0]), row(v[1]), row(v[2]), row(v[3])];
             each(out, |n| difference([a[n], b[n], c[n], d[n]]));
         }
         Node::UnsignedDot(v) => {
-            let [a, b, c, d, e, f] = v.map(row);
+            let [a, b, c, d, e, f] = [row(v[0]), row(v[1]), row(v[2]), row(v[3]), row(v[4]), row(v[5])];
             each(out, |n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]]));
         }
         Node::Output(bias, scale, v) => {
@@ -181,7 +185,7 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
             }
         }
         Node::Select(mux, v) => {
-            let [by, cd, ab] = v.map(row);
+            let [by, cd, ab] = [row(v[0]), row(v[1]), row(v[2])];
             // Both are read, whichever is taken.
             let choose = |takes_cd: bool, cd: i16, ab: i16| if takes_cd { cd } else { ab };
             match mux {

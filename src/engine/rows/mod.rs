@@ -1,13 +1,13 @@
-//! The fast engine: blocks of 128 pixels instead of pixels, and rows of numbers, one a pixel, instead of registers.
+//! The fast engine: blocks of 256 pixels instead of pixels, and rows of numbers, one a pixel, instead of registers.
 //!
 //! | file | knows |
 //! |---|---|
 //! | `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
-//! | `planes.rs`, `quotient.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `planes.rs`, `quotient.rs`, `direction.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
 //! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
-//! | `band.rs` | triangles to pieces to blocks |
+//! | `patch.rs`, `band.rs` | triangles to pieces to blocks |
 //! | `isa.rs` | the same text for several instruction sets |
 //!
 //! The bytes are the scalar engine's: a rule is the same text in both, and what is computed otherwise (quotients) is proved to be the same
@@ -17,17 +17,19 @@ mod band;
 mod build;
 #[cfg(test)]
 mod dense;
+mod direction;
 mod fetch;
 mod graph;
 pub(crate) mod isa;
 mod kernels;
+mod patch;
 mod planes;
 mod quotient;
 mod store;
 mod table;
 mod triangle;
 
-pub(crate) use band::Job;
+pub(crate) use band::{Block, Job};
 pub use isa::Isa;
 
 use crate::frame::Surface;
@@ -37,12 +39,12 @@ use crate::rop::surface;
 use crate::state::{Filter, Policies, TEXTURE_UNITS, TextureImage, TextureKind};
 use crate::texture::unit::Image;
 use graph::{Input, Node, Value};
-use kernels::Row;
+use std::borrow::Cow;
 use std::sync::Arc;
 use table::{Key, Table};
 
 /// Pixels of a block.
-pub(crate) const BLOCK: usize = 128;
+pub(crate) const BLOCK: usize = 256;
 
 /// Rows that take what nobody reads: one for each channel of a texel.
 const SPARE: usize = 4;
@@ -50,7 +52,7 @@ const SPARE: usize = 4;
 /// Decoding so many texels costs no more than sampling a pixel by the definition.
 const PAYS: u64 = 8;
 
-/// Most entries of all tables, of eight bytes at most.
+/// Most entries of all tables, of four bytes each.
 const MOST_ENTRIES: u64 = 1 << 25;
 
 /// A unit that rows sample.
@@ -70,13 +72,20 @@ pub(crate) struct Sampler {
     table: Option<Arc<Table>>,
 }
 
+impl Sampler {
+    /// What is taken off coordinates, 1/256 texel: half a texel where it filters.
+    fn bias(&self) -> i32 {
+        if self.filters { 128 } else { 0 }
+    }
+}
+
 /// A draw compiled to rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Compiled {
     /// What is computed, and into which row.
     operations: Vec<(Node, usize)>,
-    /// The rows as they are before the first block: constants are filled in.
-    rows: Vec<Row>,
+    /// Each row's constant; 0 where it is computed.
+    rows: Vec<i16>,
     primary: [Option<u16>; 4],
     secondary: [Option<u16>; 4],
     fog: Option<u16>,
@@ -116,18 +125,22 @@ impl Rows {
     }
 
     /// A draw with the tables of images that were drawn before it.
-    pub(crate) fn draw(&self, plan: &Plan, index: usize, surfaces: &[Surface]) -> Compiled {
-        let mut compiled = self.draws[index].clone();
+    pub(crate) fn draw(&self, plan: &Plan, index: usize, surfaces: &[Surface]) -> Cow<'_, Compiled> {
+        let compiled = &self.draws[index];
+        if compiled.samplers.iter().all(|sampler| sampler.table.is_some()) {
+            return Cow::Borrowed(compiled);
+        }
+        let mut compiled = compiled.clone();
         for sampler in compiled.samplers.iter_mut().filter(|sampler| sampler.table.is_none()) {
             let unit = &plan.draws[index].units[sampler.index];
             if let (TextureImage::Target { target }, Some(axes)) =
                 (&plan.textures[unit.state.texture].image, table::axes(unit))
             {
                 let image = Image { words: &surfaces[*target].words, memory: None };
-                sampler.table = Some(Arc::new(Table::new(unit, axes, &image)));
+                sampler.table = Some(Arc::new(Table::new(unit, axes, &image, false)));
             }
         }
-        compiled
+        Cow::Owned(compiled)
     }
 }
 
@@ -144,9 +157,9 @@ fn pixels(draw: &PlannedDraw, plan: &Plan) -> u64 {
 
 fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Compiled {
     let samplers = if draw.shader.is_some() { None } else { samplers(plan, draw, tables) };
+    let built = build::build(draw, samplers.as_deref());
     let samples_pixels = samplers.is_none();
     let samplers = samplers.unwrap_or_default();
-    let built = build::build(draw, !samples_pixels);
     let mut compiled = Compiled {
         operations: Vec::new(),
         rows: Vec::new(),
@@ -165,6 +178,8 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         merges: false,
     };
     emit(&built, draw, &mut compiled);
+    let textures = compiled.textures;
+    compiled.samplers.retain(|sampler| textures[sampler.unit].iter().any(Option::is_some));
     let kills = draw.shader.as_ref().is_some_and(crate::texture::stage::PlannedShader::kills);
     compiled.drops = kills || draw.alpha_test.is_some() || draw.depth_test.is_some();
     let whole = surface::write_mask(draw.surface, [true; 4]);
@@ -195,7 +210,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             (_, Some(table)) => Some(table),
             (TextureImage::Texels(texels), None) => {
                 let image = Image { words: &texels.words, memory: None };
-                let table = Arc::new(Table::new(unit, axes, &image));
+                let table = Arc::new(Table::new(unit, axes, &image, true));
                 tables.push((key, Arc::clone(&table)));
                 Some(table)
             }
@@ -230,13 +245,13 @@ fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut Compiled) {
         mark(n, built, &mut reached);
     }
     // The first rows are there for what nobody reads.
-    compiled.rows.resize(SPARE, Row::of(0));
+    compiled.rows.resize(SPARE, 0);
     let mut row_of = vec![0_u16; count];
     for n in (0..count).filter(|n| reached[*n]) {
         let row = compiled.rows.len() as u16;
         row_of[n] = row;
         let node = built.graph.node(Value(n as u16));
-        compiled.rows.push(Row::of(if let Node::Constant(value) = node { value } else { 0 }));
+        compiled.rows.push(if let Node::Constant(value) = node { value } else { 0 });
         match node {
             Node::Constant(_) => {}
             Node::Input(Input::Primary(channel)) => compiled.primary[channel] = Some(row),

@@ -36,7 +36,7 @@ impl Plane {
         };
         let (x, y) = (slope(&triangle.a), slope(&triangle.b));
         let p = &triangle.p;
-        let real = g.map(|g| g as f64);
+        let real = [g[0] as f64, g[1] as f64, g[2] as f64];
         let mut reach = 0.0;
         for k in 0..3 {
             let quotient = real[k].abs() / p[k] as f64;

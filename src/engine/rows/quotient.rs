@@ -7,17 +7,20 @@ use super::kernels::LANES;
 /// 1.5 2^52: added to a small number, it leaves the nearest whole number in the low bits.
 const MAGIC: f64 = 6_755_399_441_055_744.0;
 
-/// 1.5 2^23: the same in single precision.
-const MAGIC_32: f32 = 12_582_912.0;
-
 /// 32 roundings of double precision: what an estimate can be off by, relative to the largest term that was added.
 pub(super) const SLACK: f64 = 1.0 / (1_u64 << 48) as f64;
 
-/// 16 roundings of single precision.
-pub(super) const SLACK_32: f64 = 1.0 / (1_u64 << 20) as f64;
+/// 1.5 2^23: [`MAGIC`] in single precision.
+const MAGIC_32: f32 = 12_582_912.0;
 
-/// An estimate must be closer to the truth than this, or the definition is asked.
-pub(super) const COARSEST: f64 = 0.125;
+/// 16 roundings of single precision.
+const SLACK_32: f64 = 1.0 / (1_u64 << 20) as f64;
+
+/// An estimate of a weight must be closer to the truth than this.
+const COARSEST: f64 = 0.125;
+
+/// Fraction bits of an estimate, where its whole part leaves room for them.
+const FRACTION: u32 = 20;
 
 /// Lane numbers.
 pub(super) static IOTA: [i32; LANES] = {
@@ -25,6 +28,17 @@ pub(super) static IOTA: [i32; LANES] = {
     let mut n = 0;
     while n < LANES {
         all[n] = n as i32;
+        n += 1;
+    }
+    all
+};
+
+/// The same as floats.
+static IOTA_REAL: [f64; LANES] = {
+    let mut all = [0.0; LANES];
+    let mut n = 0;
+    while n < LANES {
+        all[n] = n as f64;
         n += 1;
     }
     all
@@ -62,6 +76,18 @@ impl Line {
         Line { c: self.c - times * other.c, x: self.x - times * other.x, y: self.y - times * other.y }
     }
 
+    /// Plus another.
+    #[inline(always)]
+    pub(super) fn plus(self, other: Line) -> Line {
+        Line { c: self.c + other.c, x: self.x + other.x, y: self.y + other.y }
+    }
+
+    /// So many times as much.
+    #[inline(always)]
+    pub(super) fn times(self, by: f64) -> Line {
+        Line { c: self.c * by, x: self.x * by, y: self.y * by }
+    }
+
     #[inline(always)]
     pub(super) fn at<const FMA: bool, const ROW: bool>(self, x: f64, y: f64) -> f64 {
         let value = multiply_add::<FMA>(self.x, x, self.c);
@@ -69,69 +95,216 @@ impl Line {
     }
 }
 
-/// The nearest whole number, and as its sign bit whether it is further away than the limit.
-#[inline(always)]
-pub(super) fn nearest(q: f64, limit: f64) -> (i32, u64) {
-    let t = q + MAGIC;
-    (t.to_bits() as i32, (limit - (q - (t - MAGIC)).abs()).to_bits())
+/// How a quotient is estimated: what is computed for a lane is the quotient less `base`, in steps of 2^-`shift`, and less what it can be
+/// off by, so that a lane whose fraction is not above `limit` is proved.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Scaled {
+    /// The numerator, over the denominator that all share.
+    line: Line,
+    base: i32,
+    shift: u32,
+    limit: i32,
 }
 
-/// The same in single precision.
-#[inline(always)]
-fn nearest_32(q: f32, limit: f32) -> (i32, u32) {
-    let t = q + MAGIC_32;
-    (t.to_bits().wrapping_sub(MAGIC_32.to_bits()) as i32, (limit - (q - (t - MAGIC_32)).abs()).to_bits())
+/// Powers of two.
+static POWERS: [f64; FRACTION as usize + 1] = powers(false);
+
+/// Their reciprocals.
+static INVERSES: [f64; FRACTION as usize + 1] = powers(true);
+
+const fn powers(inverse: bool) -> [f64; FRACTION as usize + 1] {
+    let mut all = [1.0; FRACTION as usize + 1];
+    let mut n = 0;
+    while n < all.len() {
+        let power = (1_u32 << n) as f64;
+        all[n] = if inverse { 1.0 / power } else { power };
+        n += 1;
+    }
+    all
 }
 
-/// Two quotients whose floors are wanted; half the denominator has been subtracted, so that the nearest whole number is the floor. Says
-/// of which of them some lane is too close to call.
+impl Scaled {
+    /// A quotient less `bias`. `margin` is what an estimate of it can be off by, and the pixels lie within so many columns and rows of the
+    /// first, whose denominator has this reciprocal; `widest` is that of the smallest one. `None`: too coarse to prove anything.
+    #[inline(always)]
+    pub(super) fn new<const ROW: bool>(
+        numerator: Line,
+        denominator: Line,
+        (columns, rows): (f64, f64),
+        (reciprocal, widest): (f64, f64),
+        margin: f64,
+        bias: i32,
+    ) -> Option<Scaled> {
+        let base = whole(numerator.c * reciprocal);
+        let rest = numerator.less(base, denominator);
+        let range = rest.c.abs() + rest.x.abs() * columns;
+        let range = if ROW { range } else { range + rest.y.abs() * rows } * widest + 4.0;
+        // Also refuses what is no number.
+        let fits = range < 268_435_456.0;
+        if !fits {
+            return None;
+        }
+        // Bits of the whole part.
+        let bits = (range.to_bits() >> 52) as i32 - 1022;
+        Scaled::with_fraction(rest, denominator, ((30 - bits) as u32).min(FRACTION), margin, base as i32 - bias)
+    }
+
+    #[inline(always)]
+    fn with_fraction(rest: Line, denominator: Line, shift: u32, margin: f64, base: i32) -> Option<Scaled> {
+        let scale = POWERS[shift as usize];
+        let off = margin * scale + 1.0;
+        let proves = off * 8.0 < scale;
+        if !proves {
+            return None;
+        }
+        // The least whole number above half a step and the error.
+        let off = off as i32 + 1;
+        let line = rest.less(f64::from(off) * INVERSES[shift as usize], denominator).times(scale);
+        Some(Scaled { line, base, shift, limit: (1 << shift) - 2 * off })
+    }
+
+    /// The floor that a step stands for, and as its sign bit whether it is not proved.
+    #[inline(always)]
+    fn floor(&self, step: i32) -> (i32, i32) {
+        ((step >> self.shift) + self.base, self.limit - (step & ((1 << self.shift) - 1)))
+    }
+
+    /// The step of a lane.
+    #[inline(always)]
+    fn step<const FMA: bool, const ROW: bool>(&self, x: f64, y: f64, r: f64) -> i32 {
+        (self.line.at::<FMA, ROW>(x, y) * r + MAGIC).to_bits() as i32
+    }
+}
+
+/// [`estimate_two`] of one lane. `None`: it is not proved.
+pub(super) fn prove<const ROW: bool>(
+    at: Positions<'_>,
+    n: usize,
+    denominator: Line,
+    numerators: &[Scaled; 2],
+) -> Option<[i32; 2]> {
+    let (x, y) = position::<ROW>(n, f64::from(at.last), at.x, at.y, &IOTA_REAL);
+    let r = 1.0 / denominator.at::<false, ROW>(x, y);
+    let floor = |numerator: &Scaled| {
+        let (value, close) = numerator.floor(numerator.step::<false, ROW>(x, y, r));
+        (close >= 0).then_some(value)
+    };
+    Some([floor(&numerators[0])?, floor(&numerators[1])?])
+}
+
+/// The nearest whole number, as a float.
+#[inline(always)]
+pub(super) fn whole(q: f64) -> f64 {
+    (q + MAGIC) - MAGIC
+}
+
+/// The nearest whole number.
+#[inline(always)]
+pub(super) fn nearest(q: f64) -> i32 {
+    (q + MAGIC).to_bits() as i32
+}
+
+/// Floors of two quotients. Says of which of them some lane is not proved.
 #[inline(always)]
 pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
     denominator: Line,
-    numerators: [Line; 2],
-    margins: [f64; 2],
+    numerators: &[Scaled; 2],
     first: &mut [i32],
     second: &mut [i32],
 ) -> [bool; 2] {
-    let limits = margins.map(|margin| 0.5 - margin);
-    let mut close = [0_u64; 2];
-    for (((first, second), x), y) in first.iter_mut().zip(second).zip(at.x).zip(at.y) {
-        let (x, y) = (f64::from((*x).min(at.last)), f64::from(*y));
+    let [one, other] = *numerators;
+    let mut close = [0_i32; 2];
+    let last = f64::from(at.last);
+    let lanes = first.len();
+    let (second, xs, ys, iota) = (&mut second[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    for n in 0..lanes {
+        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
-        let one = nearest(numerators[0].at::<FMA, ROW>(x, y) * r, limits[0]);
-        let other = nearest(numerators[1].at::<FMA, ROW>(x, y) * r, limits[1]);
-        (*first, *second) = (one.0, other.0);
-        close[0] |= one.1;
-        close[1] |= other.1;
+        let (a, a_close) = one.floor(one.step::<FMA, ROW>(x, y, r));
+        let (b, b_close) = other.floor(other.step::<FMA, ROW>(x, y, r));
+        (first[n], second[n]) = (a, b);
+        close[0] |= a_close;
+        close[1] |= b_close;
     }
-    close.map(|bits| bits >> 63 == 1)
+    [close[0] < 0, close[1] < 0]
 }
 
-/// [`estimate_two`] in single precision, for quotients up to 256: twice the lanes, a wider margin.
+/// [`Scaled`] in single precision, for weights on a row: twice the lanes, a wider margin.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Weighed {
+    /// Constant and slope of the numerator, less half a denominator, so that the nearest whole number is the floor.
+    line: (f32, f32),
+    base: i32,
+    /// Half, less what the estimate can be off by.
+    limit: f32,
+}
+
+impl Weighed {
+    /// As [`Scaled::new`], on a row; `ratio` is the largest denominator over the smallest.
+    #[inline(always)]
+    pub(super) fn new(
+        numerator: Line,
+        denominator: Line,
+        columns: f64,
+        (reciprocal, widest): (f64, f64),
+        ratio: f64,
+    ) -> Option<Weighed> {
+        let base = whole(numerator.c * reciprocal);
+        let line = numerator.less(base + 0.5, denominator);
+        let margin = ((line.c.abs() + line.x.abs() * columns) * widest + 1.0) * ratio * SLACK_32;
+        // Also refuses what is no number.
+        let proves = margin < COARSEST;
+        if !proves {
+            return None;
+        }
+        Some(Weighed { line: (line.c as f32, line.x as f32), base: base as i32, limit: (0.5 - margin) as f32 })
+    }
+
+    /// The floor of a lane, and as its sign bit whether it is not proved.
+    #[inline(always)]
+    fn floor<const FMA: bool>(&self, x: f32, r: f32) -> (i32, u32) {
+        let q = line_32::<FMA>(self.line, x) * r;
+        let t = q + MAGIC_32;
+        let value = (t.to_bits() as i32).wrapping_add(self.base.wrapping_sub(MAGIC_32.to_bits() as i32));
+        (value, (self.limit - (q - (t - MAGIC_32)).abs()).to_bits())
+    }
+}
+
+#[inline(always)]
+fn line_32<const FMA: bool>((c, slope): (f32, f32), x: f32) -> f32 {
+    if FMA { slope.mul_add(x, c) } else { slope * x + c }
+}
+
+/// Floors of two weights on a row. Says whether some lane of them is not proved.
 #[inline(always)]
 pub(super) fn estimate_weights<const FMA: bool>(
-    at: Positions<'_>,
+    last: i32,
     denominator: Line,
-    numerators: [Line; 2],
-    margin: f64,
+    numerators: &[Weighed; 2],
     first: &mut [i32],
     second: &mut [i32],
 ) -> bool {
-    let at_x = |line: (f32, f32), x: f32| if FMA { line.1.mul_add(x, line.0) } else { line.1 * x + line.0 };
+    let [one, other] = *numerators;
     let denominator = (denominator.c as f32, denominator.x as f32);
-    let numerators = numerators.map(|line| (line.c as f32, line.x as f32));
-    let limit = (0.5 - margin) as f32;
     let mut close = 0_u32;
-    for ((first, second), x) in first.iter_mut().zip(second).zip(at.x) {
-        let x = (*x).min(at.last) as f32;
-        let r = 1.0 / at_x(denominator, x);
-        let one = nearest_32(at_x(numerators[0], x) * r, limit);
-        let other = nearest_32(at_x(numerators[1], x) * r, limit);
-        (*first, *second) = (one.0, other.0);
-        close |= one.1 | other.1;
+    let lanes = first.len();
+    let (second, iota) = (&mut second[..lanes], &IOTA[..lanes]);
+    for n in 0..lanes {
+        let x = iota[n].min(last) as f32;
+        let r = 1.0 / line_32::<FMA>(denominator, x);
+        let (a, a_close) = one.floor::<FMA>(x, r);
+        let (b, b_close) = other.floor::<FMA>(x, r);
+        (first[n], second[n]) = (a, b);
+        close |= a_close | b_close;
     }
     close >> 31 == 1
+}
+
+/// Where a lane lies.
+#[inline(always)]
+fn position<const ROW: bool>(n: usize, last: f64, xs: &[i32], ys: &[i32], iota: &[f64]) -> (f64, f64) {
+    if ROW { (if iota[n] < last { iota[n] } else { last }, 0.0) } else { (f64::from(xs[n]), f64::from(ys[n])) }
 }
 
 /// An integer linear function, modulo 2^64.
@@ -144,14 +317,19 @@ pub(super) struct Exact {
 
 impl Exact {
     /// Minus so many times another.
+    #[inline(always)]
     pub(super) fn less(self, times: i64, other: Exact) -> Exact {
-        let less = |a: i64, b: i64| a.wrapping_sub(b.wrapping_mul(times));
-        Exact { c: less(self.c, other.c), x: less(self.x, other.x), y: less(self.y, other.y) }
+        Exact {
+            c: self.c.wrapping_sub(other.c.wrapping_mul(times)),
+            x: self.x.wrapping_sub(other.x.wrapping_mul(times)),
+            y: self.y.wrapping_sub(other.y.wrapping_mul(times)),
+        }
     }
 
     /// Divided by a power of two that divides it, modulo 2^32.
+    #[inline(always)]
     fn low(self, shift: u32) -> [i32; 3] {
-        [self.c, self.x, self.y].map(|n| (n >> shift) as i32)
+        [(self.c >> shift) as i32, (self.x >> shift) as i32, (self.y >> shift) as i32]
     }
 }
 

@@ -50,8 +50,52 @@ impl Axis {
 pub(super) enum Texels {
     /// One by one.
     Single(Vec<u32>),
-    /// Each with its right neighbour; one more row at the end of each face.
-    Pairs(Vec<[u32; 2]>),
+    /// One by one, with one more at the end of each row and one more row at the end of each face: footprints lie side by side.
+    Footprints(Vec<u32>),
+    /// The only channel that differs from texel to texel, by its number: each texel with its right neighbour, and the two below.
+    One(usize, Vec<u32>),
+}
+
+/// What a channel of a table holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Channel {
+    /// Everywhere the same.
+    Constant(u8),
+    /// What the first such channel holds.
+    Of(usize),
+}
+
+/// Finds channels that are constant or equal.
+struct Facts {
+    first: u32,
+    /// Bits in which some texel differs from the first.
+    varying: u32,
+    /// Bits in which a channel differs from the one so many further, in some texel.
+    unequal: [u32; 3],
+}
+
+impl Facts {
+    fn new(first: u32) -> Facts {
+        Facts { first, varying: 0, unequal: [0; 3] }
+    }
+
+    fn see(&mut self, texel: u32) {
+        self.varying |= texel ^ self.first;
+        for (n, unequal) in self.unequal.iter_mut().enumerate() {
+            *unequal |= texel ^ (texel >> (8 * (n + 1)));
+        }
+    }
+
+    fn channels(&self, signed: [bool; 4]) -> [Channel; 4] {
+        let byte = |bits: u32, n: usize| bits.to_le_bytes()[n];
+        std::array::from_fn(|n| {
+            if byte(self.varying, n) == 0 {
+                return Channel::Constant(byte(self.first, n));
+            }
+            let equal = |k: &usize| signed[*k] == signed[n] && byte(self.unequal[n - k - 1], *k) == 0;
+            Channel::Of((0..n).find(equal).unwrap_or(n))
+        })
+    }
 }
 
 /// A unit's image at level 0.
@@ -59,10 +103,14 @@ pub(super) enum Texels {
 pub(super) struct Table {
     /// Along u and v.
     pub(super) axes: [Axis; 2],
+    /// Entries of one row.
+    pub(super) pitch: i32,
     /// Entries of one face.
     pub(super) face: u32,
     /// The texels.
     pub(super) texels: Texels,
+    /// What its channels hold; signed ones with 128 added.
+    pub(super) channels: [Channel; 4],
 }
 
 /// What of a unit a table depends on.
@@ -110,41 +158,53 @@ impl Table {
     /// How much it holds.
     pub(super) fn entries(&self) -> u64 {
         match &self.texels {
-            Texels::Single(texels) => texels.len() as u64,
-            Texels::Pairs(texels) => texels.len() as u64,
+            Texels::Single(texels) | Texels::Footprints(texels) | Texels::One(_, texels) => texels.len() as u64,
         }
     }
 
-    /// Decodes level 0 of a unit.
-    pub(super) fn new(unit: &PlannedUnit, axes: [Axis; 2], image: &Image<'_, i32>) -> Table {
+    /// Decodes level 0 of a unit. `folds`: the reader knows of channels that are constant or equal.
+    pub(super) fn new(unit: &PlannedUnit, axes: [Axis; 2], image: &Image<'_, i32>, folds: bool) -> Table {
         let faces: &[Face] = if unit.kind == TextureKind::Cube { Face::ALL } else { &[Face::PositiveX] };
         let [columns, rows] = axes;
         let linear = unit.state.mag_filter == Filter::Linear;
-        let (mut single, mut pairs) = (Vec::new(), Vec::new());
-        let mut line = Vec::with_capacity(columns.count as usize + 1);
+        let (wide, high) = (columns.count as usize + usize::from(linear), rows.count as usize + usize::from(linear));
+        let mut all = Vec::with_capacity(wide * high * faces.len());
         for face in faces {
             let slice = Slice { unit, level: &unit.levels[0], face: *face };
-            let texel = |x: i32, y: i32| {
-                let texel = slice.texel(image.words, i64::from(x), i64::from(y));
-                let channels = lanes::<i32, Silent>(unit, image, &texel, &mut Silent);
-                let biased: [u8; 4] = std::array::from_fn(|n| {
-                    let bias = if unit.state.signed[n] { 128 } else { 0 };
-                    (channels[n].decision() + bias) as u8
-                });
-                u32::from_le_bytes(biased)
-            };
-            for y in 0..rows.count + i32::from(linear) {
-                line.clear();
-                line.extend((0..=columns.count).map(|x| texel(columns.first + x, rows.first + y)));
-                if linear {
-                    pairs.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
-                } else {
-                    single.extend(&line[..columns.count as usize]);
-                }
+            for y in 0..high as i32 {
+                all.extend((0..wide as i32).map(|x| {
+                    let texel = slice.texel(image.words, i64::from(columns.first + x), i64::from(rows.first + y));
+                    let channels = lanes::<i32, Silent>(unit, image, &texel, &mut Silent);
+                    let biased: [u8; 4] = std::array::from_fn(|n| {
+                        let bias = if unit.state.signed[n] { 128 } else { 0 };
+                        (channels[n].decision() + bias) as u8
+                    });
+                    u32::from_le_bytes(biased)
+                }));
             }
         }
-        let face = columns.count * (rows.count + i32::from(linear));
-        Table { axes, face: face as u32, texels: if linear { Texels::Pairs(pairs) } else { Texels::Single(single) } }
+        let mut facts = Facts::new(all.first().copied().unwrap_or(0));
+        all.iter().for_each(|texel| facts.see(*texel));
+        let channels = if folds { facts.channels(unit.state.signed) } else { [0, 1, 2, 3].map(Channel::Of) };
+        let mut distinct = (0..4).filter(|n| channels[*n] == Channel::Of(*n));
+        let (one, more) = (distinct.next().unwrap_or(0), distinct.next().is_some());
+        let count = columns.count as usize * rows.count as usize;
+        let (texels, pitch, face) = if !linear {
+            (Texels::Single(all), columns.count as usize, count)
+        } else if more {
+            (Texels::Footprints(all), wide, wide * high)
+        } else {
+            let byte = |texel: u32| texel >> (8 * one) & 255;
+            let footprints = all.chunks(wide * high).flat_map(|face| {
+                face.chunks(wide).zip(face.chunks(wide).skip(1)).flat_map(|(upper, lower)| {
+                    upper.windows(2).zip(lower.windows(2)).map(|(upper, lower)| {
+                        byte(upper[0]) | byte(upper[1]) << 8 | byte(lower[0]) << 16 | byte(lower[1]) << 24
+                    })
+                })
+            });
+            (Texels::One(one, footprints.collect()), columns.count as usize, count)
+        };
+        Table { axes, pitch: pitch as i32, face: face as u32, texels, channels }
     }
 }
 

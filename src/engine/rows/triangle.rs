@@ -1,27 +1,28 @@
-//! INT-1 to INT-4t, TEX-12 and everything else that varies across a triangle, for the pixels of a piece.
+//! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a piece.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::direction::{Looking, only_face};
 use super::fetch::Numbers;
 use super::kernels::{LANES, Row, STEP};
 use super::planes::Plane;
-use super::quotient::{
-    COARSEST, Line, Positions, SLACK, SLACK_32, break_ties, estimate_two, estimate_weights, nearest, settle,
-};
+use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
 use super::{Compiled, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::{self, Sample};
 use crate::state::{Register, TEXTURE_UNITS};
+use crate::texture::cube::Face;
 use crate::texture::place::{Coordinates, Place};
 use crate::texture::unit::Image;
 use crate::trace::Silent;
 
 /// A unit's linear functions.
+#[derive(Debug)]
 pub(super) enum Planes {
     /// u and v over D.
     Plane([Plane; 2]),
-    /// A direction.
-    Direction([Plane; 3]),
+    /// A direction, and the face that all of the triangle looks at, if that is one.
+    Direction([Plane; 3], Option<Face>),
     /// Anything else: the definition, pixel by pixel.
     Other,
     /// The same coordinates as those of an earlier sampler.
@@ -37,6 +38,8 @@ pub(super) struct Setup<'a> {
     samplers: Vec<Planes>,
     /// Bits of the largest D.
     bits: u32,
+    /// The reciprocal of a D that none is smaller than.
+    widest: f64,
 }
 
 /// What the pieces of a block leave in their lanes.
@@ -92,7 +95,7 @@ impl Piece<'_> {
     }
 
     /// The lanes that whole steps take.
-    fn lanes(&self) -> std::ops::Range<usize> {
+    pub(super) fn lanes(&self) -> std::ops::Range<usize> {
         self.lane..self.lane + self.at.x.len()
     }
 }
@@ -124,12 +127,16 @@ impl<'a> Setup<'a> {
             samplers.push(match coordinates {
                 _ if earlier.is_some() => Planes::Same(earlier.unwrap_or(0)),
                 Some(Coordinates::Plane(g)) => Planes::Plane([plane(g[0]), plane(g[1])]),
-                Some(Coordinates::Direction(g)) => Planes::Direction([plane(g[0]), plane(g[1]), plane(g[2])]),
+                Some(Coordinates::Direction(g)) => {
+                    Planes::Direction([plane(g[0]), plane(g[1]), plane(g[2])], only_face(g))
+                }
                 _ => Planes::Other,
             });
         }
         let bits = |n: i64| 64 - n.leading_zeros();
+        let least = p[0].min(p[1]).min(p[2]) as f64 * triangle.doubled_area as f64;
         Setup {
+            widest: 1.0 / least,
             denominator: plane(p),
             weights: weighted.then(|| [plane([256 * p[0], 0, 0]), plane([0, 0, 256 * p[2]])]),
             samplers,
@@ -155,27 +162,42 @@ impl<'a> Setup<'a> {
     ) {
         let triangle = &self.context.triangle;
         let e = triangle.edges(piece.first.0, piece.first.1);
-        let real = e.map(|e| e as f64);
+        let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = self.denominator.line(&real);
         let bounds = self.bounds::<FMA, ROW>(piece, &real, denominator);
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
             match planes {
                 Planes::Plane(planes) => {
-                    let numbers = &mut varying.coordinates[n];
-                    self.coordinates::<FMA, ROW>(
-                        piece,
-                        sampler,
-                        planes,
-                        (&e, &real),
-                        denominator,
-                        &bounds,
-                        numbers,
-                        &mut varying.whole,
-                    );
+                    let Varying { coordinates, whole, .. } = &mut *varying;
+                    let lanes = piece.lanes();
+                    let [u, v] = &mut coordinates[n];
+                    let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
+                    if let Some(scaled) = self.scaled::<ROW>(planes, sampler.bias(), (&real, denominator), &bounds) {
+                        let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, u, v);
+                        if close[0] | close[1] {
+                            self.settle_coordinates::<ROW>(piece, sampler, planes, close, &e, u, v, whole);
+                        }
+                    } else {
+                        for k in 0..piece.count {
+                            let sample = self.sample(piece, k);
+                            (u[k], v[k]) = (
+                                defined_coordinate(&sample, &planes[0], sampler.bias()),
+                                defined_coordinate(&sample, &planes[1], sampler.bias()),
+                            );
+                        }
+                    }
                 }
-                Planes::Direction(planes) => {
+                Planes::Direction(planes, face) => {
                     let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
-                    if !direction::<FMA, ROW>(piece, sampler, planes, &real, &bounds, numbers, faces) {
+                    let looking = Looking::new(planes, &real, &bounds);
+                    let face = if ROW && face.is_none() { looking.face::<FMA>(bounds.columns) } else { *face };
+                    let done = match face {
+                        Some(face) => {
+                            self.on_face::<FMA, ROW>(piece, sampler, planes, face, &looking, &bounds, numbers, faces)
+                        }
+                        None => looking.directions::<FMA, ROW>(piece, sampler, numbers, faces),
+                    };
+                    if !done {
                         self.defined(piece, sampler, numbers, faces);
                     }
                 }
@@ -195,7 +217,26 @@ impl<'a> Setup<'a> {
             }
         }
         if let Some(planes) = &self.weights {
-            self.weights::<FMA, ROW>(piece, planes, (&e, &real), denominator, &bounds, varying);
+            let Varying { weights: [w0, w2], whole, .. } = &mut *varying;
+            let (w0, w2) = (&mut w0[piece.lanes()], &mut w2[piece.lanes()]);
+            let weighed = if ROW { self.weighed(planes, (&real, denominator), &bounds) } else { None };
+            let close = if let Some(weighed) = weighed {
+                estimate_weights::<FMA>(piece.at.last, denominator, &weighed, w0, w2)
+            } else if let Some(scaled) = self.scaled::<ROW>(planes, 0, (&real, denominator), &bounds) {
+                let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, w0, w2);
+                close[0] | close[1]
+            } else {
+                for n in 0..piece.count {
+                    let [first, third] = self.sample(piece, n).weights();
+                    (w0[n], w2[n]) = (first.value as i32, third.value as i32);
+                }
+                false
+            };
+            if close {
+                self.settle_weights::<ROW>(piece, planes, &e, w0, w2, whole);
+            }
+        }
+        if self.weights.is_some() {
             for n in 0..2 {
                 narrow(&varying.weights[n][piece.lanes()], &mut varying.narrow[n][piece.lanes()]);
             }
@@ -206,7 +247,8 @@ impl<'a> Setup<'a> {
             for channel in 0..4 {
                 let Some(slot) = slots[channel] else { continue };
                 let out = &mut rows[usize::from(slot)].0[piece.lanes()];
-                let corners = [0, 1, 2].map(|k: usize| u16::from(colors[k][channel]));
+                let corners =
+                    [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
                 if corners[0] == corners[1] && corners[1] == corners[2] {
                     out.fill(corners[0] as i16);
                 } else {
@@ -219,68 +261,101 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// The largest and the smallest denominator of a piece, as far as is known, and how far its pixels are apart.
+    /// The denominators of a piece, as far as is known, and how far its pixels are apart.
     #[inline(always)]
     fn bounds<const FMA: bool, const ROW: bool>(&self, piece: Piece<'_>, e: &[f64; 3], denominator: Line) -> Bounds {
+        let reciprocal = 1.0 / denominator.c;
         if ROW {
             let end = denominator.at::<FMA, true>(f64::from(piece.at.last), 0.0);
             let (low, high) = if denominator.c < end { (denominator.c, end) } else { (end, denominator.c) };
-            return Bounds { ratio: high / low, columns: f64::from(piece.at.last), rows: 0.0 };
+            let widest = 1.0 / low;
+            let columns = f64::from(piece.at.last);
+            return Bounds { ratio: high * widest, reciprocal, widest, columns, rows: 0.0 };
         }
         let (columns, rows) = (f64::from(piece.extent.0), f64::from(piece.extent.1));
-        let p = self.context.triangle.p;
-        let least = p[0].min(p[1]).min(p[2]) as f64 * self.context.triangle.doubled_area as f64;
-        Bounds { ratio: self.denominator.terms(e, columns, rows) / least, columns, rows }
+        let ratio = self.denominator.terms(e, columns, rows) * self.widest;
+        Bounds { ratio, reciprocal, widest: self.widest, columns, rows }
     }
 
     /// How far the estimate of a plane's quotient can be off.
     #[inline(always)]
     fn margin<const ROW: bool>(&self, plane: &Plane, e: &[f64; 3], bounds: &Bounds) -> f64 {
+        // What is taken off is at most `reach` denominators.
         if ROW {
-            // Every term that is added is at most `reach` times one of D, and none of those is negative.
-            return plane.reach * bounds.ratio * SLACK;
+            // So is every other term: no term of the denominator is negative.
+            return 2.0 * plane.reach * bounds.ratio * SLACK;
         }
-        let terms = self.denominator.terms(e, bounds.columns, bounds.rows);
-        (plane.terms(e, bounds.columns, bounds.rows) / terms + 2.0 * plane.reach) * bounds.ratio * SLACK
+        (plane.terms(e, bounds.columns, bounds.rows) * bounds.widest + 2.0 * plane.reach * bounds.ratio) * SLACK
     }
 
-    /// INT-4, INT-4t.
+    /// Two quotients to be estimated, less a bias. `None`: some estimate would prove nothing.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments, reason = "what the caller has computed once for all planes")]
-    fn coordinates<const FMA: bool, const ROW: bool>(
+    fn scaled<const ROW: bool>(
+        &self,
+        planes: &[Plane; 2],
+        bias: i32,
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+    ) -> Option<[Scaled; 2]> {
+        // Not a closure: one that is called twice is not inlined.
+        Some([
+            self.scaled_one::<ROW>(&planes[0], bias, (real, denominator), bounds)?,
+            self.scaled_one::<ROW>(&planes[1], bias, (real, denominator), bounds)?,
+        ])
+    }
+
+    /// The same for weights on a row, in single precision.
+    #[inline(always)]
+    fn weighed(
+        &self,
+        planes: &[Plane; 2],
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+    ) -> Option<[Weighed; 2]> {
+        let (columns, reciprocals) = (bounds.columns, (bounds.reciprocal, bounds.widest));
+        Some([
+            Weighed::new(planes[0].line(real), denominator, columns, reciprocals, bounds.ratio)?,
+            Weighed::new(planes[1].line(real), denominator, columns, reciprocals, bounds.ratio)?,
+        ])
+    }
+
+    #[inline(always)]
+    fn scaled_one<const ROW: bool>(
+        &self,
+        plane: &Plane,
+        bias: i32,
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+    ) -> Option<Scaled> {
+        let margin = self.margin::<ROW>(plane, real, bounds);
+        let (extent, reciprocals) = ((bounds.columns, bounds.rows), (bounds.reciprocal, bounds.widest));
+        Scaled::new::<ROW>(plane.line(real), denominator, extent, reciprocals, margin, bias)
+    }
+
+    /// INT-4, INT-4t of estimates of which some lane is not proved.
+    #[inline(always)]
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "each result apart, so that the compiler sees that none overlaps another"
+    )]
+    fn settle_coordinates<const ROW: bool>(
         &self,
         piece: Piece<'_>,
         sampler: &Sampler,
         planes: &[Plane; 2],
-        (e, real): (&[i64; 3], &[f64; 3]),
-        denominator: Line,
-        bounds: &Bounds,
-        numbers: &mut [Numbers<i32>; 2],
+        close: [bool; 2],
+        e: &[i64; 3],
+        u: &mut [i32],
+        v: &mut [i32],
         whole: &mut [Numbers<i32>; 2],
     ) {
-        let bias = if sampler.filters { 128 } else { 0 };
-        let margins = [0, 1].map(|n: usize| self.margin::<ROW>(&planes[n], real, bounds));
-        let lanes = piece.lanes();
-        let [u, v] = numbers;
-        let (u, v) = (&mut u[lanes.clone()], &mut v[lanes.clone()]);
-        if !(margins[0] < COARSEST && margins[1] < COARSEST) {
-            for n in 0..piece.count {
-                let sample = self.sample(piece, n);
-                (u[n], v[n]) =
-                    (defined_coordinate(&sample, &planes[0], bias), defined_coordinate(&sample, &planes[1], bias));
-            }
-            return;
-        }
-        let offset = f64::from(bias) + 0.5;
-        let lines = [0, 1].map(|n: usize| planes[n].line(real).less(offset, denominator));
-        let close = estimate_two::<FMA, ROW>(piece.at, denominator, lines, margins, u, v);
         for (n, values) in [(0, u), (1, v)] {
             if !close[n] {
                 continue;
             }
             let plane = &planes[n];
             let bottom = self.denominator.exact(e);
-            let top = plane.exact(e).less(i64::from(bias), bottom);
+            let top = plane.exact(e).less(i64::from(sampler.bias()), bottom);
             let whole = &mut whole[0][..values.len()];
             settle::<ROW>(piece.at, top, bottom, plane.small(self.bits), values, whole);
             if plane.lowers {
@@ -291,40 +366,18 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// INT-2, INT-3.
+    /// INT-2, INT-3 likewise.
     #[inline(always)]
-    fn weights<const FMA: bool, const ROW: bool>(
+    fn settle_weights<const ROW: bool>(
         &self,
         piece: Piece<'_>,
         planes: &[Plane; 2],
-        (e, real): (&[i64; 3], &[f64; 3]),
-        denominator: Line,
-        bounds: &Bounds,
-        varying: &mut Varying,
+        e: &[i64; 3],
+        w0: &mut [i32],
+        w2: &mut [i32],
+        whole: &mut [Numbers<i32>; 2],
     ) {
-        let lanes = piece.lanes();
-        let [w0, w2] = &mut varying.weights;
-        let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes.clone()]);
-        let lines = [0, 1].map(|n: usize| planes[n].line(real).less(0.5, denominator));
-        // Nothing but the row's own terms is added, so single precision has a margin too.
-        let single = 257.0 * bounds.ratio * SLACK_32;
-        let margins = [0, 1].map(|n: usize| self.margin::<ROW>(&planes[n], real, bounds));
-        let close = if ROW && single < COARSEST {
-            estimate_weights::<FMA>(piece.at, denominator, lines, single, w0, w2)
-        } else if margins[0] < COARSEST && margins[1] < COARSEST {
-            let close = estimate_two::<FMA, ROW>(piece.at, denominator, lines, margins, w0, w2);
-            close[0] || close[1]
-        } else {
-            for n in 0..piece.count {
-                let [first, third] = self.sample(piece, n).weights();
-                (w0[n], w2[n]) = (first.value as i32, third.value as i32);
-            }
-            false
-        };
-        if !close {
-            return;
-        }
-        let [whole0, whole2] = &mut varying.whole;
+        let [whole0, whole2] = whole;
         let (whole0, whole2) = (&mut whole0[..w0.len()], &mut whole2[..w2.len()]);
         let bottom = self.denominator.exact(e);
         settle::<ROW>(piece.at, planes[0].exact(e), bottom, planes[0].small(self.bits), w0, whole0);
@@ -341,16 +394,26 @@ impl<'a> Setup<'a> {
 
     /// Coordinates by the definition, pixel by pixel.
     fn defined(&self, piece: Piece<'_>, sampler: &Sampler, numbers: &mut [Numbers<i32>; 2], faces: &mut Numbers<u32>) {
-        let unit = &self.context.draw.units[sampler.index];
-        let bias = if sampler.filters { 128 } else { 0 };
         for n in 0..piece.count {
-            let sample = self.sample(piece, n);
-            let Some(place) = self.context.place(unit, &sample, piece.pixel(n)) else { return };
-            let [u, v] = place.on(&unit.levels[0]);
-            let lane = piece.lane + n;
-            (numbers[0][lane], numbers[1][lane]) = (u.value as i32 - bias, v.value as i32 - bias);
-            faces[lane] = place.face() as u32;
+            self.defined_lane(piece, n, sampler, numbers, faces);
         }
+    }
+
+    pub(super) fn defined_lane(
+        &self,
+        piece: Piece<'_>,
+        n: usize,
+        sampler: &Sampler,
+        numbers: &mut [Numbers<i32>; 2],
+        faces: &mut Numbers<u32>,
+    ) {
+        let unit = &self.context.draw.units[sampler.index];
+        let sample = self.sample(piece, n);
+        let Some(place) = self.context.place(unit, &sample, piece.pixel(n)) else { return };
+        let [u, v] = place.on(&unit.levels[0]);
+        let lane = piece.lane + n;
+        (numbers[0][lane], numbers[1][lane]) = (u.value as i32 - sampler.bias(), v.value as i32 - sampler.bias());
+        faces[lane] = place.face() as u32;
     }
 
     /// What is not computed by rows: texture units beyond the plain ones, fog, depth.
@@ -394,11 +457,15 @@ impl<'a> Setup<'a> {
 }
 
 /// How the denominators of a piece vary.
-struct Bounds {
-    /// The largest term that goes into one over the smallest one.
+pub(super) struct Bounds {
+    /// No term that goes into one is larger than this many of the smallest.
     ratio: f64,
-    columns: f64,
-    rows: f64,
+    /// Of the first pixel's.
+    reciprocal: f64,
+    /// Of the smallest.
+    widest: f64,
+    pub(super) columns: f64,
+    pub(super) rows: f64,
 }
 
 fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
@@ -419,74 +486,4 @@ fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
     for ((out, w0), w2) in out.iter_mut().zip(w0).zip(w2) {
         *out = interpolate::color(corners, *w0, *w2) as i16;
     }
-}
-
-/// TEX-12 of a piece. No denominator: the perspective divide cancels. `false`: some pixel is too close to call, and nothing is known.
-#[inline(always)]
-fn direction<const FMA: bool, const ROW: bool>(
-    piece: Piece<'_>,
-    sampler: &Sampler,
-    planes: &[Plane; 3],
-    e: &[f64; 3],
-    bounds: &Bounds,
-    numbers: &mut [Numbers<i32>; 2],
-    faces: &mut Numbers<u32>,
-) -> bool {
-    let lines = [0, 1, 2].map(|n: usize| planes[n].line(e));
-    let terms = [0, 1, 2].map(|n: usize| planes[n].terms(e, bounds.columns, bounds.rows));
-    let error = (terms[0] + terms[1] + terms[2]) * SLACK;
-    let size = f64::from(sampler.side) * 128.0;
-    let offset = if sampler.filters { 128.5 } else { 0.5 };
-    let lanes = piece.lanes();
-    let [u, v] = numbers;
-    let (u, v, faces) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut faces[lanes]);
-    directions::<FMA, ROW>(piece.at, lines, (error, size, offset), u, v, faces)
-}
-
-/// The loop of [`direction`], with the error of a component, half of the size in 1/256 texel, and what is taken off a coordinate.
-#[inline(always)]
-fn directions<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
-    lines: [Line; 3],
-    (error, size, offset): (f64, f64, f64),
-    u: &mut [i32],
-    v: &mut [i32],
-    faces: &mut [u32],
-) -> bool {
-    let mut close = 0_u64;
-    let lanes = u.len();
-    let (v, faces, columns, rows) = (&mut v[..lanes], &mut faces[..lanes], &at.x[..lanes], &at.y[..lanes]);
-    for n in 0..lanes {
-        let (column, row) = (f64::from(columns[n].min(at.last)), f64::from(rows[n]));
-        let x = lines[0].at::<FMA, ROW>(column, row);
-        let y = lines[1].at::<FMA, ROW>(column, row);
-        let z = lines[2].at::<FMA, ROW>(column, row);
-        let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
-        let on_x = (ax >= ay) & (ax >= az);
-        let on_y = !on_x & (ay >= az);
-        // One choice at a time: nested ones would become branches.
-        let (magnitude, major) = (if on_y { ay } else { az }, if on_y { y } else { z });
-        let (magnitude, major) = (if on_x { ax } else { magnitude }, if on_x { x } else { major });
-        let negative = major < 0.0;
-        let other = if on_x { -z } else { x };
-        let turned = if negative { -other } else { other };
-        let s = if on_y { other } else { turned };
-        let upright = if negative { -z } else { z };
-        let t = if on_y { upright } else { -y };
-        // The face's number, as a float among floats.
-        let axis = if on_y { 2.0 } else { 4.0 };
-        let axis = if on_x { 0.0 } else { axis };
-        let face = if negative { axis + 1.0 } else { axis };
-        let r = size / magnitude;
-        let slack = 0.5 - 4.0 * error * r;
-        let (p, p_close) = nearest((s + magnitude) * r - offset, slack);
-        let (q, q_close) = nearest((t + magnitude) * r - offset, slack);
-        (u[n], v[n]) = (p, q);
-        faces[n] = nearest(face, 0.5).0 as u32;
-        close |= p_close | q_close;
-        close |= ((ax - ay).abs() - error).to_bits();
-        close |= ((ax - az).abs() - error).to_bits();
-        close |= ((ay - az).abs() - error).to_bits();
-    }
-    close >> 63 == 0
 }

@@ -1,6 +1,6 @@
 //! The parts of a general combiner stage, one channel at a time.
 
-use super::{named, scale_takes_bias};
+use super::{block, named, scale_takes_bias};
 use crate::combiner::general;
 use crate::combiner::mapping;
 use crate::number::{Factor, Lane};
@@ -93,6 +93,10 @@ impl Unit for Product {
         results[1] = written(raw, conditions);
     }
 
+    fn block(&self, leading: &[i64], first: i64, out: &mut [[u8; 2]]) -> Option<[u64; 2]> {
+        Some(block::multiply_add(0, leading[0] as i16, first as i16, out))
+    }
+
     fn regressions(&self) -> Vec<Vec<i64>> {
         vec![vec![100, 200], vec![-256, 256], vec![-256, -256]]
     }
@@ -135,6 +139,11 @@ impl Unit for Sum {
         let sum = general::third::<i32, _>([ab, cd], None, None, &conditions.policies, &mut Silent);
         results[..3].copy_from_slice(&[ab, cd, sum].map(wide));
         results[3] = written(sum, conditions);
+    }
+
+    fn block(&self, leading: &[i64], first: i64, out: &mut [[u8; 2]]) -> Option<[u64; 2]> {
+        let [a, b, c] = [0, 1, 2].map(|n| leading[n] as i16);
+        Some(block::multiply_add(Factor::product(a, b), c, first as i16, out))
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {

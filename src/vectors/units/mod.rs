@@ -1,15 +1,20 @@
 //! The units that vectors are made of, in the order of the pipe.
 
+mod block;
 mod combiner;
 mod combiner_stage;
 mod final_combiner;
 mod fog;
 mod number;
+mod pixel_shader;
+mod program;
 mod raster;
 mod rop;
 mod shader;
 mod texel;
 mod texture;
+mod texture_environment;
+mod texture_stage;
 
 use super::unit::Unit;
 use crate::state::{Bias, Named, Scale};
@@ -51,6 +56,10 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &combiner_stage::BlueToAlpha,
         &combiner_stage::TwoStages,
         &final_combiner::FinalCombiner,
+        &texture_stage::Stage,
+        &texture_environment::Classic,
+        &texture_environment::Combine,
+        &pixel_shader::Instruction,
         &rop::AlphaTest,
         &rop::Blend,
         &rop::SurfaceStore,
@@ -64,7 +73,7 @@ pub fn by_name(name: &str) -> Option<&'static dyn Unit> {
 }
 
 /// The variant of that number; the last one of those that do not exist.
-fn named<T: Named>(number: i64) -> T {
+pub(super) fn named<T: Named>(number: i64) -> T {
     T::ALL[usize::try_from(number).unwrap_or(0).min(T::ALL.len() - 1)]
 }
 

@@ -38,8 +38,9 @@ impl Unit for VertexColor {
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
-        // Infinities and NaN.
-        [0x7f80_0000, 0xff80_0000, 0x7fc0_0000, 0x8000_0000].map(|bits| vec![bits]).to_vec()
+        // Infinities and NaN; colours that fifteen significant bits would lift to the next byte.
+        let bits = [0x7f80_0000, 0xff80_0000, 0x7fc0_0000, 0x8000_0000, 0x3b00_8200, 0x3efd_fe00, 0x3f7d_7e00];
+        bits.map(|bits| vec![bits]).to_vec()
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {

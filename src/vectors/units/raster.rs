@@ -86,6 +86,19 @@ impl Unit for Coverage {
         columns
     }
 
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // A sample on an edge: top, bottom, left, right, and a corner; both windings.
+        let rows: [[i64; 8]; 5] = [
+            [0, 24, 64, 24, 32, 88, 1, 1],
+            [0, 88, 64, 88, 32, 24, 1, 5],
+            [24, 0, 24, 64, 88, 32, 1, 1],
+            [88, 0, 88, 64, 24, 32, 5, 1],
+            [24, 24, 88, 24, 24, 88, 1, 1],
+        ];
+        let turned = rows.map(|[x0, y0, x1, y1, x2, y2, i, j]| [x0, y0, x2, y2, x1, y1, i, j]);
+        rows.into_iter().chain(turned).map(Vec::from).collect()
+    }
+
     fn fit(&self, inputs: &mut [i64]) {
         fit(inputs);
     }
@@ -131,6 +144,20 @@ impl Unit for ColorWeights {
         columns.extend(["mid.lowered0", "mid.lowered2"].map(|name| Column::result(name, Kind::Unsigned(1))));
         columns.extend(["out.weight0", "out.weight2"].map(|name| Column::result(name, Kind::Unsigned(9))));
         columns
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4, 3 4 1, and sixteenths 5 6 5. Then halves and quarters of an area that is a
+        // power of two, which no tie lowers, unless w is none.
+        let [one, two, other] = [1.0_f32, 2.0, 1.5].map(|w| i64::from(w.to_bits()));
+        let positions = [
+            [40, 24, 104, 216, 88, 264],
+            [104, 216, 40, 24, 88, 264],
+            [104, 216, 88, 264, 40, 24],
+            [79, 232, 103, 216, 79, 200],
+        ];
+        let exact = [one, two, other].map(|w| vec![8, 8, 72, 8, 8, 72, 1, 1, w, w, w]);
+        positions.into_iter().map(|row| [&row[..], &[5, 13, one, one, one]].concat()).chain(exact).collect()
     }
 
     fn fit(&self, inputs: &mut [i64]) {

@@ -1,5 +1,5 @@
 vs.1.1                          ; the same with the half vector, and the highlight of the smooth surface
-; c0: world, view and projection, c12: toward the light, of unit length, c14: viewer, c20: 0, c24: how far
+; c0: world, view and projection, c12: toward the light, of unit length, c14: viewer, c20: exponent, c24: how far
 m4x4 oPos, v0, c0
 add r2.xyz, c14.xyz, -v0.xyz
 dp3 r2.w, r2.xyz, r2.xyz
@@ -13,5 +13,7 @@ dp3 r6.y, v9, r2
 mul r1.xy, r6.xy, c24.xy
 mov oT0.xy, v7.xy
 add oT1.xy, v7.xy, r1.xy
-dp3 r3, v3, r2
-max oD0, r3, c20
+dp3 r3.xy, v3, r2
+mov r3.w, c20.x
+lit r4, r3
+mov oD0, r4.z

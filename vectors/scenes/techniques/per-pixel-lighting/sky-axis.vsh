@@ -6,3 +6,4 @@ dp3 r5.y, v9, c10
 dp3 r5.z, v3, c10
 mad oD0.xyz, r5.xyz, c20.xyz, c20.xyz
 mov oT0.xy, v7.xy
+mov oT1.xy, v7.xy

@@ -6,3 +6,4 @@ dp3 r6.y, v9, c12
 dp3 r6.z, v3, c12
 mad oD0.xyz, r6.xyz, c20.xyz, c20.xyz
 mov oT0.xy, v7.xy
+mov oT1.xy, v7.xy

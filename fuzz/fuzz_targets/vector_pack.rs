@@ -1,0 +1,25 @@
+//! Any bytes as the manifest of a pack, the leaf of a sweep and a tree are that or an error, never a panic.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use ninebit::vectors::{pack, tree};
+use std::path::PathBuf;
+use std::sync::LazyLock;
+
+/// A folder of this process, in memory where the system has such a place.
+static FOLDER: LazyLock<PathBuf> = LazyLock::new(|| {
+    let base = if std::path::Path::new("/dev/shm").is_dir() { PathBuf::from("/dev/shm") } else { std::env::temp_dir() };
+    let folder = base.join(format!("ninebit-fuzz-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("units")).expect("a folder");
+    folder
+});
+
+fuzz_target!(|bytes: &[u8]| {
+    let place = |name: &str| FOLDER.join(name);
+    for name in ["MANIFEST.json", "leaf-0000.json", "tree.json"] {
+        std::fs::write(place(name), bytes).expect("a file");
+    }
+    let _ = pack::open(&FOLDER);
+    let _ = tree::merge(&[FOLDER.clone()]);
+    let _ = tree::Tree::read(&place("tree.json"));
+});

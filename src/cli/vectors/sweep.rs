@@ -1,0 +1,172 @@
+//! `ninebit vectors sweep`, `merge` and `digest`: every row of a unit as digests.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use ninebit::output::{Destination, write_stdout};
+use ninebit::state::{Named, Profile};
+use ninebit::vectors::error::VectorError;
+use ninebit::vectors::random::Random;
+use ninebit::vectors::sweep::{MOST_ROWS, Sweep};
+use ninebit::vectors::tree::{self, Done, Of, Tree};
+use ninebit::vectors::{BEHAVIOUR, Unit};
+use rayon::prelude::*;
+
+use super::super::engine::threads;
+use super::super::exit::Failure;
+
+/// One of `count` workers, `index` from 1.
+#[derive(Clone, Copy, Debug)]
+struct Shard {
+    index: u64,
+    count: u64,
+}
+
+fn shard(text: &str) -> Result<Shard, String> {
+    let numbers = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
+    match numbers {
+        Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count }),
+        _ => Err("write I/N, I from 1 to N: 1/4 to 4/4 for four workers".to_owned()),
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SweepArguments {
+    /// The unit
+    #[arg(long, value_name = "UNIT", value_parser = super::unit)]
+    unit: &'static dyn Unit,
+    /// The chip: nv10 or nv2a
+    #[arg(long, default_value = "nv2a", value_parser = super::profile)]
+    profile: Profile,
+    /// Only a part of the leaves: I/N, I from 1 to N
+    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
+    shard: Shard,
+    /// Threads; 0 for one a core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    threads: usize,
+    /// The folder of the leaves; it is made, and leaves that are there are kept
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+}
+
+/// Runs `job` with so many threads.
+fn with_threads<T: Send>(threads: usize, job: impl FnOnce() -> T + Send) -> T {
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(job),
+        Err(_) => job(),
+    }
+}
+
+/// Computes the leaves of a shard.
+pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
+    let SweepArguments { unit, profile, shard, threads, output } = arguments;
+    if !unit.profiles().contains(profile) {
+        return Err(super::lacks(*unit, *profile));
+    }
+    let Some(sweep) = Sweep::new(*unit, *profile) else {
+        return Err(Failure::usage(
+            format!("`{}` has more than {MOST_ROWS} rows", unit.name()),
+            "a sweep has every row; `ninebit vectors export` takes boundaries and random ones",
+        ));
+    };
+    tree::make_folder(output)?;
+    let mine: Vec<u64> = (0..sweep.leaves).filter(|leaf| leaf % shard.count == shard.index - 1).collect();
+    let results: Vec<Result<bool, VectorError>> =
+        with_threads(*threads, || mine.par_iter().map(|leaf| tree::work(output, &sweep, *leaf)).collect());
+    let mut done = Done::default();
+    for result in results {
+        if result? {
+            done.computed += 1;
+        } else {
+            done.kept += 1;
+        }
+    }
+    let text = format!(
+        "{} {}, shard {}/{}: {} of {} leaves, {} computed, {} were there\n",
+        unit.name(),
+        profile.name(),
+        shard.index,
+        shard.count,
+        mine.len(),
+        sweep.leaves,
+        done.computed,
+        done.kept
+    );
+    Ok(write_stdout(text.as_bytes())?)
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArguments {
+    /// Folders of leaves
+    #[arg(value_name = "DIR", required = true)]
+    folders: Vec<PathBuf>,
+    /// The file of the tree; `-` for standard output. Without it only the root is printed
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+}
+
+/// Joins leaves to a tree.
+pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
+    let tree = tree::merge(&arguments.folders)?;
+    let destination = arguments.output.as_ref().map(|path| Destination::from(path.as_os_str()));
+    if let Some(destination) = &destination {
+        destination.write(tree.text().as_bytes())?;
+    }
+    if destination == Some(Destination::Stdout) {
+        return Ok(());
+    }
+    let Tree { of: Of { unit, profile, leaves, .. }, rows, root, .. } = &tree;
+    let text = format!("{unit} {profile}: {rows} rows in {leaves} leaves\nroot {root}\n");
+    Ok(write_stdout(text.as_bytes())?)
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DigestArguments {
+    /// Trees, as `merge` writes them
+    #[arg(value_name = "TREE", required = true)]
+    trees: Vec<PathBuf>,
+    /// Compute only so many leaves of each, drawn by the seed
+    #[arg(long, value_name = "N")]
+    sample: Option<usize>,
+    /// Of the drawn leaves
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Threads; 0 for one a core
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
+    threads: usize,
+}
+
+/// Computes trees, or some leaves of them, again.
+pub(crate) fn digest(arguments: &DigestArguments) -> Result<(), Failure> {
+    let mut differs = false;
+    for path in &arguments.trees {
+        let (tree, sweep) = Tree::read(path)?;
+        let mut chosen: Vec<usize> = (0..tree.leaf.len()).collect();
+        if let Some(sample) = arguments.sample {
+            let mut random = Random::new(arguments.seed, &tree.of.unit);
+            while chosen.len() > sample {
+                chosen.swap_remove(random.below(chosen.len() as u128) as usize);
+            }
+            chosen.sort_unstable();
+        }
+        let wrong: Vec<usize> = with_threads(arguments.threads, || {
+            let wrong = chosen.par_iter().filter(|index| sweep.leaf(**index as u64) != tree.leaf[**index]);
+            wrong.copied().collect()
+        });
+        let Of { unit, profile, leaves, behaviour_rev, .. } = &tree.of;
+        let mut text = format!("{unit} {profile}: {} of {leaves} leaves computed, ", chosen.len());
+        if wrong.is_empty() {
+            text.push_str("all as the tree has them\n");
+        } else {
+            differs = true;
+            let shown: Vec<String> = wrong.iter().take(8).map(ToString::to_string).collect();
+            let _ = writeln!(text, "{} differ: leaf {} ...", wrong.len(), shown.join(", "));
+            if *behaviour_rev != BEHAVIOUR {
+                let _ = writeln!(text, "  the tree is of behaviour {behaviour_rev}, the model of {BEHAVIOUR}");
+            }
+        }
+        write_stdout(text.as_bytes())?;
+    }
+    if differs { Err(Failure::difference()) } else { Ok(()) }
+}

@@ -1,0 +1,186 @@
+//! TEX-12 on rows: the face that a direction meets, and where.
+#![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
+
+use super::Sampler;
+use super::fetch::Numbers;
+use super::planes::Plane;
+use super::quotient::{Line, Positions, SLACK, Scaled, estimate_two, nearest, prove, whole};
+use super::triangle::{Bounds, Piece, Setup};
+use crate::texture::cube::{Face, Signed};
+
+/// The face that all three vertices look at, none of them along its edge: so does everything between them.
+pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
+    let look = |k: usize| {
+        let direction = [g[0][k], g[1][k], g[2][k]];
+        let magnitudes = direction.map(i64::abs);
+        let face = Face::of(direction, magnitudes, 0);
+        let axis = face.components()[2].axis;
+        (0..3).all(|n| n == axis || magnitudes[n] < magnitudes[axis]).then_some(face)
+    };
+    let face = look(0)?;
+    (look(1)? == face && look(2)? == face).then_some(face)
+}
+
+/// A direction across a piece.
+pub(super) struct Looking {
+    /// x, y, z.
+    lines: [Line; 3],
+    /// What each can be off by.
+    error: f64,
+}
+
+impl Looking {
+    #[inline(always)]
+    pub(super) fn new(planes: &[Plane; 3], e: &[f64; 3], bounds: &Bounds) -> Looking {
+        let lines = [planes[0].line(e), planes[1].line(e), planes[2].line(e)];
+        let terms = [
+            planes[0].terms(e, bounds.columns, bounds.rows),
+            planes[1].terms(e, bounds.columns, bounds.rows),
+            planes[2].terms(e, bounds.columns, bounds.rows),
+        ];
+        Looking { lines, error: (terms[0] + terms[1] + terms[2]) * SLACK }
+    }
+
+    #[inline(always)]
+    fn component(&self, of: Signed) -> Line {
+        let line = self.lines[of.axis];
+        if of.negative { line.times(-1.0) } else { line }
+    }
+
+    /// The face that all of a row looks at: the directions that look at a face are a cone, so its ends tell. `None`: not one, or too close
+    /// to call.
+    #[inline(always)]
+    pub(super) fn face<const FMA: bool>(&self, columns: f64) -> Option<Face> {
+        let (first, last) = (self.look::<FMA>(0.0)?, self.look::<FMA>(columns)?);
+        (first == last).then_some(first)
+    }
+
+    #[inline(always)]
+    fn look<const FMA: bool>(&self, x: f64) -> Option<Face> {
+        let [a, b, c] = &self.lines;
+        let direction = [a.at::<FMA, true>(x, 0.0), b.at::<FMA, true>(x, 0.0), c.at::<FMA, true>(x, 0.0)];
+        let magnitudes = [direction[0].abs(), direction[1].abs(), direction[2].abs()];
+        let face = Face::of(direction, magnitudes, 0.0);
+        let [s, t, m] = face.components();
+        let least = magnitudes[m.axis] - 2.0 * self.error;
+        (magnitudes[s.axis] < least && magnitudes[t.axis] < least).then_some(face)
+    }
+
+    /// TEX-12 of a piece whose pixels look at several faces. No denominator: the perspective divide cancels. `false`: some pixel is too
+    /// close to call, and nothing is known.
+    #[inline(always)]
+    pub(super) fn directions<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        sampler: &Sampler,
+        numbers: &mut [Numbers<i32>; 2],
+        faces: &mut Numbers<u32>,
+    ) -> bool {
+        let size = f64::from(sampler.side) * 128.0;
+        let offset = f64::from(sampler.bias()) + 0.5;
+        let lanes = piece.lanes();
+        let [u, v] = numbers;
+        let (u, v, faces) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut faces[lanes]);
+        directions::<FMA, ROW>(piece.at, self.lines, (self.error, size, offset), u, v, faces)
+    }
+}
+
+impl Setup<'_> {
+    /// TEX-12 of a piece that looks at one face: two quotients like any others. `false`: nothing would be proved.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+    pub(super) fn on_face<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        sampler: &Sampler,
+        planes: &[Plane; 3],
+        face: Face,
+        looking: &Looking,
+        bounds: &Bounds,
+        numbers: &mut [Numbers<i32>; 2],
+        faces: &mut Numbers<u32>,
+    ) -> bool {
+        let [s, t, major] = face.components();
+        let m = looking.component(major);
+        let least = if ROW {
+            let end = m.at::<FMA, true>(bounds.columns, 0.0);
+            if m.c < end { m.c } else { end }
+        } else {
+            let g = &planes[major.axis].g;
+            let least = g[0].unsigned_abs().min(g[1].unsigned_abs()).min(g[2].unsigned_abs());
+            least as f64 * self.context.triangle.doubled_area as f64
+        };
+        let widest = 1.0 / least;
+        let size = f64::from(sampler.side) * 128.0;
+        // Twice the error of either component, once what is taken off, and as much again.
+        let margin = 8.0 * looking.error * size * widest;
+        let (extent, reciprocals) = ((bounds.columns, bounds.rows), (1.0 / m.c, widest));
+        let (along, down) = (looking.component(s).plus(m).times(size), looking.component(t).plus(m).times(size));
+        let (Some(along), Some(down)) = (
+            Scaled::new::<ROW>(along, m, extent, reciprocals, margin, sampler.bias()),
+            Scaled::new::<ROW>(down, m, extent, reciprocals, margin, sampler.bias()),
+        ) else {
+            return false;
+        };
+        let [u, v] = numbers;
+        let close = estimate_two::<FMA, ROW>(piece.at, m, &[along, down], &mut u[piece.lanes()], &mut v[piece.lanes()]);
+        faces[piece.lanes()].fill(face as u32);
+        if close[0] | close[1] {
+            for n in 0..piece.count {
+                match prove::<ROW>(piece.at, n, m, &[along, down]) {
+                    Some([u, v]) => (numbers[0][piece.lane + n], numbers[1][piece.lane + n]) = (u, v),
+                    None => self.defined_lane(piece, n, sampler, numbers, faces),
+                }
+            }
+        }
+        true
+    }
+}
+
+/// The loop of [`Looking::directions`], with the error of a component, half of the size in 1/256 texel, and what is taken off a coordinate.
+#[inline(always)]
+fn directions<const FMA: bool, const ROW: bool>(
+    at: Positions<'_>,
+    lines: [Line; 3],
+    (error, size, offset): (f64, f64, f64),
+    u: &mut [i32],
+    v: &mut [i32],
+    faces: &mut [u32],
+) -> bool {
+    let mut close = 0_u64;
+    let lanes = u.len();
+    let (v, faces, columns, rows) = (&mut v[..lanes], &mut faces[..lanes], &at.x[..lanes], &at.y[..lanes]);
+    for n in 0..lanes {
+        let (column, row) = (f64::from(columns[n].min(at.last)), f64::from(rows[n]));
+        let x = lines[0].at::<FMA, ROW>(column, row);
+        let y = lines[1].at::<FMA, ROW>(column, row);
+        let z = lines[2].at::<FMA, ROW>(column, row);
+        let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
+        let on_x = (ax >= ay) & (ax >= az);
+        let on_y = !on_x & (ay >= az);
+        // One choice at a time: nested ones would become branches.
+        let (magnitude, major) = (if on_y { ay } else { az }, if on_y { y } else { z });
+        let (magnitude, major) = (if on_x { ax } else { magnitude }, if on_x { x } else { major });
+        let negative = major < 0.0;
+        let other = if on_x { -z } else { x };
+        let turned = if negative { -other } else { other };
+        let s = if on_y { other } else { turned };
+        let upright = if negative { -z } else { z };
+        let t = if on_y { upright } else { -y };
+        // The face's number, as a float among floats.
+        let axis = if on_y { 2.0 } else { 4.0 };
+        let axis = if on_x { 0.0 } else { axis };
+        let face = if negative { axis + 1.0 } else { axis };
+        let r = size / magnitude;
+        let slack = 0.5 - 4.0 * error * r;
+        let (p, q) = ((s + magnitude) * r - offset, (t + magnitude) * r - offset);
+        (u[n], v[n]) = (nearest(p), nearest(q));
+        faces[n] = nearest(face) as u32;
+        close |= (slack - (p - whole(p)).abs()).to_bits();
+        close |= (slack - (q - whole(q)).abs()).to_bits();
+        close |= ((ax - ay).abs() - error).to_bits();
+        close |= ((ax - az).abs() - error).to_bits();
+        close |= ((ay - az).abs() - error).to_bits();
+    }
+    close >> 63 == 0
+}

@@ -1,0 +1,310 @@
+//! Programs of the register combiners that ask one row, and how they are written.
+//!
+//! An operand is a byte of a texel or a colour; a negative one is made by a general stage before, out of constants. A result is read from the final combiner, which
+//! shows 0 to 255: a second draw shows it negated, and a third tells -256 from -255.
+
+use super::{Draw, Path, Placement, Read};
+use crate::state::{
+    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
+    MuxSelect, Portion, Profile, Register, Scale,
+};
+
+/// 1 as an input.
+pub(super) fn one(component: Component) -> CombinerInput {
+    CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
+}
+
+/// A register through a mapping.
+pub(super) fn input(register: Register, component: Component, mapping: InputMapping) -> CombinerInput {
+    CombinerInput { register, component, mapping }
+}
+
+/// Identity of what is not negative, negation of what is.
+pub(super) fn sign(value: i64) -> InputMapping {
+    if value < 0 { InputMapping::SignedNegate } else { InputMapping::UnsignedIdentity }
+}
+
+/// A stage of these portions.
+pub(super) fn stage(rgb: Portion, alpha: Portion) -> GeneralStage {
+    GeneralStage { rgb, alpha, constants: [[0; 4]; 2] }
+}
+
+/// A stage of which only the RGB portion writes.
+pub(super) fn rgb_stage(rgb: Portion) -> GeneralStage {
+    stage(rgb, Portion::idle(Component::Alpha))
+}
+
+/// A portion that adds two registers through mappings.
+pub(super) fn adding(
+    component: Component,
+    [first, second]: [(Register, InputMapping); 2],
+    destination: Register,
+) -> Portion {
+    let mut portion = Portion::idle(component);
+    portion.inputs =
+        [input(first.0, component, first.1), one(component), input(second.0, component, second.1), one(component)];
+    portion.sum_output = destination;
+    portion
+}
+
+/// How a group of channels is written as two bytes each: the signs of both, and the bytes. `None` if -256 stands beside something above 0.
+fn halves(values: &[i64]) -> Option<([InputMapping; 2], Vec<[u8; 2]>)> {
+    let split: fn(i64) -> [i64; 2] =
+        if values.contains(&-256) { |v| [(-v).min(255), (-v - 255).max(0)] } else { |v| [v.max(0), (-v).max(0)] };
+    let first = if values.contains(&-256) { InputMapping::SignedNegate } else { InputMapping::UnsignedIdentity };
+    let bytes: Option<Vec<[u8; 2]>> = values
+        .iter()
+        .map(|v| {
+            let [p, q] = split(*v);
+            Some([u8::try_from(p).ok()?, u8::try_from(q).ok()?])
+        })
+        .collect();
+    Some(([first, InputMapping::SignedNegate], bytes?))
+}
+
+/// A stage that makes a register of any R, G, B, A out of its own two constants.
+pub(super) fn load(register: Register, values: [i64; 4]) -> Option<GeneralStage> {
+    let constants = [Register::ConstantColor0, Register::ConstantColor1];
+    let (rgb_signs, rgb) = halves(&values[..3])?;
+    let (alpha_signs, alpha) = halves(&values[3..])?;
+    let pair = |signs: [InputMapping; 2]| [(constants[0], signs[0]), (constants[1], signs[1])];
+    let mut loading =
+        stage(adding(Component::Rgb, pair(rgb_signs), register), adding(Component::Alpha, pair(alpha_signs), register));
+    for (channel, bytes) in rgb.iter().chain(&alpha).enumerate() {
+        for (constant, byte) in loading.constants.iter_mut().zip(bytes) {
+            constant[channel] = *byte;
+        }
+    }
+    Some(loading)
+}
+
+/// A register that is read: its columns by channel.
+#[derive(Clone, Debug)]
+pub(super) struct Output {
+    pub(super) register: Register,
+    /// Column and channel.
+    pub(super) columns: Vec<(String, usize)>,
+}
+
+/// What asks a row.
+#[derive(Clone, Debug)]
+pub(super) struct Program {
+    pub(super) profile: Profile,
+    pub(super) stages: Vec<GeneralStage>,
+    pub(super) sources: Vec<(&'static str, Vec<u8>)>,
+    /// Red, green and blue of FOG.
+    pub(super) fog: [u8; 3],
+}
+
+impl Program {
+    /// The placement that reads these registers, whose expected values are given; `None` if the chip has too few stages.
+    pub(super) fn reading(self, outputs: &[Output], expected: impl Fn(&str) -> i64) -> Option<Placement> {
+        let limit = self.profile.general_stages();
+        if self.stages.len() > limit {
+            return None;
+        }
+        let mut draws = Vec::new();
+        for output in outputs {
+            let reads = |weight| {
+                let read =
+                    |(column, channel): &(String, usize)| Read { column: column.clone(), channel: *channel, weight };
+                output.columns.iter().map(read).collect::<Vec<_>>()
+            };
+            draws.push(self.draw(&[], &shown(output.register), reads(1)));
+            if self.stages.len() < limit {
+                for after in [negated(output.register), below(output.register)] {
+                    draws.push(self.draw(&[after], &shown(Register::Spare0), reads(-1)));
+                }
+            } else if output.columns.iter().any(|(column, _)| expected(column) <= 0) {
+                return None;
+            }
+        }
+        Some(self.placed(draws))
+    }
+
+    /// The placement whose only draw has this final combiner.
+    pub(super) fn finished(self, last: FinalCombiner, reads: Vec<Read>) -> Option<Placement> {
+        if self.stages.len() > self.profile.general_stages() {
+            return None;
+        }
+        let draw = self.draw(&[], &last, reads);
+        Some(self.placed(vec![draw]))
+    }
+
+    /// A draw with stages after the shared ones.
+    fn draw(&self, after: &[GeneralStage], last: &FinalCombiner, reads: Vec<Read>) -> Draw {
+        let mut stages = self.stages.clone();
+        stages.extend_from_slice(after);
+        let mut state = vec![format!("combiners {}", stages.len())];
+        for (n, stage) in stages.iter().enumerate().skip(self.stages.len()) {
+            state.extend(self.stage_lines(n, stage));
+        }
+        state.extend(final_lines(last));
+        let combiners = Combiners { stages, mux_select: MuxSelect::Msb, final_combiner: *last };
+        Draw { state, reads, combiners: Some(combiners) }
+    }
+
+    fn placed(self, draws: Vec<Draw>) -> Placement {
+        let mut state = Vec::new();
+        for (n, stage) in self.stages.iter().enumerate() {
+            state.extend(self.stage_lines(n, stage));
+        }
+        if self.fog != [0; 3] {
+            state.push(format!("fog_color {} {} {}", self.fog[0], self.fog[1], self.fog[2]));
+        }
+        let mut needs = vec!["GL_NV_register_combiners"];
+        if self.profile == Profile::Nv2a {
+            // Eight stages came with the constants of single stages.
+            needs.push("GL_NV_register_combiners2");
+        }
+        if self.sources.iter().any(|(name, _)| *name == "secondary") {
+            needs.push("GL_EXT_secondary_color");
+        }
+        Placement { path: Path::Combiners, needs, state, draws, sources: self.sources }
+    }
+
+    /// The lines of a stage: portions that write, and constants that are not 0.
+    fn stage_lines(&self, n: usize, stage: &GeneralStage) -> Vec<String> {
+        let idle = |portion: &Portion| {
+            [portion.ab_output, portion.cd_output, portion.sum_output].iter().all(|r| *r == Register::Zero)
+        };
+        let mut lines = Vec::new();
+        for (name, portion) in [("RGB", &stage.rgb), ("ALPHA", &stage.alpha)] {
+            if !idle(portion) {
+                lines.push(portion_line(n, name, portion));
+            }
+        }
+        for (constant, color) in stage.constants.iter().enumerate().filter(|(_, color)| **color != [0; 4]) {
+            let [r, g, b, a] = color;
+            lines.push(match self.profile {
+                Profile::Nv10 => format!("constant {constant} {r} {g} {b} {a}"),
+                Profile::Nv2a => format!("stage_constant {n} {constant} {r} {g} {b} {a}"),
+            });
+        }
+        lines
+    }
+}
+
+/// A register as the final combiner shows it.
+fn shown(register: Register) -> FinalCombiner {
+    let zero = FinalInput::zero(Component::Rgb);
+    let register = FinalRegister::from(register);
+    let read = FinalInput { register, component: Component::Rgb, invert: false };
+    FinalCombiner {
+        inputs: [zero, zero, zero, read, zero, zero],
+        g: FinalInput { component: Component::Alpha, ..read },
+        color_sum_clamp: false,
+        invert_spare0: false,
+        invert_secondary: false,
+        constants: [[0; 4]; 2],
+    }
+}
+
+/// A register times -1 in SPARE0; whether the negated mapping of -256 saturates or wraps does not count here.
+fn negated(register: Register) -> GeneralStage {
+    times_minus_one(register, false)
+}
+
+/// 1 in SPARE0 where a register is -256, less than 1 elsewhere: -1 times it, less 255.
+fn below(register: Register) -> GeneralStage {
+    times_minus_one(register, true)
+}
+
+fn times_minus_one(register: Register, less_one: bool) -> GeneralStage {
+    let portion = |component| {
+        let minus_one = input(Register::ConstantColor0, component, InputMapping::SignedNegate);
+        let mut portion = Portion::idle(component);
+        (portion.inputs[0], portion.inputs[1]) = (input(register, component, InputMapping::SignedIdentity), minus_one);
+        if less_one {
+            (portion.inputs[2], portion.inputs[3]) = (minus_one, one(component));
+            portion.sum_output = Register::Spare0;
+        } else {
+            portion.ab_output = Register::Spare0;
+        }
+        portion
+    };
+    GeneralStage { constants: [[255; 4], [0; 4]], ..stage(portion(Component::Rgb), portion(Component::Alpha)) }
+}
+
+/// `GL_` is left out of all names, `ZERO` is a destination's `DISCARD_NV`.
+fn register_name(register: FinalRegister) -> &'static str {
+    match register {
+        FinalRegister::Zero => "ZERO",
+        FinalRegister::ConstantColor0 => "CONSTANT_COLOR0_NV",
+        FinalRegister::ConstantColor1 => "CONSTANT_COLOR1_NV",
+        FinalRegister::Fog => "FOG",
+        FinalRegister::PrimaryColor => "PRIMARY_COLOR_NV",
+        FinalRegister::SecondaryColor => "SECONDARY_COLOR_NV",
+        FinalRegister::Texture0 => "TEXTURE0_ARB",
+        FinalRegister::Texture1 => "TEXTURE1_ARB",
+        FinalRegister::Texture2 => "TEXTURE2_ARB",
+        FinalRegister::Texture3 => "TEXTURE3_ARB",
+        FinalRegister::Spare0 => "SPARE0_NV",
+        FinalRegister::Spare1 => "SPARE1_NV",
+        FinalRegister::Spare0PlusSecondary => "SPARE0_PLUS_SECONDARY_COLOR_NV",
+        FinalRegister::ETimesF => "E_TIMES_F_NV",
+    }
+}
+
+fn mapping_name(mapping: InputMapping) -> &'static str {
+    match mapping {
+        InputMapping::UnsignedIdentity => "UNSIGNED_IDENTITY_NV",
+        InputMapping::UnsignedInvert => "UNSIGNED_INVERT_NV",
+        InputMapping::ExpandNormal => "EXPAND_NORMAL_NV",
+        InputMapping::ExpandNegate => "EXPAND_NEGATE_NV",
+        InputMapping::HalfBiasNormal => "HALF_BIAS_NORMAL_NV",
+        InputMapping::HalfBiasNegate => "HALF_BIAS_NEGATE_NV",
+        InputMapping::SignedIdentity => "SIGNED_IDENTITY_NV",
+        InputMapping::SignedNegate => "SIGNED_NEGATE_NV",
+    }
+}
+
+fn component_name(component: Component) -> &'static str {
+    match component {
+        Component::Rgb => "RGB",
+        Component::Blue => "BLUE",
+        Component::Alpha => "ALPHA",
+    }
+}
+
+/// `portion STAGE RGB|ALPHA`, three words for each of A to D, destinations of AB, CD and the sum, scale, bias, and three flags.
+fn portion_line(n: usize, name: &str, portion: &Portion) -> String {
+    let mut words = vec!["portion".to_owned(), n.to_string(), name.to_owned()];
+    for input in &portion.inputs {
+        let parts =
+            [register_name(input.register.into()), mapping_name(input.mapping), component_name(input.component)];
+        words.extend(parts.map(str::to_owned));
+    }
+    for output in [portion.ab_output, portion.cd_output, portion.sum_output] {
+        let name = if output == Register::Zero { "DISCARD_NV" } else { register_name(output.into()) };
+        words.push(name.to_owned());
+    }
+    let scale = match portion.scale {
+        Scale::One => "NONE",
+        Scale::Two => "SCALE_BY_TWO_NV",
+        Scale::Four => "SCALE_BY_FOUR_NV",
+        Scale::Half => "SCALE_BY_ONE_HALF_NV",
+    };
+    let bias = match portion.bias {
+        Bias::None => "NONE",
+        Bias::NegativeHalf => "BIAS_BY_NEGATIVE_ONE_HALF_NV",
+    };
+    words.extend([scale, bias].map(str::to_owned));
+    words.extend([portion.ab_dot_product, portion.cd_dot_product, portion.mux].map(|flag| u8::from(flag).to_string()));
+    words.join(" ")
+}
+
+/// `final VARIABLE REGISTER MAPPING COMPONENT` for the inputs that are not ZERO, and the clamp of the colour sum.
+fn final_lines(state: &FinalCombiner) -> Vec<String> {
+    let mut lines = Vec::new();
+    for (name, input) in ["A", "B", "C", "D", "E", "F", "G"].into_iter().zip(state.inputs.iter().chain([&state.g])) {
+        if input.is_zero() {
+            continue;
+        }
+        let mapping = if input.invert { "UNSIGNED_INVERT_NV" } else { "UNSIGNED_IDENTITY_NV" };
+        let (register, component) = (register_name(input.register), component_name(input.component));
+        lines.push(format!("final VARIABLE_{name}_NV {register} {mapping} {component}"));
+    }
+    lines.push(format!("color_sum_clamp {}", u8::from(state.color_sum_clamp)));
+    lines
+}

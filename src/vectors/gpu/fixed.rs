@@ -1,0 +1,290 @@
+//! Recipes that ask what OpenGL has without register combiners: the texture environment, texels and coordinates, colours, alpha test, blending.
+
+use super::{Case, Draw, Path, Placement, Read, byte};
+use crate::state::{AddressMode, Bias, BlendEquation, BlendFactor, CompareFunction, Scale, TextureFormat};
+
+/// A placement with one draw.
+pub(super) fn drawn(
+    path: Path,
+    needs: Vec<&'static str>,
+    state: Vec<String>,
+    sources: Vec<(&'static str, Vec<u8>)>,
+    reads: Vec<Read>,
+) -> Placement {
+    Placement { path, needs, state, draws: vec![Draw { state: Vec::new(), reads, combiners: None }], sources }
+}
+
+/// The four channels of the pixel in columns of these names.
+pub(super) fn colors(columns: [&str; 4]) -> Vec<Read> {
+    columns.into_iter().enumerate().map(|(n, column)| Read::byte(column, n)).collect()
+}
+
+/// The bytes of a colour of the row.
+pub(super) fn color(case: &Case, name: &str) -> Option<Vec<u8>> {
+    ["r", "g", "b", "a"].iter().map(|channel| byte(case.number(&format!("in.{name}.{channel}")))).collect()
+}
+
+/// The bits of a finite float as four bytes, the lowest first; `None` for infinities and NaN, which an API may treat as it likes.
+fn float(bits: i64) -> Option<[u8; 4]> {
+    let value = f32::from_bits(u32::try_from(bits).ok()?);
+    value.is_finite().then(|| value.to_le_bytes())
+}
+
+/// n / 2^shift, which has to be exact: n is below 2^24.
+fn scaled(n: i64, shift: u32) -> [u8; 4] {
+    let whole = n as f32;
+    let bits = if n == 0 { 0 } else { whole.to_bits().wrapping_sub(shift << 23) };
+    bits.to_le_bytes()
+}
+
+/// The environment of unit 0 that combines the texture and the primary colour.
+fn combine(operation: &str) -> Vec<String> {
+    let words = [
+        "TEXTURE_ENV_MODE COMBINE",
+        &format!("COMBINE_RGB {operation}"),
+        "SOURCE0_RGB TEXTURE",
+        "OPERAND0_RGB SRC_COLOR",
+        "SOURCE1_RGB PRIMARY_COLOR",
+        "OPERAND1_RGB SRC_COLOR",
+        "COMBINE_ALPHA REPLACE",
+        "SOURCE0_ALPHA PRIMARY_COLOR",
+    ];
+    words.iter().map(|words| format!("env 0 {words}")).collect()
+}
+
+pub(super) const COMBINE: &str = "GL_ARB_texture_env_combine|GL_EXT_texture_env_combine";
+
+/// MODULATE of two bytes.
+fn modulate(case: &Case, column: &str, state: &[String]) -> Option<Placement> {
+    let [a, b] = case.numbers(["in.a", "in.b"]);
+    let sources = vec![("texture0", vec![byte(a)?; 4]), ("primary", vec![byte(b)?; 4])];
+    let state = [combine("MODULATE"), state.to_vec()].concat();
+    Some(drawn(Path::Environment, vec![COMBINE], state, sources, vec![Read::byte(column, 0)]))
+}
+
+pub(super) fn product(case: &Case) -> Option<Placement> {
+    modulate(case, "out.ab", &["env 0 RGB_SCALE 1".to_owned()])
+}
+
+/// The scales that an environment has.
+pub(super) fn scale_bias(case: &Case) -> Option<Placement> {
+    let scale = match case.choice("cfg.scale") {
+        Scale::One => 1,
+        Scale::Two => 2,
+        Scale::Four => 4,
+        Scale::Half => return None,
+    };
+    if case.choice::<Bias>("cfg.bias") != Bias::None {
+        return None;
+    }
+    modulate(case, "out.value", &[format!("env 0 RGB_SCALE {scale}")])
+}
+
+/// DOT3 of bytes, whose factors are the even ones of the expand mapping (CMB-3); a negative result is not shown.
+pub(super) fn dot_product(case: &Case) -> Option<Placement> {
+    let expanded = |factor: i64| if factor % 2 == 0 { byte((factor + 256) / 2) } else { None };
+    let vector = |names: [&str; 3]| {
+        let [r, g, b] = case.numbers(names).map(expanded);
+        Some(vec![r?, g?, b?, 255])
+    };
+    let sources = vec![
+        ("texture0", vector(["in.a.r", "in.a.g", "in.a.b"])?),
+        ("primary", vector(["in.b.r", "in.b.g", "in.b.b"])?),
+    ];
+    if case.number("out.dot") < 0 {
+        return None;
+    }
+    let state = [combine("DOT3_RGB"), vec!["env 0 RGB_SCALE 1".to_owned()]].concat();
+    let needs = vec![COMBINE, "GL_ARB_texture_env_dot3|GL_EXT_texture_env_dot3"];
+    Some(drawn(Path::Environment, needs, state, sources, vec![Read::byte("out.dot", 0)]))
+}
+
+pub(super) fn vertex_color(case: &Case) -> Option<Placement> {
+    let color = float(case.number("in.color"))?;
+    let one = 1.0_f32.to_le_bytes();
+    let sources = vec![("primary_float", [color, color, color, one].concat())];
+    Some(drawn(Path::Common, vec![], vec![], sources, vec![Read::byte("out.byte", 0)]))
+}
+
+/// The constant of the texture environment.
+pub(super) fn constant_color(case: &Case) -> Option<Placement> {
+    let color = float(case.number("in.color"))?;
+    let one = 1.0_f32.to_le_bytes();
+    let words = [
+        "TEXTURE_ENV_MODE COMBINE",
+        "COMBINE_RGB REPLACE",
+        "SOURCE0_RGB CONSTANT",
+        "OPERAND0_RGB SRC_COLOR",
+        "RGB_SCALE 1",
+    ];
+    // A unit with a texture, whose environment comes after it.
+    let mut state = vec!["ramp 0 1".to_owned()];
+    state.extend(words.iter().map(|words| format!("env 0 {words}")));
+    let sources = vec![("environment_float", [color, color, color, one].concat())];
+    Some(drawn(Path::Common, vec![COMBINE], state, sources, vec![Read::byte("out.byte", 0)]))
+}
+
+/// A texture whose texels say where they are. Sizes are powers of two, whose coordinates are exact.
+pub(super) fn nearest_address(case: &Case) -> Option<Placement> {
+    let size = case.number("cfg.size");
+    if case.number("cfg.border_texels") != 0 || size.count_ones() != 1 {
+        return None;
+    }
+    let (mode, needs) = match case.choice("cfg.mode") {
+        AddressMode::Wrap => ("REPEAT", vec![]),
+        AddressMode::Mirror => {
+            ("MIRRORED_REPEAT", vec!["GL_ARB_texture_mirrored_repeat|GL_IBM_texture_mirrored_repeat"])
+        }
+        AddressMode::ClampToEdge => ("CLAMP_TO_EDGE", vec![]),
+        AddressMode::ClampToBorder => ("CLAMP_TO_BORDER", vec!["GL_ARB_texture_border_clamp"]),
+        AddressMode::Clamp => ("CLAMP", vec![]),
+    };
+    let state = vec![format!("ramp 0 {size}"), format!("parameter 0 TEXTURE_WRAP_S {mode}")];
+    // u is in 1/256 texel, s in textures.
+    let s = scaled(case.number("in.u"), 8 + size.trailing_zeros());
+    let sources = vec![("coordinates0", [s, scaled(1, 1), [0; 4]].concat())];
+    let reads = vec![
+        Read::byte("out.inside", 2),
+        Read::byte("out.texel", 0),
+        Read { weight: 256, ..Read::byte("out.texel", 1) },
+    ];
+    Some(drawn(Path::Common, needs, state, sources, reads))
+}
+
+/// Four texels, and weights as coordinates between them.
+fn filtered(texels: [i64; 4], weights: [i64; 2]) -> Option<Placement> {
+    let mut quad = Vec::new();
+    for texel in texels {
+        quad.extend([byte(texel)?; 4]);
+    }
+    let sources = vec![("quads0", quad), ("weights0", vec![byte(weights[0])?, byte(weights[1])?])];
+    Some(drawn(Path::Common, vec![], vec![], sources, vec![Read::byte("out.value", 0)]))
+}
+
+pub(super) fn bilinear(case: &Case) -> Option<Placement> {
+    let texels = case.numbers(["in.t00", "in.t10", "in.t01", "in.t11"]);
+    filtered(texels, case.numbers(["in.weight_u", "in.weight_v"]))
+}
+
+pub(super) fn linear_step(case: &Case) -> Option<Placement> {
+    let [first, second, weight] = case.numbers(["in.first", "in.second", "in.weight"]);
+    filtered([first, second, first, second], [weight, 0])
+}
+
+/// A cube map whose texels say where they are, in bytes.
+pub(super) fn cube_face(case: &Case) -> Option<Placement> {
+    let size = case.number("cfg.size");
+    let [u, v] = case.numbers(["out.u", "out.v"]).map(|along| along >> 8);
+    if size > 256 || u >= size || v >= size {
+        return None;
+    }
+    let [x, y, z] = case.numbers(["in.x", "in.y", "in.z"]).map(float);
+    let sources = vec![("coordinates0", [x?, y?, z?].concat())];
+    let reads = vec![Read::byte("out.face", 2), Read::byte("out.u>>8", 0), Read::byte("out.v>>8", 1)];
+    let needs = vec!["GL_ARB_texture_cube_map|GL_EXT_texture_cube_map"];
+    Some(drawn(Path::Common, needs, vec![format!("cube 0 {size}")], sources, reads))
+}
+
+/// Internal format, format and type by which OpenGL takes the words of a format.
+fn upload(format: TextureFormat) -> Option<&'static str> {
+    Some(match format {
+        TextureFormat::A8R8G8B8 => "RGBA8 BGRA UNSIGNED_INT_8_8_8_8_REV",
+        TextureFormat::X8R8G8B8 => "RGB8 BGRA UNSIGNED_INT_8_8_8_8_REV",
+        TextureFormat::R5G6B5 => "RGB5 RGB UNSIGNED_SHORT_5_6_5",
+        TextureFormat::X1R5G5B5 => "RGB5 BGRA UNSIGNED_SHORT_1_5_5_5_REV",
+        TextureFormat::A1R5G5B5 => "RGB5_A1 BGRA UNSIGNED_SHORT_1_5_5_5_REV",
+        TextureFormat::A4R4G4B4 => "RGBA4 BGRA UNSIGNED_SHORT_4_4_4_4_REV",
+        TextureFormat::L8 => "LUMINANCE8 LUMINANCE UNSIGNED_BYTE",
+        TextureFormat::I8 => "INTENSITY8 LUMINANCE UNSIGNED_BYTE",
+        TextureFormat::A8 => "ALPHA8 ALPHA UNSIGNED_BYTE",
+        TextureFormat::A8L8 => "LUMINANCE8_ALPHA8 LUMINANCE_ALPHA UNSIGNED_BYTE",
+        _ => return None,
+    })
+}
+
+pub(super) fn texel_expansion(case: &Case) -> Option<Placement> {
+    let format: TextureFormat = case.choice("cfg.format");
+    let state = vec![format!("texels 0 {}", upload(format)?)];
+    let word = u32::try_from(case.number("in.word")).ok()?.to_le_bytes();
+    let sources = vec![("texture0", word[..format.bytes() as usize].to_vec())];
+    Some(drawn(Path::Common, vec![], state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))
+}
+
+pub(super) fn compressed_block(case: &Case) -> Option<Placement> {
+    let (name, words) = match case.choice("cfg.format") {
+        TextureFormat::Dxt1 => ("COMPRESSED_RGBA_S3TC_DXT1_EXT", 2),
+        TextureFormat::Dxt3 => ("COMPRESSED_RGBA_S3TC_DXT3_EXT", 4),
+        TextureFormat::Dxt5 => ("COMPRESSED_RGBA_S3TC_DXT5_EXT", 4),
+        _ => return None,
+    };
+    let mut block = Vec::new();
+    for word in ["in.word0", "in.word1", "in.word2", "in.word3"].iter().take(words) {
+        block.extend(u32::try_from(case.number(word)).ok()?.to_le_bytes());
+    }
+    let corner = vec![byte(case.number("in.column"))?, byte(case.number("in.row"))?];
+    let needs = vec!["GL_ARB_texture_compression", "GL_EXT_texture_compression_s3tc"];
+    let state = vec![format!("compressed 0 {name}")];
+    let sources = vec![("blocks0", block), ("corners0", corner)];
+    Some(drawn(Path::Common, needs, state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))
+}
+
+/// The fragment is the primary colour: 1 where it passes, 0 in the cleared buffer.
+pub(super) fn alpha_test(case: &Case) -> Option<Placement> {
+    let function = match case.choice("cfg.function") {
+        CompareFunction::Never => "NEVER",
+        CompareFunction::Less => "LESS",
+        CompareFunction::Equal => "EQUAL",
+        CompareFunction::LessOrEqual => "LEQUAL",
+        CompareFunction::Greater => "GREATER",
+        CompareFunction::NotEqual => "NOTEQUAL",
+        CompareFunction::GreaterOrEqual => "GEQUAL",
+        CompareFunction::Always => "ALWAYS",
+    };
+    let state = vec![format!("alpha_test {function} {}", case.number("cfg.reference"))];
+    let sources = vec![("primary", vec![1, 1, 1, byte(case.number("in.alpha"))?])];
+    Some(drawn(Path::Common, vec![], state, sources, vec![Read::byte("out.passes", 0)]))
+}
+
+fn factor(factor: BlendFactor) -> &'static str {
+    match factor {
+        BlendFactor::Zero => "ZERO",
+        BlendFactor::One => "ONE",
+        BlendFactor::SourceColor => "SRC_COLOR",
+        BlendFactor::OneMinusSourceColor => "ONE_MINUS_SRC_COLOR",
+        BlendFactor::SourceAlpha => "SRC_ALPHA",
+        BlendFactor::OneMinusSourceAlpha => "ONE_MINUS_SRC_ALPHA",
+        BlendFactor::DestinationAlpha => "DST_ALPHA",
+        BlendFactor::OneMinusDestinationAlpha => "ONE_MINUS_DST_ALPHA",
+        BlendFactor::DestinationColor => "DST_COLOR",
+        BlendFactor::OneMinusDestinationColor => "ONE_MINUS_DST_COLOR",
+        BlendFactor::SourceAlphaSaturate => "SRC_ALPHA_SATURATE",
+        BlendFactor::ConstantColor => "CONSTANT_COLOR",
+        BlendFactor::OneMinusConstantColor => "ONE_MINUS_CONSTANT_COLOR",
+        BlendFactor::ConstantAlpha => "CONSTANT_ALPHA",
+        BlendFactor::OneMinusConstantAlpha => "ONE_MINUS_CONSTANT_ALPHA",
+    }
+}
+
+/// The fragment is the primary colour, what the buffer holds is drawn before.
+pub(super) fn blend(case: &Case) -> Option<Placement> {
+    let (equation, mut needs) = match case.choice("cfg.equation") {
+        BlendEquation::Add => ("FUNC_ADD", vec![]),
+        BlendEquation::Subtract => ("FUNC_SUBTRACT", vec!["GL_EXT_blend_subtract"]),
+        BlendEquation::ReverseSubtract => ("FUNC_REVERSE_SUBTRACT", vec!["GL_EXT_blend_subtract"]),
+        BlendEquation::Min => ("MIN", vec!["GL_EXT_blend_minmax"]),
+        BlendEquation::Max => ("MAX", vec!["GL_EXT_blend_minmax"]),
+        // OpenGL has no name for them.
+        BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract => return None,
+    };
+    let factors: [BlendFactor; 2] = [case.choice("cfg.source_factor"), case.choice("cfg.destination_factor")];
+    if factors[1] == BlendFactor::SourceAlphaSaturate {
+        return None;
+    }
+    let mut sources = vec![("primary", color(case, "source")?), ("destination", color(case, "destination")?)];
+    if factors.iter().any(|f| factor(*f).contains("CONSTANT")) {
+        needs.push("GL_EXT_blend_color");
+        sources.push(("blend_color", color(case, "constant")?));
+    }
+    let state = vec![format!("blend {equation} {} {}", factor(factors[0]), factor(factors[1]))];
+    Some(drawn(Path::Common, needs, state, sources, colors(["out.r", "out.g", "out.b", "out.a"])))
+}

@@ -1,0 +1,277 @@
+//! Results held to a pack: by unit, by tag, by policy.
+
+use std::collections::{BTreeMap, HashMap};
+
+use serde::Serialize;
+
+use super::waiver::Waiver;
+use super::{Observed, ResultRow, Results, UnitResults};
+use crate::state::{POLICIES, Policies, Profile};
+use crate::vectors::column::Kind;
+use crate::vectors::error::VectorError;
+use crate::vectors::read::{Table, TableRow};
+use crate::vectors::table::LAST;
+use crate::vectors::unit::Conditions;
+
+/// How results and a pack differ.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Comparison {
+    /// Units that were asked, in the order of their names.
+    pub units: Vec<UnitComparison>,
+    /// The single other value of a policy that explains the most, if one explains more than it breaks.
+    pub explanation: Option<Explanation>,
+}
+
+/// How a unit differs. Rows are counted.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct UnitComparison {
+    /// The unit.
+    pub unit: &'static str,
+    /// Rows with results.
+    pub asked: usize,
+    /// All columns as the pack has them.
+    pub exact: usize,
+    /// Every number at most one step off.
+    pub off_by_one: usize,
+    /// Some number further off, or another name, or a flag that is not the same.
+    pub worse: usize,
+    /// The draw failed.
+    pub errors: usize,
+    /// Rows of the pack without a result.
+    pub not_asked: usize,
+    /// The largest difference of a number, in steps of its column.
+    pub largest: u64,
+    /// By tag: why a row is there, and the policies that change it.
+    pub tags: BTreeMap<String, Share>,
+    /// Other values of policies that would explain rows that differ, the best first.
+    pub policies: Vec<Explanation>,
+    /// What a waiver takes away: rows.
+    pub waived: usize,
+    /// Why it does.
+    pub reason: Option<String>,
+    /// The first rows that differ.
+    pub rows: Vec<RowDifference>,
+}
+
+/// A part of a unit's rows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Share {
+    /// Rows with results.
+    pub asked: usize,
+    /// Those that differ.
+    pub differ: usize,
+}
+
+/// What another value of a policy would do.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Explanation {
+    /// `CMB-3=literal`.
+    pub policy: String,
+    /// Rows that differ and would not.
+    pub explains: usize,
+    /// Rows that do not differ and would.
+    pub breaks: usize,
+}
+
+impl Explanation {
+    /// Rows won, less rows lost.
+    fn gain(&self) -> i64 {
+        self.explains as i64 - self.breaks as i64
+    }
+}
+
+/// A row that differs.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct RowDifference {
+    /// The row.
+    pub id: String,
+    /// Its line in the results.
+    pub line: usize,
+    /// Column, what the pack has, what was observed; empty where the draw failed.
+    pub differences: Vec<(String, String, String)>,
+    /// Configuration, inputs, intermediates and results of the pack: `name=value`.
+    pub row: Vec<String>,
+}
+
+impl UnitComparison {
+    /// Rows that differ and are not waived.
+    pub fn failures(&self) -> usize {
+        self.off_by_one + self.worse + self.errors - self.waived
+    }
+}
+
+impl Comparison {
+    /// Whether everything is exact or waived.
+    pub fn is_clean(&self) -> bool {
+        self.units.iter().all(|unit| unit.failures() == 0)
+    }
+}
+
+/// Holds results to the tables of their pack. At most `shown` rows of a unit are told.
+///
+/// # Errors
+/// Results of a unit or a row that the pack does not have.
+pub fn compare(
+    tables: &[Table],
+    results: &Results,
+    waivers: &[Waiver],
+    shown: usize,
+) -> Result<Comparison, VectorError> {
+    let mut units = Vec::new();
+    let mut totals: Vec<Explanation> = Vec::new();
+    for of_unit in &results.units {
+        let name = of_unit.unit.name();
+        let Some(table) = tables.iter().find(|table| table.contents.unit.name() == name) else {
+            let message = format!("the pack has no unit `{name}`");
+            return Err(VectorError::invalid("NB1035", &of_unit.path, 2, message, "name the pack that was drawn"));
+        };
+        let pairs = paired(table, of_unit)?;
+        let mut compared = unit(table, of_unit, &pairs, shown);
+        for explanation in &compared.policies {
+            match totals.iter_mut().find(|total| total.policy == explanation.policy) {
+                Some(total) => {
+                    total.explains += explanation.explains;
+                    total.breaks += explanation.breaks;
+                }
+                None => totals.push(explanation.clone()),
+            }
+        }
+        if let Some(waiver) = waivers.iter().find(|waiver| waiver.unit == name) {
+            let differing = compared.off_by_one + compared.worse;
+            // Beyond its limits a waiver waives nothing: what is known has become something else.
+            let holds = differing <= waiver.count && compared.largest <= waiver.maximum;
+            compared.waived = if holds { differing } else { 0 };
+            compared.reason = Some(waiver.reason.clone());
+        }
+        units.push(compared);
+    }
+    let explanation = totals.into_iter().max_by_key(Explanation::gain).filter(|best| best.gain() > 0);
+    Ok(Comparison { units, explanation })
+}
+
+/// Rows of results with the pack's.
+fn paired<'r>(table: &'r Table, results: &'r UnitResults) -> Result<Vec<(&'r TableRow, &'r ResultRow)>, VectorError> {
+    let by_id: HashMap<&str, &TableRow> = table.rows.iter().map(|row| (row.id.as_str(), row)).collect();
+    let pair = |row: &'r ResultRow| match by_id.get(row.id.as_str()) {
+        Some(expected) => Ok((*expected, row)),
+        None => {
+            let message = format!("the pack has no row {}", row.id);
+            Err(VectorError::invalid("NB1035", &results.path, row.line, message, "name the pack that was drawn"))
+        }
+    };
+    results.rows.iter().map(pair).collect()
+}
+
+/// The expected number of an observed column.
+fn expected(results: &[i64], column: &Observed) -> i64 {
+    results[column.column] >> column.shift
+}
+
+/// How far a number is off; `None` for what has no steps.
+fn steps(kind: &Kind, expected: i64, observed: i64) -> Option<u64> {
+    let apart = expected.abs_diff(observed);
+    match kind {
+        Kind::Unsigned(1) | Kind::Name(_) | Kind::Hex(_) => None,
+        Kind::Unsigned(_) | Kind::Signed(_) => Some(apart),
+        Kind::Halves(_) => Some(apart.div_ceil(2)),
+    }
+}
+
+fn unit(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)], shown: usize) -> UnitComparison {
+    let columns = table.writer.results();
+    let mut compared = UnitComparison {
+        unit: results.unit.name(),
+        asked: pairs.len(),
+        exact: 0,
+        off_by_one: 0,
+        worse: 0,
+        errors: 0,
+        not_asked: table.rows.len() - pairs.len(),
+        largest: 0,
+        tags: BTreeMap::new(),
+        policies: Vec::new(),
+        waived: 0,
+        reason: None,
+        rows: Vec::new(),
+    };
+    for (row, result) in pairs {
+        let mut differences = Vec::new();
+        let mut off_by_one = true;
+        for (column, observed) in results.columns.iter().zip(result.values.iter().flatten()) {
+            let wanted = expected(&row.results, column);
+            if wanted == *observed {
+                continue;
+            }
+            let kind = &columns[column.column].kind;
+            let apart = steps(kind, wanted, *observed);
+            off_by_one &= apart == Some(1);
+            compared.largest = compared.largest.max(apart.unwrap_or(1));
+            let text = |value: i64| match column.shift {
+                0 if kind.holds(value) => kind.write(value),
+                _ => value.to_string(),
+            };
+            differences.push((column.name.clone(), text(wanted), text(*observed)));
+        }
+        let differs = result.values.is_none() || !differences.is_empty();
+        match (&result.values, differs, off_by_one) {
+            (None, ..) => compared.errors += 1,
+            (_, false, _) => compared.exact += 1,
+            (_, true, true) => compared.off_by_one += 1,
+            (_, true, false) => compared.worse += 1,
+        }
+        let fields: Vec<&str> = row.text.split('\t').collect();
+        for tag in fields.get(fields.len() - LAST.len()).into_iter().flat_map(|tags| tags.split(',')) {
+            let share = compared.tags.entry(tag.to_owned()).or_default();
+            share.asked += 1;
+            share.differ += usize::from(differs);
+        }
+        if differs && compared.rows.len() < shown {
+            let names = table.writer.inputs().iter().chain(columns);
+            let row = names.zip(&fields[1..]).map(|(column, field)| format!("{}={field}", column.name)).collect();
+            compared.rows.push(RowDifference { id: result.id.clone(), line: result.line, differences, row });
+        }
+    }
+    if compared.off_by_one + compared.worse > 0 {
+        compared.policies = policies(table, results, pairs);
+    }
+    compared
+}
+
+/// What every other value of the unit's policies would explain, the best first; those that explain nothing are left out.
+fn policies(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)]) -> Vec<Explanation> {
+    let unit = table.contents.unit;
+    let mut found = Vec::new();
+    for policy in POLICIES.iter().filter(|policy| unit.rules().contains(&policy.rule)) {
+        for (index, (value, _)) in policy.values.iter().enumerate() {
+            let mut policies = Policies::DEFAULT;
+            if policies.chosen(policy.rule) == index {
+                continue;
+            }
+            policies.choose(policy.rule, index);
+            let mut explanation = Explanation { policy: format!("{}={value}", policy.rule), explains: 0, breaks: 0 };
+            for (row, result) in pairs {
+                let Some(observed) = &result.values else { continue };
+                let other = evaluated(table, row, policies, table.contents.profile);
+                let agrees = |results_of: &[i64]| {
+                    results.columns.iter().zip(observed).all(|(column, value)| expected(results_of, column) == *value)
+                };
+                match (agrees(&row.results), agrees(&other)) {
+                    (false, true) => explanation.explains += 1,
+                    (true, false) => explanation.breaks += 1,
+                    _ => {}
+                }
+            }
+            if explanation.explains > 0 {
+                found.push(explanation);
+            }
+        }
+    }
+    found.sort_by_key(|explanation| -explanation.gain());
+    found
+}
+
+fn evaluated(table: &Table, row: &TableRow, policies: Policies, profile: Profile) -> Vec<i64> {
+    let mut results = vec![0; row.results.len()];
+    table.contents.unit.evaluate(&row.inputs, &Conditions { profile, policies }, &mut results);
+    results
+}

@@ -1,0 +1,201 @@
+//! Results: what a card or a driver answered, as `vectors/harness/gl` writes it.
+//!
+//! ```text
+//! device.json     who answered: vendor, renderer, version, extensions, surface; the root digest of the pack that was asked
+//! UNIT.tsv        rows: id, observed columns, status
+//! ```
+//!
+//! A table begins with `# ninebit-results 1` and ends with `# end ROWS CRC`, the CRC-32 of everything before that line: one that was cut off, reordered or
+//! edited is refused. [`compare`](compare::compare) holds results to a pack; [`adopt`](adopt::adopt) records those of a real card.
+
+pub mod adopt;
+pub mod compare;
+mod read;
+pub mod waiver;
+
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+pub use read::parse;
+
+use super::error::{VectorError, read_text};
+use super::pack::Manifest;
+use super::unit::Unit;
+
+/// `format` of a device file.
+pub const DEVICE_FORMAT: &str = "ninebit-device-1";
+
+/// Name of the device file.
+pub const DEVICE: &str = "device.json";
+
+/// Who answered.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Device {
+    /// [`DEVICE_FORMAT`].
+    pub format: String,
+    /// Root digest of the pack that was asked.
+    pub pack: String,
+    /// As OpenGL names it.
+    pub vendor: String,
+    /// As OpenGL names it.
+    pub renderer: String,
+    /// As OpenGL names it.
+    pub version: String,
+    /// What was drawn into.
+    pub surface: String,
+    /// Its bits.
+    pub surface_format: String,
+    /// Of OpenGL, with spaces between.
+    pub extensions: String,
+}
+
+impl Device {
+    /// Whether a program answered instead of a card.
+    pub fn is_software(&self) -> bool {
+        let programs = [
+            "llvmpipe",
+            "softpipe",
+            "swrast",
+            "software",
+            "swiftshader",
+            "gdi generic",
+            "basic render",
+            "recorder",
+            "virgl",
+            "lavapipe",
+        ];
+        let renderer = format!("{} {}", self.vendor, self.renderer).to_lowercase();
+        programs.iter().any(|program| renderer.contains(program))
+    }
+}
+
+/// A column that was observed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Observed {
+    /// As the results name it: `out.u>>8`.
+    pub name: String,
+    /// Its place among the unit's results.
+    pub column: usize,
+    /// Lowest bits that it lacks.
+    pub shift: u32,
+}
+
+/// The results of a unit.
+#[derive(Debug)]
+pub struct UnitResults {
+    /// The file.
+    pub path: PathBuf,
+    /// The unit.
+    pub unit: &'static dyn Unit,
+    /// Chip, level, seed and behaviour of the table that was asked, as written.
+    pub asked: [String; 4],
+    /// What was observed.
+    pub columns: Vec<Observed>,
+    /// Rows in the order of the file.
+    pub rows: Vec<ResultRow>,
+    /// Rows of batches that the device could not draw.
+    pub unsupported: u64,
+}
+
+/// A row of results.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ResultRow {
+    /// Its line in the file, from 1.
+    pub line: usize,
+    /// The row of the pack.
+    pub id: String,
+    /// A number for each observed column, in the column's own unit; `None` if the draw failed.
+    pub values: Option<Vec<i64>>,
+}
+
+/// Everything that a device answered.
+#[derive(Debug)]
+pub struct Results {
+    /// Who.
+    pub device: Device,
+    /// By unit, in the order of their names.
+    pub units: Vec<UnitResults>,
+}
+
+/// Reads a folder of results of this pack.
+///
+/// # Errors
+/// A file is missing, cut off, was changed, is of another version or of another pack.
+pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> {
+    let device_path = folder.join(DEVICE);
+    let device =
+        device(&read_text(&device_path, "name the folder of results that vectors/harness/gl wrote")?, &device_path)?;
+    if device.pack != manifest.root {
+        let message = format!("these are results of the pack {:.12}, not of {:.12}", device.pack, manifest.root);
+        return Err(VectorError::invalid(
+            "NB1031",
+            &device_path,
+            0,
+            message,
+            "name the pack that was drawn, or draw this one",
+        ));
+    }
+    let entries = std::fs::read_dir(folder)
+        .map_err(|error| VectorError::Unreadable { path: folder.to_path_buf(), reason: error.to_string() })?;
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|extension| extension == "tsv" || extension == "part"));
+    paths.sort();
+    if let Some(part) = paths.iter().find(|path| path.extension().is_some_and(|extension| extension == "part")) {
+        return Err(VectorError::invalid("NB1030", part, 0, "a run was broken off here", "draw the pack again"));
+    }
+    if paths.is_empty() {
+        return Err(VectorError::Missing {
+            path: folder.join("UNIT.tsv"),
+            help: "there are no results: draw the pack again",
+        });
+    }
+    let mut units = Vec::new();
+    for path in paths {
+        let results = parse(&read_text(&path, "draw the pack again")?, &path)?;
+        let name = results.unit.name();
+        if path.file_stem().is_none_or(|stem| stem != name) {
+            return Err(VectorError::invalid(
+                "NB1032",
+                &path,
+                2,
+                format!("these are results of `{name}`"),
+                "do not rename results",
+            ));
+        }
+        let of_pack =
+            [&manifest.profile, &manifest.level, &manifest.seed.to_string(), &manifest.behaviour_rev.to_string()];
+        if results.asked.iter().zip(of_pack).any(|(asked, own)| asked != own) {
+            let message = "its chip, level, seed or behaviour is not the pack's";
+            return Err(VectorError::invalid(
+                "NB1031",
+                &path,
+                0,
+                message,
+                "name the pack that was drawn, or draw this one",
+            ));
+        }
+        units.push(results);
+    }
+    Ok(Results { device, units })
+}
+
+/// Reads a device file.
+fn device(text: &str, path: &Path) -> Result<Device, VectorError> {
+    let help = "draw the pack again";
+    let device: Device = serde_json::from_str(text).map_err(|error| {
+        VectorError::invalid("NB1033", path, error.line(), format!("not a device file: {error}"), help)
+    })?;
+    if device.format != DEVICE_FORMAT {
+        let message = format!("the format is `{:.60}`, not `{DEVICE_FORMAT}`", device.format);
+        return Err(VectorError::invalid(
+            "NB1003",
+            path,
+            0,
+            message,
+            "use the program that wrote it, or draw the pack again",
+        ));
+    }
+    Ok(device)
+}

@@ -1,0 +1,132 @@
+//! Tables of results out of text.
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use super::{Observed, ResultRow, UnitResults};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::error::VectorError;
+use crate::vectors::units;
+
+/// First line of a table of results.
+const FORMAT: &str = "# ninebit-results 1";
+
+const AGAIN: &str = "draw the pack again";
+
+/// Reads a table of results. `path` is for messages only.
+///
+/// # Errors
+/// Not results, another version, cut off or edited, an unknown unit or column, a number that its column does not take, a row that is there
+/// twice.
+pub fn parse(text: &str, path: &Path) -> Result<UnitResults, VectorError> {
+    let invalid = |code, line, message: String| VectorError::invalid(code, path, line, message, AGAIN);
+    let first = text.lines().next().unwrap_or_default();
+    if first != FORMAT {
+        let shown: String = first.chars().take(60).collect();
+        let (code, message) = match first.starts_with("# ninebit-results") {
+            true => ("NB1003", format!("`{shown}` is another version; this is `{FORMAT}`")),
+            false => ("NB1030", format!("not results: the first line is not `{FORMAT}`")),
+        };
+        return Err(invalid(code, 1, message));
+    }
+    let body = checked(text, path)?;
+    let mut lines = body.lines().enumerate().map(|(n, line)| (n + 1, line)).skip(1);
+    let mut field = |name: &str| -> Result<(usize, &str), VectorError> {
+        let (line, text) = lines.next().unwrap_or((0, ""));
+        let value =
+            text.strip_prefix("# ").and_then(|rest| rest.strip_prefix(name)).and_then(|rest| rest.strip_prefix(' '));
+        value
+            .map(|value| (line, value))
+            .ok_or_else(|| invalid("NB1032", line, format!("`# {name} ...` is expected here")))
+    };
+    let (line, name) = field("unit")?;
+    let unit = units::by_name(name).ok_or_else(|| {
+        invalid("NB1005", line, format!("there is no unit `{}`", name.chars().take(60).collect::<String>()))
+    })?;
+    let asked = [field("profile")?.1, field("level")?.1, field("seed")?.1, field("behaviour")?.1].map(str::to_owned);
+    let results = unit.results();
+    let (line, names) = lines.next().unwrap_or((0, ""));
+    let columns = observed(names, &results)
+        .ok_or_else(|| invalid("NB1032", line, format!("the columns are not those of results of `{}`", unit.name())))?;
+    let mut seen: HashMap<&str, usize> = HashMap::new();
+    let mut rows = Vec::new();
+    let mut unsupported = None;
+    for (line, text) in lines {
+        if let Some(count) = text.strip_prefix("# unsupported ") {
+            unsupported = Some(count.parse().map_err(|_| invalid("NB1032", line, "not a number of rows".to_owned()))?);
+            continue;
+        }
+        let row = row(text, line, &columns, &results).map_err(|message| invalid("NB1032", line, message))?;
+        let id = text.get(..12).unwrap_or_default();
+        if let Some(first) = seen.insert(id, line) {
+            return Err(invalid("NB1009", line, format!("row {id} stands in line {first} already")));
+        }
+        rows.push(row);
+    }
+    let unsupported = unsupported.ok_or_else(|| invalid("NB1032", 0, "`# unsupported ...` is missing".to_owned()))?;
+    Ok(UnitResults { path: path.to_path_buf(), unit, asked, columns, rows, unsupported })
+}
+
+/// Everything before the last line, which says how much that is.
+fn checked<'t>(text: &'t str, path: &Path) -> Result<&'t str, VectorError> {
+    let invalid = |message: &str| VectorError::invalid("NB1030", path, 0, message, AGAIN);
+    let last = text.strip_suffix('\n').and_then(|text| text.rfind('\n')).map(|at| at + 1);
+    let end = last.map(|at| text.split_at(at)).filter(|(_, end)| end.starts_with("# end "));
+    let Some((body, end)) = end else { return Err(invalid("its last line is not `# end ...`: it is cut off")) };
+    let mut words = end.trim_end().split(' ').skip(2);
+    let (rows, crc) = (words.next().unwrap_or_default(), words.next().unwrap_or_default());
+    if format!("{:08x}", crc32fast::hash(body.as_bytes())) != crc {
+        return Err(invalid("its checksum is not that of its lines: it was changed or cut off"));
+    }
+    let found = body.lines().filter(|line| !line.starts_with('#')).count().saturating_sub(1);
+    if rows != found.to_string() {
+        return Err(invalid("it has not as many rows as its last line says"));
+    }
+    Ok(body)
+}
+
+/// The columns between `id` and `status`.
+fn observed(names: &str, results: &[Column]) -> Option<Vec<Observed>> {
+    let names = names.strip_prefix("id\t")?.strip_suffix("\tstatus")?;
+    let column = |name: &str| {
+        let (of, shift) = name.split_once(">>").unwrap_or((name, "0"));
+        let column = results.iter().position(|column| column.name == of && of.starts_with("out."))?;
+        let shift = shift.parse().ok().filter(|shift| *shift < 32)?;
+        Some(Observed { name: name.to_owned(), column, shift })
+    };
+    names.split('\t').map(column).collect()
+}
+
+/// A row out of its line.
+fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Result<ResultRow, String> {
+    let fields: Vec<&str> = text.split('\t').collect();
+    let wanted = columns.len() + 2;
+    if fields.len() != wanted {
+        return Err(format!("{} fields where the columns are {wanted}", fields.len()));
+    }
+    let id = fields[0];
+    if id.len() != 12 || !id.bytes().all(|b| matches!(b, b'0'..=b'9' | b'a'..=b'f')) {
+        return Err(format!("`{}` is no id", id.chars().take(60).collect::<String>()));
+    }
+    let observed = &fields[1..=columns.len()];
+    let values = match fields[columns.len() + 1] {
+        "ok" => {
+            let read = |(field, column): (&&str, &Observed)| {
+                let kind = &results[column.column].kind;
+                let shown: String = field.chars().take(60).collect();
+                number(field, kind).ok_or_else(|| format!("`{shown}` is not a value of {}", column.name))
+            };
+            Some(observed.iter().zip(columns).map(read).collect::<Result<Vec<i64>, String>>()?)
+        }
+        "error" if observed.iter().all(|field| *field == "-") => None,
+        _ => return Err("the status is neither `ok` nor `error` without numbers".to_owned()),
+    };
+    Ok(ResultRow { line, id: id.to_owned(), values })
+}
+
+/// A decimal number in the column's own unit: names by their places, halves doubled. A card may answer what no column of the model holds.
+fn number(field: &str, kind: &Kind) -> Option<i64> {
+    let value: i32 = field.parse().ok()?;
+    let value = i64::from(value);
+    (value.to_string() == field).then_some(if matches!(kind, Kind::Halves(_)) { 2 * value } else { value })
+}

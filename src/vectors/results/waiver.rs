@@ -1,0 +1,47 @@
+//! Waivers: differences that are known and named. There is no other tolerance.
+
+use std::path::Path;
+
+use serde::Deserialize;
+
+use crate::vectors::error::{VectorError, read_text};
+use crate::vectors::units;
+
+/// A difference that is known.
+#[derive(Clone, Debug, PartialEq, Eq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Waiver {
+    /// The unit.
+    pub unit: String,
+    /// The largest difference of a number that is waived, in its column's steps.
+    pub maximum: u64,
+    /// The most rows that are waived.
+    pub count: usize,
+    /// Why.
+    pub reason: String,
+}
+
+/// Reads a file of waivers: JSON, a list of objects.
+///
+/// # Errors
+/// The file is missing or is not such a list; a unit does not exist or is there twice; a waiver waives nothing or has no reason.
+pub fn read(path: &Path) -> Result<Vec<Waiver>, VectorError> {
+    let help = r#"a list such as [{"unit": "blend", "maximum": 1, "count": 7, "reason": "..."}]"#;
+    let invalid = |line, message: String| VectorError::invalid("NB1034", path, line, message, help);
+    let text = read_text(path, "check the spelling of the file of waivers")?;
+    let waivers: Vec<Waiver> = serde_json::from_str(&text)
+        .map_err(|error| invalid(error.line(), format!("not a list of waivers: {error}")))?;
+    for (n, waiver) in waivers.iter().enumerate() {
+        let name: String = waiver.unit.chars().take(60).collect();
+        if units::by_name(&waiver.unit).is_none() {
+            return Err(invalid(0, format!("there is no unit `{name}`")));
+        }
+        if waivers[..n].iter().any(|other| other.unit == waiver.unit) {
+            return Err(invalid(0, format!("`{name}` has two waivers")));
+        }
+        if waiver.maximum == 0 || waiver.count == 0 || waiver.reason.trim().is_empty() {
+            return Err(invalid(0, format!("the waiver of `{name}` needs a maximum, a count and a reason")));
+        }
+    }
+    Ok(waivers)
+}

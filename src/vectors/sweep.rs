@@ -1,0 +1,246 @@
+//! Sweeps: every row of a unit, as digests.
+//!
+//! All rows of a unit, in the order of [`cases::nth`], are cut into leaves: ranges whose number depends on nothing but the
+//! unit. A leaf is the SHA-256 of the rows' `out.` columns, each number in as many whole bytes as its bits need, low byte first; rows whose
+//! inputs do not go together have none.
+
+use std::ops::Range;
+
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+
+use super::cases;
+use super::column::Column;
+use super::unit::{Conditions, Unit};
+use crate::picture::hexadecimal;
+use crate::state::{Policies, Profile};
+
+/// Rows of a leaf, unless the unit has more than [`MOST_LEAVES`] times as many.
+const LEAF_ROWS: u64 = 1 << 23;
+
+/// The most leaves.
+pub const MOST_LEAVES: u64 = 1024;
+
+/// The most rows that a unit may have: beyond it nobody waits for the end.
+pub const MOST_ROWS: u64 = 1 << 40;
+
+/// Bytes that are hashed at once.
+const BUFFER: usize = 1 << 16;
+
+/// The digest of a range of rows.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Leaf {
+    /// Its place among the leaves, from 0.
+    pub index: u64,
+    /// Rows whose inputs go together.
+    pub rows: u64,
+    /// Rows of which some `out.` number is the least that its type holds.
+    pub low: u64,
+    /// Rows of which some `out.` number is the greatest that its type holds.
+    pub high: u64,
+    /// SHA-256 of the rows' `out.` columns.
+    pub sha256: String,
+}
+
+/// All rows of a unit on a chip.
+#[derive(Debug)]
+pub struct Sweep {
+    /// The unit.
+    pub unit: &'static dyn Unit,
+    /// The chip.
+    pub profile: Profile,
+    /// Rows, those included whose inputs do not go together.
+    pub size: u64,
+    /// Leaves.
+    pub leaves: u64,
+    inputs: Vec<Column>,
+    outputs: Vec<Output>,
+    results: usize,
+}
+
+/// A result column that is hashed.
+#[derive(Clone, Copy, Debug)]
+struct Output {
+    index: usize,
+    bytes: usize,
+    least: i64,
+    greatest: i64,
+}
+
+impl Sweep {
+    /// Of a unit; `None` if it has more than [`MOST_ROWS`] rows.
+    pub fn new(unit: &'static dyn Unit, profile: Profile) -> Option<Sweep> {
+        let (inputs, results) = (unit.inputs(), unit.results());
+        let size = u64::try_from(cases::size(&inputs)).ok().filter(|size| *size <= MOST_ROWS)?;
+        let outputs = results.iter().enumerate().filter(|(_, column)| column.name.starts_with("out."));
+        let outputs = outputs.map(|(index, column)| {
+            let (least, greatest) = column.kind.range();
+            Output { index, bytes: column.kind.bits().div_ceil(8) as usize, least, greatest }
+        });
+        let leaves = size.div_ceil(LEAF_ROWS).clamp(1, MOST_LEAVES);
+        Some(Sweep { unit, profile, size, leaves, outputs: outputs.collect(), inputs, results: results.len() })
+    }
+
+    /// The rows of a leaf, by their places among all.
+    pub fn range(&self, leaf: u64) -> Range<u64> {
+        let at = |leaf: u64| (u128::from(self.size) * u128::from(leaf) / u128::from(self.leaves)) as u64;
+        at(leaf)..at(leaf + 1)
+    }
+
+    /// Computes a leaf.
+    pub fn leaf(&self, index: u64) -> Leaf {
+        let mut digest = Digesting::new(self);
+        digest.rows(self.range(index));
+        let [low, high] = digest.ends;
+        Leaf { index, rows: digest.rows, low, high, sha256: hexadecimal(&digest.finish()) }
+    }
+
+    /// The SHA-256 of a range of rows.
+    pub fn digest(&self, range: Range<u64>) -> [u8; 32] {
+        let mut digest = Digesting::new(self);
+        digest.rows(range);
+        digest.finish()
+    }
+}
+
+/// A digest under way.
+struct Digesting<'s> {
+    sweep: &'s Sweep,
+    hash: Sha256,
+    buffer: Vec<u8>,
+    /// The unit has block lanes.
+    blocks: bool,
+    rows: u64,
+    /// Rows at the lower and at the upper end.
+    ends: [u64; 2],
+}
+
+impl<'s> Digesting<'s> {
+    fn new(sweep: &'s Sweep) -> Self {
+        Digesting {
+            sweep,
+            hash: Sha256::new(),
+            buffer: Vec::with_capacity(BUFFER + 64),
+            blocks: true,
+            rows: 0,
+            ends: [0; 2],
+        }
+    }
+
+    /// Goes over a range in runs of which only the last input varies.
+    fn rows(&mut self, range: Range<u64>) {
+        let Some((last, leading)) = self.sweep.inputs.split_last() else { return };
+        let length = last.size() as u64;
+        let mut inputs = vec![0; leading.len() + 1];
+        let mut place = range.start;
+        while place < range.end {
+            let start = place % length;
+            let run = (length - start).min(range.end - place).min(BUFFER as u64 / 4);
+            cases::nth(leading, u128::from(place / length), &mut inputs[..leading.len()]);
+            self.blocks &= self.block(&inputs[..leading.len()], last.nth(u128::from(start)), run);
+            if !self.blocks {
+                self.run(&mut inputs, last, start..start + run);
+            }
+            place += run;
+        }
+    }
+
+    /// A run in block lanes, if the unit has them.
+    fn block(&mut self, leading: &[i64], first: i64, run: u64) -> bool {
+        if !self.blocks {
+            return false;
+        }
+        if self.buffer.len() + 2 * run as usize > BUFFER {
+            self.flush();
+        }
+        let start = self.buffer.len();
+        self.buffer.resize(start + 2 * run as usize, 0);
+        let (pairs, _) = self.buffer[start..].as_chunks_mut();
+        let Some(ends) = self.sweep.unit.block(leading, first, pairs) else {
+            self.buffer.truncate(start);
+            return false;
+        };
+        self.rows += run;
+        self.ends = [self.ends[0] + ends[0], self.ends[1] + ends[1]];
+        true
+    }
+
+    /// A run row by row.
+    fn run(&mut self, inputs: &mut [i64], last: &Column, places: Range<u64>) {
+        let Sweep { unit, profile, outputs, .. } = self.sweep;
+        let conditions = Conditions { profile: *profile, policies: Policies::DEFAULT };
+        let mut results = vec![0; self.sweep.results];
+        let end = inputs.len() - 1;
+        for place in places {
+            inputs[end] = last.nth(u128::from(place));
+            if !unit.accepts(inputs, *profile) {
+                continue;
+            }
+            unit.evaluate(inputs, &conditions, &mut results);
+            let (mut low, mut high) = (false, false);
+            for output in outputs {
+                let value = results[output.index];
+                low |= value == output.least;
+                high |= value == output.greatest;
+                self.buffer.extend_from_slice(&value.to_le_bytes()[..output.bytes]);
+            }
+            self.rows += 1;
+            self.ends[0] += u64::from(low);
+            self.ends[1] += u64::from(high);
+            if self.buffer.len() >= BUFFER {
+                self.flush();
+            }
+        }
+    }
+
+    fn flush(&mut self) {
+        self.hash.update(&self.buffer);
+        self.buffer.clear();
+    }
+
+    fn finish(mut self) -> [u8; 32] {
+        self.flush();
+        self.hash.finalize().into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vectors::units;
+
+    #[test]
+    fn leaves_cover_all_rows_once() {
+        for unit in units::all() {
+            let Some(sweep) = Sweep::new(unit, Profile::Nv2a) else { continue };
+            assert!((1..=MOST_LEAVES).contains(&sweep.leaves));
+            let ends: Vec<Range<u64>> = (0..sweep.leaves).map(|leaf| sweep.range(leaf)).collect();
+            assert_eq!((ends[0].start, ends[ends.len() - 1].end), (0, sweep.size), "{}", unit.name());
+            assert!(ends.windows(2).all(|pair| pair[0].end == pair[1].start && pair[0].start < pair[0].end));
+        }
+    }
+
+    /// Block lanes yield what the definition yields, row by row, over ranges that begin and end anywhere.
+    #[test]
+    fn blocks_are_the_definition() {
+        for name in ["product", "sum"] {
+            let sweep = Sweep::new(units::by_name(name).expect("a unit"), Profile::Nv2a).expect("not too large");
+            for start in [0, 1, 512, 70_000, sweep.size / 3, sweep.size / 2 + 7, sweep.size - 3_000] {
+                let range = start..start + 3_000;
+                let mut plain = Digesting::new(&sweep);
+                let (last, leading) = sweep.inputs.split_last().expect("columns");
+                let length = last.size() as u64;
+                for place in range.clone() {
+                    let mut inputs = vec![0; leading.len() + 1];
+                    cases::nth(leading, u128::from(place / length), &mut inputs[..leading.len()]);
+                    plain.run(&mut inputs, last, place % length..place % length + 1);
+                }
+                let mut blocks = Digesting::new(&sweep);
+                blocks.rows(range);
+                assert_eq!((blocks.rows, blocks.ends), (plain.rows, plain.ends), "{name} from {start}");
+                assert_eq!(blocks.finish(), plain.finish(), "{name} from {start}");
+            }
+        }
+    }
+}

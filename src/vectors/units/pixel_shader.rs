@@ -1,0 +1,182 @@
+//! One arithmetic instruction of ps.1.1.
+
+use super::named;
+use super::program::{self, CHANNELS};
+use crate::combiner::registers::Registers;
+use crate::program::At;
+use crate::program::pixel_shader::{
+    Arithmetic, Bank, Context, Mask, Modifier, Operation, PixelShader, Selector, ShaderRegister, Source, Target,
+    TextureInstruction, TextureOperation, Version, lower,
+};
+use crate::state::{Combiners, Profile, Register, Scale};
+use crate::vectors::column::Column;
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+/// `mov r0, t3`, then the instruction: from t0, t1 and v0 to r0.
+#[derive(Debug)]
+pub(super) struct Instruction;
+
+/// The sources a, b, c.
+const SOURCES: [(Bank, u8); 3] = [(Bank::Texture, 0), (Bank::Texture, 1), (Bank::Color, 0)];
+
+/// Columns before the sources' own.
+const FIRST: usize = 5;
+
+/// Columns of a source's configuration.
+const EACH: usize = 3;
+
+/// Columns of configuration.
+const CONFIGURATION: usize = FIRST + 3 * EACH;
+
+fn register(bank: Bank, index: u8) -> ShaderRegister {
+    ShaderRegister { bank, index }
+}
+
+fn arithmetic(operation: Operation, target: Target, sources: Vec<Source>) -> Arithmetic {
+    Arithmetic {
+        operation,
+        scale: Scale::One,
+        saturate: false,
+        target: At::default_of(target),
+        sources: sources.into_iter().map(At::default_of).collect(),
+        paired: false,
+        place: 0..0,
+    }
+}
+
+fn plain(register: ShaderRegister) -> Source {
+    Source { register, selector: Selector::All, modifier: Modifier::Plain, negate: false }
+}
+
+/// The shader of a row.
+fn shader(inputs: &[i64]) -> PixelShader {
+    let operation: Operation = named(inputs[0]);
+    let r0 = register(Bank::Temporary, 0);
+    let sources = (0..operation.sources()).map(|n| {
+        let own = &inputs[FIRST + EACH * n..];
+        let (bank, index) = SOURCES[n];
+        // Only r0.a steers the choice.
+        let is_condition = operation == Operation::Cnd && n == 0;
+        Source {
+            register: if is_condition { r0 } else { register(bank, index) },
+            selector: if is_condition { Selector::Alpha } else { named(own[0]) },
+            modifier: named(own[1]),
+            negate: own[2] != 0,
+        }
+    });
+    let target = Target { register: r0, mask: named(inputs[3]) };
+    let tested = Arithmetic {
+        scale: named(inputs[1]),
+        saturate: inputs[2] != 0,
+        ..arithmetic(operation, target, sources.collect())
+    };
+    let before = Target { register: r0, mask: Mask::All };
+    let textures = [0, 1, 3].map(|unit| TextureInstruction {
+        operation: TextureOperation::Tex,
+        unit: At::default_of(unit),
+        source: None,
+        eye: None,
+        place: 0..0,
+    });
+    PixelShader {
+        version: Version::Ps11,
+        definitions: Vec::new(),
+        textures: textures.to_vec(),
+        arithmetic: vec![arithmetic(Operation::Mov, before, vec![plain(register(Bank::Texture, 3))]), tested],
+    }
+}
+
+fn lowered(inputs: &[i64], profile: Profile) -> Option<Combiners> {
+    let signed = inputs[4] != 0;
+    let context = Context { signed: [signed, signed, false, signed], ..Context::new(profile) };
+    lower(&shader(inputs), &context).ok().map(|lowered| lowered.combiners)
+}
+
+impl Unit for Instruction {
+    fn name(&self) -> &'static str {
+        "pixel-shader"
+    }
+
+    fn about(&self) -> &'static str {
+        "an instruction of ps.1.1 from a = t0, b = t1, c = v0 to r0, after mov r0, t3 (before); the a of cnd is r0.a; with signed textures t0, t1, t3 may be negative"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &[
+            "CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "CMB-11",
+            "NUM-2", "NUM-3", "FIN-1", "FIN-2",
+        ]
+    }
+
+    fn profiles(&self) -> &'static [Profile] {
+        &[Profile::Nv2a]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![
+            Column::choice::<Operation>("cfg.operation"),
+            Column::choice::<Scale>("cfg.scale"),
+            Column::flag("cfg.saturate"),
+            Column::names("cfg.mask", &["rgba", "rgb", "a"]),
+            Column::flag("cfg.signed_textures"),
+        ];
+        for name in ["a", "b", "c"] {
+            columns.push(Column::names(&format!("cfg.selector_{name}"), &["own", "a", "b"]));
+            columns.push(Column::names(&format!("cfg.modifier_{name}"), &["plain", "bias", "bx2", "invert"]));
+            columns.push(Column::flag(&format!("cfg.negate_{name}")));
+        }
+        for name in ["a", "b", "c", "before"] {
+            columns.extend(CHANNELS.map(|channel| match name {
+                "c" => Column::byte(&format!("in.{name}.{channel}")),
+                _ => Column::register(&format!("in.{name}.{channel}")),
+            }));
+        }
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        program::results()
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        let mut fitting = inputs.to_vec();
+        self.fit(&mut fitting);
+        fitting == inputs && lowered(inputs, profile).is_some()
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let operation: Operation = named(inputs[0]);
+        for (n, own) in inputs[FIRST..CONFIGURATION].chunks_exact_mut(EACH).enumerate() {
+            if n >= operation.sources() || (n == 0 && operation == Operation::Cnd) {
+                own.fill(0);
+            }
+        }
+        let (configuration, values) = inputs.split_at_mut(CONFIGURATION);
+        if configuration[4] == 0 {
+            // Plain textures are bytes.
+            values.iter_mut().filter(|value| **value < 0).for_each(|value| *value += 256);
+        }
+        let alpha_only = named::<Mask>(configuration[3]) == Mask::Alpha;
+        for own in configuration[FIRST..].chunks_exact_mut(EACH) {
+            if named::<Modifier>(own[1]) == Modifier::Invert {
+                own[2] = 0;
+            }
+            if named::<Selector>(own[0]) == Selector::Blue && !alpha_only {
+                own[0] = 0;
+            }
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let mut file = Registers::new();
+        let registers = [Register::Texture0, Register::Texture1, Register::PrimaryColor, Register::Texture3];
+        for (register, values) in registers.into_iter().zip(inputs[CONFIGURATION..].chunks_exact(4)) {
+            program::load(&mut file, register, values);
+        }
+        program::run(lowered(inputs, conditions.profile).ok_or(()), file, conditions, results);
+    }
+
+    fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {
+        Reach::of(&inputs[CONFIGURATION..], &[])
+    }
+}

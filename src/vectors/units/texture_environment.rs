@@ -1,0 +1,186 @@
+//! One unit of the OpenGL texture environment.
+
+use super::named;
+use super::program::{self, RULES, bytes, colors};
+use crate::combiner::registers::Registers;
+use crate::program::At;
+use crate::program::texture_environment::{
+    BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit as Environment,
+    lower,
+};
+use crate::state::{Named, Profile, Register, Scale};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+/// The numbers of the variants for which `wanted` holds.
+fn numbers<T: Named>(wanted: impl Fn(T) -> bool) -> Vec<i64> {
+    (0..).zip(T::ALL).filter(|(_, variant)| wanted(**variant)).map(|(n, _)| n).collect()
+}
+
+fn is_combining(mode: Mode) -> bool {
+    matches!(mode, Mode::Combine | Mode::Combine4)
+}
+
+/// Lowers a unit that has a texture of that format, and runs it.
+fn run(unit: Environment, format: BaseFormat, colors: &[i64], conditions: &Conditions, results: &mut [i64]) {
+    let mut file = Registers::new();
+    program::load(&mut file, Register::Texture0, &colors[..4]);
+    program::load(&mut file, Register::PrimaryColor, &colors[4..8]);
+    let environment = TextureEnvironment { units: vec![unit], color_sum: false };
+    let textures = [Some(format), None, None, None];
+    let context = Context { profile: conditions.profile, textures, signed: [false; 4], fog: false };
+    program::run(lower(&environment, &context).map(|lowered| lowered.combiners), file, conditions, results);
+}
+
+/// The modes of OpenGL 1.1.
+#[derive(Debug)]
+pub(super) struct Classic;
+
+/// A colour as a texture of a base format holds it.
+fn as_format(format: BaseFormat, [r, g, b, a]: [i64; 4]) -> [i64; 4] {
+    match format {
+        BaseFormat::Alpha => [0, 0, 0, a],
+        BaseFormat::Luminance => [r, r, r, 255],
+        BaseFormat::LuminanceAlpha => [r, r, r, a],
+        BaseFormat::Intensity => [r; 4],
+        BaseFormat::Rgb => [r, g, b, 255],
+        BaseFormat::Rgba => [r, g, b, a],
+    }
+}
+
+fn texture(inputs: &[i64]) -> [i64; 4] {
+    as_format(named(inputs[1]), std::array::from_fn(|n| inputs[2 + n]))
+}
+
+impl Unit for Classic {
+    fn name(&self) -> &'static str {
+        "texture-environment"
+    }
+
+    fn about(&self) -> &'static str {
+        "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        RULES
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let modes = numbers(|mode: Mode| !is_combining(mode));
+        let mut columns = vec![Column::listed("cfg.mode", Kind::Name(Mode::NAMES), &modes)];
+        columns.push(Column::choice::<BaseFormat>("cfg.base_format"));
+        columns.extend(colors(&["texture", "primary", "constant"]));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        program::results()
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        inputs[2..6] == texture(inputs)
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let held = texture(inputs);
+        inputs[2..6].copy_from_slice(&held);
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let unit = Environment { mode: named(inputs[0]), color: bytes(&inputs[10..14]), ..Environment::initial() };
+        run(unit, named(inputs[1]), &inputs[2..10], conditions, results);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}
+
+/// The combine functions.
+#[derive(Debug)]
+pub(super) struct Combine;
+
+const SOURCES: [EnvironmentSource; 4] = [
+    EnvironmentSource::Texture,
+    EnvironmentSource::PrimaryColor,
+    EnvironmentSource::Constant,
+    EnvironmentSource::Texture,
+];
+
+/// An operand as an alpha can have it.
+fn of_alpha(operand: Operand) -> Operand {
+    match operand {
+        Operand::SourceColor | Operand::SourceAlpha => Operand::SourceAlpha,
+        Operand::OneMinusSourceColor | Operand::OneMinusSourceAlpha => Operand::OneMinusSourceAlpha,
+    }
+}
+
+impl Unit for Combine {
+    fn name(&self) -> &'static str {
+        "texture-combine"
+    }
+
+    fn about(&self) -> &'static str {
+        "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        RULES
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let modes = numbers(is_combining);
+        let mut columns = vec![Column::listed("cfg.mode", Kind::Name(Mode::NAMES), &modes)];
+        columns.push(Column::choice::<Function>("cfg.function"));
+        let scales = numbers(|scale: Scale| scale != Scale::Half);
+        columns.push(Column::listed("cfg.scale", Kind::Name(Scale::NAMES), &scales));
+        columns.extend([0, 1, 2, 3].map(|n| Column::choice::<Operand>(&format!("cfg.operand{n}"))));
+        columns.extend(colors(&["texture", "primary", "constant"]));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        program::results()
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        let (mode, function): (Mode, Function) = (named(inputs[0]), named(inputs[1]));
+        let legal = mode == Mode::Combine || matches!(function, Function::Add | Function::AddSigned);
+        legal && function.reads(mode).iter().zip(&inputs[3..7]).all(|(reads, operand)| *reads || *operand == 0)
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        if named::<Mode>(inputs[0]) == Mode::Combine4 {
+            let functions = [Function::Add, Function::AddSigned];
+            inputs[1] = functions[inputs[1] as usize % 2] as i64;
+        }
+        let reads = named::<Function>(inputs[1]).reads(named(inputs[0]));
+        for (operand, _) in inputs[3..7].iter_mut().zip(reads).filter(|(_, reads)| !reads) {
+            *operand = 0;
+        }
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let (function, scale): (Function, Scale) = (named(inputs[1]), named(inputs[2]));
+        let operands: [Operand; 4] = std::array::from_fn(|n| named(inputs[3 + n]));
+        let half = |function, operands: [Operand; 4]| Half {
+            function: At::default_of(function),
+            sources: SOURCES.map(At::default_of),
+            operands: operands.map(At::default_of),
+            scale,
+        };
+        let alpha = if function.is_dot() { Function::Modulate } else { function };
+        let unit = Environment {
+            mode: named(inputs[0]),
+            rgb: half(function, operands),
+            alpha: half(alpha, operands.map(of_alpha)),
+            color: bytes(&inputs[15..19]),
+            ..Environment::initial()
+        };
+        run(unit, BaseFormat::Rgba, &inputs[7..15], conditions, results);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}

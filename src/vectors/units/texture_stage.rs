@@ -1,0 +1,117 @@
+//! One Direct3D texture stage.
+
+use super::named;
+use super::program::{self, RULES, bytes, colors};
+use crate::combiner::registers::Registers;
+use crate::program::At;
+use crate::program::texture_stages::{
+    ArgumentSource, Context, Half, Operation, StageArgument, TextureStage, TextureStages, lower,
+};
+use crate::state::{Named, Profile, Register};
+use crate::vectors::column::{Column, Kind};
+use crate::vectors::unit::{Conditions, Reach, Unit};
+
+/// D3DTOP with the arguments Texture and Current.
+#[derive(Debug)]
+pub(super) struct Stage;
+
+/// What combines colours: Disable ends the cascade, and the two bump operations move coordinates (`bump-offset`, `bump-luminance`).
+fn combines(operation: Operation) -> bool {
+    operation != Operation::Disable && !operation.is_bump()
+}
+
+fn half(operation: Operation, arguments: [StageArgument; 3]) -> Half {
+    Half { operation: At::default_of(operation), arguments: arguments.map(At::default_of) }
+}
+
+fn copy(source: ArgumentSource) -> TextureStage {
+    let argument = StageArgument::new(source);
+    let select = || half(Operation::SelectArg1, [argument; 3]);
+    TextureStage { color: select(), alpha: select(), ..TextureStage::initial(0) }
+}
+
+impl Unit for Stage {
+    fn name(&self) -> &'static str {
+        "texture-stage"
+    }
+
+    fn about(&self) -> &'static str {
+        "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        RULES
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let operations: Vec<i64> = (0..).zip(Operation::ALL).filter(|(_, o)| combines(**o)).map(|(n, _)| n).collect();
+        let mut columns = vec![Column::listed("cfg.operation", Kind::Name(Operation::NAMES), &operations)];
+        let flags = ["cfg.complement1", "cfg.alpha_replicate1", "cfg.complement2", "cfg.alpha_replicate2"];
+        columns.extend(flags.map(Column::flag));
+        columns.extend(colors(&["texture", "other", "diffuse", "factor"]));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        program::results()
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let operation: Operation = named(inputs[0]);
+        let argument =
+            |source, flags: &[i64]| StageArgument { source, complement: flags[0] != 0, alpha_replicate: flags[1] != 0 };
+        let arguments = [
+            StageArgument::new(ArgumentSource::TextureFactor),
+            argument(ArgumentSource::Texture, &inputs[1..3]),
+            argument(ArgumentSource::Current, &inputs[3..5]),
+        ];
+        let alpha = if operation.is_color_only() { Operation::SelectArg2 } else { operation };
+        let tested = TextureStage {
+            color: half(operation, arguments),
+            alpha: half(alpha, arguments),
+            ..TextureStage::initial(1)
+        };
+        let mut file = Registers::new();
+        let (stages, own, other) = if operation == Operation::PreModulate {
+            (vec![tested, copy(ArgumentSource::Current)], Register::Texture0, Register::Texture1)
+        } else {
+            (vec![copy(ArgumentSource::Texture), tested], Register::Texture1, Register::Texture0)
+        };
+        program::load(&mut file, own, &inputs[5..9]);
+        program::load(&mut file, other, &inputs[9..13]);
+        program::load(&mut file, Register::PrimaryColor, &inputs[13..17]);
+        let stages = TextureStages { stages, texture_factor: bytes(&inputs[17..21]), specular_enable: false };
+        let bound = [true, true, false, false];
+        let context = Context { profile: conditions.profile, bound, signed: [false; 4], fog: false };
+        program::run(lower(&stages, &context).map(|lowered| lowered.combiners), file, conditions, results);
+    }
+
+    fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
+        // What is not read is not varied.
+        let operation: Operation = named(inputs[0]);
+        let [_, first, second] = operation.reads();
+        (first || inputs[1..3] == [0; 2]) && (second || operation.is_color_only() || inputs[3..5] == [0; 2])
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let operation: Operation = named(inputs[0]);
+        let [_, first, second] = operation.reads();
+        if !first {
+            inputs[1..3].fill(0);
+        }
+        if !second && !operation.is_color_only() {
+            inputs[3..5].fill(0);
+        }
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // Each operation once on middle greys and their neighbours, where halves and biases show.
+        let colors = [127, 128, 129, 64, 128, 127, 255, 200, 90, 60, 30, 128, 255, 127, 1, 100];
+        let rows = (0..).zip(Operation::ALL).filter(|(_, operation)| combines(**operation));
+        rows.map(|(n, _)| [vec![n, 0, 0, 0, 0], colors.to_vec()].concat()).collect()
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Direct
+    }
+}

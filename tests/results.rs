@@ -1,0 +1,387 @@
+//! Results of cards: held to their pack, refused where they are not whole, adopted where they are silicon.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use ninebit::state::{Policies, Profile};
+use ninebit::vectors::BEHAVIOUR;
+use ninebit::vectors::cases::Level;
+use ninebit::vectors::pack::{self, Manifest, Options};
+use ninebit::vectors::read::Table;
+use ninebit::vectors::results::adopt::Adopted;
+use ninebit::vectors::results::compare::{Comparison, compare};
+use ninebit::vectors::results::waiver::Waiver;
+use ninebit::vectors::results::{self, parse};
+use ninebit::vectors::unit::Conditions;
+use ninebit::vectors::units;
+
+const UNITS: [&str; 3] = ["product", "scale-bias", "input-mapping"];
+
+/// A pack, and a folder in which a card may answer.
+struct Asked {
+    folder: tempfile::TempDir,
+    manifest: Manifest,
+    tables: Vec<Table>,
+}
+
+impl Asked {
+    fn new() -> Asked {
+        let folder = tempfile::tempdir().unwrap();
+        let options = Options {
+            profile: Profile::Nv2a,
+            level: Level::L0,
+            seed: 1,
+            units: UNITS.map(|name| units::by_name(name).unwrap()).to_vec(),
+            deciding: false,
+            views: vec![],
+        };
+        pack::export(&folder.path().join("pack"), &options).unwrap();
+        let (manifest, tables) = pack::open(&folder.path().join("pack")).unwrap();
+        let asked = Asked { folder, manifest, tables };
+        asked.answer("NVIDIA Corporation", "GeForce 256/AGP", Policies::DEFAULT);
+        asked
+    }
+
+    fn results(&self) -> PathBuf {
+        self.folder.path().join("results")
+    }
+
+    fn path(&self, unit: &str) -> PathBuf {
+        self.results().join(format!("{unit}.tsv"))
+    }
+
+    /// The results of a card that follows these policies, in whole numbers.
+    fn answer(&self, vendor: &str, renderer: &str, policies: Policies) {
+        fs::create_dir_all(self.results()).unwrap();
+        let device = serde_json::json!({
+            "format": "ninebit-device-1", "pack": self.manifest.root, "vendor": vendor, "renderer": renderer, "version": "1.2",
+            "surface": "GLX window", "surface_format": "R8 G8 B8 A8, 0 sample buffers", "extensions": "GL_NV_register_combiners",
+        });
+        fs::write(self.results().join("device.json"), device.to_string()).unwrap();
+        for table in &self.tables {
+            let unit = table.contents.unit;
+            let columns = unit.results();
+            let out: Vec<usize> = (0..columns.len()).filter(|n| columns[*n].name.starts_with("out.")).collect();
+            let names: Vec<&str> = out.iter().map(|n| columns[*n].name.as_str()).collect();
+            let mut body = format!(
+                "# ninebit-results 1\n# unit {}\n# profile Nv2a\n# level L0\n# seed 1\n# behaviour {BEHAVIOUR}\nid\t{}\tstatus\n",
+                unit.name(),
+                names.join("\t"),
+            );
+            for row in &table.rows {
+                let mut answer = vec![0; row.results.len()];
+                unit.evaluate(&row.inputs, &Conditions { profile: Profile::Nv2a, policies }, &mut answer);
+                let texts: Vec<String> = out.iter().map(|n| columns[*n].kind.write(answer[*n])).collect();
+                if texts.iter().all(|text| !text.contains('.')) {
+                    body += &format!("{}\t{}\tok\n", row.id, texts.join("\t"));
+                }
+            }
+            body += "# unsupported 0\n";
+            fs::write(self.path(unit.name()), sealed(&body)).unwrap();
+        }
+    }
+
+    fn compare(&self, waivers: &[Waiver]) -> Comparison {
+        let results = results::open(&self.results(), &self.manifest).unwrap();
+        compare(&self.tables, &results, waivers, 3).unwrap()
+    }
+
+    fn run(&self, arguments: &[&str]) -> Output {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
+        command.current_dir(self.folder.path()).arg("vectors").args(arguments);
+        command.output().unwrap()
+    }
+}
+
+/// A body with its last line.
+fn sealed(body: &str) -> String {
+    let rows = body.lines().filter(|line| !line.starts_with('#')).count().saturating_sub(1);
+    format!("{body}# end {rows} {:08x}\n", crc32fast::hash(body.as_bytes()))
+}
+
+/// A file of results without its last line, changed, and sealed again.
+fn changed(path: &Path, change: impl Fn(&str) -> String) {
+    let text = fs::read_to_string(path).unwrap();
+    let body = &text[..text.rfind("# end").unwrap()];
+    let body = change(body);
+    fs::write(path, sealed(&body)).unwrap();
+}
+
+/// The row of product whose first operand is 100 and second 200, whose result is 78.
+fn with_product(asked: &Asked, found: &str) {
+    changed(&asked.path("product"), |body| {
+        let row = body.lines().find(|line| line.contains("\t78\t")).unwrap();
+        body.replacen(row, &row.replace("\t78\t", &format!("\t{found}\t")), 1)
+    });
+}
+
+#[test]
+fn what_agrees_is_exact() {
+    let asked = Asked::new();
+    let comparison = asked.compare(&[]);
+    assert!(comparison.is_clean() && comparison.explanation.is_none());
+    for unit in &comparison.units {
+        assert_eq!((unit.exact, unit.not_asked, unit.rows.len()), (1000, 0, 0), "{}", unit.unit);
+    }
+    let output = asked.run(&["compare", "pack", "results"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(String::from_utf8(output.stdout).unwrap().contains("everything that was asked is exact"));
+}
+
+/// A card that follows another value of a policy is found out by name.
+#[test]
+fn the_policy_that_a_card_follows_is_named() {
+    let asked = Asked::new();
+    for (policy, unit) in
+        [("CMB-9=after", "scale-bias"), ("CMB-3=literal", "input-mapping"), ("CMB-4=127", "input-mapping")]
+    {
+        let mut policies = Policies::DEFAULT;
+        policies.set(policy).unwrap();
+        asked.answer("NVIDIA Corporation", "GeForce 256", policies);
+        let comparison = asked.compare(&[]);
+        let best = comparison.explanation.unwrap();
+        assert_eq!((best.policy.as_str(), best.breaks), (policy, 0));
+        let compared = comparison.units.iter().find(|compared| compared.unit == unit).unwrap();
+        assert_eq!(compared.policies[0].explains, compared.off_by_one + compared.worse);
+        let rule = format!("policy:{}", policy.split('=').next().unwrap());
+        assert!(compared.tags[&rule].differ >= best.explains, "{:?}", compared.tags);
+    }
+}
+
+#[test]
+fn differences_are_told_with_intermediates_and_waived_by_name_only() {
+    let asked = Asked::new();
+    with_product(&asked, "79");
+    let waiver = |maximum, count| Waiver { unit: "product".to_owned(), maximum, count, reason: "known".to_owned() };
+    let comparison = asked.compare(&[]);
+    let product = &comparison.units[1];
+    assert_eq!((product.unit, product.off_by_one, product.worse, product.largest), ("product", 1, 0, 1));
+    assert_eq!(product.rows[0].differences, [("out.ab".to_owned(), "78".to_owned(), "79".to_owned())]);
+    assert!(product.rows[0].row.iter().any(|field| field.starts_with("mid.product=")));
+    assert!(!comparison.is_clean() && asked.compare(&[waiver(1, 1)]).is_clean());
+
+    with_product(&asked, "80");
+    let comparison = asked.compare(&[waiver(1, 2)]);
+    assert_eq!((comparison.units[1].off_by_one, comparison.units[1].worse), (1, 1));
+    assert!(!comparison.is_clean(), "a difference of two is not waived by a maximum of one");
+    assert!(!asked.compare(&[waiver(2, 1)]).is_clean(), "two rows are not waived by a count of one");
+    assert!(asked.compare(&[waiver(2, 2)]).is_clean());
+
+    let file = asked.folder.path().join("waivers.json");
+    for (text, exit) in [
+        (r#"[{"unit": "product", "maximum": 2, "count": 2, "reason": "known"}]"#, 0),
+        (r#"[{"unit": "product", "maximum": 2, "count": 1, "reason": "known"}]"#, 1),
+        (r#"[{"unit": "produce", "maximum": 2, "count": 2, "reason": "known"}]"#, 3),
+        (r#"[{"unit": "product", "maximum": 2, "count": 2, "reason": " "}]"#, 3),
+        (r#"[{"unit": "product", "maximum": 2, "count": 2}]"#, 3),
+    ] {
+        fs::write(&file, text).unwrap();
+        let output = asked.run(&["compare", "pack", "results", "--waivers", "waivers.json"]);
+        assert_eq!(output.status.code(), Some(exit), "{output:?}");
+    }
+    assert_eq!(asked.run(&["compare", "pack", "results", "--waivers", "none.json"]).status.code(), Some(4));
+    let output = asked.run(&["compare", "pack", "results", "--format", "json"]);
+    let value: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(value["comparison"]["units"][1]["worse"], 1);
+}
+
+/// Every way to spoil a file of results has its code.
+#[test]
+fn spoiled_results_are_refused() {
+    let asked = Asked::new();
+    let path = asked.path("product");
+    let good = fs::read_to_string(&path).unwrap();
+    let row = good.lines().nth(9).unwrap();
+    let next = good.lines().nth(10).unwrap();
+    let body = &good[..good.rfind("# end").unwrap()];
+    let broken = [
+        (String::new(), "NB1030"),
+        (good[..good.len() - 1].to_owned(), "NB1030"),
+        (good[..good.len() / 2].to_owned(), "NB1030"),
+        (body.to_owned(), "NB1030"),
+        (good.replacen(row, next, 1), "NB1030"),
+        (good.replacen(&format!("{row}\n{next}\n"), &format!("{next}\n{row}\n"), 1), "NB1030"),
+        (good.replacen("results 1", "results 2", 1), "NB1003"),
+        (sealed(&body.replacen("# unit product", "# unit produce", 1)), "NB1005"),
+        (sealed(&body.replacen("# seed 1", "# sead 1", 1)), "NB1032"),
+        (sealed(&body.replacen("out.ab", "out.xy", 1)), "NB1032"),
+        (sealed(&body.replacen("out.ab", "mid.product", 1)), "NB1032"),
+        (sealed(&body.replacen("out.ab", "out.ab>>99", 1)), "NB1032"),
+        (sealed(&body.replacen(row, &format!("{row}\n{row}"), 1)), "NB1009"),
+        (sealed(&body.replacen(row, &row.replacen("\tok", "\tfine", 1), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &row.replacen("\tok", "\terror", 1), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &row.replacen('\t', "\t+", 1), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &format!("x{}", &row[1..]), 1)), "NB1032"),
+        (sealed(&body.replacen(row, &row[..12], 1)), "NB1032"),
+        (sealed(&body.replacen("# unsupported 0\n", "", 1)), "NB1032"),
+    ];
+    for (text, code) in broken {
+        let error = parse(&text, Path::new("results")).unwrap_err();
+        assert_eq!(error.code(), code, "{error}");
+    }
+    assert_eq!(parse(&good, &path).unwrap().rows.len(), 1000);
+}
+
+/// What only the folder as a whole shows.
+#[test]
+fn results_of_something_else_are_refused() {
+    let asked = Asked::new();
+    let refused = |code: &str, exit: i32| {
+        for command in ["compare", "adopt"] {
+            let output = asked.run(&[command, "pack", "results"]);
+            let said = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(exit), "{said}");
+            assert!(said.contains(code) && said.contains("help: "), "{said}");
+        }
+        asked.answer("NVIDIA Corporation", "GeForce 256", Policies::DEFAULT);
+    };
+    let device = asked.results().join("device.json");
+    let text = fs::read_to_string(&device).unwrap();
+    fs::write(&device, text.replace(&asked.manifest.root, &"0".repeat(64))).unwrap();
+    refused("NB1031", 3);
+    fs::write(&device, text.replace("ninebit-device-1", "ninebit-device-2")).unwrap();
+    refused("NB1003", 3);
+    fs::write(&device, "{").unwrap();
+    refused("NB1033", 3);
+    fs::remove_file(&device).unwrap();
+    refused("NB1001", 4);
+    changed(&asked.path("product"), |body| body.replacen("# seed 1", "# seed 2", 1));
+    refused("NB1031", 3);
+    changed(&asked.path("product"), |body| format!("{body}0123456789ab\t1\tok\n"));
+    refused("NB1035", 3);
+    fs::rename(asked.path("product"), asked.path("sum")).unwrap();
+    refused("NB1032", 3);
+    fs::remove_file(asked.path("sum")).unwrap();
+    fs::write(asked.results().join("sum.part"), "").unwrap();
+    refused("NB1030", 3);
+    fs::remove_file(asked.results().join("sum.part")).unwrap();
+    UNITS.iter().for_each(|unit| fs::remove_file(asked.path(unit)).unwrap());
+    refused("NB1001", 4);
+}
+
+/// Batches ask rows of their table, and point to bytes that are there.
+#[test]
+fn batches_ask_rows_of_their_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let pack = folder.path().join("pack");
+    let arguments =
+        ["vectors", "export", "--unit", "product", "--unit", "compressed-block", "--unit", "mux", "--unit", "depth"];
+    let mut command = Command::new(env!("CARGO_BIN_EXE_ninebit"));
+    let output = command.args(arguments).args(["--gpu-batches", "-o"]).arg(&pack).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let (manifest, tables) = pack::open(&pack).unwrap();
+    let batches = manifest.files.iter().filter(|file| file.path.ends_with(".gpu.txt"));
+    assert_eq!(batches.map(|file| file.unit.as_str()).collect::<Vec<_>>(), ["compressed-block", "mux", "product"]);
+    for unit in ["compressed-block", "mux", "product"] {
+        let text = fs::read_to_string(pack.join(format!("units/{unit}.gpu.txt"))).unwrap();
+        let raw = fs::read(pack.join(format!("units/{unit}.gpu.raw"))).unwrap();
+        let table = tables.iter().find(|table| table.contents.unit.name() == unit).unwrap();
+        let (mut place, mut rows, mut asked) = (0, 0, 0);
+        for line in text.lines() {
+            let words: Vec<&str> = line.split(' ').collect();
+            let number = |n: usize| words[n].parse::<usize>().unwrap();
+            match words[0] {
+                "batch" => rows = number(1),
+                "ids" => {
+                    assert_eq!(number(1), place);
+                    for id in raw[place..place + 6 * rows].chunks(6) {
+                        let id: String = id.iter().map(|byte| format!("{byte:02x}")).collect();
+                        assert!(table.rows.iter().any(|row| row.id == id), "{unit}: {id}");
+                    }
+                    place += 6 * rows;
+                    asked += rows;
+                }
+                "source" => {
+                    assert_eq!(number(3), place);
+                    place += number(2) * rows;
+                }
+                _ => {}
+            }
+        }
+        assert_eq!(place, raw.len(), "{unit}");
+        assert!(asked >= 500, "{unit}: {asked} rows");
+    }
+}
+
+/// Records whose truth the model does not follow yet, or whose files were changed.
+fn owed(folder: &Path) -> Vec<String> {
+    use sha2::{Digest, Sha256};
+    let mut owed = Vec::new();
+    for entry in fs::read_dir(folder).into_iter().flatten() {
+        let place = entry.unwrap().path();
+        let text = fs::read_to_string(place.join("ADOPTED.json")).unwrap();
+        let adopted: Adopted = serde_json::from_str(&text).unwrap();
+        if adopted.behaviour_rev > BEHAVIOUR {
+            owed.push(format!("{} wants behaviour {}", adopted.device, adopted.behaviour_rev));
+        }
+        for unit in adopted.units {
+            let bytes = fs::read(place.join(format!("{}.tsv", unit.unit))).unwrap();
+            let digest: String = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+            if digest != unit.sha256 {
+                owed.push(format!("{}: {} was changed", adopted.device, unit.unit));
+            }
+        }
+    }
+    owed
+}
+
+#[test]
+fn cards_are_adopted_and_the_model_owes_what_they_contradict() {
+    let asked = Asked::new();
+    let adopted = asked.folder.path().join("adopted");
+    let output = asked.run(&["adopt", "pack", "results", "-o", "adopted"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let text = fs::read_to_string(adopted.join("geforce-256-agp/ADOPTED.json")).unwrap();
+    let record: Adopted = serde_json::from_str(&text).unwrap();
+    assert_eq!((record.grade.as_str(), record.behaviour_rev, record.units.len()), ("SILICON", BEHAVIOUR, 3));
+    assert_eq!(owed(&adopted), [""; 0]);
+
+    // The same device again is refused, another name is not; what contradicts the model is owed.
+    assert_eq!(asked.run(&["adopt", "pack", "results", "-o", "adopted"]).status.code(), Some(3));
+    with_product(&asked, "79");
+    let output = asked.run(&["adopt", "pack", "results", "-o", "adopted", "--device", "geforce-256-ddr"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(String::from_utf8(output.stdout).unwrap().contains(&format!("set BEHAVIOUR to {}", BEHAVIOUR + 1)));
+    assert_eq!(owed(&adopted), [format!("geforce-256-ddr wants behaviour {}", BEHAVIOUR + 1)]);
+    fs::write(adopted.join("geforce-256-agp/product.tsv"), "").unwrap();
+    assert_eq!(owed(&adopted).len(), 2);
+    assert_eq!(
+        owed(Path::new("vectors/results")),
+        [""; 0],
+        "what cards said is in the repository, the model does not follow"
+    );
+}
+
+#[test]
+fn nothing_is_adopted_by_halves() {
+    let asked = Asked::new();
+    let left = || fs::read_dir(asked.folder.path().join("adopted")).map_or(0, Iterator::count);
+    let refused = |arguments: &[&str], exit: i32| {
+        let output = asked.run(&[&["adopt", "pack", "results"], arguments].concat());
+        assert_eq!(output.status.code(), Some(exit), "{output:?}");
+        assert_eq!(left(), 0);
+    };
+    for name in ["Up", "../up", "a--b", ""] {
+        refused(&["-o", "adopted", "--device", name], 3);
+    }
+    for (vendor, renderer) in [
+        ("Mesa/X.org", "llvmpipe (LLVM 15.0.6, 256 bits)"),
+        ("Microsoft Corporation", "GDI Generic"),
+        ("Google Inc.", "SwiftShader"),
+        ("Apple", "Apple Software Renderer"),
+        ("ninebit recorder", "ninebit recorder"),
+    ] {
+        asked.answer(vendor, renderer, Policies::DEFAULT);
+        refused(&["-o", "adopted"], 3);
+    }
+    asked.answer("NVIDIA Corporation", "GeForce 256", Policies::DEFAULT);
+    refused(&["-o", "pack/MANIFEST.json"], 7);
+    changed(&asked.path("product"), |body| {
+        let row = body.lines().nth(9).unwrap();
+        body.replacen(row, &format!("{}\t-\terror", &row[..12]), 1)
+    });
+    refused(&["-o", "adopted"], 3);
+    assert_eq!(asked.run(&["compare", "pack", "results"]).status.code(), Some(1), "a failed draw is a difference");
+}

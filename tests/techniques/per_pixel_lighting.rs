@@ -1,0 +1,200 @@
+//! Per-pixel lighting and renormalisation: how far each picture is from its truth, and where a technique breaks.
+//!
+//! The figures are those of `figures.tsv`, which `techniques_are_as_exact_as_they_were` holds against the scenes. Bounds are coarse, in
+//! steps of 1/255: they say what a technique is good for, not which bits it has.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
+use ninebit::scene;
+
+use super::folder;
+
+/// Scene, and between which RMS errors it lies.
+const BOUNDS: &[(&str, f64, f64)] = &[
+    ("coarse-light", 6.5, 9.9),
+    ("coarse-light-renormalised", 3.3, 5.0),
+    ("dotproduct3-fallback", 1.8, 2.8),
+    ("dotproduct3-fallback-stone", 1.0, 1.7),
+    ("emboss", 65.0, 89.0),
+    ("emboss-2x", 26.0, 36.0),
+    ("emboss-2x-blend", 26.0, 36.0),
+    ("emboss-2x-far", 16.0, 22.0),
+    ("emboss-specular", 37.0, 51.0),
+    ("emboss-specular-far", 33.0, 46.0),
+    ("emboss-specular-map", 71.0, 98.0),
+    ("hemisphere-exact", 0.3, 0.5),
+    ("hemisphere-exact-occlusion", 0.4, 0.7),
+    ("hemisphere-exact-occlusion-sun", 0.7, 1.1),
+    ("hemisphere-pixel", 0.4, 0.7),
+    ("hemisphere-pixel-for-exact", 16.0, 23.0),
+    ("hemisphere-pixel-occlusion", 0.5, 0.8),
+    ("hemisphere-pixel-occlusion-sun", 0.7, 1.1),
+    ("hemisphere-pixel-stone", 0.7, 1.2),
+    ("hemisphere-pixel-sun", 0.6, 1.1),
+    ("hemisphere-vertex", 0.3, 0.5),
+    ("hemisphere-vertex-bumps", 8.0, 12.0),
+    ("hemisphere-vertex-exact", 0.2, 0.5),
+    ("hemisphere-vertex-occlusion", 3.3, 5.1),
+    ("hemisphere-vertex-sun", 0.3, 0.5),
+    ("highlight-map", 38.0, 53.0),
+    ("specular-16", 9.0, 14.0),
+    ("specular-16-diffuse", 4.3, 6.6),
+    ("specular-16-renormalised", 2.9, 4.4),
+    ("specular-2", 3.0, 4.7),
+    ("specular-32", 13.0, 18.0),
+    ("specular-4", 4.6, 7.0),
+    ("specular-8", 6.6, 10.0),
+    ("specular-8-renormalised", 2.1, 3.2),
+    ("specular-table-100-1024", 7.3, 11.1),
+    ("specular-table-100-256", 7.2, 10.9),
+    ("specular-table-100-256-coarse", 16.0, 22.0),
+    ("specular-table-100-256-fine", 6.0, 9.2),
+    ("specular-table-100-32", 17.0, 25.0),
+    ("specular-table-16-256", 3.6, 5.5),
+    ("specular-table-400-1024", 9.0, 13.0),
+    ("specular-table-400-256", 8.0, 13.0),
+    ("specular-table-diffuse", 2.2, 3.4),
+    ("tangent-space-diffuse", 1.8, 2.8),
+    ("tangent-space-diffuse-cross", 1.8, 2.8),
+    ("tangent-space-diffuse-stone", 1.0, 1.7),
+    ("world-space-diffuse", 1.1, 1.7),
+];
+
+/// What `figures.tsv` says of a scene.
+#[derive(Clone, Copy)]
+struct Figures {
+    rms: f64,
+    levels: u32,
+    truth_levels: u32,
+}
+
+/// The figures of the scenes of a folder, by name.
+fn pinned(folder: &str) -> BTreeMap<String, Figures> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/techniques/figures.tsv");
+    let text = std::fs::read_to_string(path).unwrap();
+    let rows = text.lines().filter_map(|line| line.strip_prefix(folder)?.strip_prefix('/'));
+    let figures = rows.map(|row| {
+        let columns: Vec<&str> = row.split('\t').collect();
+        let [levels, truth_levels] = [5, 6].map(|column| columns[column].parse().unwrap());
+        (columns[0].to_owned(), Figures { rms: columns[1].parse().unwrap(), levels, truth_levels })
+    });
+    figures.collect()
+}
+
+fn of(name: &str) -> Figures {
+    *pinned("per-pixel-lighting").get(name).unwrap_or_else(|| panic!("no figures of {name}"))
+}
+
+fn rms(name: &str) -> f64 {
+    of(name).rms
+}
+
+/// The first target's bytes.
+fn picture(name: &str) -> Vec<u8> {
+    let path = folder().join(format!("per-pixel-lighting/{name}.ron"));
+    let plan = scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}")).plan;
+    let words = render(&plan, &RenderOptions::default()).surfaces.swap_remove(0).words;
+    words.into_iter().flat_map(u32::to_le_bytes).collect()
+}
+
+/// How many bytes two pictures differ in, and by how much at most.
+fn difference(names: [&str; 2]) -> (usize, u8) {
+    let [one, other] = names.map(picture);
+    let differences = one.into_iter().zip(other).map(|(a, b)| a.abs_diff(b)).filter(|difference| *difference != 0);
+    differences.fold((0, 0), |(count, largest), difference| (count + 1, largest.max(difference)))
+}
+
+#[test]
+fn techniques_are_as_exact_as_they_ought_to_be() {
+    let figures = pinned("per-pixel-lighting");
+    let names: Vec<&str> = BOUNDS.iter().map(|(name, ..)| *name).collect();
+    assert_eq!(figures.keys().collect::<Vec<_>>(), names);
+    let outside: Vec<String> = BOUNDS
+        .iter()
+        .filter(|(name, least, most)| !(*least..=*most).contains(&figures[*name].rms))
+        .map(|(name, least, most)| format!("{name}: {:.3}, not {least} to {most}", figures[*name].rms))
+        .collect();
+    assert!(outside.is_empty(), "{}", outside.join("\n"));
+}
+
+/// One runs on the Xbox, the other on the GeForce 256, which places coordinates a little differently where they run fast.
+#[test]
+fn the_fallback_by_dot_product_shows_what_the_pixel_shader_shows() {
+    for end in ["", "-stone"] {
+        let names = ["tangent-space-diffuse", "dotproduct3-fallback"].map(|name| format!("{name}{end}"));
+        let (count, largest) = difference(names.each_ref().map(String::as_str));
+        assert!(count <= 40 && largest <= 6, "{end}: {count} {largest}");
+    }
+}
+
+#[test]
+fn a_binormal_made_by_a_cross_product_is_the_mesh_s() {
+    assert_eq!(difference(["tangent-space-diffuse", "tangent-space-diffuse-cross"]), (0, 0));
+}
+
+/// The third stage reads nine bits with a sign, blending the eight of the frame buffer.
+#[test]
+fn doubling_by_blending_is_doubling_in_the_stages() {
+    let (_, largest) = difference(["emboss-2x", "emboss-2x-blend"]);
+    assert!((1..=2).contains(&largest), "{largest}");
+}
+
+/// Each squaring takes many of the levels that are left of the highlight, whose truth has 128; a table keeps them.
+#[test]
+fn squaring_bands_and_a_table_does_not() {
+    let levels = [2, 4, 8, 16, 32].map(|exponent| of(&format!("specular-{exponent}")).levels);
+    assert!(levels.windows(2).all(|pair| pair[1] * 4 <= pair[0] * 3), "{levels:?}");
+    assert!(levels[3] <= 24 && levels[4] <= 14, "{levels:?}");
+    assert!(of("specular-table-16-256").levels >= 100);
+    assert!(of("specular-16").truth_levels >= 100);
+}
+
+/// The last of 32 entries stands for 63/64, which is a fifth to the power of 100: the highlight is one dim grey.
+#[test]
+fn a_small_table_is_too_coarse_for_a_large_exponent() {
+    let levels = |entries: u32| of(&format!("specular-table-100-{entries}")).levels;
+    assert!(levels(32) <= 3 && levels(256) > 80 && levels(1024) > 80);
+    assert!(rms("specular-table-100-32") > 1.5 * rms("specular-table-100-256"));
+    // More entries do not help: what is left comes from half vectors that are too short between the vertices, and from filtered normals.
+    assert!((rms("specular-table-100-1024") - rms("specular-table-100-256")).abs() < 0.5);
+    assert!(rms("specular-table-100-256-fine") < rms("specular-table-100-256"));
+    assert!(rms("specular-table-100-256-coarse") > 1.5 * rms("specular-table-100-256"));
+}
+
+/// (3 - v.v) / 2 brings back most of what a filter or an interpolation took from a vector's length.
+#[test]
+fn vectors_brought_back_to_length_pay() {
+    for (name, most) in [("coarse-light", 0.6), ("specular-8", 0.5), ("specular-16", 0.5)] {
+        let [without, with] = [name.to_owned(), format!("{name}-renormalised")].map(|name| rms(&name));
+        assert!(with < most * without, "{name}: {without} {with}");
+    }
+    let figures = pinned("renormalisation");
+    for name in ["diffuse", "specular"] {
+        let [without, with] = ["plain", "renormalised"].map(|end| figures[&format!("{name}-{end}")].rms);
+        assert!(with < 0.4 * without, "{name}: {without} {with}");
+    }
+}
+
+/// The simplified integral is right about itself; held against the exact one it has too much contrast.
+#[test]
+fn the_simplified_integral_is_not_the_exact_one() {
+    assert!(rms("hemisphere-pixel") < 1.0 && rms("hemisphere-exact") < 1.0);
+    assert!(rms("hemisphere-pixel-for-exact") > 15.0);
+    assert_eq!(difference(["hemisphere-pixel", "hemisphere-pixel-for-exact"]), (0, 0));
+    // Light of the vertices knows nothing of bumps.
+    assert!(rms("hemisphere-vertex") < 1.0 && rms("hemisphere-vertex-bumps") > 8.0);
+}
+
+/// Emboss alone is about one half everywhere; with the light of the smooth surface it is a light, and a longer way a stronger one.
+#[test]
+fn emboss_needs_the_light_of_the_smooth_surface() {
+    assert!(rms("emboss") > 60.0 && rms("emboss-2x") < 35.0);
+    assert!(rms("emboss-2x-far") < 0.7 * rms("emboss-2x"));
+    assert!(rms("tangent-space-diffuse") < 0.2 * rms("emboss-2x-far"));
+    // A highlight less what the heights lack is further off than a highlight without any bumps.
+    assert!(rms("emboss-specular-map") > 1.5 * rms("highlight-map"));
+    assert!(rms("emboss-specular") < rms("highlight-map"));
+}

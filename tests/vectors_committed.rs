@@ -1,0 +1,182 @@
+//! What is committed under `vectors` beside scenes: packs, schemas, the list of mutations.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
+
+use std::collections::BTreeSet;
+use std::path::Path;
+use std::process::Command;
+
+use ninebit::state::{Named, Policies, Profile};
+use ninebit::vectors::cases::{self, Level};
+use ninebit::vectors::pack::{self, Options};
+use ninebit::vectors::unit::Conditions;
+use ninebit::vectors::view::View;
+use ninebit::vectors::{sweep::Sweep, tree, units};
+use serde_json::Value;
+
+fn json(path: impl AsRef<Path>) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// The packs are, byte for byte, what an export writes: all units of nv2a, and of nv10 those in which it differs.
+#[test]
+fn committed_packs_are_what_the_model_says() {
+    let folder = tempfile::tempdir().unwrap();
+    for profile in Profile::ALL {
+        let name = profile.name().to_lowercase();
+        let committed = Path::new("vectors/packs").join(&name);
+        let manifest = pack::manifest(&committed).unwrap();
+        let mut chosen: Vec<_> = manifest.files.iter().filter_map(|file| units::by_name(&file.unit)).collect();
+        chosen.dedup_by_key(|unit| unit.name());
+        if *profile == Profile::Nv2a {
+            assert_eq!(chosen.len(), units::all().len());
+        }
+        let options =
+            Options { profile: *profile, level: Level::L0, seed: 1, units: chosen, deciding: false, views: vec![] };
+        let fresh = folder.path().join(&name);
+        let again = pack::export(&fresh, &options).unwrap();
+        for (file, committed_file) in again.files.iter().zip(&manifest.files) {
+            let help = "export it again as docs/vectors.md says, and say why under Numerics in CHANGELOG.md";
+            assert_eq!(file, committed_file, "{name}: {help}");
+        }
+        assert_eq!(again, manifest);
+        let (_, tables) = pack::open(&committed).unwrap();
+        assert!(tables.iter().all(|table| table.is_current()));
+        assert!(manifest.files.iter().all(|file| file.bytes < 1_000_000));
+    }
+}
+
+/// Inputs and results of a chip.
+fn rows(profile: Profile, unit: &'static dyn ninebit::vectors::Unit) -> Vec<Vec<i64>> {
+    let conditions = Conditions { profile, policies: Policies::DEFAULT };
+    let (columns, mut rows) = (unit.results().len(), Vec::new());
+    cases::visit(unit, profile, Level::L0, 1, |inputs, _| {
+        let mut results = vec![0; columns];
+        unit.evaluate(inputs, &conditions, &mut results);
+        rows.push([inputs, &results].concat());
+    });
+    rows
+}
+
+#[test]
+fn the_pack_of_nv10_has_the_units_that_differ() {
+    let manifest = pack::manifest(Path::new("vectors/packs/nv10")).unwrap();
+    let committed: BTreeSet<&str> =
+        manifest.files.iter().map(|file| file.unit.as_str()).filter(|unit| !unit.is_empty()).collect();
+    let both = units::all().into_iter().filter(|unit| unit.profiles().len() == 2);
+    let different: BTreeSet<&str> =
+        both.filter(|unit| rows(Profile::Nv10, *unit) != rows(Profile::Nv2a, *unit)).map(|unit| unit.name()).collect();
+    assert_eq!(committed, different);
+}
+
+/// A document has the properties of its schema, level by level, and nothing else.
+fn fits(schema: &Value, value: &Value, place: &str) {
+    if let (Some(properties), Some(object)) = (schema["properties"].as_object(), value.as_object()) {
+        let patterns: Vec<&String> =
+            schema["patternProperties"].as_object().into_iter().flat_map(|p| p.keys()).collect();
+        let columns = |name: &str| ["cfg.", "in.", "mid.", "out."].iter().any(|prefix| name.starts_with(prefix));
+        for (name, value) in object {
+            match properties.get(name) {
+                Some(property) => fits(property, value, &format!("{place}.{name}")),
+                None => assert!(!patterns.is_empty() && columns(name), "{place}.{name} is not in the schema"),
+            }
+        }
+        for name in schema["required"].as_array().unwrap() {
+            assert!(object.contains_key(name.as_str().unwrap()), "{place} lacks {name}");
+        }
+        assert_eq!(schema["additionalProperties"], Value::Bool(false), "{place}");
+    }
+    if let Some(items) = value.as_array().filter(|_| schema.get("items").is_some()) {
+        items.iter().for_each(|item| fits(&schema["items"], item, &format!("{place}[]")));
+    }
+    if let Some(constant) = schema.get("const") {
+        assert_eq!(value, constant, "{place}");
+    }
+    if let Some(known) = schema["enum"].as_array() {
+        assert!(known.contains(value), "{place}: {value}");
+    }
+    if let Some(kind) = schema["type"].as_str() {
+        let is = match kind {
+            "object" => value.is_object(),
+            "array" => value.is_array(),
+            "string" => value.is_string(),
+            "boolean" => value.is_boolean(),
+            "integer" => value.is_i64() || value.is_u64(),
+            other => panic!("{place}: {other}"),
+        };
+        assert!(is, "{place} is no {kind}: {value}");
+    }
+}
+
+/// `vectors/schema/check` validates the same documents with a whole validator.
+#[test]
+fn documents_have_the_properties_of_their_schemas() {
+    let folder = tempfile::tempdir().unwrap();
+    let chosen = ["product", "mux", "general-stage"].map(|name| units::by_name(name).unwrap()).to_vec();
+    let views = vec![View::Hex, View::Jsonl];
+    let options = Options { profile: Profile::Nv2a, level: Level::L0, seed: 1, units: chosen, deciding: true, views };
+    let place = folder.path();
+    pack::export(place, &options).unwrap();
+    let schema = |name: &str| json(place.join(format!("schema/{name}.schema.json")));
+    fits(&schema("manifest"), &json(place.join("MANIFEST.json")), "manifest");
+    for unit in ["product", "mux", "general-stage"] {
+        fits(&schema("layout"), &json(place.join(format!("units/{unit}.layout.json"))), unit);
+        let rows = std::fs::read_to_string(place.join(format!("units/{unit}.jsonl"))).unwrap();
+        rows.lines().for_each(|row| fits(&schema("row"), &serde_json::from_str(row).unwrap(), unit));
+    }
+    tree::work(place, &Sweep::new(units::by_name("mux").unwrap(), Profile::Nv2a).unwrap(), 0).unwrap();
+    fits(&schema("leaf"), &json(place.join("leaf-0000.json")), "leaf");
+    for entry in std::fs::read_dir("vectors/digests").unwrap() {
+        fits(&schema("sweep"), &json(entry.unwrap().path()), "sweep");
+    }
+}
+
+/// Each mutation still has its place: `vectors/mutation/run` plants them all.
+#[test]
+fn mutations_are_of_texts_that_occur_once() {
+    let mutants = json("vectors/mutation/mutants.json");
+    let (mutants, page) = (mutants.as_array().unwrap(), std::fs::read_to_string("docs/mutations.md").unwrap());
+    assert!(mutants.len() > 150);
+    let numerics = std::fs::read_to_string("docs/numerics.md").unwrap();
+    for mutant in mutants {
+        let [rule, what, file, old, new] =
+            ["rule", "what", "file", "old", "new"].map(|key| mutant[key].as_str().unwrap());
+        let text = std::fs::read_to_string(file).unwrap();
+        assert_eq!(text.matches(old).count(), 1, "{file}: {old}");
+        assert!(old != new && numerics.contains(&format!("### {rule} ")), "{what}");
+        let row = format!("| {rule} | `{}` | {what} | ", file.strip_prefix("src/").unwrap());
+        assert!(page.contains(&row), "run vectors/mutation/run: docs/mutations.md has no {row}");
+    }
+}
+
+/// A disk that is full in the middle of an export: the exit status says so, and no manifest makes a pack of what is there.
+#[test]
+#[cfg(unix)]
+fn a_full_disk_leaves_no_pack() {
+    let folder = tempfile::tempdir().unwrap();
+    let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=256k", "tmpfs"]).arg(folder.path()).status();
+    if !mount.is_ok_and(|status| status.success()) {
+        eprintln!("skipped: this user cannot mount a tmpfs");
+        return;
+    }
+    let place = folder.path().join("pack");
+    let arguments = ["vectors", "export", "--unit", "general-stage", "--unit", "mux", "-o", place.to_str().unwrap()];
+    let output = Command::new(env!("CARGO_BIN_EXE_ninebit")).args(arguments).output().unwrap();
+    let left: Vec<String> = std::fs::read_dir(place.join("units"))
+        .into_iter()
+        .flatten()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .collect();
+    let manifest = place.join("MANIFEST.json").exists();
+    let leaf = folder.path().join("leaves");
+    let filler = std::fs::write(folder.path().join("filler"), vec![1; 1 << 20]);
+    let swept = Command::new(env!("CARGO_BIN_EXE_ninebit"))
+        .args(["vectors", "sweep", "--unit", "mux", "-o", leaf.to_str().unwrap()])
+        .output()
+        .unwrap();
+    let leaves = std::fs::read_dir(&leaf).map_or(0, Iterator::count);
+    assert!(Command::new("umount").arg(folder.path()).status().unwrap().success());
+    assert!(output.status.code() == Some(7) && !manifest, "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("free some space"), "{output:?}");
+    assert!(left.iter().all(|name| name == "mux.tsv"), "{left:?}");
+    assert!(filler.is_err() && swept.status.code() == Some(7) && leaves == 0, "{swept:?}");
+}

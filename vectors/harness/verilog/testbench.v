@@ -1,0 +1,82 @@
+// Holds general_stage to the rows of units/general-stage.hex, whose layout is units/general-stage.svh:
+//
+//     iverilog -g2005-sv -I pack/units -P testbench.ROWS=60000 -o stage.vvp testbench.v general_stage.v
+//     vvp stage.vvp +rows=pack/units/general-stage.hex
+//
+// ROWS is the number of lines of the file. -P testbench.ROUNDING=253 plants an error, and rows must fail.
+
+module testbench;
+    `include "general-stage.svh"
+    parameter ROWS = 1;
+    parameter ROUNDING = 255;
+    localparam SHOWN = 5;
+
+    reg [ROW_BITS-1:0] rows [0:ROWS-1];
+    reg [ROW_BITS-1:0] row;
+    reg [8*512-1:0] path;
+    wire [26:0] ab, cd, third;
+    integer n, failed, unread;
+
+    general_stage #(.ROUNDING(ROUNDING)) stage (
+        .mapping_a(row[CFG_MAPPING_A_HIGH:CFG_MAPPING_A_LOW]),
+        .mapping_b(row[CFG_MAPPING_B_HIGH:CFG_MAPPING_B_LOW]),
+        .mapping_c(row[CFG_MAPPING_C_HIGH:CFG_MAPPING_C_LOW]),
+        .mapping_d(row[CFG_MAPPING_D_HIGH:CFG_MAPPING_D_LOW]),
+        .scale(row[CFG_SCALE_HIGH:CFG_SCALE_LOW]),
+        .bias(row[CFG_BIAS_LOW]),
+        .mux(row[CFG_MUX_LOW]),
+        .mux_lsb(row[CFG_MUX_SELECT_LOW]),
+        .ab_dot(row[CFG_AB_DOT_LOW]),
+        .cd_dot(row[CFG_CD_DOT_LOW]),
+        .a({row[IN_A_R_HIGH:IN_A_R_LOW], row[IN_A_G_HIGH:IN_A_G_LOW], row[IN_A_B_HIGH:IN_A_B_LOW]}),
+        .b({row[IN_B_R_HIGH:IN_B_R_LOW], row[IN_B_G_HIGH:IN_B_G_LOW], row[IN_B_B_HIGH:IN_B_B_LOW]}),
+        .c({row[IN_C_R_HIGH:IN_C_R_LOW], row[IN_C_G_HIGH:IN_C_G_LOW], row[IN_C_B_HIGH:IN_C_B_LOW]}),
+        .d({row[IN_D_R_HIGH:IN_D_R_LOW], row[IN_D_G_HIGH:IN_D_G_LOW], row[IN_D_B_HIGH:IN_D_B_LOW]}),
+        .spare0_alpha(row[IN_SPARE0_A_HIGH:IN_SPARE0_A_LOW]),
+        .ab(ab), .cd(cd), .third(third)
+    );
+
+    wire [26:0] expected_ab = {row[OUT_AB_R_HIGH:OUT_AB_R_LOW], row[OUT_AB_G_HIGH:OUT_AB_G_LOW], row[OUT_AB_B_HIGH:OUT_AB_B_LOW]};
+    wire [26:0] expected_cd = {row[OUT_CD_R_HIGH:OUT_CD_R_LOW], row[OUT_CD_G_HIGH:OUT_CD_G_LOW], row[OUT_CD_B_HIGH:OUT_CD_B_LOW]};
+    wire [26:0] expected_third =
+        {row[OUT_THIRD_R_HIGH:OUT_THIRD_R_LOW], row[OUT_THIRD_G_HIGH:OUT_THIRD_G_LOW], row[OUT_THIRD_B_HIGH:OUT_THIRD_B_LOW]};
+
+    // Red, green and blue of an output, what was found and what was expected.
+    task show(input [8*5-1:0] name, input [26:0] found, input [26:0] expected);
+        if (found !== expected)
+            $display("    %0s is %0d %0d %0d, expected %0d %0d %0d", name,
+                $signed(found[26:18]), $signed(found[17:9]), $signed(found[8:0]),
+                $signed(expected[26:18]), $signed(expected[17:9]), $signed(expected[8:0]));
+    endtask
+
+    initial begin
+        failed = 0;
+        unread = 0;
+        if (!$value$plusargs("rows=%s", path)) begin
+            $display("name the rows: +rows=pack/units/general-stage.hex");
+            $finish_and_return(2);
+        end
+        $readmemh(path, rows);
+        for (n = 0; n < ROWS; n = n + 1) begin
+            row = rows[n];
+            // A word that the file did not have is unknown in every bit.
+            if (^row === 1'bx) unread = unread + 1;
+            #1;
+            if ({ab, cd, third} !== {expected_ab, expected_cd, expected_third}) begin
+                if (failed < SHOWN) begin
+                    $display("row %0d (line %0d of the rows, %h) fails", n, n + 1, row);
+                    show("ab", ab, expected_ab);
+                    show("cd", cd, expected_cd);
+                    show("third", third, expected_third);
+                end
+                failed = failed + 1;
+            end
+        end
+        $display("general-stage: %0d of %0d rows failed", failed, ROWS);
+        if (unread != 0) begin
+            $display("%0d rows could not be read", unread);
+            $finish_and_return(2);
+        end
+        $finish_and_return(failed != 0);
+    end
+endmodule
