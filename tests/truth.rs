@@ -149,7 +149,7 @@ fn nothing_drawn_is_nothing_measured() {
 /// A folder of a scene and its family.
 fn with_family(scene: &str, family: &str) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("shared.family.ron"), family).unwrap();
+    std::fs::write(folder.path().join("outside.family.ron"), family).unwrap();
     let path = folder.path().join("scene.ron");
     std::fs::write(&path, scene).unwrap();
     (folder, path)
@@ -159,7 +159,7 @@ fn with_family(scene: &str, family: &str) -> (tempfile::TempDir, PathBuf) {
 fn a_family_is_as_if_it_stood_in_the_scene() {
     let family = "(names: (vectors: { \"sun\": (0, 0.6, 0.8), \"other\": (1, 1) }, meshes: { \"square\": Grid(columns: 1, rows: 1) }), \
         targets: [(width: 64, height: 64)], truth: (lights: [(direction: \"sun\")], normal: Hemisphere()))";
-    let scene = "(version: 1, profile: Nv2a, family: \"shared.family.ron\", truth: (normal: Mesh), draws: [(vertices: Matrix(matrix: \
+    let scene = "(version: 1, profile: Nv2a, family: \"outside.family.ron\", truth: (normal: Mesh), draws: [(vertices: Matrix(matrix: \
         Orthographic(left: -1, right: 1, bottom: -1, top: 1, near: -2, far: 2), mesh: \"square\", diffuse: LightVector(direction: \"sun\")))])";
     let (_folder, path) = with_family(scene, family);
     let loaded = scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
@@ -175,7 +175,7 @@ fn a_family_is_as_if_it_stood_in_the_scene() {
 
 #[test]
 fn a_family_does_not_leave_the_folder() {
-    let (_folder, path) = with_family("(version: 1, profile: Nv2a, family: \"../shared.family.ron\", draws: [])", "()");
+    let (_folder, path) = with_family("(version: 1, profile: Nv2a, family: \"../outside.family.ron\", draws: [])", "()");
     let error = scene::load(&path, &Limits::default()).unwrap_err();
     assert_eq!(error.diagnostics[0].code, "NB0501");
 }
