@@ -175,7 +175,8 @@ fn a_family_is_as_if_it_stood_in_the_scene() {
 
 #[test]
 fn a_family_does_not_leave_the_folder() {
-    let (_folder, path) = with_family("(version: 1, profile: Nv2a, family: \"../outside.family.ron\", draws: [])", "()");
+    let (_folder, path) =
+        with_family("(version: 1, profile: Nv2a, family: \"../outside.family.ron\", draws: [])", "()");
     let error = scene::load(&path, &Limits::default()).unwrap_err();
     assert_eq!(error.diagnostics[0].code, "NB0501");
 }
