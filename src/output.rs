@@ -117,6 +117,23 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     write_file_with(path, |out| out.write_all(bytes))
 }
 
+/// Makes a folder, and those that it lies in.
+///
+/// # Errors
+/// It cannot be made.
+pub fn make_folder(path: &Path) -> Result<(), OutputError> {
+    std::fs::create_dir_all(path).map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
+}
+
+/// [`write_file`] in a folder that is made if it is not there.
+///
+/// # Errors
+/// As [`write_file`] and [`make_folder`].
+pub fn write_below(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
+    path.parent().map_or(Ok(()), make_folder)?;
+    write_file(path, bytes)
+}
+
 /// [`write_file`] of what `fill` writes; returns what it returns.
 ///
 /// # Errors

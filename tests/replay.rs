@@ -11,9 +11,10 @@ use ninebit::expectation::{Allowance, Expectation};
 use ninebit::limits::Limits;
 use ninebit::output::{Compression, encode_png};
 use ninebit::plan::Plan;
-use ninebit::replay::{Options, Outcome, Shard, find, replay, report};
+use ninebit::replay::{Options, Outcome, find, replay, report};
 use ninebit::scene;
 use ninebit::scene::image::{ImageLimits, load};
+use ninebit::shard::Shard;
 use ninebit::state::Policies;
 use snapbox::{assert_data_eq, file};
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use crate::generate::byte;
 use crate::truth::TruthFrame;
 
 /// Levels over the highlight: the pixels whose truth is at least half of the brightest one. Counted in the channel that is brightest there.
@@ -28,7 +29,7 @@ impl Banding {
         let half = 0.5 * brightest(channel);
         let highlight: Vec<usize> = measured.iter().copied().filter(|at| value(*at, channel) >= half).collect();
         let width = truth.width as usize;
-        let rounded = |at: usize| (255.0 * value(at, channel) + 0.5) as u8;
+        let rounded = |at: usize| byte(value(at, channel));
         let (levels, flat_run) = bands(&highlight, width, |at| shown[at][channel]);
         let (truth_levels, truth_flat_run) = bands(&highlight, width, rounded);
         Banding { pixels: highlight.len() as u64, levels, truth_levels, flat_run, truth_flat_run }

@@ -5,7 +5,7 @@ use crate::compare::{CompareOptions, Mode, Statistics, compare};
 use crate::plan::{Plan, PlanOptions};
 use crate::state::{
     Combiners, Component, ExpandCentre, FinalCombiner, FinalInput, FinalRegister, GeneralStage, MuxSelect, Portion,
-    Register, Scene,
+    Scene,
 };
 use crate::truth::{ShadingNormal, Space, Truth, TruthFrame};
 use crate::vector::{Vector, cross, dot, unit_or_zero};
@@ -31,18 +31,16 @@ pub(super) struct Normals {
 
 /// Reads a register of the draws that have a truth: the scene is drawn once more with programs that show it.
 pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNormal) -> Normals {
-    let nothing = Normals { stored: Vec::new(), ideal: Vec::new(), space: normal.space };
-    let Some(register) = shown(normal.register) else { return nothing };
     let mut probe = scene.clone();
     for (number, draw) in probe.draws.iter_mut().enumerate() {
         if truth.meshes.get(number).is_some_and(Option::is_some) {
-            draw.combiners = showing(register);
+            draw.combiners = showing(normal.register.into());
             (draw.blend, draw.alpha_test, draw.color_mask) = (None, None, [true; 4]);
             draw.program_origin.clear();
         }
     }
     let Ok(probe) = Plan::compile(&probe, &PlanOptions { policies: plan.policies, prune: true }) else {
-        return nothing;
+        return Normals { stored: Vec::new(), ideal: Vec::new(), space: normal.space };
     };
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let comparison = compare(&probe, &options);
@@ -63,19 +61,6 @@ pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNor
         ideal: pixels.map(|at| drawn(at).then(|| ideal(at))).collect(),
         space: normal.space,
     }
-}
-
-/// The final combiner's name of a register.
-fn shown(register: Register) -> Option<FinalRegister> {
-    Some(match register {
-        Register::PrimaryColor => FinalRegister::PrimaryColor,
-        Register::SecondaryColor => FinalRegister::SecondaryColor,
-        Register::Texture0 => FinalRegister::Texture0,
-        Register::Texture1 => FinalRegister::Texture1,
-        Register::Texture2 => FinalRegister::Texture2,
-        Register::Texture3 => FinalRegister::Texture3,
-        _ => return None,
-    })
 }
 
 /// A program that shows a register.

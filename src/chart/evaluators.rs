@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::surfaces::Surface;
 use super::timing::{Effort, Spread, frames};
-use crate::compare::{CompareOptions, Mode, compare, real_frame};
+use crate::compare::{CompareOptions, Mode, Statistics, compare, real_frame};
 use crate::engine::{self, Engine, Isa, RenderOptions, render};
 use crate::number::Ideal;
 use crate::plan::Plan;
@@ -45,30 +45,32 @@ pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<
     let mut all = Vec::new();
     for (surface, state) in workloads() {
         let plan = state.plan(side)?;
+        let definition = rendered(&plan, &RenderOptions { engine: Engine::Scalar, ..RenderOptions::default() });
         let pixels = plan.draws.iter().map(|draw| engine::fragments(&plan, draw)).sum::<u64>().max(1);
-        let mut add = |name: String, yields, time, (error, largest)| {
+        let mut add = |name: String, yields, time, errors: Statistics| {
+            let (error, largest) = (errors.rms(), errors.max());
             all.push(Evaluator { name, surface: surface.to_owned(), yields, time, error, largest });
             progress();
         };
         for isa in Isa::ALL.iter().rev().filter(|isa| isa.is_available()) {
             let options = RenderOptions { isa: Some(*isa), ..RenderOptions::default() };
             let name = format!("fast, {}", isa.name());
-            let same = against(&plan, &rendered(&plan, &options));
-            add(name, "the stored bytes", frames(&plan, &options, pixels, effort), same);
+            let errors = against(&definition, &rendered(&plan, &options));
+            add(name, "the stored bytes", frames(&plan, &options, pixels, effort), errors);
         }
         let scalar = RenderOptions { engine: Engine::Scalar, ..RenderOptions::default() };
-        let same = against(&plan, &rendered(&plan, &scalar));
-        add("scalar".to_owned(), "the stored bytes", frames(&plan, &scalar, pixels, effort), same);
-        let (time, error) = traced(&plan, side, effort);
-        add("traced".to_owned(), "every integer of each pixel", time, error);
-        let (time, error) = real::<f32>(&plan, pixels, effort);
-        add("float32".to_owned(), "the real-number text, single precision", time, error);
-        let (time, error) = real::<f64>(&plan, pixels, effort);
-        add("float64".to_owned(), "the real-number text", time, error);
+        let time = frames(&plan, &scalar, pixels, effort);
+        add("scalar".to_owned(), "the stored bytes", time, against(&definition, &definition));
+        let (time, errors) = traced(&plan, &definition, side, effort);
+        add("traced".to_owned(), "every integer of each pixel", time, errors);
+        let (time, errors) = real::<f32>(&plan, &definition, pixels, effort);
+        add("float32".to_owned(), "the real-number text, single precision", time, errors);
+        let (time, errors) = real::<f64>(&plan, &definition, pixels, effort);
+        add("float64".to_owned(), "the real-number text", time, errors);
         for mode in Mode::ALL {
             let options = CompareOptions { mode: *mode, target: 0, threads: 1, channels: 15 };
             let time = effort.measure(pixels, || drop(compare(&plan, &options)));
-            add(format!("compare {}", mode.name()), "both, and their differences", time, (0.0, 0.0));
+            add(format!("compare {}", mode.name()), "both, and their differences", time, Statistics::default());
         }
     }
     Ok(all)
@@ -87,40 +89,43 @@ fn rendered(plan: &Plan, options: &RenderOptions) -> Vec<[f64; 3]> {
     bytes.iter().map(|[r, g, b, _]| [*r, *g, *b].map(f64::from)).collect()
 }
 
-/// Root mean square and largest error against the definition's bytes, over all numbers that are there.
-fn against(plan: &Plan, frame: &[[f64; 3]]) -> (f64, f64) {
-    let bytes = rendered(plan, &RenderOptions { engine: Engine::Scalar, ..RenderOptions::default() });
-    let errors = bytes.iter().flatten().zip(frame.iter().flatten()).map(|(byte, value)| value - byte);
-    let errors: Vec<f64> = errors.filter(|error| !error.is_nan()).collect();
-    let mean = errors.iter().map(|error| error * error).sum::<f64>() / errors.len().max(1) as f64;
-    (mean.sqrt(), errors.iter().fold(0.0, |most: f64, error| most.max(error.abs())))
+/// Errors against the definition's bytes, of all numbers that are there.
+fn against(definition: &[[f64; 3]], frame: &[[f64; 3]]) -> Statistics {
+    let mut errors = Statistics::default();
+    for (byte, value) in definition.iter().flatten().zip(frame.iter().flatten()).filter(|(_, value)| !value.is_nan()) {
+        errors.add(value - byte);
+    }
+    errors
 }
 
 /// The ideal in a lane of real numbers.
-fn real<L: Ideal + Send + Sync>(plan: &Plan, pixels: u64, effort: &Effort) -> (Spread, (f64, f64)) {
+fn real<L: Ideal + Send + Sync>(
+    plan: &Plan,
+    definition: &[[f64; 3]],
+    pixels: u64,
+    effort: &Effort,
+) -> (Spread, Statistics) {
     let time = effort.measure(pixels, || drop(real_frame::<L>(plan, 0, 1)));
     let colors = |pixel: &Option<[L; 4]>| pixel.map_or([f64::NAN; 3], |[r, g, b, _]| [r, g, b].map(L::real));
     let frame: Vec<[f64; 3]> = real_frame::<L>(plan, 0, 1).iter().map(colors).collect();
-    (time, against(plan, &frame))
+    (time, against(definition, &frame))
 }
 
 /// Traces of pixels spread over the frame.
-fn traced(plan: &Plan, side: usize, effort: &Effort) -> (Spread, (f64, f64)) {
+fn traced(plan: &Plan, definition: &[[f64; 3]], side: usize, effort: &Effort) -> (Spread, Statistics) {
     /// Pixels that are traced, along each side.
     const GRID: usize = 8;
-    let bytes = rendered(plan, &RenderOptions { engine: Engine::Scalar, ..RenderOptions::default() });
     let places: Vec<(u32, u32)> = (0..GRID * GRID)
         .map(|n| [n % GRID, n / GRID].map(|k| ((k * side + side / 2) / GRID) as u32))
         .map(|[x, y]| (x, y))
         .collect();
     let trace = |place: &(u32, u32)| engine::trace(plan, 0, *place, None);
     let time = effort.measure(places.len() as u64, || places.iter().for_each(|place| drop(trace(place))));
-    let mut largest: f64 = 0.0;
-    for (x, y) in &places {
-        let Ok(pixel) = trace(&(*x, *y)) else { continue };
-        let Some([r, g, b]) = bytes.get(*y as usize * side + *x as usize) else { continue };
-        let shown = pixel.shown.map(f64::from);
-        largest = [r - shown[0], g - shown[1], b - shown[2]].iter().fold(largest, |most, e| most.max(e.abs()));
+    let mut errors = Statistics::default();
+    for place in &places {
+        let Ok(pixel) = trace(place) else { continue };
+        let Some(bytes) = definition.get(place.1 as usize * side + place.0 as usize) else { continue };
+        bytes.iter().zip(pixel.shown).for_each(|(byte, shown)| errors.add(f64::from(shown) - byte));
     }
-    (time, (largest, largest))
+    (time, errors)
 }

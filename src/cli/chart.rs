@@ -9,7 +9,7 @@ use ninebit::chart::report::Measured;
 use ninebit::chart::techniques::{self, TechniqueError};
 use ninebit::chart::timing::Effort;
 use ninebit::chart::{evaluators, surfaces};
-use ninebit::output::{OutputError, write_file};
+use ninebit::output::write_below;
 use ninebit::scene::SceneError;
 use ninebit::sweep;
 
@@ -113,12 +113,7 @@ fn stability_page(path: &Path, section: &str) -> File {
 
 fn write(folder: &Path, files: &[File]) -> Result<(), Failure> {
     for file in files {
-        let path = folder.join(&file.path);
-        if let Some(parent) = path.parent() {
-            std::fs::create_dir_all(parent)
-                .map_err(|source| OutputError::Write { path: parent.to_path_buf(), source })?;
-        }
-        write_file(&path, &file.bytes)?;
+        write_below(&folder.join(&file.path), &file.bytes)?;
     }
     Ok(())
 }

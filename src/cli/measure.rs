@@ -1,11 +1,11 @@
 //! `ninebit measure`.
-#![allow(clippy::float_arithmetic, reason = "a picture of the truth: real numbers become bytes")]
 
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use ninebit::accuracy::{accuracy_text, accuracy_value, measure};
+use ninebit::generate::byte;
 use ninebit::output::{Compression, Destination, encode_png, write_stdout};
 use ninebit::plan::Plan;
 use ninebit::truth::{Truth, evaluate};
@@ -82,12 +82,12 @@ fn entry(path: &Path, mut value: serde_json::Value) -> serde_json::Value {
 /// The truth of the first target, rounded; black where there is none.
 fn write_truth(plan: &Plan, truth: &Truth, destination: &Destination) -> Result<(), Failure> {
     let frame = evaluate(plan, truth, 0);
-    let byte = |c: f64| (255.0 * c + 0.5) as u8;
     let pixels: Vec<[u8; 4]> = frame
         .pixels
         .iter()
         .map(|pixel| {
-            pixel.as_ref().map_or([0, 0, 0, 255], |p| [byte(p.color[0]), byte(p.color[1]), byte(p.color[2]), 255])
+            let [r, g, b] = pixel.as_ref().map_or([0; 3], |pixel| pixel.color.map(byte));
+            [r, g, b, 255]
         })
         .collect();
     Ok(destination.write(&encode_png(frame.width, frame.height, &pixels, Compression::Small)?)?)

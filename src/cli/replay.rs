@@ -7,8 +7,9 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use ninebit::output::{Destination, OutputError, write_stdout};
-use ninebit::replay::{Entry, Filter, Options, Replayed, Shard, find, replay, report};
+use ninebit::output::{Destination, OutputError, make_folder, write_stdout};
+use ninebit::replay::{Entry, Filter, Options, Replayed, find, part, replay, report};
+use ninebit::shard::Shard;
 use ninebit::state::{Named, Policies, Profile};
 
 use super::Context;
@@ -29,7 +30,7 @@ pub(crate) struct Arguments {
     #[arg(long = "filter", value_name = "GLOB")]
     filters: Vec<String>,
     /// Only one of N parts of the scenes: 1/4 to 4/4 are all
-    #[arg(long, value_name = "I/N", value_parser = shard)]
+    #[arg(long, value_name = "I/N", value_parser = str::parse::<Shard>)]
     shard: Option<Shard>,
     /// Only scenes of this chip
     #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(Profile::NAMES))]
@@ -81,8 +82,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     // Reports may be meant to lie in them, also where nothing differs.
     let mut exit = Exit::Success;
     for folder in [&arguments.artifacts, &arguments.pictures].into_iter().flatten() {
-        if let Err(source) = std::fs::create_dir_all(folder) {
-            exit = say(OutputError::Write { path: folder.clone(), source }, context);
+        if let Err(error) = make_folder(folder) {
+            exit = say(error, context);
         }
     }
     let replayed = {
@@ -155,7 +156,7 @@ fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
         return Err(Failure { exit: Exit::Missing, report });
     }
     Ok(match arguments.shard {
-        Some(shard) => shard.of(entries),
+        Some(shard) => part(entries, shard),
         None => entries,
     })
 }
@@ -204,12 +205,6 @@ fn github(replayed: &[Replayed]) -> Result<(), OutputError> {
 /// Whether a variable of the environment is set, and to something that means yes.
 fn set(name: &str) -> bool {
     std::env::var(name).is_ok_and(|value| !matches!(value.to_ascii_lowercase().as_str(), "" | "0" | "false"))
-}
-
-fn shard(text: &str) -> Result<Shard, String> {
-    text.split_once('/')
-        .and_then(|(index, count)| Shard::new(index.parse().ok()?, count.parse().ok()?))
-        .ok_or_else(|| "not of the form I/N with I from 1 to N, for example 1/4".to_owned())
 }
 
 fn wanted(text: &str) -> Result<Wanted, String> {

@@ -11,6 +11,7 @@ use crate::plan::{Plan, PlannedDraw};
 use crate::rop::surface;
 use crate::state::{Named, Texture, TextureImage};
 use crate::texture::unit::Image;
+use crate::threads::on_threads;
 use crate::trace::{Decision, Part, Rule};
 use rayon::prelude::*;
 
@@ -174,22 +175,9 @@ impl WorstPixel {
 
 /// Draws everything that the target can show, and sums up.
 pub(super) fn run<M: Method>(plan: &Plan, options: &CompareOptions) -> Comparison {
-    let reads_targets = |planned: &PlannedDraw| {
-        planned.units.iter().any(|u| matches!(plan.textures[u.state.texture].image, TextureImage::Target { .. }))
-    };
-    let work = || {
-        if plan.draws.iter().any(reads_targets) { whole::<M>(plan, options) } else { banded::<M>(plan, options) }
-    };
+    let reads_targets = plan.draws.iter().any(|planned| plan.reads_target(planned));
+    let work = || if reads_targets { whole::<M>(plan, options) } else { banded::<M>(plan, options) };
     summed(plan, options, on_threads(options.threads, work))
-}
-
-/// Does work with so many threads, 0 being one a core.
-pub(super) fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    let pool = (threads != 0).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
-    match pool.flatten() {
-        Some(pool) => pool.install(work),
-        None => work(),
-    }
 }
 
 /// No draw reads a surface: each band goes through all draws by itself, and other targets do not matter.

@@ -24,6 +24,7 @@ pub use statistics::{Histogram, Statistics};
 use crate::number::Ideal;
 use crate::plan::Plan;
 use crate::state::named;
+use crate::threads::on_threads;
 use crate::trace::{Decision, Part, Rule};
 
 named! {
@@ -156,5 +157,5 @@ pub fn compare(plan: &Plan, options: &CompareOptions) -> Comparison {
 /// Evaluates the ideal alone, as [`Mode::Free`] does, in `f64` or `f32`: R, G, B, A of a target in 255ths, row by row; `None` where it draws
 /// nothing. `threads` is that of [`CompareOptions`].
 pub fn real_frame<L: Ideal + Send + Sync>(plan: &Plan, target: usize, threads: usize) -> Vec<Option<[L; 4]>> {
-    draw::on_threads(threads, || draw::held::<free::Real<L>>(plan, target))
+    on_threads(threads, || draw::held::<free::Real<L>>(plan, target))
 }

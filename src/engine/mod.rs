@@ -237,11 +237,11 @@ pub(crate) fn cleared_colors(target: &Target) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// Each texture as it stands at this moment.
+/// Each texture as it stands at this moment. Without surfaces nothing reads those that are targets.
 pub(crate) fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Image<'a, L>> {
     let words = |texture: &'a Texture| match &texture.image {
         TextureImage::Texels(texels) => &texels.words[..],
-        TextureImage::Target { target } => &surfaces[*target].words,
+        TextureImage::Target { target } => surfaces.get(*target).map_or(&[][..], |surface| &surface.words),
     };
     plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
 }

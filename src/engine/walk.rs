@@ -6,20 +6,20 @@ use crate::texture::unit::Image;
 use crate::trace::Observer;
 
 /// Some rows of a surface.
-pub(super) struct Band<'a> {
+pub(crate) struct Band<'a> {
     /// Row of the first word; even.
-    pub(super) first_row: usize,
+    pub(crate) first_row: usize,
     /// Words a row.
-    pub(super) width: usize,
+    pub(crate) width: usize,
     /// The rows' words.
-    pub(super) words: &'a mut [u32],
+    pub(crate) words: &'a mut [u32],
     /// The rows' depths; empty without a depth buffer.
-    pub(super) depth: &'a mut [u32],
+    pub(crate) depth: &'a mut [u32],
 }
 
 impl Band<'_> {
     /// First row and the row after the last.
-    pub(super) fn rows(&self) -> (i64, i64) {
+    pub(crate) fn rows(&self) -> (i64, i64) {
         (self.first_row as i64, (self.first_row + self.words.len() / self.width) as i64)
     }
 }
@@ -91,7 +91,7 @@ pub(crate) fn covered(
 
 /// Shades a pixel; whether it was stored.
 #[inline]
-fn pixel<O: Observer>(
+pub(crate) fn pixel<O: Observer>(
     context: &TriangleContext<'_>,
     textures: &[Image<'_, i32>],
     band: &mut Band<'_>,

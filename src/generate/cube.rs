@@ -7,6 +7,7 @@
     reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
 )]
 
+use super::byte;
 use super::normal_map::encode;
 use super::sky::HemisphereLight;
 use crate::scene::image::Rgba;
@@ -62,7 +63,7 @@ fn texel(direction: Vector, content: Content) -> [u8; 3] {
     match content {
         Content::Direction => encode(direction),
         Content::Half { light, from_viewer } => encode(half(direction, light, from_viewer)),
-        Content::Sky(light) => light.at(direction).map(|c| (255.0 * c.clamp(0.0, 1.0) + 0.5) as u8),
+        Content::Sky(light) => light.at(direction).map(byte),
     }
 }
 

@@ -7,17 +7,17 @@
     reason = "makes input data for the model: f64 with + - * / in a fixed order, rounded to bytes"
 )]
 
+use super::byte;
 use super::normal_map::decode;
 use crate::scene::image::Rgba;
 
 /// The half component of each texel of a normal map: `axis` is 0 for x, 1 for y, 2 for z.
 pub fn of_normals(normals: &Rgba, axis: usize, negative: bool) -> Rgba {
-    let byte = |[r, g, b, _]: &[u8; 4]| {
+    let texel = |[r, g, b, _]: &[u8; 4]| {
         let component = decode([*r, *g, *b]).get(axis).copied().unwrap_or(0.0);
-        let half = if negative { -component } else { component }.clamp(0.0, 1.0);
-        [(255.0 * half + 0.5) as u8; 4]
+        [byte(if negative { -component } else { component }); 4]
     };
-    Rgba { width: normals.width, height: normals.height, pixels: normals.pixels.iter().map(byte).collect() }
+    Rgba { width: normals.width, height: normals.height, pixels: normals.pixels.iter().map(texel).collect() }
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@
     reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
 )]
 
+use super::byte;
 use super::normal_map::{Options, height_at};
 use crate::scene::image::Rgba;
 use crate::scene::mesh::circle;
@@ -43,7 +44,6 @@ pub fn open_sky(height: &Rgba, options: &Options) -> Vec<f64> {
 
 /// The same as bytes, grey; alpha holds it as well.
 pub fn picture(height: &Rgba, options: &Options) -> Rgba {
-    let byte = |open: f64| (255.0 * open + 0.5) as u8;
     let pixels = open_sky(height, options).into_iter().map(|open| [byte(open); 4]);
     Rgba { width: height.width, height: height.height, pixels: pixels.collect() }
 }

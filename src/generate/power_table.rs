@@ -6,6 +6,7 @@
     reason = "makes input data for the model: f64 products in a fixed order, rounded to bytes"
 )]
 
+use super::byte;
 use crate::scene::image::Rgba;
 
 /// Sides of a table.
@@ -15,8 +16,6 @@ pub const TABLE_SIDES: std::ops::RangeInclusive<u32> = 1..=4096;
 pub fn table(width: u32, height: u32, exponent: u32) -> Rgba {
     let [width, height] = [width, height].map(|side| side.clamp(*TABLE_SIDES.start(), *TABLE_SIDES.end()));
     let centre = |index: u32, side: u32| (f64::from(index) + 0.5) / f64::from(side);
-    // Halves count upwards.
-    let byte = |value: f64| (255.0 * value + 0.5) as u8;
     let row = |row: u32| {
         let power = byte(power(centre(row, height), exponent));
         (0..width).map(move |column| [power, power, power, byte(centre(column, width))])

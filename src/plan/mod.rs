@@ -168,6 +168,12 @@ named! {
 }
 
 impl Plan {
+    /// Whether a draw reads what others have drawn: a texture that is a target.
+    pub(crate) fn reads_target(&self, planned: &PlannedDraw) -> bool {
+        let is_target = |texture: usize| matches!(self.textures[texture].image, TextureImage::Target { .. });
+        planned.units.iter().any(|unit| is_target(unit.state.texture))
+    }
+
     /// Plans a checked scene.
     ///
     /// # Errors

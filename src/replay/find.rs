@@ -8,6 +8,8 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 use walkdir::WalkDir;
 
+use crate::shard::Shard;
+
 /// How the names of expectations end.
 const EXPECTATION: &str = ".expect.ron";
 
@@ -171,29 +173,14 @@ fn set(patterns: &[&String]) -> Result<GlobSet, FilterError> {
     builder.build().map_err(|error| refused("", error))
 }
 
-/// One of several runs that share the scenes. A scene's name alone decides which of them replays it, so that a new scene moves no other to
-/// another machine, where its pictures of an earlier run are not.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Shard {
-    index: usize,
-    count: usize,
-}
-
-impl Shard {
-    /// The shard `index` of `count`; `None` unless `1 <= index <= count`.
-    pub fn new(index: usize, count: usize) -> Option<Self> {
-        (1..=count).contains(&index).then_some(Shard { index, count })
-    }
-
-    /// The entries of this shard.
-    pub fn of(self, entries: Vec<Entry>) -> Vec<Entry> {
-        let part = |name: &str| {
-            let digest = Sha256::digest(name.as_bytes());
-            let first = digest.iter().take(8).fold(0_u64, |number, byte| number << 8 | u64::from(*byte));
-            first % self.count as u64
-        };
-        entries.into_iter().filter(|entry| part(&entry.name) == self.index as u64 - 1).collect()
-    }
+/// The entries of a shard. A scene's name alone decides which of several runs replays it, so that a new scene moves no other to another
+/// machine, where its pictures of an earlier run are not.
+pub fn part(entries: Vec<Entry>, shard: Shard) -> Vec<Entry> {
+    let number = |name: &str| {
+        let digest = Sha256::digest(name.as_bytes());
+        digest.iter().take(8).fold(0_u64, |number, byte| number << 8 | u64::from(*byte))
+    };
+    entries.into_iter().filter(|entry| shard.takes(number(&entry.name))).collect()
 }
 
 #[cfg(test)]
@@ -242,14 +229,14 @@ mod tests {
         let all: Vec<Entry> = (0..10).map(|n| entry(&n.to_string())).collect();
         for count in 1..13 {
             let mut joined: Vec<Entry> =
-                (1..=count).filter_map(|index| Some(Shard::new(index, count)?.of(all.clone()))).flatten().collect();
+                (1..=count).filter_map(|index| Some(part(all.clone(), Shard::new(index, count)?))).flatten().collect();
             joined.sort_by(|a, b| a.name.cmp(&b.name));
             assert_eq!(joined, all, "{count}");
             // Whatever else there is, a scene stays where it is.
             for index in 1..=count {
-                let alone = |entry: &Entry| Shard::new(index, count).map(|shard| shard.of(vec![entry.clone()]));
+                let alone = |entry: &Entry| Shard::new(index, count).map(|shard| part(vec![entry.clone()], shard));
                 let one_by_one: Vec<Entry> = all.iter().filter_map(alone).flatten().collect();
-                assert_eq!(Shard::new(index, count).map(|shard| shard.of(all.clone())), Some(one_by_one));
+                assert_eq!(Shard::new(index, count).map(|shard| part(all.clone(), shard)), Some(one_by_one));
             }
         }
         assert_eq!((Shard::new(0, 2), Shard::new(3, 2), Shard::new(0, 0)), (None, None, None));

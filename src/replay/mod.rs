@@ -18,9 +18,10 @@ use rayon::prelude::*;
 
 use crate::engine::RenderOptions;
 use crate::state::{Policies, Profile};
+use crate::threads::on_threads;
 
 pub use cause::Cause;
-pub use find::{Entry, EntryKind, Filter, FilterError, FindError, Shard, find};
+pub use find::{Entry, EntryKind, Filter, FilterError, FindError, find, part};
 pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, Replayed, Summary, Traces};
 
 /// How scenes are replayed.
@@ -50,8 +51,5 @@ pub fn replay(entries: &[Entry], options: &Options, progress: &(dyn Fn(usize) + 
         progress(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
         replayed
     };
-    match rayon::ThreadPoolBuilder::new().num_threads(options.render.threads).build() {
-        Ok(pool) if options.render.threads != 1 => pool.install(|| entries.par_iter().map(one).collect()),
-        _ => entries.iter().map(one).collect(),
-    }
+    on_threads(options.render.threads, || entries.par_iter().map(one).collect())
 }

@@ -14,7 +14,7 @@ use crate::engine::{self, RenderOptions};
 use crate::expectation::{Expectation, ExpectationError, Mismatch, masked_digest};
 use crate::frame::Surface;
 use crate::limits::Limits;
-use crate::output::{Compression, OutputError, encode_png, write_file};
+use crate::output::{Compression, OutputError, encode_png, write_below};
 use crate::plan::Plan;
 use crate::report::{beside, beside_text, trace_text, trace_value};
 use crate::scene;
@@ -49,14 +49,6 @@ pub(super) fn replay(entry: &Entry, options: &Options) -> Replayed {
 /// A scene's file of its own in a folder of artifacts.
 fn place(folder: &Path, name: &str, extension: &str) -> PathBuf {
     folder.join(format!("{name}.{extension}"))
-}
-
-/// Writes a file, and the folders that it lies in.
-fn write_below(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder).map_err(|source| OutputError::Write { path: folder.to_path_buf(), source })?;
-    }
-    write_file(path, bytes)
 }
 
 /// Writes what is known of a difference.

@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::engine::{RenderOptions, render};
+pub(super) use crate::generate::byte;
 use crate::limits::Limits;
 use crate::scene::{SceneError, parse};
 
@@ -61,11 +62,6 @@ pub(super) fn byte_texels(width: usize, texels: &[u8]) -> String {
         rows.push_str("\", ");
     }
     format!("Texels(width: {width}, height: {}, rows: [{rows}])", texels.len() / width.max(1))
-}
-
-/// The byte nearest to a number from 0 to 1.
-pub(super) fn byte(value: f64) -> u8 {
-    (255.0 * value + 0.5) as u8
 }
 
 /// The centre of a pixel along the strip, 0 to 1.

@@ -16,6 +16,7 @@ mod pixels;
 use std::sync::Arc;
 
 pub use field::Field;
+pub(crate) use pixels::real_color;
 pub use pixels::{Pixel, TruthFrame, evaluate, evaluate_with_normals};
 
 pub use crate::generate::sky::{HemisphereLight, Integral};

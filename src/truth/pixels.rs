@@ -3,16 +3,12 @@
 use std::sync::Arc;
 
 use super::{Equation, Field, Interpolated, NormalSource, Space, Truth, lighting};
-use crate::engine::pixel::Fragment;
-use crate::engine::walk;
-use crate::engine::{RenderOptions, render};
-use crate::frame::Frames;
+use crate::engine::walk::{self, Band};
+use crate::engine::{RenderOptions, cleared, images, render};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::ideal::Outline;
-use crate::rop::surface;
 use crate::scene::mesh::Mesh;
-use crate::state::{Texture, TextureImage, Vertex, VertexColor};
-use crate::texture::unit::Image;
+use crate::state::{Vertex, VertexColor};
 use crate::trace::Silent;
 use crate::vector::{Vector, dot, unit_or_zero, wide};
 
@@ -82,50 +78,23 @@ fn frame(plan: &Plan, truth: &Truth, target: usize, given: impl Fn(usize) -> Opt
 
 /// Draw and triangle that each pixel shows.
 fn seen(plan: &Plan, truth: &Truth, target: usize) -> Vec<Option<(usize, usize)>> {
-    let described = &plan.targets[target];
-    let pixels = described.width as usize * described.height as usize;
-    let mut seen = vec![None; pixels];
-    let mut words = vec![surface::pack(described.format, described.clear_color); pixels];
-    let mut depths = described.depth.map_or(Vec::new(), |depth| vec![depth.clear; pixels]);
     // What other targets hold decides nothing here but what tests on alpha read.
-    let others = needs_frames(plan, target).then(|| render(plan, &RenderOptions::default()));
-    let images: Vec<Image<'_, i32>> = plan.textures.iter().map(|texture| image(texture, others.as_ref())).collect();
+    let reads = plan.draws.iter().any(|planned| planned.target == target && plan.reads_target(planned));
+    let others = reads.then(|| render(plan, &RenderOptions::default()));
+    let images = images(plan, others.as_ref().map_or(&[], |frames| &frames.surfaces));
+    let mut surface = cleared(plan).surfaces.swap_remove(target);
+    let width = surface.width as usize;
+    let mut seen = vec![None; surface.words.len()];
+    let mut band = Band { first_row: 0, width, words: &mut surface.words, depth: &mut surface.depth };
     for (number, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == target) {
         let described = truth.meshes.get(number).is_some_and(Option::is_some);
-        let rows = (0, i64::from(plan.targets[target].height));
-        walk::covered(plan, planned, rows, |context, i, j| {
-            let at = (j * i64::from(plan.targets[target].width) + i) as usize;
-            let depth = depths.get(at).copied().unwrap_or(0);
-            let e = context.triangle.edges(i, j);
-            let stored_depth = i64::from(depth);
-            let fragment = Fragment { pixel: (i, j), e, stored: words[at], stored_depth, weights: None };
-            let Some(stored) = context.shade::<i32, _>(&fragment, None, &images, &mut Silent) else { return };
-            words[at] = stored.word;
-            if let (Some(depth), Some(slot)) = (stored.depth, depths.get_mut(at)) {
-                *slot = depth as u32;
-            }
-            if described {
-                seen[at] = Some((number, context.number));
+        walk::covered(plan, planned, band.rows(), |context, i, j| {
+            if walk::pixel(context, &images, &mut band, i, j, &mut Silent) && described {
+                seen[j as usize * width + i as usize] = Some((number, context.number));
             }
         });
     }
     seen
-}
-
-/// Whether a draw into the target reads another one.
-fn needs_frames(plan: &Plan, target: usize) -> bool {
-    let reads = |texture: usize| matches!(plan.textures[texture].image, TextureImage::Target { .. });
-    plan.draws.iter().any(|planned| planned.target == target && planned.units.iter().any(|u| reads(u.state.texture)))
-}
-
-fn image<'a>(texture: &'a Texture, frames: Option<&'a Frames>) -> Image<'a, i32> {
-    let words = match &texture.image {
-        TextureImage::Texels(texels) => &texels.words[..],
-        TextureImage::Target { target } => {
-            frames.and_then(|frames| frames.surfaces.get(*target)).map_or(&[][..], |surface| &surface.words)
-        }
-    };
-    Image { words, memory: None }
 }
 
 /// A point of a mesh.
@@ -167,15 +136,18 @@ fn from_tangent(basis: &[Vector; 3], v: Vector) -> Vector {
     [0, 1, 2].map(|n| basis[0][n] * v[0] + basis[1][n] * v[1] + basis[2][n] * v[2])
 }
 
+/// R, G, B, 1 being full.
+pub(crate) fn real_color(color: &VertexColor) -> [f64; 3] {
+    let [r, g, b, _] = match color {
+        VertexColor::Bytes(bytes) => bytes.map(|byte| f64::from(byte) / 255.0),
+        VertexColor::Floats(floats) => floats.map(f64::from),
+    };
+    [r, g, b]
+}
+
 /// An interpolated vector of the vertices.
 fn interpolated(point: &Point, what: Interpolated) -> Vector {
-    let signed = |color: &VertexColor| {
-        let unsigned = match color {
-            VertexColor::Bytes(bytes) => bytes.map(|byte| f64::from(byte) / 255.0),
-            VertexColor::Floats(floats) => floats.map(f64::from),
-        };
-        [0, 1, 2].map(|n| 2.0 * unsigned[n] - 1.0)
-    };
+    let signed = |color: &VertexColor| real_color(color).map(|c| 2.0 * c - 1.0);
     let set = |vertex: &Vertex, n: usize| {
         let [s, t, r, _] = vertex.texture_coordinates[n].map(f64::from);
         [s, t, r]

@@ -23,7 +23,7 @@ use super::read::{self, Table};
 use super::table::{Contents, Writer};
 use super::view::{Content, Layout, TABLE, View};
 use super::{BEHAVIOUR, Unit};
-use crate::output::{PendingFile, write_file};
+use crate::output::{OutputError, PendingFile, make_folder, write_file};
 use crate::picture::hexadecimal;
 use crate::state::{Named, Profile};
 
@@ -144,18 +144,14 @@ fn sums(files: &[File]) -> String {
 /// # Errors
 /// The folder or a file in it cannot be written.
 pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
-    let refused = |path: &Path| {
-        let path = path.to_path_buf();
-        move |source| VectorError::Output(crate::output::OutputError::Write { path, source })
-    };
     for part in FOLDERS {
-        let part = folder.join(part);
-        std::fs::create_dir_all(&part).map_err(refused(&part))?;
+        make_folder(&folder.join(part))?;
     }
     let manifest_path = folder.join(MANIFEST);
     if manifest_path.exists() {
         // What an earlier export left is no pack from now on.
-        std::fs::remove_file(&manifest_path).map_err(refused(&manifest_path))?;
+        std::fs::remove_file(&manifest_path)
+            .map_err(|source| OutputError::Write { path: manifest_path.clone(), source })?;
     }
     let written: Vec<Vec<File>> =
         options.units.par_iter().map(|unit| export_unit(folder, *unit, options)).collect::<Result<_, _>>()?;
@@ -232,8 +228,7 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     let path = folder.join(MANIFEST);
     let text =
         read_text(&path, "name the folder of a pack; an export that was broken off leaves no manifest: export again")?;
-    let invalid =
-        |code, message: String, help| VectorError::Invalid { code, path: path.clone(), line: 0, message, help };
+    let invalid = |code, message: String, help| VectorError::invalid(code, &path, 0, message, help);
     let value: serde_json::Value = serde_json::from_str(&text)
         .map_err(|error| invalid("NB1010", format!("not a manifest: {error}"), "export the pack again"))?;
     let format = value.get("format").and_then(|format| format.as_str()).unwrap_or_default().to_owned();
@@ -272,13 +267,7 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
 pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
     let manifest = manifest(folder)?;
     let listed: Vec<PathBuf> = manifest.files.iter().map(|file| folder.join(&file.path)).collect();
-    let invalid = |code, path: &Path, message: String, help| VectorError::Invalid {
-        code,
-        path: path.to_path_buf(),
-        line: 0,
-        message,
-        help,
-    };
+    let invalid = |code, path: &Path, message: String, help| VectorError::invalid(code, path, 0, message, help);
     for (file, path) in manifest.files.iter().zip(&listed) {
         let bytes = std::fs::read(path).map_err(|error| match error.kind() {
             std::io::ErrorKind::NotFound => {

@@ -82,7 +82,7 @@ impl<'t> Lines<'t> {
 }
 
 fn invalid(path: &Path, line: usize, code: &'static str, message: String, help: &'static str) -> VectorError {
-    VectorError::Invalid { code, path: path.to_path_buf(), line, message, help }
+    VectorError::invalid(code, path, line, message, help)
 }
 
 /// Reads a table. `path` is for messages only.

@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 use super::error::{VectorError, read_text};
 use super::sweep::{Leaf, Sweep};
 use super::{BEHAVIOUR, units};
-use crate::output::{OutputError, write_file};
+use crate::output::write_file;
 use crate::picture::hexadecimal;
 use crate::state::{Named, Profile};
 
@@ -83,7 +83,7 @@ fn place(folder: &Path, index: u64) -> PathBuf {
 }
 
 fn invalid(path: &Path, code: &'static str, message: String, help: &'static str) -> VectorError {
-    VectorError::Invalid { code, path: path.to_path_buf(), line: 0, message, help }
+    VectorError::invalid(code, path, 0, message, help)
 }
 
 /// Reads a leaf file; `None` if it is none, or was changed.
@@ -261,13 +261,4 @@ impl Tree {
             }
         }
     }
-}
-
-/// Makes a folder for leaves.
-///
-/// # Errors
-/// It cannot be made.
-pub fn make_folder(folder: &Path) -> Result<(), VectorError> {
-    std::fs::create_dir_all(folder)
-        .map_err(|source| VectorError::Output(OutputError::Write { path: folder.to_path_buf(), source }))
 }

@@ -4,8 +4,10 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::output::{Destination, write_stdout};
+use ninebit::output::{Destination, make_folder, write_stdout};
+use ninebit::shard::Shard;
 use ninebit::state::{Named, Profile};
+use ninebit::threads::on_threads;
 use ninebit::vectors::error::VectorError;
 use ninebit::vectors::random::Random;
 use ninebit::vectors::sweep::{MOST_ROWS, Sweep};
@@ -16,21 +18,6 @@ use rayon::prelude::*;
 use super::super::engine::threads;
 use super::super::exit::Failure;
 
-/// One of `count` workers, `index` from 1.
-#[derive(Clone, Copy, Debug)]
-struct Shard {
-    index: u64,
-    count: u64,
-}
-
-fn shard(text: &str) -> Result<Shard, String> {
-    let numbers = text.split_once('/').and_then(|(index, count)| Some((index.parse().ok()?, count.parse().ok()?)));
-    match numbers {
-        Some((index, count)) if (1..=count).contains(&index) => Ok(Shard { index, count }),
-        _ => Err("write I/N, I from 1 to N: 1/4 to 4/4 for four workers".to_owned()),
-    }
-}
-
 #[derive(Debug, Args)]
 pub(crate) struct SweepArguments {
     /// The unit
@@ -40,7 +27,7 @@ pub(crate) struct SweepArguments {
     #[arg(long, default_value = "nv2a", value_parser = super::profile)]
     profile: Profile,
     /// Only a part of the leaves: I/N, I from 1 to N
-    #[arg(long, value_name = "I/N", default_value = "1/1", value_parser = shard)]
+    #[arg(long, value_name = "I/N", default_value_t = Shard::ALL, value_parser = str::parse::<Shard>)]
     shard: Shard,
     /// Threads; 0 for one a core
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
@@ -48,14 +35,6 @@ pub(crate) struct SweepArguments {
     /// The folder of the leaves; it is made, and leaves that are there are kept
     #[arg(short, long, value_name = "DIR")]
     output: PathBuf,
-}
-
-/// Runs `job` with so many threads.
-fn with_threads<T: Send>(threads: usize, job: impl FnOnce() -> T + Send) -> T {
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(job),
-        Err(_) => job(),
-    }
 }
 
 /// Computes the leaves of a shard.
@@ -70,10 +49,10 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
             "a sweep has every row; `ninebit vectors export` takes boundaries and random ones",
         ));
     };
-    tree::make_folder(output)?;
-    let mine: Vec<u64> = (0..sweep.leaves).filter(|leaf| leaf % shard.count == shard.index - 1).collect();
+    make_folder(output)?;
+    let mine: Vec<u64> = (0..sweep.leaves).filter(|leaf| shard.takes(*leaf)).collect();
     let results: Vec<Result<bool, VectorError>> =
-        with_threads(*threads, || mine.par_iter().map(|leaf| tree::work(output, &sweep, *leaf)).collect());
+        on_threads(*threads, || mine.par_iter().map(|leaf| tree::work(output, &sweep, *leaf)).collect());
     let mut done = Done::default();
     for result in results {
         if result? {
@@ -83,11 +62,10 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         }
     }
     let text = format!(
-        "{} {}, shard {}/{}: {} of {} leaves, {} computed, {} were there\n",
+        "{} {}, shard {}: {} of {} leaves, {} computed, {} were there\n",
         unit.name(),
         profile.name(),
-        shard.index,
-        shard.count,
+        shard,
         mine.len(),
         sweep.leaves,
         done.computed,
@@ -150,7 +128,7 @@ pub(crate) fn digest(arguments: &DigestArguments) -> Result<(), Failure> {
             }
             chosen.sort_unstable();
         }
-        let wrong: Vec<usize> = with_threads(arguments.threads, || {
+        let wrong: Vec<usize> = on_threads(arguments.threads, || {
             let wrong = chosen.par_iter().filter(|index| sweep.leaf(**index as u64) != tree.leaf[**index]);
             wrong.copied().collect()
         });

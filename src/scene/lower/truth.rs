@@ -13,11 +13,12 @@ use crate::generate::{hemisphere, occlusion};
 use crate::scene::image::{self, ImageLimits, Rgba};
 use crate::scene::raw::{Numbers, Tuple};
 use crate::scene::reader::Name;
-use crate::state::{Named, Register, VertexColor};
+use crate::state::{Named, Register};
 use crate::truth::{
     Equation, Eye, Field, HemisphereLight, Integral, Interpolated, Light, Material, Model, NormalSource, ShadingNormal,
-    Space, Truth,
+    Space, Truth, real_color,
 };
+use crate::vector::wide;
 
 /// The largest exponent of a highlight.
 const LARGEST_EXPONENT: u32 = 65_536;
@@ -173,10 +174,6 @@ fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &sourc
     }
 }
 
-fn wide(v: [f32; 3]) -> [f64; 3] {
-    v.map(f64::from)
-}
-
 /// A light's place or an eye's; a direction has a length.
 fn place<'a>(
     reader: &mut Reader<'a>,
@@ -229,13 +226,7 @@ fn color<'a>(
     default: [f64; 3],
 ) -> [f64; 3] {
     let color = raw.as_ref().and_then(|raw| color::vertex_color(reader, names, raw));
-    color.map_or(default, |color| {
-        let channels = match color {
-            VertexColor::Floats(floats) => floats.map(f64::from),
-            VertexColor::Bytes(bytes) => bytes.map(|byte| f64::from(byte) / 255.0),
-        };
-        [channels[0], channels[1], channels[2]]
-    })
+    color.map_or(default, |color| real_color(&color))
 }
 
 fn material<'a>(

@@ -185,8 +185,5 @@ fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::S
         return names.matrix(reader, &part).map(Value::Rows);
     }
     let color = color::vertex_color(reader, names, &part.as_other())?;
-    Some(Value::Vector(match color {
-        VertexColor::Bytes(bytes) => bytes.map(|byte| f32::from(byte) / 255.0),
-        VertexColor::Floats(floats) => floats,
-    }))
+    Some(Value::Vector(color::floats(color)))
 }

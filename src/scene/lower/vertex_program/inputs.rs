@@ -159,15 +159,11 @@ pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
         (Input::Field(field), _) => field,
     };
     let (Some(vertex), Some(object)) = (given.vertices.get(index), given.objects.get(index)) else { return [0.0; 4] };
-    let color = |color: VertexColor| match color {
-        VertexColor::Bytes(bytes) => bytes.map(|byte| f32::from(byte) / 255.0),
-        VertexColor::Floats(floats) => floats,
-    };
     match field {
         Field::Position => object.position,
         Field::Normal => [object.normal[0], object.normal[1], object.normal[2], 1.0],
-        Field::Diffuse => color(vertex.diffuse),
-        Field::Specular => color(vertex.specular),
+        Field::Diffuse => color::floats(vertex.diffuse),
+        Field::Specular => color::floats(vertex.specular),
         Field::FogCoordinate => [object.fog_coordinate, 0.0, 0.0, 1.0],
         Field::Coordinates(set) => vertex.texture_coordinates[*set],
     }
