@@ -251,6 +251,19 @@ fn files_that_were_changed_after_the_export_are_refused() {
     }
     std::fs::write(&table, text).unwrap();
     pack::open(&pack).unwrap();
+    // What the manifest says of the pack is what its tables say.
+    let manifest = std::fs::read_to_string(pack.join("MANIFEST.json")).unwrap();
+    for (from, to) in [
+        ("\"behaviour_rev\": 1", "\"behaviour_rev\": 7"),
+        ("\"seed\": 1", "\"seed\": 2"),
+        ("\"level\": \"L0\"", "\"level\": \"L1\""),
+        ("\"profile\": \"Nv2a\"", "\"profile\": \"Nv10\""),
+        ("\"rows\": 1000", "\"rows\": 999"),
+    ] {
+        assert!(manifest.contains(from), "{from}");
+        std::fs::write(pack.join("MANIFEST.json"), manifest.replace(from, to)).unwrap();
+        assert_eq!(pack::open(&pack).map(|_| ()).unwrap_err().code(), "NB1011", "{to}");
+    }
     // The other's manifest says which pack it is: neither files nor root fit.
     std::fs::copy(other.join("MANIFEST.json"), pack.join("MANIFEST.json")).unwrap();
     assert_eq!(pack::open(&pack).unwrap_err().code(), "NB1011");

@@ -125,8 +125,10 @@ fn documents_have_the_properties_of_their_schemas() {
     }
     tree::work(place, &Sweep::new(units::by_name("mux").unwrap(), Profile::Nv2a).unwrap(), 0).unwrap();
     fits(&schema("leaf"), &json(place.join("leaf-0000.json")), "leaf");
-    for entry in std::fs::read_dir("vectors/digests").unwrap() {
-        fits(&schema("sweep"), &json(entry.unwrap().path()), "sweep");
+    let list = |folder: &Path| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    for path in list(Path::new("vectors/digests")) {
+        let paths: Vec<_> = if path.is_dir() { list(&path).collect() } else { vec![path] };
+        paths.iter().for_each(|path| fits(&schema("sweep"), &json(path), "sweep"));
     }
 }
 

@@ -2,19 +2,27 @@
 //! what the model says.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
-use ninebit::state::Profile;
+use ninebit::state::{Policies, Profile};
+use ninebit::vectors::part::Part;
 use ninebit::vectors::random::Random;
 use ninebit::vectors::sweep::Sweep;
 use ninebit::vectors::tree::{self, Tree};
-use ninebit::vectors::units;
+use ninebit::vectors::unit::{Conditions, Unit};
+use ninebit::vectors::{cases, units};
 use rayon::prelude::*;
 
 fn sweep(unit: &str) -> Sweep {
     Sweep::new(units::by_name(unit).unwrap(), Profile::Nv2a).unwrap()
+}
+
+fn part(unit: &str, only: &[&str]) -> Sweep {
+    let unit = units::by_name(unit).unwrap();
+    Sweep::of(unit, Profile::Nv2a, Part::new(unit, only).unwrap()).unwrap()
 }
 
 fn ninebit(arguments: &[&str]) -> Output {
@@ -115,6 +123,14 @@ fn merging_refuses_what_is_not_one_whole_sweep() {
         tree::work(folder, &sweep("mux"), 0).unwrap();
     };
     expected(&other, 3, "NB1021");
+    // A part has other leaves than the whole, and than another part.
+    let some = part("linear-step", &["in.first=0..127"]);
+    expected(&|folder| assert!(tree::work(folder, &some, 0).unwrap()), 3, "NB1021");
+    let folder = tempfile::tempdir().unwrap();
+    assert!(tree::work(folder.path(), &some, 0).unwrap());
+    let error = tree::work(folder.path(), &part("linear-step", &["in.first=128..255"]), 0).unwrap_err();
+    assert_eq!(error.code(), "NB1021");
+    assert!(error.to_string().contains("linear-step in.first=0..127 on Nv2a"), "{error}");
     // Nor does a worker add to the leaves of another sweep.
     let folder = tempfile::tempdir().unwrap();
     other(folder.path());
@@ -152,12 +168,137 @@ fn places_that_cannot_be_written_are_refused() {
     assert_eq!(ninebit(&["sweep", "--unit", "fog-factor", "--profile", "nv10", "-o", folder]).status.code(), Some(2));
 }
 
-/// The trees under `vectors/digests`.
+#[test]
+fn a_part_has_the_rows_of_the_whole_that_it_allows() {
+    // Rows of one value of the first column lie together in the whole.
+    let whole = sweep("alpha-test");
+    let functions = ["Never", "Less", "Equal", "LessOrEqual", "Greater", "NotEqual", "GreaterOrEqual", "Always"];
+    for (place, function) in (0..).zip(functions) {
+        let some = part("alpha-test", &[&format!("cfg.function={function}")]);
+        assert_eq!(some.size, 1 << 16);
+        assert_eq!(some.digest(0..1 << 16), whole.digest(place << 16..(place + 1) << 16), "{function}");
+    }
+    // In block lanes as row by row.
+    let some = part("sum", &["in.a=-256", "in.b=3..4", "in.c=255..256", "in.d=-100..200"]);
+    let rows = |b: u64, c: u64| (b * 513 + c) * 513 + 156..(b * 513 + c) * 513 + 457;
+    assert_eq!(some.size, 4 * 301);
+    for (place, (b, c)) in (0..).zip([(259, 511), (259, 512), (260, 511), (260, 512)]) {
+        assert_eq!(some.digest(place * 301..(place + 1) * 301), sweep("sum").digest(rows(b, c)), "{b} {c}");
+    }
+}
+
+#[test]
+fn a_part_is_swept_merged_and_digested_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let [leaves, tree] = ["leaves", "tree.json"].map(|name| folder.path().join(name).to_str().unwrap().to_owned());
+    let run = |arguments: &[&str]| {
+        let output = ninebit(arguments);
+        (output.status.code(), String::from_utf8([output.stdout, output.stderr].concat()).unwrap())
+    };
+    let only = ["--only", "in.word=00000000..0000ffff", "--only", "cfg.format=R5G6B5"];
+    let sweep = [&["sweep", "--unit", "texel-expansion", "-o", &leaves][..], &only].concat();
+    let name = "texel-expansion cfg.format=R5G6B5 in.word=00000000..0000ffff Nv2a";
+    let (exit, text) = run(&sweep);
+    assert_eq!((exit, text), (Some(0), format!("{name}, shard 1/1: 1 of 1 leaves, 1 computed, 0 were there\n")));
+    let (exit, text) = run(&["merge", &leaves, "-o", &tree]);
+    assert_eq!((exit, text.lines().next()), (Some(0), Some(format!("{name}: 65536 rows in 1 leaves").as_str())));
+    let (exit, text) = run(&["digest", &tree]);
+    assert_eq!((exit, text), (Some(0), format!("{name}: 1 of 1 leaves computed, all as the tree has them\n")));
+    assert_eq!(std::fs::read(&tree).unwrap(), std::fs::read("vectors/digests/texel-expansion/R5G6B5.json").unwrap());
+
+    for only in [&["cfg.select=Msb"], &["cfg.format=r5g6b5"], &["in.word=ffff"], &["cfg.format"], &["out.r=1"]] {
+        let arguments = only.iter().flat_map(|only| ["--only", *only]);
+        let arguments: Vec<&str> = sweep[..5].iter().copied().chain(arguments).collect();
+        let (exit, text) = run(&arguments);
+        assert_eq!(exit, Some(2), "{text}");
+        assert!(text.contains("--only: "), "{text}");
+    }
+    let (exit, text) = run(&["sweep", "--unit", "blend", "--only", "cfg.equation=Add", "-o", &leaves]);
+    assert_eq!(exit, Some(2), "{text}");
+    assert!(text.contains("`blend cfg.equation=Add` has more than"), "{text}");
+}
+
+/// The trees under `vectors/digests`: of units, and of parts in folders of their unit's name.
 fn trees() -> Vec<PathBuf> {
-    let entries = std::fs::read_dir("vectors/digests").unwrap();
-    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    let list = |folder: &Path| -> Vec<PathBuf> {
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
+    };
+    let top = list(Path::new("vectors/digests")).into_iter();
+    let mut paths: Vec<PathBuf> = top.flat_map(|path| if path.is_dir() { list(&path) } else { vec![path] }).collect();
     paths.sort();
     paths
+}
+
+/// Trees of parts: those of a few rows whole, and a leaf of one of the others of each unit.
+#[test]
+fn committed_trees_of_parts_are_what_the_model_says() {
+    let mut large: BTreeMap<String, Vec<(Tree, Sweep)>> = BTreeMap::new();
+    for path in trees() {
+        let (tree, sweep) = Tree::read(&path).unwrap();
+        if tree.of.only.is_empty() {
+            continue;
+        }
+        assert_eq!(tree.text(), std::fs::read_to_string(&path).unwrap());
+        assert_eq!(path.parent().unwrap().file_name().unwrap().to_str().unwrap(), tree.of.unit);
+        if sweep.size <= 1 << 16 {
+            assert_eq!(sweep.leaf(0), tree.leaf[0], "{}", path.display());
+        } else {
+            large.entry(tree.of.unit.clone()).or_default().push((tree, sweep));
+        }
+    }
+    large.into_par_iter().for_each(|(unit, trees)| {
+        let mut random = Random::new(13, &unit);
+        let (tree, sweep) = &trees[random.below(trees.len() as u128) as usize];
+        let leaf = random.below(u128::from(sweep.leaves)) as u64;
+        assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.of.name());
+    });
+}
+
+/// Units of up to 2^32 rows with their configuration fixed, and the column of that. Each has a tree for each of its values.
+const BY_CONFIGURATION: [(&str, &str); 4] = [
+    ("shader-remap", "cfg.mapping"),
+    ("surface-load", "cfg.format"),
+    ("surface-store", "cfg.format"),
+    ("texel-expansion", "cfg.format"),
+];
+
+/// What these parts leave out is never read: a row of the whole has the results of the one that the part has in its place.
+#[test]
+fn parts_by_configuration_are_whole() {
+    let outputs = |unit: &dyn Unit, inputs: &[i64]| {
+        let columns = unit.results();
+        let mut results = vec![0; columns.len()];
+        let conditions = Conditions { profile: Profile::Nv2a, policies: Policies::DEFAULT };
+        unit.evaluate(inputs, &conditions, &mut results);
+        let outputs = columns.iter().zip(results).filter(|(column, _)| column.name.starts_with("out."));
+        outputs.map(|(_, value)| value).collect::<Vec<i64>>()
+    };
+    for (name, configuration) in BY_CONFIGURATION {
+        let unit = units::by_name(name).unwrap();
+        let values = unit.inputs()[0].clone();
+        assert_eq!(values.name, configuration);
+        for place in 0..values.size() {
+            let (value, text) = (values.nth(place), values.kind.write(values.nth(place)));
+            let (tree, sweep) = Tree::read(Path::new(&format!("vectors/digests/{name}/{text}.json"))).unwrap();
+            assert_eq!(tree.of.only[0], format!("{configuration}={text}"));
+            let mut random = Random::new(17, &tree.of.name());
+            for _ in 0..500 {
+                let mut row: Vec<i64> = unit.inputs().iter().map(|c| c.nth(random.below(c.size()))).collect();
+                row[0] = value;
+                unit.fit(&mut row);
+                let columns = sweep.part.columns();
+                let kept: Vec<i64> =
+                    row.iter().zip(columns).map(|(value, c)| c.nth(*value as u128 % c.size())).collect();
+                assert_eq!(outputs(unit, &row), outputs(unit, &kept), "{} {row:?}", tree.of.name());
+            }
+        }
+    }
+    // And no unit is left out.
+    for unit in units::all().into_iter().filter(|unit| cases::size(&unit.inputs()) > 1 << 32) {
+        let inputs = unit.inputs().into_iter().filter(|column| column.name.starts_with("in.")).collect::<Vec<_>>();
+        let has = BY_CONFIGURATION.iter().any(|(name, _)| *name == unit.name()) || unit.name() == "depth";
+        assert_eq!(cases::size(&inputs) <= 1 << 32, has, "{}", unit.name());
+    }
 }
 
 /// Small trees whole; of the others leaves drawn by a seed. None of these units differs between the chips.
@@ -166,6 +307,9 @@ fn committed_trees_are_what_the_model_says() {
     let mut names = Vec::new();
     for path in trees() {
         let (tree, sweep) = Tree::read(&path).unwrap();
+        if !tree.of.only.is_empty() {
+            continue;
+        }
         assert_eq!(tree.text(), std::fs::read_to_string(&path).unwrap());
         assert_eq!(path.file_stem().unwrap().to_str().unwrap(), tree.of.unit);
         names.push(tree.of.unit.clone());
@@ -208,6 +352,18 @@ fn trees_that_were_changed_are_refused() {
         assert!(text.contains(from), "{from}");
         assert_eq!(code(&text.replacen(from, to, 1)), expected, "{from}");
     }
+    let text = std::fs::read_to_string("vectors/digests/texel-expansion/L8.json").unwrap();
+    for (from, to) in [
+        ("cfg.format=L8", "cfg.format=L9"),
+        ("cfg.format=L8", "cfg.format=L8..L8"),
+        ("cfg.format=L8", "cfg.format=L8..I8"),
+        ("000000ff", "000000fe"),
+        ("cfg.format", "format"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        assert_eq!(code(&text.replacen(from, to, 1)), "NB1005", "{from} {to}");
+    }
+    let text = std::fs::read_to_string("vectors/digests/mux.json").unwrap();
     // A wrong digest with a fitting root is what `digest` finds.
     let mut tree: Tree = serde_json::from_str(&text).unwrap();
     tree.leaf[0].sha256 = tree.leaf[0].sha256.replace(|c: char| c.is_ascii_digit(), "a");

@@ -206,6 +206,30 @@ impl Column {
         }
     }
 
+    /// The column with only the numbers from `first` to `last`, in its own order; `None` if either is not among its numbers, if they are the
+    /// wrong way round, or floats of both signs.
+    pub fn narrowed(&self, first: i64, last: i64) -> Option<Column> {
+        let domain = match self.domain.as_ref()? {
+            Domain::Listed(values) => {
+                let [start, end] = [first, last].map(|value| values.iter().position(|known| *known == value));
+                Domain::Listed(values.get(start?..=end?)?.to_vec())
+            }
+            Domain::Interval(least, greatest) => {
+                Some(Domain::Interval(first, last)).filter(|_| *least <= first && first <= last && last <= *greatest)?
+            }
+            Domain::Word(bits) => {
+                Some(Domain::Interval(first, last)).filter(|_| 0 <= first && first <= last && last < 1 << bits)?
+            }
+            Domain::Float(negative, limit) => {
+                let sign = if *negative { first & 0x8000_0000 } else { 0 };
+                let all = sign..sign + positive_floats(*limit);
+                Some(Domain::Interval(first, last))
+                    .filter(|_| all.contains(&first) && first <= last && all.contains(&last))?
+            }
+        };
+        Some(Column { domain: Some(domain), ..self.clone() })
+    }
+
     /// The numbers at which something may happen: ends, zero, halves, what lies next to them.
     pub fn boundary(&self) -> Vec<i64> {
         let mut values = match &self.domain {
@@ -300,6 +324,37 @@ mod tests {
         for n in 1..=510_u32 {
             let (float, exact) = (f64::from(f32::from_bits(halfway(n))), f64::from(n) / 510.0);
             assert!(float <= exact && exact - float < exact * 2.0_f64.powi(-22), "{n}: {float} {exact}");
+        }
+    }
+
+    #[test]
+    fn narrowed_columns_have_what_lies_between() {
+        let all = |column: &Column| (0..column.size()).map(|place| column.nth(place)).collect::<Vec<i64>>();
+        let listed = Column::listed("in.size", Kind::Unsigned(9), &[4, 1, 64, 100]);
+        for (column, first, last, expected) in [
+            (Column::register("in.a"), -3, 1, vec![-3, -2, -1, 0, 1]),
+            (Column::word("in.word", 32), 0xffff_fffe, 0xffff_ffff, vec![0xffff_fffe, 0xffff_ffff]),
+            (Column::float("in.x", true, 4), 0x8000_0000, 0x8000_0001, vec![0x8000_0000, 0x8000_0001]),
+            (listed.clone(), 1, 100, vec![1, 64, 100]),
+            (listed.clone(), 4, 4, vec![4]),
+        ] {
+            let narrowed = column.narrowed(first, last).expect("numbers of the column");
+            assert_eq!(all(&narrowed), expected, "{column:?}");
+            assert_eq!((narrowed.name, narrowed.kind), (column.name, column.kind));
+        }
+        for (column, first, last) in [
+            (Column::register("in.a"), -257, 0),
+            (Column::register("in.a"), 0, 256),
+            (Column::register("in.a"), 1, 0),
+            (Column::word("in.word", 16), 0, 0x1_0000),
+            (Column::float("in.x", true, 4), 0, 0x8000_0000),
+            (Column::float("in.x", false, 4), 0x8000_0000, 0x8000_0001),
+            (Column::float("in.x", true, 4), 0, 0x4180_0000),
+            (listed.clone(), 4, 2),
+            (listed.clone(), 64, 1),
+            (Column::result("out.a", Kind::Unsigned(8)), 0, 0),
+        ] {
+            assert_eq!(column.narrowed(first, last), None, "{column:?} {first} {last}");
         }
     }
 

@@ -9,6 +9,7 @@ pub mod error;
 pub mod gpu;
 pub mod handbook;
 pub mod pack;
+pub mod part;
 pub mod random;
 pub mod read;
 pub mod results;

@@ -74,8 +74,15 @@ pub struct File {
     pub bytes: u64,
     /// Rows in it.
     pub rows: usize,
+    /// Rows that could be drawn and are not in it: a unit has at most [`BATCHES`](super::gpu::write::BATCHES).
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub left_out: usize,
     /// SHA-256.
     pub sha256: String,
+}
+
+fn is_zero(rows: &usize) -> bool {
+    *rows == 0
 }
 
 /// What is to be exported.
@@ -120,7 +127,7 @@ impl Hashing {
     fn finish(self, unit: &str, rows: usize) -> Result<File, VectorError> {
         self.file.commit()?;
         let sha256 = hexadecimal(&self.hash.finalize());
-        Ok(File { path: self.path, unit: unit.to_owned(), bytes: self.bytes, rows, sha256 })
+        Ok(File { path: self.path, unit: unit.to_owned(), bytes: self.bytes, rows, left_out: 0, sha256 })
     }
 }
 
@@ -214,7 +221,7 @@ fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Res
         for (extension, bytes) in [("gpu.txt", drawn.text.as_bytes()), ("gpu.raw", &drawn.raw)] {
             let mut file = Hashing::create(folder, format!("units/{}.{extension}", unit.name()))?;
             file.add(bytes)?;
-            files.push(file.finish(unit.name(), drawn.rows)?);
+            files.push(File { left_out: drawn.left_out, ..file.finish(unit.name(), drawn.rows)? });
         }
     }
     Ok(files)
@@ -263,7 +270,7 @@ pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
 /// A pack whose files are what the manifest says, with its tables read.
 ///
 /// # Errors
-/// A file is missing, was changed, or is too many; a table cannot be read or is of another chip, level or seed.
+/// A file is missing, was changed, or is too many; a table cannot be read or is of another chip, level, seed or behaviour.
 pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
     let manifest = manifest(folder)?;
     let listed: Vec<PathBuf> = manifest.files.iter().map(|file| folder.join(&file.path)).collect();
@@ -296,14 +303,15 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
     }
     let tables: Vec<Table> = listed
         .par_iter()
-        .filter(|path| path.extension().is_some_and(|extension| extension == "tsv"))
-        .map(|path| {
+        .zip(&manifest.files)
+        .filter(|(path, _)| path.extension().is_some_and(|extension| extension == "tsv"))
+        .map(|(path, file)| {
             let table = read::parse(&read_text(path, "the pack is not whole")?, path)?;
             let Contents { profile, level, seed, .. } = table.contents;
-            if (profile.name(), level.name(), seed)
-                != (manifest.profile.as_str(), manifest.level.as_str(), manifest.seed)
-            {
-                let message = "its chip, level or seed is not the manifest's".to_owned();
+            let own = (profile.name(), level.name(), seed, table.behaviour, table.rows.len());
+            let Manifest { profile, level, seed, behaviour_rev, .. } = &manifest;
+            if own != (profile.as_str(), level.as_str(), *seed, *behaviour_rev, file.rows) {
+                let message = "its chip, level, seed, behaviour or number of rows is not the manifest's".to_owned();
                 return Err(invalid("NB1011", path, message, "it belongs to another pack: export again"));
             }
             Ok(table)

@@ -10,18 +10,18 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::cases;
-use super::column::Column;
+use super::part::Part;
 use super::unit::{Conditions, Unit};
 use crate::picture::hexadecimal;
 use crate::state::{Policies, Profile};
 
-/// Rows of a leaf, unless the unit has more than [`MOST_LEAVES`] times as many.
+/// Rows of a leaf, unless the sweep has more than [`MOST_LEAVES`] times as many.
 const LEAF_ROWS: u64 = 1 << 23;
 
 /// The most leaves.
 pub const MOST_LEAVES: u64 = 1024;
 
-/// The most rows that a unit may have: beyond it nobody waits for the end.
+/// The most rows that a sweep may have: beyond it nobody waits for the end.
 pub const MOST_ROWS: u64 = 1 << 40;
 
 /// Bytes that are hashed at once.
@@ -43,18 +43,19 @@ pub struct Leaf {
     pub sha256: String,
 }
 
-/// All rows of a unit on a chip.
+/// All rows of a unit, or of a part of it, on a chip.
 #[derive(Debug)]
 pub struct Sweep {
     /// The unit.
     pub unit: &'static dyn Unit,
     /// The chip.
     pub profile: Profile,
+    /// Which of the unit's rows.
+    pub part: Part,
     /// Rows, those included whose inputs do not go together.
     pub size: u64,
     /// Leaves.
     pub leaves: u64,
-    inputs: Vec<Column>,
     outputs: Vec<Output>,
     results: usize,
 }
@@ -69,17 +70,22 @@ struct Output {
 }
 
 impl Sweep {
-    /// Of a unit; `None` if it has more than [`MOST_ROWS`] rows.
+    /// Of a whole unit; `None` if it has more than [`MOST_ROWS`] rows.
     pub fn new(unit: &'static dyn Unit, profile: Profile) -> Option<Sweep> {
-        let (inputs, results) = (unit.inputs(), unit.results());
-        let size = u64::try_from(cases::size(&inputs)).ok().filter(|size| *size <= MOST_ROWS)?;
+        Sweep::of(unit, profile, Part::whole(unit))
+    }
+
+    /// Of a part of a unit; `None` if that has more than [`MOST_ROWS`] rows.
+    pub fn of(unit: &'static dyn Unit, profile: Profile, part: Part) -> Option<Sweep> {
+        let results = unit.results();
+        let size = u64::try_from(cases::size(part.columns())).ok().filter(|size| *size <= MOST_ROWS)?;
         let outputs = results.iter().enumerate().filter(|(_, column)| column.name.starts_with("out."));
         let outputs = outputs.map(|(index, column)| {
             let (least, greatest) = column.kind.range();
             Output { index, bytes: column.kind.bits().div_ceil(8) as usize, least, greatest }
         });
         let leaves = size.div_ceil(LEAF_ROWS).clamp(1, MOST_LEAVES);
-        Some(Sweep { unit, profile, size, leaves, outputs: outputs.collect(), inputs, results: results.len() })
+        Some(Sweep { unit, profile, part, size, leaves, outputs: outputs.collect(), results: results.len() })
     }
 
     /// The rows of a leaf, by their places among all.
@@ -105,10 +111,14 @@ impl Sweep {
 }
 
 /// A digest under way.
-struct Digesting<'s> {
+#[derive(Debug)]
+pub struct Digesting<'s> {
     sweep: &'s Sweep,
     hash: Sha256,
+    /// Longer than [`BUFFER`] by a row, each number of which is written as eight bytes.
     buffer: Vec<u8>,
+    /// Bytes of it that wait for the hash.
+    filled: usize,
     /// The unit has block lanes.
     blocks: bool,
     rows: u64,
@@ -121,7 +131,8 @@ impl<'s> Digesting<'s> {
         Digesting {
             sweep,
             hash: Sha256::new(),
-            buffer: Vec::with_capacity(BUFFER + 64),
+            buffer: vec![0; BUFFER + 8 * sweep.outputs.len()],
+            filled: 0,
             blocks: true,
             rows: 0,
             ends: [0; 2],
@@ -130,9 +141,11 @@ impl<'s> Digesting<'s> {
 
     /// Goes over a range in runs of which only the last input varies.
     fn rows(&mut self, range: Range<u64>) {
-        let Some((last, leading)) = self.sweep.inputs.split_last() else { return };
+        let Some((last, leading)) = self.sweep.part.columns().split_last() else { return };
+        let conditions = Conditions { profile: self.sweep.profile, policies: Policies::DEFAULT };
         let length = last.size() as u64;
         let mut inputs = vec![0; leading.len() + 1];
+        let mut results = vec![0; self.sweep.results];
         let mut place = range.start;
         while place < range.end {
             let start = place % length;
@@ -140,7 +153,7 @@ impl<'s> Digesting<'s> {
             cases::nth(leading, u128::from(place / length), &mut inputs[..leading.len()]);
             self.blocks &= self.block(&inputs[..leading.len()], last.nth(u128::from(start)), run);
             if !self.blocks {
-                self.run(&mut inputs, last, start..start + run);
+                self.sweep.unit.run(&mut inputs, last, start..start + run, &conditions, &mut results, self);
             }
             place += run;
         }
@@ -151,52 +164,43 @@ impl<'s> Digesting<'s> {
         if !self.blocks {
             return false;
         }
-        if self.buffer.len() + 2 * run as usize > BUFFER {
+        let bytes = 2 * run as usize;
+        if self.filled + bytes > BUFFER {
             self.flush();
         }
-        let start = self.buffer.len();
-        self.buffer.resize(start + 2 * run as usize, 0);
-        let (pairs, _) = self.buffer[start..].as_chunks_mut();
+        let (pairs, _) = self.buffer[self.filled..self.filled + bytes].as_chunks_mut();
         let Some(ends) = self.sweep.unit.block(leading, first, pairs) else {
-            self.buffer.truncate(start);
             return false;
         };
+        self.filled += bytes;
         self.rows += run;
         self.ends = [self.ends[0] + ends[0], self.ends[1] + ends[1]];
         true
     }
 
-    /// A run row by row.
-    fn run(&mut self, inputs: &mut [i64], last: &Column, places: Range<u64>) {
-        let Sweep { unit, profile, outputs, .. } = self.sweep;
-        let conditions = Conditions { profile: *profile, policies: Policies::DEFAULT };
-        let mut results = vec![0; self.sweep.results];
-        let end = inputs.len() - 1;
-        for place in places {
-            inputs[end] = last.nth(u128::from(place));
-            if !unit.accepts(inputs, *profile) {
-                continue;
-            }
-            unit.evaluate(inputs, &conditions, &mut results);
-            let (mut low, mut high) = (false, false);
-            for output in outputs {
-                let value = results[output.index];
-                low |= value == output.least;
-                high |= value == output.greatest;
-                self.buffer.extend_from_slice(&value.to_le_bytes()[..output.bytes]);
-            }
-            self.rows += 1;
-            self.ends[0] += u64::from(low);
-            self.ends[1] += u64::from(high);
-            if self.buffer.len() >= BUFFER {
-                self.flush();
-            }
+    /// The results of the next row.
+    #[inline]
+    pub fn take(&mut self, results: &[i64]) {
+        let (mut low, mut high) = (false, false);
+        for output in &self.sweep.outputs {
+            let value = results[output.index];
+            low |= value == output.least;
+            high |= value == output.greatest;
+            // Eight bytes whatever the width: what is too much is written over by the next number.
+            self.buffer[self.filled..self.filled + 8].copy_from_slice(&value.to_le_bytes());
+            self.filled += output.bytes;
+        }
+        self.rows += 1;
+        self.ends[0] += u64::from(low);
+        self.ends[1] += u64::from(high);
+        if self.filled >= BUFFER {
+            self.flush();
         }
     }
 
     fn flush(&mut self) {
-        self.hash.update(&self.buffer);
-        self.buffer.clear();
+        self.hash.update(&self.buffer[..self.filled]);
+        self.filled = 0;
     }
 
     fn finish(mut self) -> [u8; 32] {
@@ -229,13 +233,8 @@ mod tests {
             for start in [0, 1, 512, 70_000, sweep.size / 3, sweep.size / 2 + 7, sweep.size - 3_000] {
                 let range = start..start + 3_000;
                 let mut plain = Digesting::new(&sweep);
-                let (last, leading) = sweep.inputs.split_last().expect("columns");
-                let length = last.size() as u64;
-                for place in range.clone() {
-                    let mut inputs = vec![0; leading.len() + 1];
-                    cases::nth(leading, u128::from(place / length), &mut inputs[..leading.len()]);
-                    plain.run(&mut inputs, last, place % length..place % length + 1);
-                }
+                plain.blocks = false;
+                plain.rows(range.clone());
                 let mut blocks = Digesting::new(&sweep);
                 blocks.rows(range);
                 assert_eq!((blocks.rows, blocks.ends), (plain.rows, plain.ends), "{name} from {start}");

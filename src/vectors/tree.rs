@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::error::{VectorError, read_text};
+use super::part::Part;
 use super::sweep::{Leaf, Sweep};
 use super::{BEHAVIOUR, units};
 use crate::output::write_file;
@@ -27,6 +28,9 @@ pub const FORMAT: &str = "ninebit-sweep-1";
 pub struct Of {
     /// The unit.
     pub unit: String,
+    /// Which of its rows, as [`Part`] writes it; nothing for all.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub only: Vec<String>,
     /// The chip.
     pub profile: String,
     /// What the program computes.
@@ -42,6 +46,7 @@ impl Of {
     pub fn new(sweep: &Sweep) -> Of {
         Of {
             unit: sweep.unit.name().to_owned(),
+            only: sweep.part.texts().to_vec(),
             profile: sweep.profile.name().to_owned(),
             behaviour_rev: BEHAVIOUR,
             size: sweep.size,
@@ -49,9 +54,14 @@ impl Of {
         }
     }
 
+    /// The unit, and which of its rows.
+    pub fn name(&self) -> String {
+        std::iter::once(&self.unit).chain(&self.only).map(String::as_str).collect::<Vec<&str>>().join(" ")
+    }
+
     fn text(&self) -> String {
-        let Of { unit, profile, behaviour_rev, size, leaves } = self;
-        format!("{unit} on {profile}, behaviour {behaviour_rev}, {size} rows in {leaves} leaves")
+        let Of { profile, behaviour_rev, size, leaves, .. } = self;
+        format!("{} on {profile}, behaviour {behaviour_rev}, {size} rows in {leaves} leaves", self.name())
     }
 }
 
@@ -212,11 +222,15 @@ fn leaf_files(folder: &Path) -> Result<Vec<PathBuf>, VectorError> {
 impl Tree {
     /// The tree as a file: a leaf a line.
     pub fn text(&self) -> String {
-        let Of { unit, profile, behaviour_rev, size, leaves } = &self.of;
+        let Of { unit, only, profile, behaviour_rev, size, leaves } = &self.of;
+        let only = match only.is_empty() {
+            true => String::new(),
+            false => format!("  \"only\": {},\n", serde_json::to_string(only).unwrap_or_default()),
+        };
         let lines: Vec<String> =
             self.leaf.iter().map(|leaf| format!("    {}", serde_json::to_string(leaf).unwrap_or_default())).collect();
         format!(
-            "{{\n  \"format\": \"{FORMAT}\",\n  \"unit\": \"{unit}\",\n  \"profile\": \"{profile}\",\n  \"behaviour_rev\": {behaviour_rev},\n  \"size\": {size},\n  \"leaves\": {leaves},\n  \"rows\": {},\n  \"root\": \"{}\",\n  \"leaf\": [\n{}\n  ]\n}}\n",
+            "{{\n  \"format\": \"{FORMAT}\",\n  \"unit\": \"{unit}\",\n{only}  \"profile\": \"{profile}\",\n  \"behaviour_rev\": {behaviour_rev},\n  \"size\": {size},\n  \"leaves\": {leaves},\n  \"rows\": {},\n  \"root\": \"{}\",\n  \"leaf\": [\n{}\n  ]\n}}\n",
             self.rows,
             self.root,
             lines.join(",\n")
@@ -251,7 +265,10 @@ impl Tree {
         }
         let sweep = units::by_name(&tree.of.unit).zip(Profile::from_name(&tree.of.profile));
         let sweep = sweep.filter(|(unit, profile)| unit.profiles().contains(profile));
-        let sweep = sweep.and_then(|(unit, profile)| Sweep::new(unit, profile));
+        let sweep = sweep.and_then(|(unit, profile)| {
+            let part = Part::new(unit, &tree.of.only).ok().filter(|part| part.texts() == tree.of.only)?;
+            Sweep::of(unit, profile, part)
+        });
         match sweep {
             Some(sweep) if (sweep.size, sweep.leaves) == (tree.of.size, tree.of.leaves) => Ok((tree, sweep)),
             _ => {

@@ -1,6 +1,9 @@
 //! What is tested: a unit of the chip as a function from integers to integers.
 
+use std::ops::Range;
+
 use super::column::Column;
+use super::sweep::Digesting;
 use crate::state::{POLICIES, Policies, Profile};
 
 /// What holds besides a row's own numbers.
@@ -42,6 +45,28 @@ pub trait Unit: Sync + std::fmt::Debug {
     /// Returns how many of them are the least and the greatest that the column's type holds; `None`: there is no such form.
     fn block(&self, _leading: &[i64], _first: i64, _out: &mut [[u8; 2]]) -> Option<[u64; 2]> {
         None
+    }
+
+    /// Computes rows of which only the last input varies, over these places of its column, and hands on those whose inputs go together.
+    ///
+    /// No unit has another: it stands here so that it is compiled for each, without a call through a table for every row.
+    fn run(
+        &self,
+        inputs: &mut [i64],
+        last: &Column,
+        places: Range<u64>,
+        conditions: &Conditions,
+        results: &mut [i64],
+        digest: &mut Digesting,
+    ) {
+        let end = inputs.len() - 1;
+        for place in places {
+            inputs[end] = last.nth(u128::from(place));
+            if self.accepts(inputs, conditions.profile) {
+                self.evaluate(inputs, conditions, results);
+                digest.take(results);
+            }
+        }
     }
 
     /// Whether the inputs make sense together on this chip.

@@ -8,6 +8,7 @@ use clap::Args;
 use ninebit::output::write_stdout;
 use ninebit::state::Profile;
 use ninebit::vectors::cases::Level;
+use ninebit::vectors::gpu::write::BATCHES;
 use ninebit::vectors::pack::{self, Options};
 use ninebit::vectors::view::View;
 use ninebit::vectors::{Unit, units};
@@ -68,6 +69,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut text = String::new();
     for file in manifest.files.iter().filter(|file| file.path.ends_with(".tsv")) {
         let _ = writeln!(text, "{:<24}{:>9} rows {:>12} bytes", file.unit, file.rows, file.bytes);
+    }
+    for file in manifest.files.iter().filter(|file| file.path.ends_with(".gpu.txt")) {
+        let _ = write!(text, "{:<24}{:>9} rows as draws", file.unit, file.rows);
+        let _ = match file.left_out {
+            0 => writeln!(text),
+            rows => writeln!(text, ", {rows} left out: at most {BATCHES} batches"),
+        };
     }
     let _ = writeln!(text, "root {}", manifest.root);
     Ok(write_stdout(text.as_bytes())?)

@@ -9,6 +9,7 @@ use ninebit::shard::Shard;
 use ninebit::state::{Named, Profile};
 use ninebit::threads::on_threads;
 use ninebit::vectors::error::VectorError;
+use ninebit::vectors::part::Part;
 use ninebit::vectors::random::Random;
 use ninebit::vectors::sweep::{MOST_ROWS, Sweep};
 use ninebit::vectors::tree::{self, Done, Of, Tree};
@@ -26,6 +27,10 @@ pub(crate) struct SweepArguments {
     /// The chip: nv10 or nv2a
     #[arg(long, default_value = "nv2a", value_parser = super::profile)]
     profile: Profile,
+    /// Only rows of which this column has this number, or one of this range: COLUMN=NUMBER or COLUMN=FIRST..LAST, both included; may be given for
+    /// several columns
+    #[arg(long, value_name = "COLUMN=NUMBERS")]
+    only: Vec<String>,
     /// Only a part of the leaves: I/N, I from 1 to N
     #[arg(long, value_name = "I/N", default_value_t = Shard::ALL, value_parser = str::parse::<Shard>)]
     shard: Shard,
@@ -39,14 +44,20 @@ pub(crate) struct SweepArguments {
 
 /// Computes the leaves of a shard.
 pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
-    let SweepArguments { unit, profile, shard, threads, output } = arguments;
+    let SweepArguments { unit, profile, only, shard, threads, output } = arguments;
     if !unit.profiles().contains(profile) {
         return Err(super::lacks(*unit, *profile));
     }
-    let Some(sweep) = Sweep::new(*unit, *profile) else {
+    let part = Part::new(*unit, only).map_err(|message| {
+        Failure::usage(
+            format!("--only: {message}"),
+            "`ninebit vectors list --format json` has the columns of every unit",
+        )
+    })?;
+    let Some(sweep) = Sweep::of(*unit, *profile, part) else {
         return Err(Failure::usage(
-            format!("`{}` has more than {MOST_ROWS} rows", unit.name()),
-            "a sweep has every row; `ninebit vectors export` takes boundaries and random ones",
+            format!("`{}` has more than {MOST_ROWS} rows", [&[unit.name().to_owned()], &only[..]].concat().join(" ")),
+            "a sweep has every row; `--only COLUMN=NUMBERS` takes a part, `ninebit vectors export` boundaries and random ones",
         ));
     };
     make_folder(output)?;
@@ -63,7 +74,7 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
     }
     let text = format!(
         "{} {}, shard {}: {} of {} leaves, {} computed, {} were there\n",
-        unit.name(),
+        Of::new(&sweep).name(),
         profile.name(),
         shard,
         mine.len(),
@@ -94,8 +105,8 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     if destination == Some(Destination::Stdout) {
         return Ok(());
     }
-    let Tree { of: Of { unit, profile, leaves, .. }, rows, root, .. } = &tree;
-    let text = format!("{unit} {profile}: {rows} rows in {leaves} leaves\nroot {root}\n");
+    let Tree { of: of @ Of { profile, leaves, .. }, rows, root, .. } = &tree;
+    let text = format!("{} {profile}: {rows} rows in {leaves} leaves\nroot {root}\n", of.name());
     Ok(write_stdout(text.as_bytes())?)
 }
 
@@ -132,8 +143,8 @@ pub(crate) fn digest(arguments: &DigestArguments) -> Result<(), Failure> {
             let wrong = chosen.par_iter().filter(|index| sweep.leaf(**index as u64) != tree.leaf[**index]);
             wrong.copied().collect()
         });
-        let Of { unit, profile, leaves, behaviour_rev, .. } = &tree.of;
-        let mut text = format!("{unit} {profile}: {} of {leaves} leaves computed, ", chosen.len());
+        let Of { profile, leaves, behaviour_rev, .. } = &tree.of;
+        let mut text = format!("{} {profile}: {} of {leaves} leaves computed, ", tree.of.name(), chosen.len());
         if wrong.is_empty() {
             text.push_str("all as the tree has them\n");
         } else {

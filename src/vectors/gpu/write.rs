@@ -72,8 +72,10 @@ pub struct Drawn {
     pub text: String,
     /// What the rows bring.
     pub raw: Vec<u8>,
-    /// How many rows are asked.
+    /// How many rows are asked; one that two paths ask counts twice.
     pub rows: usize,
+    /// How many more could be, beyond [`BATCHES`].
+    pub left_out: usize,
 }
 
 impl<'w> Batches<'w> {
@@ -109,6 +111,8 @@ impl<'w> Batches<'w> {
             return None;
         }
         let mut batches: Vec<Batch> = self.open.into_values().flatten().collect();
+        let count = |batches: &[Batch]| batches.iter().map(|batch| batch.rows).sum::<usize>();
+        let all = count(&batches);
         if batches.len() > BATCHES {
             batches.sort_by_key(|batch| !batch.deciding);
             batches.truncate(BATCHES);
@@ -120,8 +124,8 @@ impl<'w> Batches<'w> {
             raw.extend_from_slice(&batch.ids);
             batch.sources.iter().for_each(|bytes| raw.extend_from_slice(bytes));
         }
-        let rows = batches.iter().map(|batch| batch.rows).sum();
-        Some(Drawn { text: text(self.writer, &batches), raw, rows })
+        let rows = count(&batches);
+        Some(Drawn { text: text(self.writer, &batches), raw, rows, left_out: all - rows })
     }
 }
 
