@@ -5,7 +5,9 @@ use super::direction::{Looking, only_face};
 use super::fetch::Numbers;
 use super::kernels::{LANES, Row, STEP};
 use super::planes::Plane;
-use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
+use super::quotient::{
+    Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_level, estimate_two, estimate_weights, settle,
+};
 use super::{Compiled, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
@@ -31,7 +33,7 @@ pub(super) enum Planes {
 
 /// A triangle with what its pieces need.
 pub(super) struct Setup<'a> {
-    pub(super) context: TriangleContext<'a>,
+    pub(super) context: &'a TriangleContext<'a>,
     denominator: Plane,
     /// 256 b0 and 256 b2, where some colour varies.
     weights: Option<[Plane; 2]>,
@@ -107,14 +109,16 @@ pub(super) fn whole_steps(count: usize) -> usize {
 
 impl<'a> Setup<'a> {
     /// `samplers` is a place to put things; [`given_back`](Self::given_back) returns it.
-    pub(super) fn new(context: TriangleContext<'a>, compiled: &Compiled, mut samplers: Vec<Planes>) -> Setup<'a> {
+    #[inline(always)]
+    pub(super) fn new(context: &'a TriangleContext<'a>, compiled: &Compiled, mut samplers: Vec<Planes>) -> Setup<'a> {
         let triangle = &context.triangle;
         let p = triangle.p;
         let varies = |slots: &[Option<u16>; 4], colors: &[[u8; 4]; 3]| {
             (0..4).any(|n| slots[n].is_some() && (colors[0][n] != colors[1][n] || colors[1][n] != colors[2][n]))
         };
         let weighted = varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
-        let plane = |g: [i64; 3]| Plane::new(triangle, g);
+        let inverse = [1.0 / p[0] as f64, 1.0 / p[1] as f64, 1.0 / p[2] as f64];
+        let plane = |g: [i64; 3]| Plane::new(triangle, &inverse, g);
         samplers.clear();
         for (n, sampler) in compiled.samplers.iter().enumerate() {
             let coordinates = &context.coordinates[sampler.unit];
@@ -138,7 +142,7 @@ impl<'a> Setup<'a> {
         Setup {
             widest: 1.0 / least,
             denominator: plane(p),
-            weights: weighted.then(|| [plane([256 * p[0], 0, 0]), plane([0, 0, 256 * p[2]])]),
+            weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
@@ -173,7 +177,7 @@ impl<'a> Setup<'a> {
                     let [u, v] = &mut coordinates[n];
                     let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
                     if let Some(scaled) = self.scaled::<ROW>(planes, sampler.bias(), (&real, denominator), &bounds) {
-                        let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, u, v);
+                        let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, &bounds, u, v);
                         if close[0] | close[1] {
                             self.settle_coordinates::<ROW>(piece, sampler, planes, close, &e, u, v, whole);
                         }
@@ -219,11 +223,14 @@ impl<'a> Setup<'a> {
         if let Some(planes) = &self.weights {
             let Varying { weights: [w0, w2], whole, .. } = &mut *varying;
             let (w0, w2) = (&mut w0[piece.lanes()], &mut w2[piece.lanes()]);
-            let weighed = if ROW { self.weighed(planes, (&real, denominator), &bounds) } else { None };
+            // Single precision is for divisions: its wide margin makes many blocks be settled.
+            let divides = !(ROW && denominator.x == 0.0);
+            let weighed = if ROW && divides { self.weighed(planes, (&real, denominator), &bounds) } else { None };
             let close = if let Some(weighed) = weighed {
                 estimate_weights::<FMA>(piece.at.last, denominator, &weighed, w0, w2)
             } else if let Some(scaled) = self.scaled::<ROW>(planes, 0, (&real, denominator), &bounds) {
-                let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, w0, w2);
+                let scaled = [scaled[0].not_negative(), scaled[1].not_negative()];
+                let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, &bounds, w0, w2);
                 close[0] | close[1]
             } else {
                 for n in 0..piece.count {
@@ -304,6 +311,24 @@ impl<'a> Setup<'a> {
         ])
     }
 
+    /// Floors of two quotients; one denominator serves a row along which it does not vary.
+    #[inline(always)]
+    fn estimate<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        denominator: Line,
+        scaled: &[Scaled; 2],
+        bounds: &Bounds,
+        first: &mut [i32],
+        second: &mut [i32],
+    ) -> [bool; 2] {
+        if ROW && denominator.x == 0.0 {
+            let scaled = [scaled[0].divided(bounds.reciprocal), scaled[1].divided(bounds.reciprocal)];
+            return estimate_level::<FMA>(piece.at, &scaled, first, second);
+        }
+        estimate_two::<FMA, ROW>(piece.at, denominator, scaled, first, second)
+    }
+
     /// The same for weights on a row, in single precision.
     #[inline(always)]
     fn weighed(
@@ -358,7 +383,7 @@ impl<'a> Setup<'a> {
             let top = plane.exact(e).less(i64::from(sampler.bias()), bottom);
             let whole = &mut whole[0][..values.len()];
             settle::<ROW>(piece.at, top, bottom, plane.small(self.bits), values, whole);
-            if plane.lowers {
+            if plane.lowers(&self.context.triangle) {
                 for k in (0..piece.count).filter(|k| whole[*k] != 0) {
                     values[k] -= i32::from(self.sample(piece, k).truncation(&plane.g) > 0);
                 }
