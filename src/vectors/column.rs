@@ -212,7 +212,7 @@ impl Column {
         let domain = match self.domain.as_ref()? {
             Domain::Listed(values) => {
                 let [start, end] = [first, last].map(|value| values.iter().position(|known| *known == value));
-                Domain::Listed(values.get(start?..=end?)?.to_vec())
+                Domain::Listed(values.get(start?..=end?).filter(|values| !values.is_empty())?.to_vec())
             }
             Domain::Interval(least, greatest) => {
                 Some(Domain::Interval(first, last)).filter(|_| *least <= first && first <= last && last <= *greatest)?

@@ -26,6 +26,7 @@ impl Part {
     pub fn new<T: AsRef<str>>(unit: &dyn Unit, texts: &[T]) -> Result<Part, String> {
         let mut columns = unit.inputs();
         let mut found: Vec<Option<String>> = vec![None; columns.len()];
+        let mut named = vec![false; columns.len()];
         for text in texts.iter().map(AsRef::as_ref) {
             let Some((name, numbers)) = text.split_once('=') else {
                 return Err(format!("`{text}` is not COLUMN=NUMBER or COLUMN=FIRST..LAST"));
@@ -34,7 +35,7 @@ impl Part {
                 let known: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
                 return Err(format!("`{}` has no input column `{name}`; it has {}", unit.name(), known.join(", ")));
             };
-            if found[index].is_some() {
+            if std::mem::replace(&mut named[index], true) {
                 return Err(format!("column `{name}` is there twice"));
             }
             let column = &columns[index];
@@ -43,13 +44,13 @@ impl Part {
             let Some(narrowed) = ends.and_then(|(first, last)| column.narrowed(first, last)) else {
                 return Err(format!("`{name}` does not take `{numbers}`: {}", takes(column)));
             };
-            found[index] = Some(written(&narrowed));
-            columns[index] = narrowed;
+            // A range that is the whole column says nothing.
+            if narrowed.size() < column.size() {
+                found[index] = Some(written(&narrowed));
+                columns[index] = narrowed;
+            }
         }
-        // A range that is the whole column says nothing.
-        let whole = unit.inputs();
-        let says = |index: &usize| columns[*index].size() < whole[*index].size();
-        let texts = (0..columns.len()).filter(says).filter_map(|index| found[index].take()).collect();
+        let texts = found.into_iter().flatten().collect();
         Ok(Part { columns, texts })
     }
 
