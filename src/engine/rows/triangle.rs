@@ -1,8 +1,9 @@
 //! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a piece.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::direction::{Looking, only_face};
+use super::direction::{Looking, only_face, positive};
 use super::fetch::Numbers;
+use super::fog::Fog;
 use super::kernels::{LANES, Row, STEP};
 use super::planes::Plane;
 use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
@@ -23,6 +24,8 @@ pub(super) enum Planes {
     Plane([Plane; 2]),
     /// A direction, and the face that all of the triangle looks at, if that is one.
     Direction([Plane; 3], Option<Face>),
+    /// s, t and q, which is positive, and more than the magnitudes of s/q and t/q.
+    Ratio([Plane; 3], f64),
     /// Anything else: the definition, pixel by pixel.
     Other,
     /// The same coordinates as those of an earlier sampler.
@@ -32,12 +35,13 @@ pub(super) enum Planes {
 /// A triangle with what its pieces need.
 pub(super) struct Setup<'a> {
     pub(super) context: TriangleContext<'a>,
-    denominator: Plane,
+    pub(super) denominator: Plane,
     /// 256 b0 and 256 b2, where some colour varies.
     weights: Option<[Plane; 2]>,
     samplers: Vec<Planes>,
+    pub(super) fog: Option<Fog>,
     /// Bits of the largest D.
-    bits: u32,
+    pub(super) bits: u32,
     /// The reciprocal of a D that none is smaller than.
     widest: f64,
 }
@@ -130,7 +134,11 @@ impl<'a> Setup<'a> {
                 Some(Coordinates::Direction(g)) => {
                     Planes::Direction([plane(g[0]), plane(g[1]), plane(g[2])], only_face(g))
                 }
-                _ => Planes::Other,
+                Some(Coordinates::Ratio(g)) => match positive(*g, sampler.sides) {
+                    Some((g, reach)) => Planes::Ratio([plane(g[0]), plane(g[1]), plane(g[2])], reach),
+                    None => Planes::Other,
+                },
+                None => Planes::Other,
             });
         }
         let bits = |n: i64| 64 - n.leading_zeros();
@@ -140,6 +148,7 @@ impl<'a> Setup<'a> {
             denominator: plane(p),
             weights: weighted.then(|| [plane([256 * p[0], 0, 0]), plane([0, 0, 256 * p[2]])]),
             samplers,
+            fog: compiled.fog.and_then(|_| Fog::new(&context)),
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
         }
@@ -201,6 +210,15 @@ impl<'a> Setup<'a> {
                         self.defined(piece, sampler, numbers, faces);
                     }
                 }
+                Planes::Ratio(planes, reach) => {
+                    let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
+                    let looking = Looking::new(planes, &real, &bounds);
+                    let done =
+                        self.projected::<FMA, ROW>(piece, sampler, planes, *reach, &looking, &bounds, numbers, faces);
+                    if !done {
+                        self.defined(piece, sampler, numbers, faces);
+                    }
+                }
                 Planes::Other => {
                     self.defined(piece, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
                 }
@@ -256,7 +274,15 @@ impl<'a> Setup<'a> {
                 }
             }
         }
-        if compiled.pixel_by_pixel {
+        if self.context.draw.depth_test.is_some() {
+            self.depths::<FMA, ROW>(piece, &real, &mut varying.depth);
+        }
+        if let Some(slot) = compiled.fog {
+            let Varying { whole: [values, spare], .. } = &mut *varying;
+            let row = &mut rows[usize::from(slot)].0;
+            self.fog_factors::<FMA, ROW>(piece, &e, (&real, denominator), &bounds, values, spare, row);
+        }
+        if compiled.samples_pixels {
             self.pixel_by_pixel(piece, compiled, textures, varying, rows);
         }
     }
@@ -279,7 +305,7 @@ impl<'a> Setup<'a> {
 
     /// How far the estimate of a plane's quotient can be off.
     #[inline(always)]
-    fn margin<const ROW: bool>(&self, plane: &Plane, e: &[f64; 3], bounds: &Bounds) -> f64 {
+    pub(super) fn margin<const ROW: bool>(&self, plane: &Plane, e: &[f64; 3], bounds: &Bounds) -> f64 {
         // What is taken off is at most `reach` denominators.
         if ROW {
             // So is every other term: no term of the denominator is negative.
@@ -290,7 +316,7 @@ impl<'a> Setup<'a> {
 
     /// Two quotients to be estimated, less a bias. `None`: some estimate would prove nothing.
     #[inline(always)]
-    fn scaled<const ROW: bool>(
+    pub(super) fn scaled<const ROW: bool>(
         &self,
         planes: &[Plane; 2],
         bias: i32,
@@ -387,7 +413,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    fn sample(&self, piece: Piece<'_>, n: usize) -> Sample<'_> {
+    pub(super) fn sample(&self, piece: Piece<'_>, n: usize) -> Sample<'_> {
         let (i, j) = piece.pixel(n);
         Sample::new(&self.context.triangle, self.context.triangle.edges(i, j))
     }
@@ -416,7 +442,7 @@ impl<'a> Setup<'a> {
         faces[lane] = place.face() as u32;
     }
 
-    /// What is not computed by rows: texture units beyond the plain ones, fog, depth.
+    /// Texture units that rows do not sample.
     fn pixel_by_pixel(
         &self,
         piece: Piece<'_>,
@@ -427,30 +453,17 @@ impl<'a> Setup<'a> {
     ) {
         const UNITS: [Register; TEXTURE_UNITS] =
             [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        let context = &self.context;
         for n in 0..piece.count {
             let (sample, lane) = (self.sample(piece, n), piece.lane + n);
             let mut registers = Registers::<i32>::new();
-            let mut put = |slot: Option<u16>, value: i32| {
-                if let Some(slot) = slot {
-                    rows[usize::from(slot)].0[lane] = value as i16;
-                }
-            };
-            if compiled.samples_pixels {
-                let lives = context.sample_textures(&sample, piece.pixel(n), &mut registers, textures, &mut Silent);
-                varying.alive[lane] = lives.is_some();
-                for (unit, register) in UNITS.into_iter().enumerate() {
-                    for channel in 0..4 {
-                        put(compiled.textures[unit][channel], registers.read(register, channel));
+            let lives = self.context.sample_textures(&sample, piece.pixel(n), &mut registers, textures, &mut Silent);
+            varying.alive[lane] = lives.is_some();
+            for (unit, register) in UNITS.into_iter().enumerate() {
+                for channel in 0..4 {
+                    if let Some(slot) = compiled.textures[unit][channel] {
+                        rows[usize::from(slot)].0[lane] = registers.read(register, channel) as i16;
                     }
                 }
-            }
-            if compiled.fog.is_some() {
-                context.load_fog(&sample, &mut registers, &mut Silent);
-                put(compiled.fog, registers.read(Register::Fog, 3));
-            }
-            if context.draw.depth_test.is_some() {
-                varying.depth[lane] = sample.depth(context.z, context.draw.depth_full) as u32;
             }
         }
     }
