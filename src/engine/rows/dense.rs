@@ -5,6 +5,7 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
 use super::kernels::Row;
+use super::levels::Reads;
 use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{self, IOTA};
 use super::triangle::{Piece, Setup, Varying, whole_steps};
@@ -100,6 +101,7 @@ fn triangle(r: &mut Random) -> [Vertex; 3] {
             _ => 0.5 + 2.0 * r.unit(),
         };
         vertex.texture_coordinates[2] = [st[0] * q, st[1] * q, 0.0, q];
+        vertex.texture_coordinates[3] = vertex.texture_coordinates[0];
         vertex.texture_coordinates[1] = [direction[0], direction[1], direction[2], 1.0];
     }
     vertices
@@ -117,22 +119,31 @@ fn fog(r: &mut Random) -> Option<FogFunction> {
     Some(FogFunction { mode: r.of(FogMode::ALL), p0, p1 })
 }
 
-/// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, and the fog
+/// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, levels, and the fog
 /// factor, and test depth.
 fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<FogFunction>) -> Scene {
-    let texture = |kind, side: u32, faces: u32| Texture {
+    let texture = |kind, side: u32, faces: u32, levels: u32| Texture {
         name: String::new(),
         kind,
         format: TextureFormat::A8R8G8B8,
         image: TextureImage::Texels(Texels {
             width: side,
             height: side,
-            levels: 1,
+            levels,
             border: false,
-            words: (0..side * side * faces).map(|n| n.wrapping_mul(0x9e37_79b9)).collect::<Vec<u32>>().into(),
+            words: (0..Level::chain(TextureFormat::A8R8G8B8, side, side, levels, false).1 as u32 * faces)
+                .map(|n| n.wrapping_mul(0x9e37_79b9))
+                .collect::<Vec<u32>>()
+                .into(),
         }),
     };
     let unit = |texture| Some(TextureUnit { min_filter: filter, mag_filter: filter, ..TextureUnit::new(texture) });
+    let mixed = unit(2).map(|unit| TextureUnit {
+        min_filter: Filter::Linear,
+        mip_filter: if filter == Filter::Linear { MipFilter::Linear } else { MipFilter::Nearest },
+        lod_bias: 400,
+        ..unit
+    });
     let input = |register| CombinerInput { register, component: Component::Rgb, mapping: InputMapping::SignedIdentity };
     let mut rgb = Portion::idle(Component::Rgb);
     rgb.inputs = [Register::Texture0, Register::PrimaryColor, Register::Texture1, Register::Texture2].map(input);
@@ -140,6 +151,8 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
     let stage = GeneralStage { rgb, alpha: Portion::idle(Component::Alpha), constants: [[0; 4]; 2] };
     let mut inputs = [FinalInput::zero(Component::Rgb); 6];
     inputs[3].register = FinalRegister::Spare0;
+    inputs[0].register = FinalRegister::PrimaryColor;
+    inputs[1].register = FinalRegister::Texture3;
     let draw = Draw {
         name: String::new(),
         target: 0,
@@ -154,8 +167,8 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
         front_face: FrontFace::CounterClockwise,
         scissor: None,
         fog: Fog { enabled: true, color: [0; 3], function: fog },
-        textures: [unit(0), unit(1), unit(0), None],
-        texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, unit < 3)),
+        textures: [unit(0), unit(1), unit(0), mixed],
+        texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, true)),
         vertex_program: None,
         combiners: Combiners {
             stages: vec![stage],
@@ -187,7 +200,11 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
     Scene {
         profile: Profile::Nv2a,
         targets: vec![target],
-        textures: vec![texture(TextureKind::TwoDimensional, 64, 1), texture(TextureKind::Cube, 16, 6)],
+        textures: vec![
+            texture(TextureKind::TwoDimensional, 64, 1, 1),
+            texture(TextureKind::Cube, 16, 6, 1),
+            texture(TextureKind::TwoDimensional, 64, 1, 7),
+        ],
         palettes: vec![],
         draws: vec![draw],
     }
@@ -201,8 +218,10 @@ fn compare<const FMA: bool, const ROW: bool>(
     varying: &mut Varying,
     rows: &mut [Row],
 ) {
+    // What an earlier piece left must not pass for this one's.
+    varying.reads[3].weights.fill(-1);
     setup.interpolate::<FMA, ROW>(piece, compiled, &[], varying, rows);
-    let context = &setup.context;
+    let (context, mut wanted) = (&setup.context, Reads::default());
     for n in 0..piece.count {
         let (i, j) = (piece.first.0 + i64::from(piece.at.x[n]), piece.first.1 + i64::from(piece.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
@@ -216,6 +235,17 @@ fn compare<const FMA: bool, const ROW: bool>(
         assert_eq!(varying.weights.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices);
         for (index, unit) in context.draw.units.iter().enumerate() {
             let place = context.place(unit, &sample, (i, j)).unwrap();
+            let sampler = &compiled.samplers[index];
+            if sampler.mixes {
+                setup.defined_reads(piece, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
+                let of = |reads: &Reads| {
+                    let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
+                    (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
+                };
+                let (got, wanted) = (of(&varying.reads[index]), of(&wanted));
+                assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices);
+                continue;
+            }
             let bias = if compiled.samplers[index].filters { 128 } else { 0 };
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
@@ -242,9 +272,10 @@ fn rows_interpolate_what_the_definition_does() {
         let Ok(plan) = Plan::compile(&scene(vertices, filter, depth, fog), &PlanOptions::default()) else { continue };
         let rows_of_plan = Rows::compile(&plan).unwrap();
         let compiled = rows_of_plan.draw(&plan, 0, &[]);
-        assert_eq!(compiled.samplers.len(), 3);
+        assert_eq!(compiled.samplers.len(), 4);
         let draw = &plan.draws[0];
         let (mut varying, mut rows) = (Varying::default(), vec![Row::of(0); compiled.rows.len()]);
+        varying.reads.resize(compiled.samplers.len(), Reads::default());
         let mut planes = Vec::new();
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {

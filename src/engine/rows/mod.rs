@@ -5,7 +5,7 @@
 //! | `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
 //! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
-//! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
+//! | `table.rs`, `fetch.rs`, `levels.rs` | textures laid out for rows; address, fetch, filter; lods and levels |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
 //! | `patch.rs`, `band.rs` | triangles to pieces to blocks |
 //! | `isa.rs` | the same text for several instruction sets |
@@ -24,6 +24,7 @@ mod fog;
 mod graph;
 pub(crate) mod isa;
 mod kernels;
+mod levels;
 mod patch;
 mod planes;
 mod quotient;
@@ -70,6 +71,8 @@ pub(crate) struct Sampler {
     /// Texels of its sides; 1 where coordinates are texels.
     sides: [u32; 2],
     signed: [bool; 4],
+    /// The lod counts.
+    mixes: bool,
     /// `None`: of an image that is drawn by this scene, made anew for each draw.
     table: Option<Arc<Table>>,
 }
@@ -137,7 +140,7 @@ impl Rows {
                 (&plan.textures[unit.state.texture].image, table::axes(unit))
             {
                 let image = Image { words: &surfaces[*target].words, memory: None };
-                sampler.table = Some(Arc::new(Table::new(unit, axes, &image, false)));
+                sampler.table = Some(Arc::new(Table::new(unit, &axes, &image, false)));
             }
         }
         Cow::Owned(compiled)
@@ -208,7 +211,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             (_, Some(table)) => Some(table),
             (TextureImage::Texels(texels), None) => {
                 let image = Image { words: &texels.words, memory: None };
-                let table = Arc::new(Table::new(unit, axes, &image, true));
+                let table = Arc::new(Table::new(unit, &axes, &image, true));
                 tables.push((key, Arc::clone(&table)));
                 Some(table)
             }
@@ -221,6 +224,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             cube: unit.kind == TextureKind::Cube,
             sides: unit.scale(&unit.levels[0]),
             signed: unit.state.signed,
+            mixes: unit.needs_lod(),
             table,
         });
     }

@@ -327,6 +327,12 @@ impl Exact {
         }
     }
 
+    /// So many times as much.
+    #[inline(always)]
+    pub(super) fn times(self, by: i64) -> Exact {
+        Exact { c: self.c.wrapping_mul(by), x: self.x.wrapping_mul(by), y: self.y.wrapping_mul(by) }
+    }
+
     /// Divided by a power of two that divides it, modulo 2^32.
     #[inline(always)]
     fn low(self, shift: u32) -> [i32; 3] {

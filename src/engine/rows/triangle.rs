@@ -5,6 +5,7 @@ use super::direction::{Looking, only_face, positive};
 use super::fetch::Numbers;
 use super::fog::Fog;
 use super::kernels::{LANES, Row, STEP};
+use super::levels::{Quads, Reads};
 use super::planes::Plane;
 use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
 use super::{Compiled, Sampler};
@@ -57,6 +58,9 @@ pub(super) struct Varying {
     pub(super) depth: Numbers<u32>,
     /// The texture shader lets the pixel live.
     pub(super) alive: Numbers<bool>,
+    /// What samplers read whose levels count; as many as are wanted.
+    pub(super) reads: Vec<Reads>,
+    pub(super) quads: Box<Quads>,
     /// W0 and W2.
     pub(super) weights: [Numbers<i32>; 2],
     narrow: [Numbers<u16>; 2],
@@ -70,6 +74,8 @@ impl Default for Varying {
             faces: [[0; LANES]; TEXTURE_UNITS],
             depth: [0; LANES],
             alive: [true; LANES],
+            reads: Vec::new(),
+            quads: Box::default(),
             weights: [[0; LANES]; 2],
             narrow: [[0; LANES]; 2],
             whole: [[0; LANES]; 2],
@@ -94,7 +100,7 @@ pub(super) struct Piece<'a> {
 
 impl Piece<'_> {
     /// Column and row of one of its pixels.
-    fn pixel(&self, n: usize) -> (i64, i64) {
+    pub(super) fn pixel(&self, n: usize) -> (i64, i64) {
         (self.first.0 + i64::from(self.at.x[n]), self.first.1 + i64::from(self.at.y[n]))
     }
 
@@ -124,6 +130,8 @@ impl<'a> Setup<'a> {
             let coordinates = &context.coordinates[sampler.unit];
             let earlier = compiled.samplers[..n].iter().position(|other| {
                 other.filters == sampler.filters
+                    && !other.mixes
+                    && !sampler.mixes
                     && !other.cube
                     && context.coordinates[other.unit] == *coordinates
                     && context.draw.units[other.index].levels[0] == context.draw.units[sampler.index].levels[0]
@@ -175,26 +183,20 @@ impl<'a> Setup<'a> {
         let denominator = self.denominator.line(&real);
         let bounds = self.bounds::<FMA, ROW>(piece, &real, denominator);
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
+            if sampler.mixes {
+                let Varying { reads, quads, .. } = &mut *varying;
+                let Some(reads) = reads.get_mut(n) else { continue };
+                self.levels::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, quads, reads);
+                continue;
+            }
             match planes {
                 Planes::Plane(planes) => {
                     let Varying { coordinates, whole, .. } = &mut *varying;
                     let lanes = piece.lanes();
                     let [u, v] = &mut coordinates[n];
                     let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
-                    if let Some(scaled) = self.scaled::<ROW>(planes, sampler.bias(), (&real, denominator), &bounds) {
-                        let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, u, v);
-                        if close[0] | close[1] {
-                            self.settle_coordinates::<ROW>(piece, sampler, planes, close, &e, u, v, whole);
-                        }
-                    } else {
-                        for k in 0..piece.count {
-                            let sample = self.sample(piece, k);
-                            (u[k], v[k]) = (
-                                defined_coordinate(&sample, &planes[0], sampler.bias()),
-                                defined_coordinate(&sample, &planes[1], sampler.bias()),
-                            );
-                        }
-                    }
+                    let (e, lines) = (&e, (&real, denominator));
+                    self.on_planes::<FMA, ROW>(piece, planes, sampler.bias(), e, lines, &bounds, u, v, &mut whole[0]);
                 }
                 Planes::Direction(planes, face) => {
                     let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
@@ -358,6 +360,35 @@ impl<'a> Setup<'a> {
         Scaled::new::<ROW>(plane.line(real), denominator, extent, reciprocals, margin, bias)
     }
 
+    /// INT-4, INT-4t, less a bias.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
+    pub(super) fn on_planes<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        planes: &[Plane; 2],
+        bias: i32,
+        e: &[i64; 3],
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+        u: &mut [i32],
+        v: &mut [i32],
+        whole: &mut Numbers<i32>,
+    ) {
+        if let Some(scaled) = self.scaled::<ROW>(planes, bias, (real, denominator), bounds) {
+            let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, u, v);
+            if close[0] | close[1] {
+                self.settle_coordinates::<ROW>(piece, bias, planes, close, e, u, v, whole);
+            }
+        } else {
+            for k in 0..piece.count {
+                let sample = self.sample(piece, k);
+                (u[k], v[k]) =
+                    (defined_coordinate(&sample, &planes[0], bias), defined_coordinate(&sample, &planes[1], bias));
+            }
+        }
+    }
+
     /// INT-4, INT-4t of estimates of which some lane is not proved.
     #[inline(always)]
     #[allow(
@@ -367,13 +398,13 @@ impl<'a> Setup<'a> {
     fn settle_coordinates<const ROW: bool>(
         &self,
         piece: Piece<'_>,
-        sampler: &Sampler,
+        bias: i32,
         planes: &[Plane; 2],
         close: [bool; 2],
         e: &[i64; 3],
         u: &mut [i32],
         v: &mut [i32],
-        whole: &mut [Numbers<i32>; 2],
+        whole: &mut Numbers<i32>,
     ) {
         for (n, values) in [(0, u), (1, v)] {
             if !close[n] {
@@ -381,8 +412,8 @@ impl<'a> Setup<'a> {
             }
             let plane = &planes[n];
             let bottom = self.denominator.exact(e);
-            let top = plane.exact(e).less(i64::from(sampler.bias()), bottom);
-            let whole = &mut whole[0][..values.len()];
+            let top = plane.exact(e).less(i64::from(bias), bottom);
+            let whole = &mut whole[..values.len()];
             settle::<ROW>(piece.at, top, bottom, plane.small(self.bits), values, whole);
             if plane.lowers {
                 for k in (0..piece.count).filter(|k| whole[*k] != 0) {
