@@ -282,8 +282,8 @@ fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
             }
             store::test(test.function, |n| varying.depth[n], |n| depth[n], alive);
             if test.write {
-                for n in (0..*used).filter(|n| alive[*n]) {
-                    depth[n] = varying.depth[n];
+                for ((depth, incoming), alive) in depth.iter_mut().zip(&varying.depth).zip(&*alive) {
+                    *depth = if *alive { *incoming } else { *depth };
                 }
                 for run in runs.iter() {
                     band.depth[run.at..][..run.count].copy_from_slice(&depth[run.lane..][..run.count]);

@@ -113,7 +113,7 @@ impl Setup<'_> {
                     settle::<ROW>(piece.at, plane.exact(e), bottom, plane.small(self.bits), values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {
-                    *out = i16::from(factor_byte(i64::from((*value).max(0).min(4096))));
+                    *out = i16::from(factor_byte(i64::from((*value).clamp(0, 4096))));
                 }
             }
             Fog::Function(curve) => {
