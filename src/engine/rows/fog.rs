@@ -101,7 +101,7 @@ impl Setup<'_> {
         let Some(fog) = &self.fog else { return };
         let out = &mut row[piece.lanes()];
         let (values, spare) = (&mut values[..out.len()], &mut spare[..out.len()]);
-        match fog {
+        match &**fog {
             Fog::Same(factor) => out.fill(*factor),
             Fog::Factor(plane) => {
                 let planes = [*plane, *plane];

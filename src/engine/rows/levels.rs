@@ -85,7 +85,7 @@ impl Setup<'_> {
         let unit = &self.context.draw.units[sampler.index];
         let known = match planes {
             Planes::Plane(planes) => {
-                self.quads::<FMA>(piece, planes, e, (real, denominator), bounds, quads).then_some(planes)
+                self.quads::<FMA, ROW>(piece, planes, e, (real, denominator), bounds, quads).then_some(planes)
             }
             _ => None,
         };
@@ -130,7 +130,7 @@ impl Setup<'_> {
 
     /// TEX-11: u and v at the three pixels of each quad, 1/65536 texel of level 0. `false`: nothing would be proved.
     #[inline(always)]
-    fn quads<const FMA: bool>(
+    fn quads<const FMA: bool, const ROW: bool>(
         &self,
         piece: Piece<'_>,
         planes: &[Plane; 2],
@@ -142,7 +142,10 @@ impl Setup<'_> {
         // Pixels of a quad lie up to one outside of the piece.
         let (columns, rows) = (bounds.columns + 1.0, bounds.rows + 1.0);
         let terms = self.denominator.terms(real, columns, rows);
-        let least = denominator.c - denominator.x.abs() * columns - denominator.y.abs() * rows;
+        // None of them lies further to the left of a row's first pixel, or above a piece's.
+        let left = if ROW { 1.0 } else { columns };
+        let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
+        let least = denominator.c - falls(denominator.x, left, columns) - falls(denominator.y, 1.0, rows);
         let widest = 1.0 / least;
         let ratio = terms * widest;
         let fits = |plane: &Plane| plane.reach < MOST;

@@ -40,7 +40,7 @@ pub(super) struct Setup<'a> {
     /// 256 b0 and 256 b2, where some colour varies.
     weights: Option<[Plane; 2]>,
     samplers: Vec<Planes>,
-    pub(super) fog: Option<Fog>,
+    pub(super) fog: Option<Box<Fog>>,
     /// Bits of the largest D.
     pub(super) bits: u32,
     /// The reciprocal of a D that none is smaller than.
@@ -156,7 +156,7 @@ impl<'a> Setup<'a> {
             denominator: plane(p),
             weights: weighted.then(|| [plane([256 * p[0], 0, 0]), plane([0, 0, 256 * p[2]])]),
             samplers,
-            fog: compiled.fog.and_then(|_| Fog::new(&context)),
+            fog: compiled.fog.and_then(|_| Fog::new(&context)).map(Box::new),
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
         }
