@@ -16,11 +16,33 @@ pub fn shift(n: i128, exponent: i32) -> i128 {
     if exponent >= 0 { n << exponent.min(126) } else { n >> (-exponent).min(127) }
 }
 
-/// Block floating point: the largest magnitude keeps exactly `keep` bits, the others share its exponent, which is returned; floors.
-pub fn align<const N: usize>(values: [(i128, i32); N], keep: i32) -> ([i64; N], i32) {
-    let bits = |n: i128| 128 - n.unsigned_abs().leading_zeros() as i32;
-    let top = values.iter().filter(|v| v.0 != 0).map(|v| bits(v.0) + v.1).max().unwrap_or(0);
-    (values.map(|(m, e)| shift(m, e + keep - top) as i64), top - keep)
+/// floor(n by 2^exponent), where the result fits: without 128 bits as long as possible.
+#[inline]
+pub fn scaled(n: i64, by: i64, exponent: i32) -> i64 {
+    match n.checked_mul(by) {
+        Some(n) if exponent <= 0 => n >> (-exponent).min(63),
+        _ => shift(i128::from(n) * i128::from(by), exponent) as i64,
+    }
+}
+
+/// Block floating point: the largest magnitude keeps exactly `keep` bits, at most 62, the others share its exponent, which is returned;
+/// floors.
+#[inline]
+pub fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i32) {
+    let mut top = None;
+    for (n, exponent) in values {
+        if n != 0 {
+            top = top.max(Some(64 - n.unsigned_abs().leading_zeros() as i32 + exponent));
+        }
+    }
+    let top = top.unwrap_or(0);
+    let mut aligned = [0; N];
+    for (out, (n, exponent)) in aligned.iter_mut().zip(values) {
+        let up = exponent + keep - top;
+        // Nothing that is not 0 goes up by more than leaves it within `keep` bits.
+        *out = if up >= 0 { n << up.min(63) } else { n >> (-up).min(63) };
+    }
+    (aligned, top - keep)
 }
 
 /// NUM-4: a float vertex colour as a byte: clamped to 0..1, truncated to 14 significant bits, floor(255 c + 1/2).
@@ -70,13 +92,13 @@ pub fn depth(z: f32, bits: u32) -> i64 {
         return full;
     }
     let (mantissa, exponent) = split(z);
-    shift(i128::from(mantissa) * i128::from(full), exponent) as i64
+    scaled(mantissa, full, exponent)
 }
 
 /// RAS-1: 1/16 pixel, truncated toward zero.
 pub fn snap(x: f32) -> i64 {
     let (mantissa, exponent) = split(x);
-    let n = shift(i128::from(mantissa.abs()), exponent + 4) as i64;
+    let n = scaled(mantissa.abs(), 16, exponent);
     if mantissa < 0 { -n } else { n }
 }
 
@@ -88,6 +110,26 @@ pub fn w_16_bits(w: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Without 128 bits the same as with them.
+    #[test]
+    fn scaled_is_a_shift_of_the_product() {
+        let mut n = 1_i64;
+        for step in 0..2_000 {
+            n = n.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let (value, by) = (n >> (12 + step % 50), (n & 0xffff) >> (step % 17));
+            for exponent in -130..=2 {
+                assert_eq!(scaled(value, by, exponent), shift(i128::from(value) * i128::from(by), exponent) as i64);
+            }
+        }
+    }
+
+    #[test]
+    fn block_floating_point_keeps_the_largest() {
+        assert_eq!(align([(3, 0), (-1, -2), (0, 500)], 28), ([3 << 26, -(1 << 24), 0], -26));
+        assert_eq!(align([((1 << 52) - 1, -300), (-1, -400), (1, -290)], 28).0, [(1 << 28) - 1, -1, 0]);
+        assert_eq!(align([(0, 0); 3], 62), ([0; 3], -62));
+    }
 
     #[test]
     fn vertex_colors_as_captured() {

@@ -43,11 +43,11 @@ impl Triangle {
     /// P_k x_k of three finite numbers, exactly, unless they differ so much that the smaller ones fall below 2^-62 of the largest:
     /// those are floored there (INT-4).
     pub fn attribute(&self, x: [f32; 3]) -> Attribute {
-        let scaled: [(i128, i32); 3] = std::array::from_fn(|k| {
+        let products: [(i64, i32); 3] = std::array::from_fn(|k| {
             let (mantissa, exponent) = split(x[k]);
-            (i128::from(mantissa) * i128::from(self.p[k]), exponent)
+            (mantissa * self.p[k], exponent)
         });
-        let (g, exponent) = align(scaled, ATTRIBUTE_BITS);
+        let (g, exponent) = align(products, ATTRIBUTE_BITS);
         Attribute { g, exponent }
     }
 }

@@ -1,7 +1,7 @@
 //! Triangle set-up: RAS-1 to RAS-3, and the perspective weights that INT-1 is made of.
 
 use super::GUARD;
-use crate::number::convert::{align, shift, snap, split, w_16_bits};
+use crate::number::convert::{align, scaled, snap, split, w_16_bits};
 use crate::state::Profile;
 
 /// Bits of the perspective weights, so that their sum with the edge functions stays below 2^62.
@@ -117,7 +117,7 @@ impl Triangle {
     pub fn coordinate(&self, s: [f32; 3], size: u32) -> [i64; 3] {
         std::array::from_fn(|k| {
             let (m, e) = split(s[k]);
-            shift(i128::from(m) * i128::from(self.p[k]) * i128::from(size), e + 8) as i64
+            scaled(m * self.p[k], i64::from(size), e + 8)
         })
     }
 
@@ -125,18 +125,18 @@ impl Triangle {
     pub fn factor(&self, f: [f32; 3]) -> [i64; 3] {
         std::array::from_fn(|k| {
             let (m, e) = split(f[k]);
-            shift(i128::from(m) * i128::from(self.p[k]), e + 12) as i64
+            scaled(m, self.p[k], e + 12)
         })
     }
 
     /// The three linear functions of s, t and q, of which only ratios are used: nine numbers P_k x_k of one exponent, 28 bits.
     pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-        let scaled: [(i128, i32); 9] = std::array::from_fn(|n| {
+        let products: [(i64, i32); 9] = std::array::from_fn(|n| {
             let (axis, k) = (n / 3, n % 3);
             let (m, e) = split(x[axis][k]);
-            (i128::from(m) * i128::from(self.p[k]), e)
+            (m * self.p[k], e)
         });
-        let (g, _) = align(scaled, PERSPECTIVE_BITS);
+        let (g, _) = align(products, PERSPECTIVE_BITS);
         std::array::from_fn(|axis| std::array::from_fn(|k| g[3 * axis + k]))
     }
 }
@@ -144,7 +144,7 @@ impl Triangle {
 /// P_k: the exact product of the other two w, then one common exponent, floors, at least 1.
 fn perspective_weights(w: [f32; 3]) -> [i64; 3] {
     let m = w.map(split);
-    let product = |i: usize, j: usize| (i128::from(m[i].0) * i128::from(m[j].0), m[i].1 + m[j].1);
+    let product = |i: usize, j: usize| (m[i].0 * m[j].0, m[i].1 + m[j].1);
     align([product(1, 2), product(2, 0), product(0, 1)], PERSPECTIVE_BITS).0.map(|n| n.max(1))
 }
 

@@ -88,7 +88,7 @@ pub fn direction(vector: [f32; 3]) -> [i64; 3] {
     if vector.iter().any(|c| !c.is_finite()) {
         return [0; 3];
     }
-    let (aligned, _) = align(vector.map(split).map(|(mantissa, exponent)| (i128::from(mantissa), exponent)), 62);
+    let (aligned, _) = align(vector.map(split), 62);
     std::array::from_fn(|n| if vector[n] > 0.0 { aligned[n].max(1) } else { aligned[n] })
 }
 

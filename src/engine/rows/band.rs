@@ -102,7 +102,7 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
             continue;
         }
         let Some(context) = TriangleContext::new(plan, draw, number, rows) else { continue };
-        let setup = Setup::new(context, compiled, std::mem::take(&mut block.planes));
+        let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
         let triangle = &setup.context.triangle;
         let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
         if is_small(triangle) {
@@ -110,7 +110,7 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
             let (first, count) = (block.patch.first, block.patch.count);
             if count > 0 {
                 if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
-                    flush(job, block, band);
+                    flush::<FMA>(job, block, band);
                 }
                 let Block { varying, rows, patch, used, .. } = &mut *block;
                 let lanes = whole_steps(count);
@@ -131,7 +131,7 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
                 while i < end {
                     let wanted = ((end - i) as usize).min(BLOCK);
                     if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
-                        flush(job, block, band);
+                        flush::<FMA>(job, block, band);
                     }
                     let count = wanted.min(BLOCK - block.used);
                     let lanes = whole_steps(count);
@@ -148,7 +148,7 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
         }
         block.planes = setup.given_back();
     }
-    flush(job, block, band);
+    flush::<FMA>(job, block, band);
     shaded
 }
 
@@ -215,14 +215,21 @@ fn mark(taken: &mut [u64], at: usize, count: usize) {
 /// Pixels that are copied at once, where a run is shorter and there is room.
 const SHORT: usize = 16;
 
-/// Copies a run from one slice to another. Most are short: copied without a call.
+/// Copies a run from one slice to another. Most are short: copied without a call. `MASKS`: lanes can be stored one by one, and what lies
+/// around a run need not be read, which would have to wait until its neighbours are written.
 #[inline(always)]
-fn copy(from: &[u32], to: &mut [u32], count: usize) {
+fn copy<const MASKS: bool>(from: &[u32], to: &mut [u32], count: usize) {
     if count <= SHORT
         && let (Some(from), Some(to)) = (from.first_chunk::<SHORT>(), to.first_chunk_mut::<SHORT>())
     {
         for n in 0..SHORT {
-            to[n] = if n < count { from[n] } else { to[n] };
+            if MASKS {
+                if n < count {
+                    to[n] = from[n];
+                }
+            } else {
+                to[n] = if n < count { from[n] } else { to[n] };
+            }
         }
     } else {
         to[..count].copy_from_slice(&from[..count]);
@@ -231,7 +238,7 @@ fn copy(from: &[u32], to: &mut [u32], count: usize) {
 
 /// Computes and stores a block.
 #[inline(always)]
-fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Job { draw, compiled, .. } = job;
     let Block { rows, varying, work, runs, used, taken, words, stored, depth, alive, .. } = block;
     if *used == 0 {
@@ -253,7 +260,7 @@ fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     }
     if compiled.reads_surface {
         for run in runs.iter() {
-            copy(&band.words[run.at..], &mut stored[run.lane..], run.count);
+            copy::<MASKS>(&band.words[run.at..], &mut stored[run.lane..], run.count);
             mark(taken, run.at, run.count);
         }
         store::read(draw, compiled, stored, rows);
@@ -295,7 +302,7 @@ fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
         store::merge(draw.write_mask, alive, stored, words);
     }
     for run in runs.iter() {
-        copy(&words[run.lane..], &mut band.words[run.at..], run.count);
+        copy::<MASKS>(&words[run.lane..], &mut band.words[run.at..], run.count);
     }
     runs.clear();
     *used = 0;

@@ -280,7 +280,7 @@ fn rows_interpolate_what_the_definition_does() {
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {
             let Some(context) = TriangleContext::new(&plan, draw, number, whole) else { continue };
-            let setup = Setup::new(context, &compiled, planes);
+            let setup = Setup::new(&context, &compiled, planes);
             let triangle = &setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
             if is_small(triangle) {

@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::kernels::LANES;
-use super::planes::Plane;
+use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, estimate_two, nearest, position, settle};
 use super::triangle::{Bounds, Piece, Setup};
 use crate::engine::pixel::TriangleContext;
@@ -48,8 +48,9 @@ const FLOORED: f64 = 1.0 / (1_u64 << 31) as f64;
 impl Fog {
     pub(super) fn new(context: &TriangleContext<'_>) -> Option<Fog> {
         let triangle = &context.triangle;
+        let plane = |g: [i64; 3]| Plane::new(triangle, &inverse(triangle), g);
         match context.fog.as_ref()? {
-            FogPlane::Factor(g) => Some(Fog::Factor(Plane::new(triangle, *g))),
+            FogPlane::Factor(g) => Some(Fog::Factor(plane(*g))),
             FogPlane::Infinite(value) => Some(Fog::Same(i16::from(factor_byte(*value)))),
             FogPlane::Coordinate(function, attribute) => {
                 let [a, b, c] = context.vertices.map(|v| v.fog);
@@ -60,7 +61,7 @@ impl Fog {
                     return Some(Fog::Same(i16::from(factor_byte(value))));
                 }
                 let (g, exponent) = attribute.numbers();
-                Some(Fog::Function(Curve::new(function, Plane::new(triangle, g), exponent)))
+                Some(Fog::Function(Curve::new(function, plane(g), exponent)))
             }
         }
     }

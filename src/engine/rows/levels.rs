@@ -4,7 +4,7 @@
 use super::Sampler;
 use super::fetch::Numbers;
 use super::kernels::LANES;
-use super::planes::Plane;
+use super::planes::{Plane, inverse};
 use super::quotient::{Line, Positions, SLACK, Scaled, estimate_two, settle};
 use super::table::Table;
 use super::triangle::{Bounds, Piece, Planes, Setup};
@@ -125,7 +125,8 @@ impl Setup<'_> {
     fn planes_of(&self, unit: &PlannedUnit, planes: &[Plane; 2], level: usize) -> [Plane; 2] {
         let triangle = &self.context.triangle;
         let [s, t] = unit.plane_shifts(&unit.levels[level]);
-        [Plane::new(triangle, planes[0].g.map(|g| g >> s)), Plane::new(triangle, planes[1].g.map(|g| g >> t))]
+        let plane = |g: [i64; 3]| Plane::new(triangle, &inverse(triangle), g);
+        [plane(planes[0].g.map(|g| g >> s)), plane(planes[1].g.map(|g| g >> t))]
     }
 
     /// TEX-11: u and v at the three pixels of each quad, 1/65536 texel of level 0. `false`: nothing would be proved.

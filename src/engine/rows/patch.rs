@@ -1,4 +1,5 @@
 //! RAS-3 for small triangles: all pixels of one at once, instead of row by row.
+#![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
 use super::kernels::STEP;
 use crate::raster::setup::Triangle;
@@ -36,31 +37,24 @@ impl Default for Patch {
 }
 
 impl Patch {
-    /// RAS-3 for a box of pixels, a row at a time. Edge functions of small triangles fit in 32 bits.
+    /// RAS-3 for a box of pixels, all rows at once.
     #[inline(always)]
     pub(super) fn cover(&mut self, triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) {
         (self.count, self.filled) = (0, 0);
         let left = triangle.columns.0;
-        let (low, high) = ((columns.0 - left).clamp(0, SIDE), (columns.1 - left).clamp(0, SIDE));
-        let visible = ((1_u32 << high) - 1) & !((1_u32 << low) - 1);
-        let a = [triangle.a[0] as i32, triangle.a[1] as i32, triangle.a[2] as i32];
-        let b = [triangle.b[0] as i32, triangle.b[1] as i32, triangle.b[2] as i32];
+        let (first, end) = ((columns.0 - left).clamp(0, SIDE) as i32, (columns.1 - left).clamp(0, SIDE) as i32);
+        let (mut low, mut high) = ([first; SIDE as usize], [end; SIDE as usize]);
         let e = triangle.edges(left, rows.0);
-        // Not negative inside: one less where a sample on the edge is another triangle's.
-        let owed = |k: usize| i32::from(!triangle.owns[k]);
-        let mut e = [e[0] as i32 - owed(0), e[1] as i32 - owed(1), e[2] as i32 - owed(2)];
-        for j in rows.0..rows.1 {
-            let mut inside = 0;
-            for n in 0..SIDE as i32 {
-                let outside = (e[0] + a[0] * n) | (e[1] + a[1] * n) | (e[2] + a[2] * n);
-                inside |= u32::from(outside >= 0) << n;
-            }
-            e = [e[0] + b[0], e[1] + b[1], e[2] + b[2]];
-            inside &= visible;
-            if inside == 0 {
+        for k in 0..3 {
+            // Not negative inside: one less where a sample on the edge is another triangle's.
+            let owed = i64::from(!triangle.owns[k]);
+            limit((e[k] - owed) as i32, triangle.a[k] as i32, triangle.b[k] as i32, &mut low, &mut high);
+        }
+        for ((j, low), high) in (rows.0..rows.1).zip(low).zip(high) {
+            if low >= high {
                 continue;
             }
-            let (start, count) = (left + i64::from(inside.trailing_zeros()), inside.count_ones() as usize);
+            let (start, count) = (left + i64::from(low), (high - low) as usize);
             if self.count == 0 {
                 self.first = (start, j);
             }
@@ -77,6 +71,58 @@ impl Patch {
             let (x, y) = (self.x[last], self.y[last]);
             self.x[self.count..][..STEP].fill(x);
             self.y[self.count..][..STEP].fill(y);
+        }
+    }
+}
+
+/// 1.5 2^23: added to a small number, it leaves the nearest whole number in the low bits.
+const MAGIC: f32 = 12_582_912.0;
+
+/// More than any floor.
+const BEYOND: i32 = 1 << 23;
+
+/// Limits the columns of each row of a box to those where a i + b j + e is not negative.
+///
+/// That is where i is not below -floor(r / a), or not above floor(r / -a), with r = b j + e, less than 2^18. (r + 1/2) / a is half an a-th from
+/// the next whole number at least, and in single precision off by less than that.
+#[inline(always)]
+fn limit(e: i32, a: i32, b: i32, low: &mut [i32; SIDE as usize], high: &mut [i32; SIDE as usize]) {
+    // A horizontal edge: all columns of a row or none. What is not a whole number any more is as large.
+    let inverse = if a == 0 { 40.0 } else { 1.0 / a.unsigned_abs() as f32 };
+    // Which limit an edge is hangs on the triangle: both are computed, and the other one moved out of the way, instead of a branch.
+    let (from, to) = if a > 0 { (0, BEYOND) } else { (-BEYOND, 0) };
+    for ((j, low), high) in low.iter_mut().enumerate().zip(high) {
+        let r = (b * j as i32 + e) as f32 + 0.5;
+        let floor = (r * inverse - 0.5 + MAGIC).to_bits() as i32 - MAGIC.to_bits() as i32;
+        *low = (*low).max(from - floor);
+        *high = (*high).min(to + floor + 1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every slope and many values, those around a whole number of columns above all.
+    #[test]
+    fn limits_are_floors() {
+        let whole = |n: i32| -> [i32; SIDE as usize] { [n; SIDE as usize] };
+        for a in (-4352..=4352_i32).step_by(16) {
+            for n in -40..=40_i32 {
+                for e in [n * a.abs() - 1, n * a.abs(), n * a.abs() + 1, n * 6007] {
+                    let e = e.clamp(-150_000, 150_000);
+                    let b = (e & 255) * 16 - 2048;
+                    let (mut low, mut high) = (whole(0), whole(SIDE as i32));
+                    limit(e, a, b, &mut low, &mut high);
+                    for j in 0..SIDE as i32 {
+                        let inside = |i: &i32| a * i + b * j + e >= 0;
+                        let wanted = (0..SIDE as i32).filter(inside).count() as i32;
+                        let (low, high) = (low[j as usize], high[j as usize]);
+                        assert_eq!((high - low).max(0), wanted, "{a} {b} {e} {j}");
+                        assert!((low..high).all(|i| inside(&i)), "{a} {b} {e} {j}");
+                    }
+                }
+            }
         }
     }
 }

@@ -17,34 +17,20 @@ pub(super) struct Plane {
     shared: u32,
     /// The largest magnitude of its quotient by D, and somewhat more.
     pub(super) reach: f64,
-    /// INT-4t can lower its ties.
-    pub(super) lowers: bool,
 }
 
 impl Plane {
-    pub(super) fn new(triangle: &Triangle, g: [i64; 3]) -> Plane {
-        let slope = |a: &[i64; 3]| {
-            let bits =
-                |n: &[i64; 3]| 64 - (n[0].unsigned_abs() | n[1].unsigned_abs() | n[2].unsigned_abs()).leading_zeros();
-            if bits(&g) + bits(a) <= 60 {
-                let sum = g[0] * a[0] + g[1] * a[1] + g[2] * a[2];
-                (sum as f64, sum)
-            } else {
-                let sum: i128 = (0..3).map(|k| i128::from(g[k]) * i128::from(a[k])).sum();
-                (sum as f64, sum as i64)
-            }
-        };
-        let (x, y) = (slope(&triangle.a), slope(&triangle.b));
+    /// `inverse`: that of the triangle.
+    #[inline(always)]
+    pub(super) fn new(triangle: &Triangle, inverse: &[f64; 3], g: [i64; 3]) -> Plane {
+        let (x, y) = (slope(&g, &triangle.a), slope(&g, &triangle.b));
         let p = &triangle.p;
         let real = [g[0] as f64, g[1] as f64, g[2] as f64];
         let mut reach = 0.0;
         for k in 0..3 {
-            let quotient = real[k].abs() / p[k] as f64;
-            if quotient > reach {
-                reach = quotient;
-            }
+            let quotient = real[k].abs() * inverse[k];
+            reach = if quotient > reach { quotient } else { reach };
         }
-        let falls = |k: usize| i128::from(g[k]) * i128::from(p[1]) > i128::from(p[k]) * i128::from(g[1]);
         Plane {
             g,
             real,
@@ -53,8 +39,27 @@ impl Plane {
             shared: (g[0] | g[1] | g[2] | p[0] | p[1] | p[2]).trailing_zeros(),
             // Half a denominator, half a texel, and the rounding of this very number.
             reach: reach + 260.0,
-            lowers: !triangle.exact_reciprocal && (falls(0) || falls(2)),
         }
+    }
+
+    /// 256 b_k.
+    #[inline(always)]
+    pub(super) fn weight(triangle: &Triangle, k: usize) -> Plane {
+        let p = &triangle.p;
+        let mut plane = Plane { reach: 516.0, shared: (p[0] | p[1] | p[2]).trailing_zeros(), ..Plane::default() };
+        // Below 2^36, and slopes below 2^24.
+        let g = 256 * p[k];
+        (plane.g[k], plane.real[k]) = (g, g as f64);
+        plane.whole = [g * triangle.a[k], g * triangle.b[k]];
+        plane.slope = [plane.whole[0] as f64, plane.whole[1] as f64];
+        plane
+    }
+
+    /// Whether INT-4t can lower its ties.
+    pub(super) fn lowers(&self, triangle: &Triangle) -> bool {
+        let (g, p) = (&self.g, &triangle.p);
+        let falls = |k: usize| i128::from(g[k]) * i128::from(p[1]) > i128::from(p[k]) * i128::from(g[1]);
+        !triangle.exact_reciprocal && (falls(0) || falls(2))
     }
 
     /// From a pixel with edge functions `e`.
@@ -83,5 +88,25 @@ impl Plane {
     #[inline(always)]
     pub(super) fn small(&self, bits: u32) -> Option<u32> {
         (bits.saturating_sub(self.shared) <= 30).then_some(self.shared)
+    }
+}
+
+/// 1/P_k, more or less.
+#[inline(always)]
+pub(super) fn inverse(triangle: &Triangle) -> [f64; 3] {
+    let p = &triangle.p;
+    [1.0 / p[0] as f64, 1.0 / p[1] as f64, 1.0 / p[2] as f64]
+}
+
+/// How a sum of G_k changes with the edge functions: as an estimate, and modulo 2^64.
+#[inline(always)]
+fn slope(g: &[i64; 3], edge: &[i64; 3]) -> (f64, i64) {
+    let bits = |n: &[i64; 3]| 64 - (n[0].unsigned_abs() | n[1].unsigned_abs() | n[2].unsigned_abs()).leading_zeros();
+    if bits(g) + bits(edge) <= 60 {
+        let sum = g[0] * edge[0] + g[1] * edge[1] + g[2] * edge[2];
+        (sum as f64, sum)
+    } else {
+        let sum: i128 = (0..3).map(|k| i128::from(g[k]) * i128::from(edge[k])).sum();
+        (sum as f64, sum as i64)
     }
 }

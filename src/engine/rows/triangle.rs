@@ -6,8 +6,10 @@ use super::fetch::Numbers;
 use super::fog::Fog;
 use super::kernels::{LANES, Row, STEP};
 use super::levels::{Quads, Reads};
-use super::planes::Plane;
-use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
+use super::planes::{Plane, inverse};
+use super::quotient::{
+    Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_level, estimate_two, estimate_weights, settle,
+};
 use super::{Compiled, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
@@ -35,7 +37,7 @@ pub(super) enum Planes {
 
 /// A triangle with what its pieces need.
 pub(super) struct Setup<'a> {
-    pub(super) context: TriangleContext<'a>,
+    pub(super) context: &'a TriangleContext<'a>,
     pub(super) denominator: Plane,
     /// 256 b0 and 256 b2, where some colour varies.
     weights: Option<[Plane; 2]>,
@@ -117,14 +119,16 @@ pub(super) fn whole_steps(count: usize) -> usize {
 
 impl<'a> Setup<'a> {
     /// `samplers` is a place to put things; [`given_back`](Self::given_back) returns it.
-    pub(super) fn new(context: TriangleContext<'a>, compiled: &Compiled, mut samplers: Vec<Planes>) -> Setup<'a> {
+    #[inline(always)]
+    pub(super) fn new(context: &'a TriangleContext<'a>, compiled: &Compiled, mut samplers: Vec<Planes>) -> Setup<'a> {
         let triangle = &context.triangle;
         let p = triangle.p;
         let varies = |slots: &[Option<u16>; 4], colors: &[[u8; 4]; 3]| {
             (0..4).any(|n| slots[n].is_some() && (colors[0][n] != colors[1][n] || colors[1][n] != colors[2][n]))
         };
         let weighted = varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
-        let plane = |g: [i64; 3]| Plane::new(triangle, g);
+        let inverse = inverse(triangle);
+        let plane = |g: [i64; 3]| Plane::new(triangle, &inverse, g);
         samplers.clear();
         for (n, sampler) in compiled.samplers.iter().enumerate() {
             let coordinates = &context.coordinates[sampler.unit];
@@ -154,9 +158,9 @@ impl<'a> Setup<'a> {
         Setup {
             widest: 1.0 / least,
             denominator: plane(p),
-            weights: weighted.then(|| [plane([256 * p[0], 0, 0]), plane([0, 0, 256 * p[2]])]),
+            weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
-            fog: compiled.fog.and_then(|_| Fog::new(&context)).map(Box::new),
+            fog: compiled.fog.and_then(|_| Fog::new(context)).map(Box::new),
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
         }
@@ -239,11 +243,14 @@ impl<'a> Setup<'a> {
         if let Some(planes) = &self.weights {
             let Varying { weights: [w0, w2], whole, .. } = &mut *varying;
             let (w0, w2) = (&mut w0[piece.lanes()], &mut w2[piece.lanes()]);
-            let weighed = if ROW { self.weighed(planes, (&real, denominator), &bounds) } else { None };
+            // Single precision is for divisions: its wide margin makes many blocks be settled.
+            let divides = !(ROW && denominator.x == 0.0);
+            let weighed = if ROW && divides { self.weighed(planes, (&real, denominator), &bounds) } else { None };
             let close = if let Some(weighed) = weighed {
                 estimate_weights::<FMA>(piece.at.last, denominator, &weighed, w0, w2)
             } else if let Some(scaled) = self.scaled::<ROW>(planes, 0, (&real, denominator), &bounds) {
-                let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, w0, w2);
+                let scaled = [scaled[0].not_negative(), scaled[1].not_negative()];
+                let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, &bounds, w0, w2);
                 close[0] | close[1]
             } else {
                 for n in 0..piece.count {
@@ -332,6 +339,24 @@ impl<'a> Setup<'a> {
         ])
     }
 
+    /// Floors of two quotients; one denominator serves a row along which it does not vary.
+    #[inline(always)]
+    fn estimate<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        denominator: Line,
+        scaled: &[Scaled; 2],
+        bounds: &Bounds,
+        first: &mut [i32],
+        second: &mut [i32],
+    ) -> [bool; 2] {
+        if ROW && denominator.x == 0.0 {
+            let scaled = [scaled[0].divided(bounds.reciprocal), scaled[1].divided(bounds.reciprocal)];
+            return estimate_level::<FMA>(piece.at, &scaled, first, second);
+        }
+        estimate_two::<FMA, ROW>(piece.at, denominator, scaled, first, second)
+    }
+
     /// The same for weights on a row, in single precision.
     #[inline(always)]
     fn weighed(
@@ -376,7 +401,7 @@ impl<'a> Setup<'a> {
         whole: &mut Numbers<i32>,
     ) {
         if let Some(scaled) = self.scaled::<ROW>(planes, bias, (real, denominator), bounds) {
-            let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, u, v);
+            let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, bounds, u, v);
             if close[0] | close[1] {
                 self.settle_coordinates::<ROW>(piece, bias, planes, close, e, u, v, whole);
             }
@@ -415,7 +440,7 @@ impl<'a> Setup<'a> {
             let top = plane.exact(e).less(i64::from(bias), bottom);
             let whole = &mut whole[..values.len()];
             settle::<ROW>(piece.at, top, bottom, plane.small(self.bits), values, whole);
-            if plane.lowers {
+            if plane.lowers(&self.context.triangle) {
                 for k in (0..piece.count).filter(|k| whole[*k] != 0) {
                     values[k] -= i32::from(self.sample(piece, k).truncation(&plane.g) > 0);
                 }
