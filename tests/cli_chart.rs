@@ -45,7 +45,9 @@ fn deleting_the_folder_and_charting_restores_every_file() {
     for name in ["speed-accuracy.md", "stability.md", "speed-accuracy/techniques.csv", "speed-accuracy/figures.json"] {
         assert!(first.contains(name), "{name}: {first:?}");
     }
-    for name in ["speed-accuracy", "flat", "other", "evaluators"] {
+    for name in
+        ["speed-accuracy", "flat", "other", "evaluators", "cost-pixels", "cost-draws", "cost-triangles", "cost-stages"]
+    {
         for format in ["svg", "png"] {
             assert!(first.contains(&format!("speed-accuracy/{name}.{format}")), "{name}: {first:?}");
         }

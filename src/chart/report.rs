@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde_json::{Value, json};
 
+use super::curves::{self, Curve};
 use super::evaluators::Evaluator;
 use super::front::front;
 use super::page::{File, comma_separated, fill, number, table};
@@ -36,6 +37,8 @@ pub struct Measured {
     pub evaluators: Vec<Evaluator>,
     /// Surfaces with more and more state.
     pub surfaces: Vec<SurfaceCost>,
+    /// How cost grows.
+    pub curves: Vec<Curve>,
     /// Few frames were timed.
     pub quick: bool,
 }
@@ -84,6 +87,9 @@ impl Measured {
         picture("evaluators", &self.evaluators_drawing())?;
         for family in self.titles.keys() {
             picture(family, &self.family_drawing(family))?;
+        }
+        for (name, drawing) in curves::drawings(&self.curves) {
+            picture(name, &drawing)?;
         }
         let mut part = |name: &str, text: String| parts.push((name.to_owned(), text));
         part("machine", self.machine());
@@ -286,6 +292,7 @@ impl Measured {
             "techniques": self.techniques.iter().map(technique).collect::<Vec<Value>>(),
             "evaluators": self.evaluators,
             "surfaces": self.surfaces,
+            "curves": self.curves,
         })
     }
 }

@@ -8,7 +8,7 @@ use ninebit::chart::page::{File, replace_section};
 use ninebit::chart::report::Measured;
 use ninebit::chart::techniques::{self, TechniqueError};
 use ninebit::chart::timing::Effort;
-use ninebit::chart::{evaluators, surfaces};
+use ninebit::chart::{curves, evaluators, surfaces};
 use ninebit::output::write_below;
 use ninebit::scene::SceneError;
 use ninebit::sweep;
@@ -74,7 +74,9 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
     let entries = techniques::find(&arguments.scenes).map_err(failed)?;
     let (effort, side) = if arguments.quick { (Effort::QUICK, QUICK_SIDE) } else { (Effort::FULL, SIDE) };
     let surfaces = surfaces::surfaces();
-    let total = (entries.len() + evaluators::count() + surfaces.len()) as u64;
+    let curves = curves::scenes(arguments.quick);
+    let points: usize = curves.iter().map(|(_, scenes)| scenes.len()).sum();
+    let total = (entries.len() + evaluators::count() + surfaces.len() + points) as u64;
     let progress = Progress::new("measuring", context.color);
     let done = Cell::new(0);
     let step = || {
@@ -100,6 +102,13 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
     for (name, surface) in &surfaces {
         measured.surfaces.push(surface.cost(name, side, &effort).map_err(fault)?);
         step();
+    }
+    for (mut curve, scenes) in curves {
+        for scene in scenes {
+            curve.points.push(scene.point(curve.counted, &effort).map_err(fault)?);
+            step();
+        }
+        measured.curves.push(curve);
     }
     measured.evaluators = evaluators::measure(side, &effort, &step).map_err(fault)?;
     Ok(measured)

@@ -33,7 +33,7 @@ pub(crate) struct TriangleContext<'a> {
     /// Of the texture shader, where there is one; units have none of their own then.
     shader: Option<Box<ShaderSetup>>,
     /// None where the fog register's alpha is not read, or fog is off.
-    fog: Option<FogPlane>,
+    pub(crate) fog: Option<FogPlane>,
     pub(crate) z: [i64; 3],
 }
 
@@ -223,12 +223,7 @@ impl<'a> TriangleContext<'a> {
     }
 
     /// The fog register: its colour, and in alpha the factor (NUM-6), 255 with fog off (CMB-13).
-    pub(super) fn load_fog<L: Lane, O: Observer>(
-        &self,
-        sample: &Sample<'_>,
-        registers: &mut Registers<L>,
-        observer: &mut O,
-    ) {
+    fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
         let draw = self.draw;
         let [r, g, b] = draw.fog.color.map(L::byte);
         let factor = if let Some(plane) = &self.fog {

@@ -5,6 +5,7 @@
 
 use super::setup::Triangle;
 use crate::number::Blend;
+use std::cmp::Reverse;
 
 /// INT-2: one colour channel from the vertices' bytes; the second vertex takes the remainder.
 #[inline(always)]
@@ -177,16 +178,19 @@ fn dominant(n: [i64; 3], d: i64) -> usize {
         let shift = n.leading_zeros().saturating_sub(d.leading_zeros());
         if n << shift > d { shift.saturating_sub(1) } else { shift }
     });
-    let best = class[0].min(class[1]).min(class[2]);
-    match class.map(|c| c == best) {
-        [true, true, true] => 2,
-        [true, true, false] => 0,
-        [false, true, true] => 1,
-        [true, false, true] => 2,
-        [true, false, false] => 0,
-        [false, true, false] => 1,
-        [false, false, _] => 2,
+    match most_dominant(class.map(Reverse)) {
+        [true, _] => 0,
+        [_, true] => 2,
+        _ => 1,
     }
+}
+
+/// INT-3: of three weights, larger numbers for larger classes: whether the first dominates, and whether the third. The first goes before the
+/// second, the second before the third, the third before the first, and before both.
+#[inline(always)]
+pub(crate) fn most_dominant<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [bool; 2] {
+    let all = (a == b) & (b == c);
+    [(a >= b) & (a > c), ((c > b) & (c >= a)) | all]
 }
 
 /// floor(n / d) and whether nothing remains. 0 < d < 2^62; limited to 2^26, which only samples outside the triangle reach.

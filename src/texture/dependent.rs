@@ -47,9 +47,8 @@ impl Moved<'_> {
 
     /// The planes of a level.
     pub fn planes(&self, unit: &PlannedUnit, level: &Level) -> [[i64; 3]; 2] {
-        let (sides, whole) = (unit.scale(level), unit.scale(&unit.levels[0]));
-        // Sides are powers of two: a floor of a floor.
-        std::array::from_fn(|n| self.planes[n].map(|g| g >> (sides[n].leading_zeros() - whole[n].leading_zeros())))
+        let shifts = unit.plane_shifts(level);
+        std::array::from_fn(|n| self.planes[n].map(|g| g >> shifts[n]))
     }
 
     /// What is added on a level, 2^-24 of 1/256 texel.

@@ -37,6 +37,12 @@ impl PlannedUnit {
         if self.kind == TextureKind::Rectangle { [1, 1] } else { [level.width, level.height] }
     }
 
+    /// By how many bits the planes of level 0 (INT-4) lie above those of a level: sides are powers of two, and a floor of a floor is one.
+    pub fn plane_shifts(&self, level: &Level) -> [u32; 2] {
+        let (sides, whole) = (self.scale(level), self.scale(&self.levels[0]));
+        [sides[0].leading_zeros() - whole[0].leading_zeros(), sides[1].leading_zeros() - whole[1].leading_zeros()]
+    }
+
     /// Address modes along s and t: cube maps stay on the face (TEX-14).
     pub fn modes(&self) -> [AddressMode; 2] {
         match self.kind {

@@ -82,6 +82,7 @@ impl Choice {
 }
 
 /// TEX-9: bias, then the limits.
+#[inline(always)]
 pub fn biased(unit: &PlannedUnit, log2_ratio: i32) -> i32 {
     let state = &unit.state;
     (log2_ratio + state.lod_bias).max(state.min_lod).min(state.max_lod)
@@ -90,19 +91,23 @@ pub fn biased(unit: &PlannedUnit, log2_ratio: i32) -> i32 {
 /// TEX-9: filter and levels for a lod in 1/256.
 pub fn choose(unit: &PlannedUnit, lod: i32) -> Choice {
     let state = &unit.state;
-    let last = unit.levels.len() - 1;
     if lod <= 0 {
         return Choice { filter: state.mag_filter, level: 0, next: None };
     }
-    let limited = |level: i32| (level as usize).min(last);
-    let filter = state.min_filter;
-    match state.mip_filter {
-        MipFilter::None => Choice { filter, level: 0, next: None },
-        MipFilter::Nearest => Choice { filter, level: limited((lod + 128) >> 8), next: None },
-        MipFilter::Linear => {
-            let (level, next) = (limited(lod >> 8), limited((lod >> 8) + 1));
-            Choice { filter, level, next: (next != level).then_some((next, lod & 255)) }
-        }
+    let (level, next, weight) = levels(unit, lod);
+    let next = (next != level).then_some((next as usize, weight));
+    Choice { filter: state.min_filter, level: level as usize, next }
+}
+
+/// TEX-9: the level, the one that is mixed in, which may be the same, and its weight, 0..=255, for a lod that is not negative.
+#[inline(always)]
+pub fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
+    let last = unit.levels.len() as i32 - 1;
+    let nearest = ((lod + 128) >> 8).min(last);
+    match unit.state.mip_filter {
+        MipFilter::None => (0, 0, 0),
+        MipFilter::Nearest => (nearest, nearest, 0),
+        MipFilter::Linear => ((lod >> 8).min(last), ((lod >> 8) + 1).min(last), lod & 255),
     }
 }
 

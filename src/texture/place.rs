@@ -176,13 +176,8 @@ impl Place for Interpolated<'_> {
         let [width, height] = self.unit.scale(level);
         match self.coordinates {
             Coordinates::Plane(g) => {
-                // floor(floor(x) / 2^k) is floor(x / 2^k): the planes of a level, whose sides are powers of two.
-                let [whole_width, whole_height] = self.unit.scale(&self.unit.levels[0]);
-                let down = |g: &[i64; 3], whole: u32, side: u32| {
-                    let shift = side.leading_zeros() - whole.leading_zeros();
-                    self.at.coordinate(&g.map(|g| g >> shift))
-                };
-                [down(&g[0], whole_width, width), down(&g[1], whole_height, height)]
+                let [s, t] = self.unit.plane_shifts(level);
+                [self.at.coordinate(&g[0].map(|g| g >> s)), self.at.coordinate(&g[1].map(|g| g >> t))]
             }
             Coordinates::Ratio([s, t, q]) => [self.at.ratio(s, q, width), self.at.ratio(t, q, height)],
             Coordinates::Direction(direction) => {
@@ -234,15 +229,14 @@ impl Place for Interpolated<'_> {
     ) {
         let edges = (0..3).map(|k| plain(format!("E{k}"), self.at.e[k]));
         let sides = self.unit.scale(level);
-        let [whole_width, whole_height] = self.unit.scale(&self.unit.levels[0]);
+        let shifts = self.unit.plane_shifts(level);
         let direction = self.tell_direction(report, observer);
         for (axis, letter) in ["u", "v"].into_iter().enumerate() {
             let lowered = plain("lowered", i64::from(settled[axis].lowered));
             let size = plain("size", i64::from(sides[axis]));
             let (rule, operation, mut inputs) = match self.coordinates {
                 Coordinates::Plane(g) => {
-                    let shift = sides[axis].leading_zeros() - [whole_width, whole_height][axis].leading_zeros();
-                    let g = g[axis].map(|g| g >> shift);
+                    let g = g[axis].map(|g| g >> shifts[axis]);
                     ("INT-4", "floor_plane", report.planes("INT-4", &format!("G_{letter}"), &g, observer))
                 }
                 Coordinates::Ratio(planes) => {

@@ -2,6 +2,7 @@
 
 use super::fetch::{self, Workspace};
 use super::kernels::{self, LANES, Row};
+use super::levels::Reads;
 use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{IOTA, Positions};
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
@@ -9,6 +10,7 @@ use super::{BLOCK, Compiled, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band};
 use crate::plan::{Plan, PlannedDraw};
+use crate::state::MipFilter;
 use crate::texture::unit::Image;
 
 /// Some lanes of a block that lie side by side on the surface.
@@ -87,6 +89,11 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
     // Earlier draws have dropped fragments.
     block.alive.fill(true);
     block.varying.alive.fill(true);
+    // Nor do entries of another table mean anything.
+    block.varying.reads.clear();
+    if compiled.samplers.iter().any(|sampler| sampler.mixes) {
+        block.varying.reads.resize(compiled.samplers.len(), Reads::default());
+    }
     if compiled.reads_surface {
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
@@ -244,6 +251,11 @@ fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>
         let Some(table) = &sampler.table else { continue };
         let faces = sampler.cube.then_some(&varying.faces[n]);
         let wanted = compiled.textures[sampler.unit];
+        if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(n)) {
+            let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
+            fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
+            continue;
+        }
         fetch::sample(table, &mut varying.coordinates[n], faces, sampler.signed, wanted, work, rows);
     }
     if compiled.reads_surface {
@@ -277,8 +289,8 @@ fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>
             }
             store::test(test.function, |n| varying.depth[n], |n| depth[n], alive);
             if test.write {
-                for n in (0..*used).filter(|n| alive[*n]) {
-                    depth[n] = varying.depth[n];
+                for ((depth, incoming), alive) in depth.iter_mut().zip(&varying.depth).zip(&*alive) {
+                    *depth = if *alive { *incoming } else { *depth };
                 }
                 for run in runs.iter() {
                     band.depth[run.at..][..run.count].copy_from_slice(&depth[run.lane..][..run.count]);

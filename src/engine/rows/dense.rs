@@ -5,11 +5,13 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
 use super::kernels::Row;
+use super::levels::Reads;
 use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{self, IOTA};
 use super::triangle::{Piece, Setup, Varying, whole_steps};
 use super::{BLOCK, Rows};
 use crate::engine::pixel::TriangleContext;
+use crate::number::convert::factor_byte;
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
@@ -85,36 +87,72 @@ fn triangle(r: &mut Random) -> [Vertex; 3] {
             4 | 7 => [0; 3].map(|_| r.below(5) as f32 - 2.0),
             _ => [0; 3].map(|_| r.unit() - 0.5),
         };
-        vertex.position = [x, y, 0.0, w];
+        let z = if aligned { r.below(9) as f32 / 8.0 } else { r.unit() * 1.2 - 0.1 };
+        vertex.position = [x, y, z, w];
+        vertex.fog = match kind {
+            7 | 8 => r.below(33) as f32 / 8.0,
+            _ => 4.0 * r.unit() - 0.25,
+        };
         vertex.diffuse = VertexColor::Bytes([0; 4].map(|_| r.next() as u8));
         vertex.texture_coordinates[0] = [st[0], st[1], 0.0, 1.0];
+        let q = match kind {
+            4 | 7 | 8 => r.of(&[1.0, 2.0, 4.0, -0.5]),
+            _ if lean[0] < 0.0 => -0.5 - r.unit(),
+            _ => 0.5 + 2.0 * r.unit(),
+        };
+        vertex.texture_coordinates[2] = [st[0] * q, st[1] * q, 0.0, q];
+        vertex.texture_coordinates[3] = vertex.texture_coordinates[0];
         vertex.texture_coordinates[1] = [direction[0], direction[1], direction[2], 1.0];
     }
     vertices
 }
 
-/// A scene of some triangles that read the diffuse, a plane texture and a cube map, both filtered or neither.
-fn scene(vertices: Vec<Vertex>, filter: Filter) -> Scene {
-    let texture = |kind, side: u32, faces: u32| Texture {
+/// No function, or one whose factors lie between 0 and 1 for some coordinates.
+fn fog(r: &mut Random) -> Option<FogFunction> {
+    let round = r.below(3) == 0;
+    let [p0, p1] = match r.below(4) {
+        0 => return None,
+        _ if round => [r.of(&[1.5, 2.0, 2.5, 1.0]), r.of(&[-0.125, -0.25, -1.0, -0.5])],
+        1 => [1.0 + 2.0 * r.unit(), -r.unit()],
+        _ => [3.0 * r.unit() - 0.5, 2.0 * r.unit() - 1.0],
+    };
+    Some(FogFunction { mode: r.of(FogMode::ALL), p0, p1 })
+}
+
+/// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, levels, and the fog
+/// factor, and test depth.
+fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<FogFunction>) -> Scene {
+    let texture = |kind, side: u32, faces: u32, levels: u32| Texture {
         name: String::new(),
         kind,
         format: TextureFormat::A8R8G8B8,
         image: TextureImage::Texels(Texels {
             width: side,
             height: side,
-            levels: 1,
+            levels,
             border: false,
-            words: (0..side * side * faces).map(|n| n.wrapping_mul(0x9e37_79b9)).collect::<Vec<u32>>().into(),
+            words: (0..Level::chain(TextureFormat::A8R8G8B8, side, side, levels, false).1 as u32 * faces)
+                .map(|n| n.wrapping_mul(0x9e37_79b9))
+                .collect::<Vec<u32>>()
+                .into(),
         }),
     };
     let unit = |texture| Some(TextureUnit { min_filter: filter, mag_filter: filter, ..TextureUnit::new(texture) });
+    let mixed = unit(2).map(|unit| TextureUnit {
+        min_filter: Filter::Linear,
+        mip_filter: if filter == Filter::Linear { MipFilter::Linear } else { MipFilter::Nearest },
+        lod_bias: 400,
+        ..unit
+    });
     let input = |register| CombinerInput { register, component: Component::Rgb, mapping: InputMapping::SignedIdentity };
     let mut rgb = Portion::idle(Component::Rgb);
-    rgb.inputs = [Register::Texture0, Register::PrimaryColor, Register::Texture1, Register::PrimaryColor].map(input);
+    rgb.inputs = [Register::Texture0, Register::PrimaryColor, Register::Texture1, Register::Texture2].map(input);
     rgb.sum_output = Register::Spare0;
     let stage = GeneralStage { rgb, alpha: Portion::idle(Component::Alpha), constants: [[0; 4]; 2] };
     let mut inputs = [FinalInput::zero(Component::Rgb); 6];
     inputs[3].register = FinalRegister::Spare0;
+    inputs[0].register = FinalRegister::PrimaryColor;
+    inputs[1].register = FinalRegister::Texture3;
     let draw = Draw {
         name: String::new(),
         target: 0,
@@ -128,16 +166,16 @@ fn scene(vertices: Vec<Vertex>, filter: Filter) -> Scene {
         cull: Cull::None,
         front_face: FrontFace::CounterClockwise,
         scissor: None,
-        fog: Fog { enabled: false, color: [0; 3], function: None },
-        textures: [unit(0), unit(1), None, None],
-        texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, unit < 2)),
+        fog: Fog { enabled: true, color: [0; 3], function: fog },
+        textures: [unit(0), unit(1), unit(0), mixed],
+        texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, true)),
         vertex_program: None,
         combiners: Combiners {
             stages: vec![stage],
             mux_select: MuxSelect::Msb,
             final_combiner: FinalCombiner {
                 inputs,
-                g: FinalInput::zero(Component::Alpha),
+                g: FinalInput { register: FinalRegister::Fog, ..FinalInput::zero(Component::Alpha) },
                 color_sum_clamp: false,
                 invert_spare0: false,
                 invert_secondary: false,
@@ -146,7 +184,7 @@ fn scene(vertices: Vec<Vertex>, filter: Filter) -> Scene {
         },
         program_origin: vec![],
         alpha_test: None,
-        depth_test: None,
+        depth_test: Some(DepthTest { function: CompareFunction::Always, write: true }),
         blend: None,
         blend_constant: [0; 4],
         color_mask: [true; 4],
@@ -157,12 +195,16 @@ fn scene(vertices: Vec<Vertex>, filter: Filter) -> Scene {
         height: HEIGHT,
         format: SurfaceFormat::A8R8G8B8,
         clear_color: [0; 4],
-        depth: None,
+        depth: Some(DepthBuffer { format: depth, clear: 0 }),
     };
     Scene {
         profile: Profile::Nv2a,
         targets: vec![target],
-        textures: vec![texture(TextureKind::TwoDimensional, 64, 1), texture(TextureKind::Cube, 16, 6)],
+        textures: vec![
+            texture(TextureKind::TwoDimensional, 64, 1, 1),
+            texture(TextureKind::Cube, 16, 6, 1),
+            texture(TextureKind::TwoDimensional, 64, 1, 7),
+        ],
         palettes: vec![],
         draws: vec![draw],
     }
@@ -176,16 +218,34 @@ fn compare<const FMA: bool, const ROW: bool>(
     varying: &mut Varying,
     rows: &mut [Row],
 ) {
+    // What an earlier piece left must not pass for this one's.
+    varying.reads[3].weights.fill(-1);
     setup.interpolate::<FMA, ROW>(piece, compiled, &[], varying, rows);
-    let context = &setup.context;
+    let (context, mut wanted) = (&setup.context, Reads::default());
     for n in 0..piece.count {
         let (i, j) = (piece.first.0 + i64::from(piece.at.x[n]), piece.first.1 + i64::from(piece.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
         let lane = piece.lane + n;
         let weights = sample.weights().map(|w| w.value as i32);
+        let depth = sample.depth(context.z, context.draw.depth_full);
+        assert_eq!(i64::from(varying.depth[lane]), depth, "({i}, {j}) of {:?}", context.vertices);
+        let fog = i16::from(factor_byte(context.fog.as_ref().unwrap().at(&sample).value));
+        let slot = usize::from(compiled.fog.unwrap());
+        assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices);
         assert_eq!(varying.weights.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices);
         for (index, unit) in context.draw.units.iter().enumerate() {
             let place = context.place(unit, &sample, (i, j)).unwrap();
+            let sampler = &compiled.samplers[index];
+            if sampler.mixes {
+                setup.defined_reads(piece, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
+                let of = |reads: &Reads| {
+                    let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
+                    (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
+                };
+                let (got, wanted) = (of(&varying.reads[index]), of(&wanted));
+                assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices);
+                continue;
+            }
             let bias = if compiled.samplers[index].filters { 128 } else { 0 };
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
@@ -206,13 +266,16 @@ fn rows_interpolate_what_the_definition_does() {
     while pixels < wanted {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
+        let depth = random.of(DepthFormat::ALL);
+        let fog = fog(&mut random);
         let vertices = (0..64).flat_map(|_| triangle(&mut random)).collect();
-        let Ok(plan) = Plan::compile(&scene(vertices, filter), &PlanOptions::default()) else { continue };
+        let Ok(plan) = Plan::compile(&scene(vertices, filter, depth, fog), &PlanOptions::default()) else { continue };
         let rows_of_plan = Rows::compile(&plan).unwrap();
         let compiled = rows_of_plan.draw(&plan, 0, &[]);
-        assert_eq!(compiled.samplers.len(), 2);
+        assert_eq!(compiled.samplers.len(), 4);
         let draw = &plan.draws[0];
         let (mut varying, mut rows) = (Varying::default(), vec![Row::of(0); compiled.rows.len()]);
+        varying.reads.resize(compiled.samplers.len(), Reads::default());
         let mut planes = Vec::new();
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {

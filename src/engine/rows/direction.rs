@@ -1,4 +1,4 @@
-//! TEX-12 on rows: the face that a direction meets, and where.
+//! TEX-12 on rows: the face that a direction meets, and where; TEX-15, which divides by q what that divides by a component.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::Sampler;
@@ -6,6 +6,7 @@ use super::fetch::Numbers;
 use super::planes::Plane;
 use super::quotient::{Line, Positions, SLACK, Scaled, estimate_two, nearest, prove, whole};
 use super::triangle::{Bounds, Piece, Setup};
+use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
 
 /// The face that all three vertices look at, none of them along its edge: so does everything between them.
@@ -21,7 +22,26 @@ pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
     (look(1)? == face && look(2)? == face).then_some(face)
 }
 
-/// A direction across a piece.
+/// s, t and q, so that q is positive, and more than the magnitudes of s/q and t/q. `None`: q has no sign, or coordinates reach the limit.
+pub(super) fn positive(mut g: [[i64; 3]; 3], sides: [u32; 2]) -> Option<([[i64; 3]; 3], f64)> {
+    if g[2].iter().all(|q| *q < 0) {
+        g = [g[0].map(|n| -n), g[1].map(|n| -n), g[2].map(|n| -n)];
+    }
+    if g[2].iter().any(|q| *q <= 0) {
+        return None;
+    }
+    let mut reach = 0.0;
+    for k in 0..3 {
+        let magnitude = g[0][k].unsigned_abs().max(g[1][k].unsigned_abs()) as f64 / g[2][k] as f64;
+        if magnitude > reach {
+            reach = magnitude;
+        }
+    }
+    let most = 512.0 * f64::from(sides[0].max(sides[1])) * reach;
+    (most < COORDINATE_LIMIT as f64).then_some((g, reach))
+}
+
+/// A direction across a piece, or s, t and q.
 pub(super) struct Looking {
     /// x, y, z.
     lines: [Line; 3],
@@ -76,7 +96,7 @@ impl Looking {
         numbers: &mut [Numbers<i32>; 2],
         faces: &mut Numbers<u32>,
     ) -> bool {
-        let size = f64::from(sampler.side) * 128.0;
+        let size = f64::from(sampler.sides[0]) * 128.0;
         let offset = f64::from(sampler.bias()) + 0.5;
         let lanes = piece.lanes();
         let [u, v] = numbers;
@@ -102,20 +122,69 @@ impl Setup<'_> {
     ) -> bool {
         let [s, t, major] = face.components();
         let m = looking.component(major);
-        let least = if ROW {
-            let end = m.at::<FMA, true>(bounds.columns, 0.0);
-            if m.c < end { m.c } else { end }
-        } else {
-            let g = &planes[major.axis].g;
-            let least = g[0].unsigned_abs().min(g[1].unsigned_abs()).min(g[2].unsigned_abs());
-            least as f64 * self.context.triangle.doubled_area as f64
-        };
+        let least = self.least::<FMA, ROW>(m, &planes[major.axis], bounds);
         let widest = 1.0 / least;
-        let size = f64::from(sampler.side) * 128.0;
+        let size = f64::from(sampler.sides[0]) * 128.0;
         // Twice the error of either component, once what is taken off, and as much again.
         let margin = 8.0 * looking.error * size * widest;
-        let (extent, reciprocals) = ((bounds.columns, bounds.rows), (1.0 / m.c, widest));
         let (along, down) = (looking.component(s).plus(m).times(size), looking.component(t).plus(m).times(size));
+        faces[piece.lanes()].fill(face as u32);
+        self.quotients::<FMA, ROW>(piece, sampler, [along, down, m], widest, margin, bounds, numbers, faces)
+    }
+
+    /// TEX-15 of a piece, s, t and a positive q: two more quotients. `reach` is more than their magnitudes, in images. `false`: nothing would
+    /// be proved.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+    pub(super) fn projected<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        sampler: &Sampler,
+        planes: &[Plane; 3],
+        reach: f64,
+        looking: &Looking,
+        bounds: &Bounds,
+        numbers: &mut [Numbers<i32>; 2],
+        faces: &mut Numbers<u32>,
+    ) -> bool {
+        let [s, t, q] = looking.lines;
+        let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], bounds);
+        let [width, height] = [256.0 * f64::from(sampler.sides[0]), 256.0 * f64::from(sampler.sides[1])];
+        let most = if width > height { width } else { height };
+        // The error of s or t, that of q as often as it is in the quotient, once more what is taken off, and as much again.
+        let margin = 8.0 * looking.error * most * (1.0 + reach) * widest;
+        let lines = [s.times(width), t.times(height), q];
+        self.quotients::<FMA, ROW>(piece, sampler, lines, widest, margin, bounds, numbers, faces)
+    }
+
+    /// What a linear function that is positive at all vertices is not below in a piece.
+    #[inline(always)]
+    fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, bounds: &Bounds) -> f64 {
+        if ROW {
+            let end = line.at::<FMA, true>(bounds.columns, 0.0);
+            return if line.c < end { line.c } else { end };
+        }
+        let g = &plane.g;
+        let least = g[0].unsigned_abs().min(g[1].unsigned_abs()).min(g[2].unsigned_abs());
+        least as f64 * self.context.triangle.doubled_area as f64
+    }
+
+    /// Two quotients by a line that is not below 1 / `widest`, where estimates are off by `margin`; lanes that are not proved are the
+    /// definition's. `false`: nothing would be proved.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+    fn quotients<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        sampler: &Sampler,
+        [along, down, m]: [Line; 3],
+        widest: f64,
+        margin: f64,
+        bounds: &Bounds,
+        numbers: &mut [Numbers<i32>; 2],
+        faces: &mut Numbers<u32>,
+    ) -> bool {
+        let (extent, reciprocals) = ((bounds.columns, bounds.rows), (1.0 / m.c, widest));
         let (Some(along), Some(down)) = (
             Scaled::new::<ROW>(along, m, extent, reciprocals, margin, sampler.bias()),
             Scaled::new::<ROW>(down, m, extent, reciprocals, margin, sampler.bias()),
@@ -124,7 +193,6 @@ impl Setup<'_> {
         };
         let [u, v] = numbers;
         let close = estimate_two::<FMA, ROW>(piece.at, m, &[along, down], &mut u[piece.lanes()], &mut v[piece.lanes()]);
-        faces[piece.lanes()].fill(face as u32);
         if close[0] | close[1] {
             for n in 0..piece.count {
                 match prove::<ROW>(piece.at, n, m, &[along, down]) {

@@ -2,6 +2,7 @@
 
 use super::BLOCK;
 use super::kernels::{LANES, Row};
+use super::levels::Reads;
 use super::table::{Axis, Table, Texels};
 use crate::number::{Lane, Two};
 use crate::texture::filter::{bilinear, lerp};
@@ -16,11 +17,19 @@ pub(super) struct Workspace {
     texels: [u32; BLOCK],
     upper: [[u32; 2]; BLOCK],
     lower: [[u32; 2]; BLOCK],
+    /// Channels of the next level.
+    next: [[i16; BLOCK]; 4],
 }
 
 impl Default for Workspace {
     fn default() -> Self {
-        Workspace { entries: [0; BLOCK], texels: [0; BLOCK], upper: [[0; 2]; BLOCK], lower: [[0; 2]; BLOCK] }
+        Workspace {
+            entries: [0; BLOCK],
+            texels: [0; BLOCK],
+            upper: [[0; 2]; BLOCK],
+            lower: [[0; 2]; BLOCK],
+            next: [[0; BLOCK]; 4],
+        }
     }
 }
 
@@ -36,7 +45,7 @@ pub(super) fn sample(
     work: &mut Workspace,
     rows: &mut [Row],
 ) {
-    let Workspace { entries, texels: found, upper, lower } = work;
+    let Workspace { entries, texels: found, upper, lower, .. } = work;
     let (Some(u), Some(v)) = (u.first_chunk_mut::<BLOCK>(), v.first_chunk_mut::<BLOCK>()) else { return };
     limit(&table.axes[0], u);
     limit(&table.axes[1], v);
@@ -60,6 +69,8 @@ pub(super) fn sample(
                 _ => unpack::<4>(found, red, green, blue, alpha),
             }
         }
+        // `sample_levels`.
+        Texels::Levels(_) => {}
         Texels::One(channel, texels) => {
             fetch(texels, entries, found);
             let out = match channel {
@@ -79,10 +90,62 @@ pub(super) fn sample(
             }
         }
     }
-    for (n, signed) in signed.into_iter().enumerate() {
-        if signed && wanted[n].is_some() {
-            // TEX-18: the 128 that the table added is taken off again.
-            for out in rows[slot(n)].block_mut() {
+    load(signed, wanted, rows);
+}
+
+/// TEX-9 of what lanes read of levels; `both`: of two.
+#[inline(always)]
+pub(super) fn sample_levels(
+    table: &Table,
+    reads: &Reads,
+    both: bool,
+    signed: [bool; 4],
+    wanted: [Option<u16>; 4],
+    work: &mut Workspace,
+    rows: &mut [Row],
+) {
+    let Texels::Levels(texels) = &table.texels else { return };
+    let Workspace { upper, lower, next, .. } = work;
+    let slot = |n: usize| wanted[n].map_or(n, usize::from);
+    let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
+    let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
+    let block = |of: &Numbers<i32>| -> [i32; BLOCK] { *of.first_chunk().unwrap_or(&[0; BLOCK]) };
+    for which in (0..1 + usize::from(both)).rev() {
+        let entries = reads.entries[which].first_chunk().unwrap_or(&[0; BLOCK]);
+        let (u, v) = (block(&reads.coordinates[which][0]), block(&reads.coordinates[which][1]));
+        fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
+        filter::<4>(upper, lower, &u, &v, red, green, blue, alpha);
+        if which == 1 {
+            for (next, now) in next.iter_mut().zip([&*red, &*green, &*blue, &*alpha]) {
+                *next = *now;
+            }
+        }
+    }
+    if both {
+        let weights = block(&reads.weights);
+        let [next_red, next_green, next_blue, next_alpha] = next;
+        mix(red, next_red, &weights);
+        mix(green, next_green, &weights);
+        mix(blue, next_blue, &weights);
+        mix(alpha, next_alpha, &weights);
+    }
+    load(signed, wanted, rows);
+}
+
+/// TEX-9: two levels of a channel.
+#[inline(always)]
+fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[i32; BLOCK]) {
+    for ((channel, next), weight) in channel.iter_mut().zip(next).zip(weights) {
+        *channel = lerp(*channel as u16, *next as u16, *weight as u16) as i16;
+    }
+}
+
+/// TEX-18: the 128 that the table added is taken off again.
+#[inline(always)]
+fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Row]) {
+    for (signed, wanted) in signed.into_iter().zip(wanted) {
+        if let (true, Some(wanted)) = (signed, wanted) {
+            for out in rows[usize::from(wanted)].block_mut() {
                 *out = (i32::from(*out) - 128).signed_texel() as i16;
             }
         }
@@ -102,7 +165,7 @@ fn limit(axis: &Axis, coordinates: &mut [i32; BLOCK]) {
 
 /// The entry of a coordinate within the limits along an axis.
 #[inline(always)]
-fn entry(axis: &Axis, coordinate: i32) -> i32 {
+pub(super) fn entry(axis: &Axis, coordinate: i32) -> i32 {
     ((coordinate >> 8) - axis.first) & axis.mask
 }
 

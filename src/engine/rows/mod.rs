@@ -4,8 +4,8 @@
 //! |---|---|
 //! | `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
-//! | `planes.rs`, `quotient.rs`, `direction.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
-//! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
+//! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `table.rs`, `fetch.rs`, `levels.rs` | textures laid out for rows; address, fetch, filter; lods and levels |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
 //! | `patch.rs`, `band.rs` | triangles to pieces to blocks |
 //! | `isa.rs` | the same text for several instruction sets |
@@ -17,11 +17,14 @@ mod band;
 mod build;
 #[cfg(test)]
 mod dense;
+mod depth;
 mod direction;
 mod fetch;
+mod fog;
 mod graph;
 pub(crate) mod isa;
 mod kernels;
+mod levels;
 mod patch;
 mod planes;
 mod quotient;
@@ -65,9 +68,11 @@ pub(crate) struct Sampler {
     /// Bilinear.
     filters: bool,
     cube: bool,
-    /// Texels of a side of a cube map's face.
-    side: u32,
+    /// Texels of its sides; 1 where coordinates are texels.
+    sides: [u32; 2],
     signed: [bool; 4],
+    /// The lod counts.
+    mixes: bool,
     /// `None`: of an image that is drawn by this scene, made anew for each draw.
     table: Option<Arc<Table>>,
 }
@@ -98,8 +103,6 @@ pub(crate) struct Compiled {
     samplers: Vec<Sampler>,
     /// Texture units are the definition's, pixel by pixel.
     samples_pixels: bool,
-    /// Something is.
-    pixel_by_pixel: bool,
     /// What the surface holds is read: by the blend, because not all bits are written, or because fragments can be dropped.
     reads_surface: bool,
     /// Fragments can be dropped.
@@ -137,7 +140,7 @@ impl Rows {
                 (&plan.textures[unit.state.texture].image, table::axes(unit))
             {
                 let image = Image { words: &surfaces[*target].words, memory: None };
-                sampler.table = Some(Arc::new(Table::new(unit, axes, &image, false)));
+                sampler.table = Some(Arc::new(Table::new(unit, &axes, &image, false)));
             }
         }
         Cow::Owned(compiled)
@@ -172,7 +175,6 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         alpha: 0,
         samplers,
         samples_pixels,
-        pixel_by_pixel: false,
         reads_surface: false,
         drops: false,
         merges: false,
@@ -188,7 +190,6 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     compiled.reads_surface = reads || compiled.merges;
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
-    compiled.pixel_by_pixel = compiled.samples_pixels || compiled.fog.is_some() || draw.depth_test.is_some();
     compiled
 }
 
@@ -210,7 +211,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             (_, Some(table)) => Some(table),
             (TextureImage::Texels(texels), None) => {
                 let image = Image { words: &texels.words, memory: None };
-                let table = Arc::new(Table::new(unit, axes, &image, true));
+                let table = Arc::new(Table::new(unit, &axes, &image, true));
                 tables.push((key, Arc::clone(&table)));
                 Some(table)
             }
@@ -221,8 +222,9 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             unit: unit.index,
             filters: unit.state.mag_filter == Filter::Linear,
             cube: unit.kind == TextureKind::Cube,
-            side: unit.levels[0].width,
+            sides: unit.scale(&unit.levels[0]),
             signed: unit.state.signed,
+            mixes: unit.needs_lod(),
             table,
         });
     }

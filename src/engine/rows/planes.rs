@@ -20,7 +20,7 @@ pub(super) struct Plane {
 }
 
 impl Plane {
-    /// `inverse`: 1/P_k, more or less.
+    /// `inverse`: that of the triangle.
     #[inline(always)]
     pub(super) fn new(triangle: &Triangle, inverse: &[f64; 3], g: [i64; 3]) -> Plane {
         let (x, y) = (slope(&g, &triangle.a), slope(&g, &triangle.b));
@@ -89,6 +89,13 @@ impl Plane {
     pub(super) fn small(&self, bits: u32) -> Option<u32> {
         (bits.saturating_sub(self.shared) <= 30).then_some(self.shared)
     }
+}
+
+/// 1/P_k, more or less.
+#[inline(always)]
+pub(super) fn inverse(triangle: &Triangle) -> [f64; 3] {
+    let p = &triangle.p;
+    [1.0 / p[0] as f64, 1.0 / p[1] as f64, 1.0 / p[2] as f64]
 }
 
 /// How a sum of G_k changes with the edge functions: as an estimate, and modulo 2^64.

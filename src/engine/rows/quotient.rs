@@ -3,6 +3,7 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::kernels::LANES;
+use crate::raster::interpolate::most_dominant;
 
 /// 1.5 2^52: added to a small number, it leaves the nearest whole number in the low bits.
 const MAGIC: f64 = 6_755_399_441_055_744.0;
@@ -34,7 +35,7 @@ pub(super) static IOTA: [i32; LANES] = {
 };
 
 /// The same as floats.
-static IOTA_REAL: [f64; LANES] = {
+pub(super) static IOTA_REAL: [f64; LANES] = {
     let mut all = [0.0; LANES];
     let mut n = 0;
     while n < LANES {
@@ -343,7 +344,7 @@ pub(super) fn estimate_weights<const FMA: bool>(
 
 /// Where a lane lies.
 #[inline(always)]
-fn position<const ROW: bool>(n: usize, last: f64, xs: &[i32], ys: &[i32], iota: &[f64]) -> (f64, f64) {
+pub(super) fn position<const ROW: bool>(n: usize, last: f64, xs: &[i32], ys: &[i32], iota: &[f64]) -> (f64, f64) {
     if ROW { (if iota[n] < last { iota[n] } else { last }, 0.0) } else { (f64::from(xs[n]), f64::from(ys[n])) }
 }
 
@@ -364,6 +365,12 @@ impl Exact {
             x: self.x.wrapping_sub(other.x.wrapping_mul(times)),
             y: self.y.wrapping_sub(other.y.wrapping_mul(times)),
         }
+    }
+
+    /// So many times as much.
+    #[inline(always)]
+    pub(super) fn times(self, by: i64) -> Exact {
+        Exact { c: self.c.wrapping_mul(by), x: self.x.wrapping_mul(by), y: self.y.wrapping_mul(by) }
     }
 
     /// Divided by a power of two that divides it, modulo 2^32.
@@ -429,9 +436,7 @@ pub(super) fn break_ties(w0: &mut [i32], w2: &mut [i32], whole0: &[i32], whole2:
             m | m >> 4
         };
         let (p0, p1, p2) = (class(a + 1 - *whole0), class(256 - a - c), class(c + 1 - *whole2));
-        let all = (p0 == p1) & (p1 == p2);
-        let first = (p0 >= p1) & (p0 > p2);
-        let third = ((p2 > p1) & (p2 >= p0)) | all;
+        let [first, third] = most_dominant([p0, p1, p2]);
         *w0 = a - i32::from((*whole0 != 0) & (a > 0) & !first);
         *w2 = c - i32::from((*whole2 != 0) & (c > 0) & !third);
     }

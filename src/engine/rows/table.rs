@@ -1,7 +1,8 @@
 //! Textures laid out for rows: texels decoded once, every address mode reduced to limits and a mask.
 
+use super::fetch::entry;
 use crate::number::Lane;
-use crate::state::{AddressMode, BORDER_TEXELS, CUBE_FACES, Filter, Named, TextureKind};
+use crate::state::{AddressMode, BORDER_TEXELS, CUBE_FACES, Filter, Level, Named, TextureKind};
 use crate::texture::cube::Face;
 use crate::texture::fetch::{Slice, lanes};
 use crate::texture::unit::{Image, PlannedUnit};
@@ -54,6 +55,8 @@ pub(super) enum Texels {
     Footprints(Vec<u32>),
     /// The only channel that differs from texel to texel, by its number: each texel with its right neighbour, and the two below.
     One(usize, Vec<u32>),
+    /// Footprints of every level, all with the rows of the widest.
+    Levels(Vec<u32>),
 }
 
 /// What a channel of a table holds.
@@ -98,7 +101,7 @@ impl Facts {
     }
 }
 
-/// A unit's image at level 0.
+/// A unit's image: level 0, or all levels if the lod counts.
 #[derive(Clone, Debug)]
 pub(super) struct Table {
     /// Along u and v.
@@ -111,6 +114,16 @@ pub(super) struct Table {
     pub(super) texels: Texels,
     /// What its channels hold; signed ones with 128 added.
     pub(super) channels: [Channel; 4],
+    /// Where levels lie, if the lod counts.
+    levels: Vec<Placed>,
+}
+
+/// Where a level lies in a table.
+#[derive(Clone, Copy, Debug)]
+struct Placed {
+    axes: [Axis; 2],
+    /// Its first entry in each face.
+    first: u32,
 }
 
 /// What of a unit a table depends on.
@@ -120,6 +133,7 @@ pub(super) struct Key {
     palette: Option<usize>,
     modes: [AddressMode; 2],
     filter: Filter,
+    levels: bool,
     border_color: [u8; 4],
     signed: [bool; 4],
 }
@@ -132,55 +146,67 @@ impl Key {
             palette: state.palette,
             modes: unit.modes(),
             filter: state.mag_filter,
+            levels: unit.needs_lod(),
             border_color: state.border_color,
             signed: state.signed,
         }
     }
 }
 
-/// The axes of a unit that rows can sample. `None`: it mixes levels, is filtered at 16 bits, or has a side that does not repeat evenly.
-pub(super) fn axes(unit: &PlannedUnit) -> Option<[Axis; 2]> {
-    let level = unit.levels.first()?;
-    if unit.needs_lod() || unit.is_wide() {
+/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: it is filtered at 16 bits, or has
+/// a side that does not repeat evenly.
+pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
+    if unit.is_wide() {
         return None;
     }
+    let count = if unit.needs_lod() { unit.levels.len() } else { 1 };
     let [s, t] = unit.modes();
-    Some([Axis::new(s, level.width, unit.border)?, Axis::new(t, level.height, unit.border)?])
+    let of = |level: &Level| Some([Axis::new(s, level.width, unit.border)?, Axis::new(t, level.height, unit.border)?]);
+    unit.levels.iter().take(count).map(of).collect()
 }
 
 /// Texels that a table of these axes decodes.
-pub(super) fn size(unit: &PlannedUnit, axes: &[Axis; 2]) -> u64 {
+pub(super) fn size(unit: &PlannedUnit, axes: &[[Axis; 2]]) -> u64 {
     let faces = if unit.kind == TextureKind::Cube { CUBE_FACES } else { 1 };
-    u64::from(faces) * (axes[0].count as u64 + 1) * (axes[1].count as u64 + 1)
+    let wide = axes.first().map_or(0, |axes| axes[0].count as u64 + 1);
+    u64::from(faces) * axes.iter().map(|axes| wide * (axes[1].count as u64 + 1)).sum::<u64>()
 }
 
 impl Table {
     /// How much it holds.
     pub(super) fn entries(&self) -> u64 {
         match &self.texels {
-            Texels::Single(texels) | Texels::Footprints(texels) | Texels::One(_, texels) => texels.len() as u64,
+            Texels::Single(all) | Texels::Footprints(all) | Texels::One(_, all) | Texels::Levels(all) => {
+                all.len() as u64
+            }
         }
     }
 
-    /// Decodes level 0 of a unit. `folds`: the reader knows of channels that are constant or equal.
-    pub(super) fn new(unit: &PlannedUnit, axes: [Axis; 2], image: &Image<'_, i32>, folds: bool) -> Table {
+    /// Decodes the levels of a unit that these axes are of. `folds`: the reader knows of channels that are constant or equal.
+    pub(super) fn new(unit: &PlannedUnit, levels: &[[Axis; 2]], image: &Image<'_, i32>, folds: bool) -> Table {
         let faces: &[Face] = if unit.kind == TextureKind::Cube { Face::ALL } else { &[Face::PositiveX] };
+        // There is a level 0.
+        let axes = levels.first().copied().unwrap_or([Axis { low: 0, high: 0, first: 0, mask: 0, count: 0 }; 2]);
         let [columns, rows] = axes;
-        let linear = unit.state.mag_filter == Filter::Linear;
-        let (wide, high) = (columns.count as usize + usize::from(linear), rows.count as usize + usize::from(linear));
-        let mut all = Vec::with_capacity(wide * high * faces.len());
+        let mixes = unit.needs_lod();
+        let linear = mixes || unit.state.mag_filter == Filter::Linear;
+        let beyond = i32::from(linear);
+        let (wide, high) = ((columns.count + beyond) as usize, (rows.count + beyond) as usize);
+        let mut all = Vec::new();
+        let mut placed = Vec::new();
         for face in faces {
-            let slice = Slice { unit, level: &unit.levels[0], face: *face };
-            for y in 0..high as i32 {
-                all.extend((0..wide as i32).map(|x| {
-                    let texel = slice.texel(image.words, i64::from(columns.first + x), i64::from(rows.first + y));
-                    let channels = lanes::<i32, Silent>(unit, image, &texel, &mut Silent);
-                    let biased: [u8; 4] = std::array::from_fn(|n| {
-                        let bias = if unit.state.signed[n] { 128 } else { 0 };
-                        (channels[n].decision() + bias) as u8
-                    });
-                    u32::from_le_bytes(biased)
-                }));
+            let start = all.len();
+            for (level, axes) in unit.levels.iter().zip(levels) {
+                let [columns, rows] = axes;
+                if *face == faces[0] && mixes {
+                    placed.push(Placed { axes: *axes, first: (all.len() - start) as u32 });
+                }
+                let slice = Slice { unit, level, face: *face };
+                for y in 0..rows.count + beyond {
+                    // Past the end of smaller levels nobody reads.
+                    let texel = |x: i32| decode(&slice, image, x.min(columns.count) + columns.first, y + rows.first);
+                    all.extend((0..wide as i32).map(texel));
+                }
             }
         }
         let mut facts = Facts::new(all.first().copied().unwrap_or(0));
@@ -189,7 +215,10 @@ impl Table {
         let mut distinct = (0..4).filter(|n| channels[*n] == Channel::Of(*n));
         let (one, more) = (distinct.next().unwrap_or(0), distinct.next().is_some());
         let count = columns.count as usize * rows.count as usize;
-        let (texels, pitch, face) = if !linear {
+        let (texels, pitch, face) = if mixes {
+            let face = all.len() / faces.len();
+            (Texels::Levels(all), wide, face)
+        } else if !linear {
             (Texels::Single(all), columns.count as usize, count)
         } else if more {
             (Texels::Footprints(all), wide, wide * high)
@@ -204,8 +233,29 @@ impl Table {
             });
             (Texels::One(one, footprints.collect()), columns.count as usize, count)
         };
-        Table { axes, pitch: pitch as i32, face: face as u32, texels, channels }
+        Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed }
     }
+
+    /// Where a coordinate lies on a level, 1/256 texel: the entry of its texel, or of the upper left one of its footprint, and what the weights
+    /// come from, which are 0 for a single texel.
+    #[inline(always)]
+    pub(super) fn place(&self, level: usize, [u, v]: [i32; 2], linear: bool) -> (u32, [i32; 2]) {
+        let Placed { axes: [columns, rows], first } = self.levels[level];
+        let on = |axis: &Axis, c: i32| (if linear { c - 128 } else { c & !255 }).max(axis.low).min(axis.high);
+        let (u, v) = (on(&columns, u), on(&rows, v));
+        let at = entry(&rows, v) * self.pitch + entry(&columns, u);
+        (first + at as u32, [u, v])
+    }
+}
+
+/// A texel's bytes, which may lie outside; signed ones with 128 added.
+fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, x: i32, y: i32) -> u32 {
+    let texel = slice.texel(image.words, i64::from(x), i64::from(y));
+    let channels = lanes::<i32, Silent>(slice.unit, image, &texel, &mut Silent);
+    u32::from_le_bytes(std::array::from_fn(|n| {
+        let bias = if slice.unit.state.signed[n] { 128 } else { 0 };
+        (channels[n].decision() + bias) as u8
+    }))
 }
 
 #[cfg(test)]

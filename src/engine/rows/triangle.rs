@@ -1,10 +1,12 @@
 //! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a piece.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::direction::{Looking, only_face};
+use super::direction::{Looking, only_face, positive};
 use super::fetch::Numbers;
+use super::fog::Fog;
 use super::kernels::{LANES, Row, STEP};
-use super::planes::Plane;
+use super::levels::{Quads, Reads};
+use super::planes::{Plane, inverse};
 use super::quotient::{
     Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_level, estimate_two, estimate_weights, settle,
 };
@@ -25,6 +27,8 @@ pub(super) enum Planes {
     Plane([Plane; 2]),
     /// A direction, and the face that all of the triangle looks at, if that is one.
     Direction([Plane; 3], Option<Face>),
+    /// s, t and q, which is positive, and more than the magnitudes of s/q and t/q.
+    Ratio([Plane; 3], f64),
     /// Anything else: the definition, pixel by pixel.
     Other,
     /// The same coordinates as those of an earlier sampler.
@@ -34,12 +38,13 @@ pub(super) enum Planes {
 /// A triangle with what its pieces need.
 pub(super) struct Setup<'a> {
     pub(super) context: &'a TriangleContext<'a>,
-    denominator: Plane,
+    pub(super) denominator: Plane,
     /// 256 b0 and 256 b2, where some colour varies.
     weights: Option<[Plane; 2]>,
     samplers: Vec<Planes>,
+    pub(super) fog: Option<Box<Fog>>,
     /// Bits of the largest D.
-    bits: u32,
+    pub(super) bits: u32,
     /// The reciprocal of a D that none is smaller than.
     widest: f64,
 }
@@ -55,6 +60,9 @@ pub(super) struct Varying {
     pub(super) depth: Numbers<u32>,
     /// The texture shader lets the pixel live.
     pub(super) alive: Numbers<bool>,
+    /// What samplers read whose levels count; as many as are wanted.
+    pub(super) reads: Vec<Reads>,
+    pub(super) quads: Box<Quads>,
     /// W0 and W2.
     pub(super) weights: [Numbers<i32>; 2],
     narrow: [Numbers<u16>; 2],
@@ -68,6 +76,8 @@ impl Default for Varying {
             faces: [[0; LANES]; TEXTURE_UNITS],
             depth: [0; LANES],
             alive: [true; LANES],
+            reads: Vec::new(),
+            quads: Box::default(),
             weights: [[0; LANES]; 2],
             narrow: [[0; LANES]; 2],
             whole: [[0; LANES]; 2],
@@ -92,7 +102,7 @@ pub(super) struct Piece<'a> {
 
 impl Piece<'_> {
     /// Column and row of one of its pixels.
-    fn pixel(&self, n: usize) -> (i64, i64) {
+    pub(super) fn pixel(&self, n: usize) -> (i64, i64) {
         (self.first.0 + i64::from(self.at.x[n]), self.first.1 + i64::from(self.at.y[n]))
     }
 
@@ -117,13 +127,15 @@ impl<'a> Setup<'a> {
             (0..4).any(|n| slots[n].is_some() && (colors[0][n] != colors[1][n] || colors[1][n] != colors[2][n]))
         };
         let weighted = varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
-        let inverse = [1.0 / p[0] as f64, 1.0 / p[1] as f64, 1.0 / p[2] as f64];
+        let inverse = inverse(triangle);
         let plane = |g: [i64; 3]| Plane::new(triangle, &inverse, g);
         samplers.clear();
         for (n, sampler) in compiled.samplers.iter().enumerate() {
             let coordinates = &context.coordinates[sampler.unit];
             let earlier = compiled.samplers[..n].iter().position(|other| {
                 other.filters == sampler.filters
+                    && !other.mixes
+                    && !sampler.mixes
                     && !other.cube
                     && context.coordinates[other.unit] == *coordinates
                     && context.draw.units[other.index].levels[0] == context.draw.units[sampler.index].levels[0]
@@ -134,7 +146,11 @@ impl<'a> Setup<'a> {
                 Some(Coordinates::Direction(g)) => {
                     Planes::Direction([plane(g[0]), plane(g[1]), plane(g[2])], only_face(g))
                 }
-                _ => Planes::Other,
+                Some(Coordinates::Ratio(g)) => match positive(*g, sampler.sides) {
+                    Some((g, reach)) => Planes::Ratio([plane(g[0]), plane(g[1]), plane(g[2])], reach),
+                    None => Planes::Other,
+                },
+                None => Planes::Other,
             });
         }
         let bits = |n: i64| 64 - n.leading_zeros();
@@ -144,6 +160,7 @@ impl<'a> Setup<'a> {
             denominator: plane(p),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
+            fog: compiled.fog.and_then(|_| Fog::new(context)).map(Box::new),
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
         }
@@ -170,26 +187,20 @@ impl<'a> Setup<'a> {
         let denominator = self.denominator.line(&real);
         let bounds = self.bounds::<FMA, ROW>(piece, &real, denominator);
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
+            if sampler.mixes {
+                let Varying { reads, quads, .. } = &mut *varying;
+                let Some(reads) = reads.get_mut(n) else { continue };
+                self.levels::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, quads, reads);
+                continue;
+            }
             match planes {
                 Planes::Plane(planes) => {
                     let Varying { coordinates, whole, .. } = &mut *varying;
                     let lanes = piece.lanes();
                     let [u, v] = &mut coordinates[n];
                     let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
-                    if let Some(scaled) = self.scaled::<ROW>(planes, sampler.bias(), (&real, denominator), &bounds) {
-                        let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, &bounds, u, v);
-                        if close[0] | close[1] {
-                            self.settle_coordinates::<ROW>(piece, sampler, planes, close, &e, u, v, whole);
-                        }
-                    } else {
-                        for k in 0..piece.count {
-                            let sample = self.sample(piece, k);
-                            (u[k], v[k]) = (
-                                defined_coordinate(&sample, &planes[0], sampler.bias()),
-                                defined_coordinate(&sample, &planes[1], sampler.bias()),
-                            );
-                        }
-                    }
+                    let (e, lines) = (&e, (&real, denominator));
+                    self.on_planes::<FMA, ROW>(piece, planes, sampler.bias(), e, lines, &bounds, u, v, &mut whole[0]);
                 }
                 Planes::Direction(planes, face) => {
                     let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
@@ -201,6 +212,15 @@ impl<'a> Setup<'a> {
                         }
                         None => looking.directions::<FMA, ROW>(piece, sampler, numbers, faces),
                     };
+                    if !done {
+                        self.defined(piece, sampler, numbers, faces);
+                    }
+                }
+                Planes::Ratio(planes, reach) => {
+                    let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
+                    let looking = Looking::new(planes, &real, &bounds);
+                    let done =
+                        self.projected::<FMA, ROW>(piece, sampler, planes, *reach, &looking, &bounds, numbers, faces);
                     if !done {
                         self.defined(piece, sampler, numbers, faces);
                     }
@@ -263,7 +283,15 @@ impl<'a> Setup<'a> {
                 }
             }
         }
-        if compiled.pixel_by_pixel {
+        if self.context.draw.depth_test.is_some() {
+            self.depths::<FMA, ROW>(piece, &real, &mut varying.depth);
+        }
+        if let Some(slot) = compiled.fog {
+            let Varying { whole: [values, spare], .. } = &mut *varying;
+            let row = &mut rows[usize::from(slot)].0;
+            self.fog_factors::<FMA, ROW>(piece, &e, (&real, denominator), &bounds, values, spare, row);
+        }
+        if compiled.samples_pixels {
             self.pixel_by_pixel(piece, compiled, textures, varying, rows);
         }
     }
@@ -286,7 +314,7 @@ impl<'a> Setup<'a> {
 
     /// How far the estimate of a plane's quotient can be off.
     #[inline(always)]
-    fn margin<const ROW: bool>(&self, plane: &Plane, e: &[f64; 3], bounds: &Bounds) -> f64 {
+    pub(super) fn margin<const ROW: bool>(&self, plane: &Plane, e: &[f64; 3], bounds: &Bounds) -> f64 {
         // What is taken off is at most `reach` denominators.
         if ROW {
             // So is every other term: no term of the denominator is negative.
@@ -297,7 +325,7 @@ impl<'a> Setup<'a> {
 
     /// Two quotients to be estimated, less a bias. `None`: some estimate would prove nothing.
     #[inline(always)]
-    fn scaled<const ROW: bool>(
+    pub(super) fn scaled<const ROW: bool>(
         &self,
         planes: &[Plane; 2],
         bias: i32,
@@ -357,6 +385,35 @@ impl<'a> Setup<'a> {
         Scaled::new::<ROW>(plane.line(real), denominator, extent, reciprocals, margin, bias)
     }
 
+    /// INT-4, INT-4t, less a bias.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
+    pub(super) fn on_planes<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        planes: &[Plane; 2],
+        bias: i32,
+        e: &[i64; 3],
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+        u: &mut [i32],
+        v: &mut [i32],
+        whole: &mut Numbers<i32>,
+    ) {
+        if let Some(scaled) = self.scaled::<ROW>(planes, bias, (real, denominator), bounds) {
+            let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, bounds, u, v);
+            if close[0] | close[1] {
+                self.settle_coordinates::<ROW>(piece, bias, planes, close, e, u, v, whole);
+            }
+        } else {
+            for k in 0..piece.count {
+                let sample = self.sample(piece, k);
+                (u[k], v[k]) =
+                    (defined_coordinate(&sample, &planes[0], bias), defined_coordinate(&sample, &planes[1], bias));
+            }
+        }
+    }
+
     /// INT-4, INT-4t of estimates of which some lane is not proved.
     #[inline(always)]
     #[allow(
@@ -366,13 +423,13 @@ impl<'a> Setup<'a> {
     fn settle_coordinates<const ROW: bool>(
         &self,
         piece: Piece<'_>,
-        sampler: &Sampler,
+        bias: i32,
         planes: &[Plane; 2],
         close: [bool; 2],
         e: &[i64; 3],
         u: &mut [i32],
         v: &mut [i32],
-        whole: &mut [Numbers<i32>; 2],
+        whole: &mut Numbers<i32>,
     ) {
         for (n, values) in [(0, u), (1, v)] {
             if !close[n] {
@@ -380,8 +437,8 @@ impl<'a> Setup<'a> {
             }
             let plane = &planes[n];
             let bottom = self.denominator.exact(e);
-            let top = plane.exact(e).less(i64::from(sampler.bias()), bottom);
-            let whole = &mut whole[0][..values.len()];
+            let top = plane.exact(e).less(i64::from(bias), bottom);
+            let whole = &mut whole[..values.len()];
             settle::<ROW>(piece.at, top, bottom, plane.small(self.bits), values, whole);
             if plane.lowers(&self.context.triangle) {
                 for k in (0..piece.count).filter(|k| whole[*k] != 0) {
@@ -412,7 +469,7 @@ impl<'a> Setup<'a> {
         }
     }
 
-    fn sample(&self, piece: Piece<'_>, n: usize) -> Sample<'_> {
+    pub(super) fn sample(&self, piece: Piece<'_>, n: usize) -> Sample<'_> {
         let (i, j) = piece.pixel(n);
         Sample::new(&self.context.triangle, self.context.triangle.edges(i, j))
     }
@@ -441,7 +498,7 @@ impl<'a> Setup<'a> {
         faces[lane] = place.face() as u32;
     }
 
-    /// What is not computed by rows: texture units beyond the plain ones, fog, depth.
+    /// Texture units that rows do not sample.
     fn pixel_by_pixel(
         &self,
         piece: Piece<'_>,
@@ -452,30 +509,17 @@ impl<'a> Setup<'a> {
     ) {
         const UNITS: [Register; TEXTURE_UNITS] =
             [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        let context = &self.context;
         for n in 0..piece.count {
             let (sample, lane) = (self.sample(piece, n), piece.lane + n);
             let mut registers = Registers::<i32>::new();
-            let mut put = |slot: Option<u16>, value: i32| {
-                if let Some(slot) = slot {
-                    rows[usize::from(slot)].0[lane] = value as i16;
-                }
-            };
-            if compiled.samples_pixels {
-                let lives = context.sample_textures(&sample, piece.pixel(n), &mut registers, textures, &mut Silent);
-                varying.alive[lane] = lives.is_some();
-                for (unit, register) in UNITS.into_iter().enumerate() {
-                    for channel in 0..4 {
-                        put(compiled.textures[unit][channel], registers.read(register, channel));
+            let lives = self.context.sample_textures(&sample, piece.pixel(n), &mut registers, textures, &mut Silent);
+            varying.alive[lane] = lives.is_some();
+            for (unit, register) in UNITS.into_iter().enumerate() {
+                for channel in 0..4 {
+                    if let Some(slot) = compiled.textures[unit][channel] {
+                        rows[usize::from(slot)].0[lane] = registers.read(register, channel) as i16;
                     }
                 }
-            }
-            if compiled.fog.is_some() {
-                context.load_fog(&sample, &mut registers, &mut Silent);
-                put(compiled.fog, registers.read(Register::Fog, 3));
-            }
-            if context.draw.depth_test.is_some() {
-                varying.depth[lane] = sample.depth(context.z, context.draw.depth_full) as u32;
             }
         }
     }
