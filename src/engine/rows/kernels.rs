@@ -148,8 +148,11 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
             }
         }
         Node::Sum(pairs) => {
-            let all: [&[i16; BLOCK]; 2 * MOST] =
-                pairs.values.map(|v| if usize::from(v.0) < at { row(v) } else { &ZEROS });
+            // Past the last pair nothing is added, whatever the rows hold that nobody reads.
+            let mut all: [&[i16; BLOCK]; 2 * MOST] = [&ZEROS; 2 * MOST];
+            for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
+                *factor = row(*value);
+            }
             let [a, b, c, d, e, f, g, h, ..] = all;
             match pairs.count {
                 1 => each(out, |n| product(a[n], b[n])),
@@ -229,3 +232,30 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
 }
 
 static ZEROS: [i16; BLOCK] = [0; BLOCK];
+
+#[cfg(test)]
+mod tests {
+    use super::super::graph::Pairs;
+    use super::*;
+
+    /// Sums of one to six products, with other numbers in the rows that nobody reads.
+    #[test]
+    fn sums_have_as_many_products_as_they_say() {
+        for count in 1..=MOST {
+            let mut rows = vec![Row::of(99); 4];
+            let mut values = [Value(0); 2 * MOST];
+            let mut wanted = 0;
+            for (n, value) in values[..2 * count].iter_mut().enumerate() {
+                *value = Value(rows.len() as u16);
+                rows.push(Row::of(17 * n as i16 - 40));
+            }
+            for pair in 0..count as i32 {
+                wanted += (34 * pair - 40) * (34 * pair - 23);
+            }
+            let at = rows.len();
+            rows.push(Row::of(0));
+            run(&Node::Sum(Pairs { count, values }), at, &mut rows);
+            assert_eq!(rows[at].block(), &[wanted.rounded(); BLOCK], "{count}");
+        }
+    }
+}
