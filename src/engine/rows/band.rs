@@ -5,6 +5,7 @@ use super::kernels::{self, LANES, Row};
 use super::levels::Reads;
 use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{IOTA, Positions};
+use super::table::Table;
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
 use super::{BLOCK, Compiled, store};
 use crate::engine::pixel::TriangleContext;
@@ -126,8 +127,12 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
         } else {
             for j in rows.0..rows.1 {
                 let (mut i, end) = triangle.span(j, columns);
+                if i == end {
+                    continue;
+                }
                 // Where rows of lanes begin, so that no step lies across two cache lines.
                 block.used = whole_steps(block.used);
+                setup.begin_row((i, j), end - i, compiled, &mut block.varying);
                 while i < end {
                     let wanted = ((end - i) as usize).min(BLOCK);
                     if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
@@ -215,6 +220,9 @@ fn mark(taken: &mut [u64], at: usize, count: usize) {
 /// Pixels that are copied at once, where a run is shorter and there is room.
 const SHORT: usize = 16;
 
+/// Runs that are as long, more or less, are not copied: their words are made where they belong.
+const LONG: usize = 48;
+
 /// Copies a run from one slice to another. Most are short: copied without a call. `MASKS`: lanes can be stored one by one, and what lies
 /// around a run need not be read, which would have to wait until its neighbours are written.
 #[inline(always)]
@@ -247,6 +255,8 @@ fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>
     let (Some(words), Some(stored)) = (words.first_chunk_mut::<BLOCK>(), stored.first_chunk_mut::<BLOCK>()) else {
         return;
     };
+    // The sampler, and its table, whose entries are found already.
+    let mut found: Option<(usize, &Table)> = None;
     for (n, sampler) in compiled.samplers.iter().enumerate() {
         let Some(table) = &sampler.table else { continue };
         let faces = sampler.cube.then_some(&varying.faces[n]);
@@ -256,7 +266,12 @@ fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>
             fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
             continue;
         }
-        fetch::sample(table, &mut varying.coordinates[n], faces, sampler.signed, wanted, work, rows);
+        let at = sampler.shares.unwrap_or(n);
+        if !found.is_some_and(|(other, with)| other == at && (with.axes, with.pitch) == (table.axes, table.pitch)) {
+            fetch::locate(table, &mut varying.coordinates[at], faces, work);
+        }
+        found = Some((at, table));
+        fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
     }
     if compiled.reads_surface {
         for run in runs.iter() {
@@ -268,15 +283,15 @@ fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>
     for (node, at) in &compiled.operations {
         kernels::run(node, *at, rows);
     }
-    if let ([run], false) = (&runs[..], compiled.merges)
-        && let Some(out) = band.words[run.at..][..run.count].first_chunk_mut::<BLOCK>()
-    {
-        store::pack(draw, compiled, rows, out);
+    if !compiled.merges && runs.len() * LONG <= *used {
+        for run in runs.iter() {
+            store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
+        }
         runs.clear();
         *used = 0;
         return;
     }
-    store::pack(draw, compiled, rows, words);
+    store::pack(draw, compiled, rows, 0, words);
     if compiled.drops {
         *alive = *varying.alive.first_chunk().unwrap_or(&[true; BLOCK]);
         if let Some(test) = &draw.alpha_test {

@@ -226,13 +226,13 @@ fn compare<const FMA: bool, const ROW: bool>(
         let (i, j) = (piece.first.0 + i64::from(piece.at.x[n]), piece.first.1 + i64::from(piece.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
         let lane = piece.lane + n;
-        let weights = sample.weights().map(|w| w.value as i32);
+        let weights = sample.weights().map(|w| w.value as u16);
         let depth = sample.depth(context.z, context.draw.depth_full);
         assert_eq!(i64::from(varying.depth[lane]), depth, "({i}, {j}) of {:?}", context.vertices);
         let fog = i16::from(factor_byte(context.fog.as_ref().unwrap().at(&sample).value));
         let slot = usize::from(compiled.fog.unwrap());
         assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices);
-        assert_eq!(varying.weights.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices);
+        assert_eq!(varying.narrow.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices);
         for (index, unit) in context.draw.units.iter().enumerate() {
             let place = context.place(unit, &sample, (i, j)).unwrap();
             let sampler = &compiled.samplers[index];
@@ -300,6 +300,10 @@ fn rows_interpolate_what_the_definition_does() {
             } else {
                 for j in window.0..window.1 {
                     let (mut i, end) = triangle.span(j, columns);
+                    if i == end {
+                        continue;
+                    }
+                    setup.begin_row((i, j), end - i, &compiled, &mut varying);
                     while i < end {
                         let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 32);
                         let lanes = whole_steps(count);

@@ -224,11 +224,14 @@ fn directions<const FMA: bool, const ROW: bool>(
         let y = lines[1].at::<FMA, ROW>(column, row);
         let z = lines[2].at::<FMA, ROW>(column, row);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
-        let on_x = (ax >= ay) & (ax >= az);
-        let on_y = !on_x & (ay >= az);
+        let (more, less) = (if ax > ay { ax } else { ay }, if ax > ay { ay } else { ax });
+        let (magnitude, rest) = (if more > az { more } else { az }, if more > az { az } else { more });
+        let second = if rest > less { rest } else { less };
+        // Of two that are equal nothing is proved.
+        let (on_x, on_y) = (ax >= magnitude, ay >= magnitude);
         // One choice at a time: nested ones would become branches.
-        let (magnitude, major) = (if on_y { ay } else { az }, if on_y { y } else { z });
-        let (magnitude, major) = (if on_x { ax } else { magnitude }, if on_x { x } else { major });
+        let major = if on_y { y } else { z };
+        let major = if on_x { x } else { major };
         let negative = major < 0.0;
         let other = if on_x { -z } else { x };
         let turned = if negative { -other } else { other };
@@ -246,9 +249,7 @@ fn directions<const FMA: bool, const ROW: bool>(
         faces[n] = nearest(face) as u32;
         close |= (slack - (p - whole(p)).abs()).to_bits();
         close |= (slack - (q - whole(q)).abs()).to_bits();
-        close |= ((ax - ay).abs() - error).to_bits();
-        close |= ((ax - az).abs() - error).to_bits();
-        close |= ((ay - az).abs() - error).to_bits();
+        close |= (magnitude - second - error).to_bits();
     }
     close >> 63 == 0
 }

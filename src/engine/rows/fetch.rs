@@ -33,28 +33,35 @@ impl Default for Workspace {
     }
 }
 
-/// Samples a unit at `u`, `v` (1/256 texel; less half a texel where it is filtered) on `faces`, and leaves the channels in `rows`, each in
-/// its own where that is wanted. Coordinates are limited on the way.
+/// Finds the entries of a unit at `u`, `v` (1/256 texel; less half a texel where it is filtered) on `faces`. Coordinates are limited on the way.
 #[inline(always)]
-pub(super) fn sample(
+pub(super) fn locate(
     table: &Table,
     [u, v]: &mut [Numbers<i32>; 2],
     faces: Option<&Numbers<u32>>,
+    work: &mut Workspace,
+) {
+    let (Some(u), Some(v)) = (u.first_chunk_mut::<BLOCK>(), v.first_chunk_mut::<BLOCK>()) else { return };
+    let entries = &mut work.entries;
+    match faces.and_then(|faces| faces.first_chunk::<BLOCK>()) {
+        Some(faces) => address::<true>(table, u, v, |n| faces[n] * table.face, entries),
+        None if table.axes.iter().all(Axis::repeats) => address::<false>(table, u, v, |_| 0, entries),
+        None => address::<true>(table, u, v, |_| 0, entries),
+    }
+}
+
+/// Samples a unit at the entries that are [located](locate), and leaves the channels in `rows`, each in its own where that is wanted.
+#[inline(always)]
+pub(super) fn sample(
+    table: &Table,
+    [u, v]: &[Numbers<i32>; 2],
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
     rows: &mut [Row],
 ) {
     let Workspace { entries, texels: found, upper, lower, .. } = work;
-    let (Some(u), Some(v)) = (u.first_chunk_mut::<BLOCK>(), v.first_chunk_mut::<BLOCK>()) else { return };
-    limit(&table.axes[0], u);
-    limit(&table.axes[1], v);
-    address(&table.axes, table.pitch, u, v, entries);
-    if let Some(faces) = faces {
-        for (entry, face) in entries.iter_mut().zip(faces) {
-            *entry += *face * table.face;
-        }
-    }
+    let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return };
     let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
     // What nobody wants goes to the first rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
@@ -152,17 +159,6 @@ fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Row]) {
     }
 }
 
-/// Limits coordinates, where the axis has limits.
-#[inline(always)]
-fn limit(axis: &Axis, coordinates: &mut [i32; BLOCK]) {
-    if !axis.repeats() {
-        for coordinate in coordinates {
-            // Not `clamp`: what can panic is not a loop of lanes.
-            *coordinate = (*coordinate).max(axis.low).min(axis.high);
-        }
-    }
-}
-
 /// The entry of a coordinate within the limits along an axis.
 #[inline(always)]
 pub(super) fn entry(axis: &Axis, coordinate: i32) -> i32 {
@@ -175,11 +171,23 @@ fn weight(coordinate: i32) -> u32 {
     (coordinate & 255) as u32
 }
 
+/// `LIMITS`: an axis has limits.
 #[inline(always)]
-fn address([columns, rows]: &[Axis; 2], pitch: i32, u: &[i32; BLOCK], v: &[i32; BLOCK], entries: &mut [u32; BLOCK]) {
-    let (columns, rows) = (*columns, *rows);
+fn address<const LIMITS: bool>(
+    table: &Table,
+    u: &mut [i32; BLOCK],
+    v: &mut [i32; BLOCK],
+    face: impl Fn(usize) -> u32,
+    entries: &mut [u32; BLOCK],
+) {
+    let ([columns, rows], pitch) = (table.axes, table.pitch);
     for n in 0..BLOCK {
-        entries[n] = (entry(&rows, v[n]) * pitch + entry(&columns, u[n])) as u32;
+        if LIMITS {
+            // Not `clamp`: what can panic is not a loop of lanes.
+            u[n] = u[n].max(columns.low).min(columns.high);
+            v[n] = v[n].max(rows.low).min(rows.high);
+        }
+        entries[n] = (entry(&rows, v[n]) * pitch + entry(&columns, u[n])) as u32 + face(n);
     }
 }
 

@@ -28,6 +28,7 @@ mod levels;
 mod patch;
 mod planes;
 mod quotient;
+mod steady;
 mod store;
 mod table;
 mod triangle;
@@ -73,6 +74,8 @@ pub(crate) struct Sampler {
     signed: [bool; 4],
     /// The lod counts.
     mixes: bool,
+    /// An earlier sampler whose coordinates are this one's.
+    shares: Option<usize>,
     /// `None`: of an image that is drawn by this scene, made anew for each draw.
     table: Option<Arc<Table>>,
 }
@@ -182,6 +185,10 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     emit(&built, draw, &mut compiled);
     let textures = compiled.textures;
     compiled.samplers.retain(|sampler| textures[sampler.unit].iter().any(Option::is_some));
+    for n in 1..compiled.samplers.len() {
+        let (earlier, later) = compiled.samplers.split_at_mut(n);
+        later[0].shares = earlier.iter().position(|other| share(draw, other, &later[0]));
+    }
     let kills = draw.shader.as_ref().is_some_and(crate::texture::stage::PlannedShader::kills);
     compiled.drops = kills || draw.alpha_test.is_some() || draw.depth_test.is_some();
     let whole = surface::write_mask(draw.surface, [true; 4]);
@@ -191,6 +198,18 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
     compiled
+}
+
+/// Whether two samplers have the same coordinates at all vertices, and so everywhere.
+fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
+    let [a, b] = [one, other].map(|sampler| &draw.units[sampler.index]);
+    let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
+    !(one.mixes || other.mixes || one.cube || other.cube)
+        && one.filters == other.filters
+        && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
+        // Coordinates are limited where they stand.
+        && table::axes(a) == table::axes(b)
+        && draw.assembly.vertices.iter().all(|v| v.texture_coordinates[first] == v.texture_coordinates[second])
 }
 
 /// The draw's units, if rows can sample all of them and their tables pay.
@@ -225,6 +244,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             sides: unit.scale(&unit.levels[0]),
             signed: unit.state.signed,
             mixes: unit.needs_lod(),
+            shares: None,
             table,
         });
     }

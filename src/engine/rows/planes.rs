@@ -14,7 +14,7 @@ pub(super) struct Plane {
     slope: [f64; 2],
     whole: [i64; 2],
     /// Powers of two that all G_k and P_k share.
-    shared: u32,
+    pub(super) shared: u32,
     /// The largest magnitude of its quotient by D, and somewhat more.
     pub(super) reach: f64,
 }
@@ -62,6 +62,11 @@ impl Plane {
         !triangle.exact_reciprocal && (falls(0) || falls(2))
     }
 
+    /// How it changes along x, modulo 2^64.
+    pub(super) fn x(&self) -> i64 {
+        self.whole[0]
+    }
+
     /// From a pixel with edge functions `e`.
     #[inline(always)]
     pub(super) fn line(&self, e: &[f64; 3]) -> Line {
@@ -82,6 +87,22 @@ impl Plane {
         let [g0, g1, g2] = self.g;
         let c = g0.wrapping_mul(e[0]).wrapping_add(g1.wrapping_mul(e[1])).wrapping_add(g2.wrapping_mul(e[2]));
         Exact { c, x: self.whole[0], y: self.whole[1] }
+    }
+
+    /// The same at a pixel of the triangle, and its slope along x, divided by the power of two that all G_k and P_k share. `None`: they have
+    /// too many bits.
+    #[inline(always)]
+    pub(super) fn divided(&self, triangle: &Triangle, e: &[i64; 3]) -> Option<(i64, i64)> {
+        let [g0, g1, g2] = [self.g[0] >> self.shared, self.g[1] >> self.shared, self.g[2] >> self.shared];
+        let [a0, a1, a2] = triangle.a;
+        // No edge function is larger than the area.
+        let largest = triangle.doubled_area.unsigned_abs() | a0.unsigned_abs() | a1.unsigned_abs() | a2.unsigned_abs();
+        let all = g0.unsigned_abs() | g1.unsigned_abs() | g2.unsigned_abs();
+        let fits = all.leading_zeros() + largest.leading_zeros() >= 64 + 4;
+        if !fits {
+            return None;
+        }
+        Some((g0 * e[0] + g1 * e[1] + g2 * e[2], g0 * a0 + g1 * a1 + g2 * a2))
     }
 
     /// By how many bits numerator and denominator can be divided, if that leaves denominators below 2^30. `bits` is what D can have.

@@ -179,19 +179,10 @@ impl Scaled {
         self
     }
 
-    /// Divided by a denominator that all lanes share, given its reciprocal.
-    #[inline(always)]
-    pub(super) fn divided(mut self, reciprocal: f64) -> Scaled {
-        self.line = self.line.times(reciprocal);
-        self
-    }
-
     /// The step of a lane.
     #[inline(always)]
-    fn step<const FMA: bool, const ROW: bool, const DIVIDES: bool>(&self, x: f64, y: f64, r: f64) -> i32 {
-        let numerator = self.line.at::<FMA, ROW>(x, y);
-        let quotient = if DIVIDES { numerator * r } else { numerator };
-        ((quotient + MAGIC).to_bits() as i32).max(self.least)
+    fn step<const FMA: bool, const ROW: bool>(&self, x: f64, y: f64, r: f64) -> i32 {
+        ((self.line.at::<FMA, ROW>(x, y) * r + MAGIC).to_bits() as i32).max(self.least)
     }
 }
 
@@ -205,7 +196,7 @@ pub(super) fn prove<const ROW: bool>(
     let (x, y) = position::<ROW>(n, f64::from(at.last), at.x, at.y, &IOTA_REAL);
     let r = 1.0 / denominator.at::<false, ROW>(x, y);
     let floor = |numerator: &Scaled| {
-        let (value, close) = numerator.floor(numerator.step::<false, ROW, true>(x, y, r));
+        let (value, close) = numerator.floor(numerator.step::<false, ROW>(x, y, r));
         (close >= 0).then_some(value)
     };
     Some([floor(&numerators[0])?, floor(&numerators[1])?])
@@ -232,28 +223,6 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     first: &mut [i32],
     second: &mut [i32],
 ) -> [bool; 2] {
-    estimate::<FMA, ROW, true>(at, denominator, numerators, first, second)
-}
-
-/// The same of quotients that have been [divided](Scaled::divided): nothing varies but the numerators.
-#[inline(always)]
-pub(super) fn estimate_level<const FMA: bool>(
-    at: Positions<'_>,
-    numerators: &[Scaled; 2],
-    first: &mut [i32],
-    second: &mut [i32],
-) -> [bool; 2] {
-    estimate::<FMA, true, false>(at, Line::default(), numerators, first, second)
-}
-
-#[inline(always)]
-fn estimate<const FMA: bool, const ROW: bool, const DIVIDES: bool>(
-    at: Positions<'_>,
-    denominator: Line,
-    numerators: &[Scaled; 2],
-    first: &mut [i32],
-    second: &mut [i32],
-) -> [bool; 2] {
     let [one, other] = *numerators;
     let mut close = [0_i32; 2];
     let last = f64::from(at.last);
@@ -261,9 +230,9 @@ fn estimate<const FMA: bool, const ROW: bool, const DIVIDES: bool>(
     let (second, xs, ys, iota) = (&mut second[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let r = if DIVIDES { 1.0 / denominator.at::<FMA, ROW>(x, y) } else { 1.0 };
-        let (a, a_close) = one.floor(one.step::<FMA, ROW, DIVIDES>(x, y, r));
-        let (b, b_close) = other.floor(other.step::<FMA, ROW, DIVIDES>(x, y, r));
+        let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
+        let (a, a_close) = one.floor(one.step::<FMA, ROW>(x, y, r));
+        let (b, b_close) = other.floor(other.step::<FMA, ROW>(x, y, r));
         (first[n], second[n]) = (a, b);
         close[0] |= a_close;
         close[1] |= b_close;

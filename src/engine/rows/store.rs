@@ -38,10 +38,10 @@ fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], ou
     }
 }
 
-/// The stored rows as words.
+/// The stored rows as words, from a lane on.
 #[inline(always)]
-pub(super) fn pack(draw: &PlannedDraw, compiled: &Compiled, rows: &[Row], words: &mut [u32; BLOCK]) {
-    let row = |channel: usize| rows[usize::from(compiled.stored[channel])].block();
+pub(super) fn pack(draw: &PlannedDraw, compiled: &Compiled, rows: &[Row], lane: usize, words: &mut [u32]) {
+    let row = |channel: usize| &rows[usize::from(compiled.stored[channel])].0[lane..lane + words.len()];
     let (r, g, b, a) = (row(0), row(1), row(2), row(3));
     match draw.surface {
         SurfaceFormat::A8R8G8B8 => pack_as(SurfaceFormat::A8R8G8B8, r, g, b, a, words),
@@ -52,16 +52,9 @@ pub(super) fn pack(draw: &PlannedDraw, compiled: &Compiled, rows: &[Row], words:
 }
 
 #[inline(always)]
-fn pack_as(
-    format: SurfaceFormat,
-    r: &[i16; BLOCK],
-    g: &[i16; BLOCK],
-    b: &[i16; BLOCK],
-    a: &[i16; BLOCK],
-    words: &mut [u32; BLOCK],
-) {
-    for n in 0..BLOCK {
-        words[n] = surface::pack(format, [r[n] as u8, g[n] as u8, b[n] as u8, a[n] as u8]);
+fn pack_as(format: SurfaceFormat, r: &[i16], g: &[i16], b: &[i16], a: &[i16], words: &mut [u32]) {
+    for ((((word, r), g), b), a) in words.iter_mut().zip(r).zip(g).zip(b).zip(a) {
+        *word = surface::pack(format, [*r as u8, *g as u8, *b as u8, *a as u8]);
     }
 }
 

@@ -7,9 +7,8 @@ use super::fog::Fog;
 use super::kernels::{LANES, Row, STEP};
 use super::levels::{Quads, Reads};
 use super::planes::{Plane, inverse};
-use super::quotient::{
-    Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_level, estimate_two, estimate_weights, settle,
-};
+use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
+use super::steady::{Steady, SteadyRow, repeat};
 use super::{Compiled, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
@@ -31,8 +30,8 @@ pub(super) enum Planes {
     Ratio([Plane; 3], f64),
     /// Anything else: the definition, pixel by pixel.
     Other,
-    /// The same coordinates as those of an earlier sampler.
-    Same(usize),
+    /// None: an earlier sampler's coordinates are used.
+    Shared,
 }
 
 /// A triangle with what its pieces need.
@@ -63,9 +62,12 @@ pub(super) struct Varying {
     /// What samplers read whose levels count; as many as are wanted.
     pub(super) reads: Vec<Reads>,
     pub(super) quads: Box<Quads>,
-    /// W0 and W2.
-    pub(super) weights: [Numbers<i32>; 2],
-    narrow: [Numbers<u16>; 2],
+    /// Of the row whose pieces come now.
+    steady: SteadyRow,
+    /// W0 and W2 while they are settled.
+    weights: [Numbers<i32>; 2],
+    /// The same in 16 bits.
+    pub(super) narrow: [Numbers<u16>; 2],
     whole: [Numbers<i32>; 2],
 }
 
@@ -78,6 +80,7 @@ impl Default for Varying {
             alive: [true; LANES],
             reads: Vec::new(),
             quads: Box::default(),
+            steady: SteadyRow::default(),
             weights: [[0; LANES]; 2],
             narrow: [[0; LANES]; 2],
             whole: [[0; LANES]; 2],
@@ -130,18 +133,10 @@ impl<'a> Setup<'a> {
         let inverse = inverse(triangle);
         let plane = |g: [i64; 3]| Plane::new(triangle, &inverse, g);
         samplers.clear();
-        for (n, sampler) in compiled.samplers.iter().enumerate() {
+        for sampler in &compiled.samplers {
             let coordinates = &context.coordinates[sampler.unit];
-            let earlier = compiled.samplers[..n].iter().position(|other| {
-                other.filters == sampler.filters
-                    && !other.mixes
-                    && !sampler.mixes
-                    && !other.cube
-                    && context.coordinates[other.unit] == *coordinates
-                    && context.draw.units[other.index].levels[0] == context.draw.units[sampler.index].levels[0]
-            });
             samplers.push(match coordinates {
-                _ if earlier.is_some() => Planes::Same(earlier.unwrap_or(0)),
+                _ if sampler.shares.is_some() => Planes::Shared,
                 Some(Coordinates::Plane(g)) => Planes::Plane([plane(g[0]), plane(g[1])]),
                 Some(Coordinates::Direction(g)) => {
                     Planes::Direction([plane(g[0]), plane(g[1]), plane(g[2])], only_face(g))
@@ -171,6 +166,37 @@ impl<'a> Setup<'a> {
         self.samplers
     }
 
+    /// What is known of a row before its pieces, from its first pixel on. Without it none of them is steady.
+    #[inline(always)]
+    pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &Compiled, varying: &mut Varying) {
+        let SteadyRow { samplers, weights, complete } = &mut varying.steady;
+        *complete = false;
+        weights.1 = false;
+        for sampler in samplers.iter_mut() {
+            sampler.1 = false;
+        }
+        if self.denominator.x() != 0 {
+            return;
+        }
+        let triangle = &self.context.triangle;
+        let e = triangle.edges(i, j);
+        let d = self.denominator.exact(&e).c;
+        *complete = !compiled.samples_pixels && compiled.fog.is_none() && self.context.draw.depth_test.is_none();
+        for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
+            if let (Planes::Plane(planes), false) = (planes, sampler.mixes) {
+                let bias = sampler.bias();
+                *is = u.begin(&planes[0], triangle, &e, d, columns, bias)
+                    && v.begin(&planes[1], triangle, &e, d, columns, bias);
+            }
+            *complete &= *is || matches!(planes, Planes::Shared);
+        }
+        if let (Some(planes), ([w0, w2], is)) = (&self.weights, weights) {
+            *is =
+                w0.begin(&planes[0], triangle, &e, d, columns, 0) && w2.begin(&planes[1], triangle, &e, d, columns, 0);
+            *complete &= *is;
+        }
+    }
+
     /// Everything that varies, for a piece. `ROW`: its pixels are on one row, one beside the other.
     #[inline(always)]
     pub(super) fn interpolate<const FMA: bool, const ROW: bool>(
@@ -181,12 +207,49 @@ impl<'a> Setup<'a> {
         varying: &mut Varying,
         rows: &mut [Row],
     ) {
-        let triangle = &self.context.triangle;
-        let e = triangle.edges(piece.first.0, piece.first.1);
+        if ROW {
+            self.steady(piece, compiled, varying);
+        }
+        if !(ROW && varying.steady.complete) {
+            self.estimated::<FMA, ROW>(piece, compiled, varying, rows);
+        }
+        let [w0, w2] = &varying.narrow;
+        let sets = [(&compiled.primary, &self.context.primary), (&compiled.secondary, &self.context.secondary)];
+        for (slots, colors) in sets {
+            for channel in 0..4 {
+                let Some(slot) = slots[channel] else { continue };
+                let out = &mut rows[usize::from(slot)].0[piece.lanes()];
+                let corners =
+                    [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
+                if corners[0] == corners[1] && corners[1] == corners[2] {
+                    out.fill(corners[0] as i16);
+                } else {
+                    color(corners, &w0[piece.lanes()], &w2[piece.lanes()], out);
+                }
+            }
+        }
+        if compiled.samples_pixels {
+            self.pixel_by_pixel(piece, compiled, textures, varying, rows);
+        }
+    }
+
+    /// What varies and is estimated.
+    #[inline(always)]
+    fn estimated<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        compiled: &Compiled,
+        varying: &mut Varying,
+        rows: &mut [Row],
+    ) {
+        let e = self.context.triangle.edges(piece.first.0, piece.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = self.denominator.line(&real);
         let bounds = self.bounds::<FMA, ROW>(piece, &real, denominator);
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
+            if ROW && varying.steady.samplers[n].1 {
+                continue;
+            }
             if sampler.mixes {
                 let Varying { reads, quads, .. } = &mut *varying;
                 let Some(reads) = reads.get_mut(n) else { continue };
@@ -228,29 +291,20 @@ impl<'a> Setup<'a> {
                 Planes::Other => {
                     self.defined(piece, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
                 }
-                Planes::Same(other) => {
-                    let lanes = piece.lanes();
-                    let [earlier, numbers] = match varying.coordinates.split_at_mut(n) {
-                        (before, [numbers, ..]) => [&mut before[*other], numbers],
-                        (_, []) => return,
-                    };
-                    for axis in 0..2 {
-                        numbers[axis][lanes.clone()].copy_from_slice(&earlier[axis][lanes.clone()]);
-                    }
-                }
+                Planes::Shared => {}
             }
         }
-        if let Some(planes) = &self.weights {
+        if let Some(planes) = &self.weights
+            && !(ROW && varying.steady.weights.1)
+        {
             let Varying { weights: [w0, w2], whole, .. } = &mut *varying;
             let (w0, w2) = (&mut w0[piece.lanes()], &mut w2[piece.lanes()]);
-            // Single precision is for divisions: its wide margin makes many blocks be settled.
-            let divides = !(ROW && denominator.x == 0.0);
-            let weighed = if ROW && divides { self.weighed(planes, (&real, denominator), &bounds) } else { None };
+            let weighed = if ROW { self.weighed(planes, (&real, denominator), &bounds) } else { None };
             let close = if let Some(weighed) = weighed {
                 estimate_weights::<FMA>(piece.at.last, denominator, &weighed, w0, w2)
             } else if let Some(scaled) = self.scaled::<ROW>(planes, 0, (&real, denominator), &bounds) {
                 let scaled = [scaled[0].not_negative(), scaled[1].not_negative()];
-                let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, &bounds, w0, w2);
+                let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, w0, w2);
                 close[0] | close[1]
             } else {
                 for n in 0..piece.count {
@@ -262,25 +316,8 @@ impl<'a> Setup<'a> {
             if close {
                 self.settle_weights::<ROW>(piece, planes, &e, w0, w2, whole);
             }
-        }
-        if self.weights.is_some() {
             for n in 0..2 {
                 narrow(&varying.weights[n][piece.lanes()], &mut varying.narrow[n][piece.lanes()]);
-            }
-        }
-        let [w0, w2] = &varying.narrow;
-        let sets = [(&compiled.primary, &self.context.primary), (&compiled.secondary, &self.context.secondary)];
-        for (slots, colors) in sets {
-            for channel in 0..4 {
-                let Some(slot) = slots[channel] else { continue };
-                let out = &mut rows[usize::from(slot)].0[piece.lanes()];
-                let corners =
-                    [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
-                if corners[0] == corners[1] && corners[1] == corners[2] {
-                    out.fill(corners[0] as i16);
-                } else {
-                    color(corners, &w0[piece.lanes()], &w2[piece.lanes()], out);
-                }
             }
         }
         if self.context.draw.depth_test.is_some() {
@@ -290,9 +327,6 @@ impl<'a> Setup<'a> {
             let Varying { whole: [values, spare], .. } = &mut *varying;
             let row = &mut rows[usize::from(slot)].0;
             self.fog_factors::<FMA, ROW>(piece, &e, (&real, denominator), &bounds, values, spare, row);
-        }
-        if compiled.samples_pixels {
-            self.pixel_by_pixel(piece, compiled, textures, varying, rows);
         }
     }
 
@@ -339,25 +373,7 @@ impl<'a> Setup<'a> {
         ])
     }
 
-    /// Floors of two quotients; one denominator serves a row along which it does not vary.
-    #[inline(always)]
-    fn estimate<const FMA: bool, const ROW: bool>(
-        &self,
-        piece: Piece<'_>,
-        denominator: Line,
-        scaled: &[Scaled; 2],
-        bounds: &Bounds,
-        first: &mut [i32],
-        second: &mut [i32],
-    ) -> [bool; 2] {
-        if ROW && denominator.x == 0.0 {
-            let scaled = [scaled[0].divided(bounds.reciprocal), scaled[1].divided(bounds.reciprocal)];
-            return estimate_level::<FMA>(piece.at, &scaled, first, second);
-        }
-        estimate_two::<FMA, ROW>(piece.at, denominator, scaled, first, second)
-    }
-
-    /// The same for weights on a row, in single precision.
+    /// Weights on a row to be estimated, in single precision.
     #[inline(always)]
     fn weighed(
         &self,
@@ -401,7 +417,7 @@ impl<'a> Setup<'a> {
         whole: &mut Numbers<i32>,
     ) {
         if let Some(scaled) = self.scaled::<ROW>(planes, bias, (real, denominator), bounds) {
-            let close = self.estimate::<FMA, ROW>(piece, denominator, &scaled, bounds, u, v);
+            let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, u, v);
             if close[0] | close[1] {
                 self.settle_coordinates::<ROW>(piece, bias, planes, close, e, u, v, whole);
             }
@@ -412,6 +428,61 @@ impl<'a> Setup<'a> {
                     (defined_coordinate(&sample, &planes[0], bias), defined_coordinate(&sample, &planes[1], bias));
             }
         }
+    }
+
+    /// What of a row is known before its pieces, for one of them.
+    #[inline(always)]
+    fn steady(&self, piece: Piece<'_>, compiled: &Compiled, varying: &mut Varying) {
+        let Varying { coordinates, weights: [w0, w2], narrow: [narrow0, narrow2], whole, steady, .. } = &mut *varying;
+        let (lanes, triangle) = (piece.lanes(), &self.context.triangle);
+        for (n, planes) in self.samplers.iter().enumerate() {
+            let (([along, down], true), Planes::Plane(planes)) = (&mut steady.samplers[n], planes) else { continue };
+            let [u, v] = &mut coordinates[n];
+            let (u, v) = (&mut u[lanes.clone()], &mut v[lanes.clone()]);
+            let found = [along.run(piece.count, u), down.run(piece.count, v)];
+            if found[0] | found[1] {
+                let bias = compiled.samplers[n].bias();
+                let exact = [along.is_exact(), down.is_exact()];
+                self.settle_steady(piece, planes, bias, found, exact, u, v, &mut whole[0]);
+            }
+        }
+        if let (([first, third], true), Some(planes)) = (&mut steady.weights, &self.weights) {
+            let (narrow0, narrow2) = (&mut narrow0[lanes.clone()], &mut narrow2[lanes.clone()]);
+            let found = first.run(piece.count, narrow0) | third.run(piece.count, narrow2);
+            if found && !first.is_exact() {
+                let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes]);
+                widen(narrow0, w0);
+                widen(narrow2, w2);
+                let e = triangle.edges(piece.first.0, piece.first.1);
+                self.settle_weights::<true>(piece, planes, &e, w0, w2, whole);
+                narrow(w0, narrow0);
+                narrow(w2, narrow2);
+            } else if found && !triangle.exact_reciprocal {
+                steady_ties([first, third], piece.count, narrow0, narrow2);
+            }
+        }
+    }
+
+    /// INT-4, INT-4t of coordinates on a row of which they are known, where some may be exact.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "each result apart, so that the compiler sees that none overlaps another"
+    )]
+    fn settle_steady(
+        &self,
+        piece: Piece<'_>,
+        planes: &[Plane; 2],
+        bias: i32,
+        found: [bool; 2],
+        exact: [bool; 2],
+        u: &mut [i32],
+        v: &mut [i32],
+        whole: &mut Numbers<i32>,
+    ) {
+        let triangle = &self.context.triangle;
+        let found = [0, 1].map(|n| found[n] && !(exact[n] && !planes[n].lowers(triangle)));
+        let e = triangle.edges(piece.first.0, piece.first.1);
+        self.settle_coordinates::<true>(piece, bias, planes, found, &e, u, v, whole);
     }
 
     /// INT-4, INT-4t of estimates of which some lane is not proved.
@@ -526,6 +597,7 @@ impl<'a> Setup<'a> {
 }
 
 /// How the denominators of a piece vary.
+#[derive(Default)]
 pub(super) struct Bounds {
     /// No term that goes into one is larger than this many of the smallest.
     ratio: f64,
@@ -547,6 +619,37 @@ fn narrow(wide: &[i32], out: &mut [u16]) {
     for (out, wide) in out.iter_mut().zip(wide) {
         *out = *wide as u16;
     }
+}
+
+/// The same in 32 bits.
+#[inline(always)]
+fn widen(narrow: &[u16], out: &mut [i32]) {
+    for (out, narrow) in out.iter_mut().zip(narrow) {
+        *out = i32::from(*narrow);
+    }
+}
+
+/// INT-3 of weights that are exact where something is tied.
+#[inline(always)]
+fn steady_ties([first, third]: [&Steady; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
+    let ((w0, _), (w2, _)) = (w0.as_chunks_mut::<STEP>(), w2.as_chunks_mut::<STEP>());
+    for (step, (w0, w2)) in w0.iter_mut().zip(w2.iter_mut()).enumerate() {
+        let (whole0, whole2) = (first.whole(step), third.whole(step));
+        let mut tied = 0;
+        for k in 0..STEP {
+            tied |= whole0[k] | whole2[k];
+        }
+        if tied != 0 {
+            let (mut floors0, mut floors2) = ([0; STEP], [0; STEP]);
+            widen(w0, &mut floors0);
+            widen(w2, &mut floors2);
+            break_ties(&mut floors0, &mut floors2, &whole0, &whole2);
+            narrow(&floors0, w0);
+            narrow(&floors2, w2);
+        }
+    }
+    repeat(count, w0);
+    repeat(count, w2);
 }
 
 /// INT-2 of a channel.

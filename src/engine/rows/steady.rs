@@ -1,0 +1,290 @@
+//! Quotients along a row on which the denominator does not vary (one w, or a w that depends on y only): exact, by steps of quotients and
+//! remainders. `docs/exactness.md` has the argument.
+#![allow(clippy::float_arithmetic, reason = "an estimate of a quotient, which its remainder corrects")]
+
+use super::BLOCK;
+use super::kernels::STEP;
+use super::planes::Plane;
+use super::quotient::{IOTA_REAL, nearest};
+use crate::raster::setup::Triangle;
+use crate::state::TEXTURE_UNITS;
+
+/// Magnitudes that quotients stay below.
+const MOST: f64 = (1_u32 << 29) as f64;
+
+/// Bits that a divisor has where lanes compare remainders.
+const BITS: u32 = 29;
+
+/// A number that quotients are written as.
+pub(super) trait Written: Copy {
+    /// Of a quotient that it holds.
+    fn of(quotient: i32) -> Self;
+}
+
+impl Written for i32 {
+    #[inline(always)]
+    fn of(quotient: i32) -> i32 {
+        quotient
+    }
+}
+
+impl Written for u16 {
+    #[inline(always)]
+    fn of(quotient: i32) -> u16 {
+        quotient as u16
+    }
+}
+
+/// A quotient of whole numbers: the floor, and a remainder that is not negative.
+#[derive(Clone, Copy, Debug, Default)]
+struct Divided {
+    quotient: i32,
+    remainder: i64,
+}
+
+impl Divided {
+    /// Of a numerator modulo 2^64, given the quotient more or less, whose magnitude is below [`MOST`]. The divisor is positive.
+    #[inline(always)]
+    fn new(numerator: i64, real: f64, divisor: i64) -> Divided {
+        // The nearest, or as near as makes no difference: what remains lies within half a divisor and a little more.
+        let quotient = nearest(real);
+        let remainder = numerator.wrapping_sub(i64::from(quotient).wrapping_mul(divisor));
+        let negative = remainder >> 63;
+        Divided { quotient: quotient + negative as i32, remainder: remainder + (divisor & negative) }
+    }
+
+    #[inline(always)]
+    fn plus(self, other: Divided, divisor: i64) -> Divided {
+        // Without branches: nobody can tell which way they would go.
+        let left = self.remainder + other.remainder - divisor;
+        let none = left >> 63;
+        Divided { quotient: self.quotient + other.quotient + 1 + none as i32, remainder: left + (divisor & none) }
+    }
+}
+
+/// A quotient along a row: that of a pixel, and what the next pixels add to it.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Steady {
+    /// Of the next piece's first pixel.
+    here: Divided,
+    divisor: i64,
+    slope: i64,
+    /// Of a whole step of lanes.
+    step: Divided,
+    /// Bits of remainders that lanes do not look at.
+    shift: u32,
+    /// So many slopes as the lane says: the floors, and what lanes look at of the remainders.
+    quotients: [i32; STEP],
+    remainders: [i32; STEP],
+    /// The same of the first lanes of a piece's steps.
+    starts: [[i32; 2]; STEPS],
+}
+
+/// Steps of a piece.
+const STEPS: usize = BLOCK / STEP;
+
+impl Steady {
+    /// Becomes that of a plane over D, less a bias, from a pixel with edge functions `e` on, of which as many columns follow as are said.
+    /// `false`: it has too many bits.
+    #[inline(always)]
+    pub(super) fn begin(
+        &mut self,
+        plane: &Plane,
+        triangle: &Triangle,
+        e: &[i64; 3],
+        denominator: i64,
+        columns: i64,
+        bias: i32,
+    ) -> bool {
+        let Some((numerator, slope)) = plane.divided(triangle, e) else { return false };
+        self.set(numerator, slope, denominator >> plane.shared, columns, bias)
+    }
+
+    /// Becomes that of a numerator, and a slope, over a divisor.
+    #[inline(always)]
+    fn set(&mut self, numerator: i64, slope: i64, divisor: i64, columns: i64, bias: i32) -> bool {
+        let reciprocal = 1.0 / divisor as f64;
+        let all = (columns + 2 * STEP as i64) as f64;
+        let real = numerator as f64 * reciprocal;
+        // Also refuses what is no number.
+        let fits = divisor > 0 && real.abs() + (slope as f64 * reciprocal).abs() * all + all < MOST;
+        if !fits {
+            return false;
+        }
+        self.here = Divided::new(numerator, real, divisor);
+        self.here.quotient -= bias;
+        if (self.divisor, self.slope) != (divisor, slope) {
+            (self.divisor, self.slope) = (divisor, slope);
+            self.shift = (64 - divisor.leading_zeros()).saturating_sub(BITS);
+            if slope != 0 {
+                self.tabulate(slope, reciprocal);
+            }
+        }
+        true
+    }
+
+    /// Makes the tables of a slope.
+    #[inline(always)]
+    fn tabulate(&mut self, slope: i64, reciprocal: f64) {
+        let (real, divisor, shift) = (slope as f64 * reciprocal, self.divisor, self.shift);
+        for k in 0..STEP {
+            let multiple = Divided::new(slope.wrapping_mul(k as i64), IOTA_REAL[k] * real, divisor);
+            self.quotients[k] = multiple.quotient;
+            self.remainders[k] = (multiple.remainder >> shift) as i32;
+        }
+        self.step = Divided::new(slope.wrapping_mul(STEP as i64), STEP as f64 * real, divisor);
+    }
+
+    /// Floors of `count` lanes; whole steps are written, whose later lanes repeat the last. Says whether a lane may be exact or, unless all
+    /// are [right](Self::is_exact), one too large. Pieces begin at whole steps.
+    #[inline(always)]
+    pub(super) fn run<T: Written>(&mut self, count: usize, out: &mut [T]) -> bool {
+        if self.slope == 0 {
+            let floor = T::of(self.here.quotient);
+            for out in out {
+                *out = floor;
+            }
+            return self.here.remainder == 0;
+        }
+        let (divisor, slack) = (self.divisor, self.slack());
+        let looked = (divisor >> self.shift) as i32;
+        let (out, _) = out.as_chunks_mut::<STEP>();
+        let mut at = self.here;
+        for start in &mut self.starts[..out.len().min(STEPS)] {
+            // Less a divisor, so that the sign is the carry.
+            *start = [at.quotient + 1, (at.remainder >> self.shift) as i32 - looked + slack];
+            at = at.plus(self.step, divisor);
+        }
+        self.here = at;
+        let least = floors(&self.starts, &self.quotients, &self.remainders, looked, out);
+        repeat(count, out);
+        let mut found = false;
+        for least in least {
+            found |= least <= 2 * slack as u32;
+        }
+        found
+    }
+
+    /// Where nothing remains in a step of the piece that [`run`](Self::run) went over.
+    #[inline(always)]
+    pub(super) fn whole(&self, step: usize) -> [i32; STEP] {
+        let mut whole = [i32::from(self.here.remainder == 0); STEP];
+        if self.slope != 0 {
+            let ([_, remainder], divisor) = (self.starts[step], self.divisor as i32);
+            for k in 0..STEP {
+                let sum = remainder + self.remainders[k];
+                whole[k] = i32::from((sum == 0) | (sum + divisor == 0));
+            }
+        }
+        whole
+    }
+
+    /// Where bits are not looked at, a sum of two remainders is too small by less than two, and the divisor by less than one.
+    #[inline(always)]
+    fn slack(&self) -> i32 {
+        i32::from(self.shift > 0)
+    }
+
+    /// All floors are right.
+    pub(super) fn is_exact(&self) -> bool {
+        self.shift == 0
+    }
+}
+
+/// Floors of steps of lanes, and the least of what remains, for each place in a step. As parameters of their own, tables are known not to
+/// overlap the result.
+#[inline(always)]
+fn floors<T: Written>(
+    starts: &[[i32; 2]; STEPS],
+    quotients: &[i32; STEP],
+    remainders: &[i32; STEP],
+    divisor: i32,
+    out: &mut [[T; STEP]],
+) -> [u32; STEP] {
+    let mut least = [u32::MAX; STEP];
+    for ([quotient, remainder], out) in starts.iter().zip(out) {
+        for k in 0..STEP {
+            let sum = remainder + remainders[k];
+            out[k] = T::of(quotient + quotients[k] + (sum >> 31));
+            least[k] = least[k].min(sum as u32).min((sum + divisor) as u32);
+        }
+    }
+    least
+}
+
+/// Lanes past the end of a piece become what its last one is.
+#[inline(always)]
+pub(super) fn repeat<T: Copy>(count: usize, steps: &mut [[T; STEP]]) {
+    if let (Some(step), left @ 1..) = (steps.last_mut(), count % STEP) {
+        let last = step[left - 1];
+        for (k, lane) in step.iter_mut().enumerate() {
+            *lane = if k < left { *lane } else { last };
+        }
+    }
+}
+
+/// What of a row is known before its pieces.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SteadyRow {
+    /// u and v of each sampler, and whether its quotients are these.
+    pub(super) samplers: [([Steady; 2], bool); TEXTURE_UNITS],
+    /// Weights 0 and 2, and whether they are these.
+    pub(super) weights: ([Steady; 2], bool),
+    /// Nothing else varies.
+    pub(super) complete: bool,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Sequences of quotients against divisions, one by one: divisors of few and of many bits, ties in all of them.
+    #[test]
+    fn steps_are_floors() {
+        let mut state = 0x2545_f491_4f6c_dd1d_u64;
+        let mut random = |bits: u32| {
+            state ^= state << 13;
+            state ^= state >> 7;
+            state ^= state << 17;
+            (state >> (64 - bits)) as i64
+        };
+        let (mut exact, mut close) = (0, 0);
+        for round in 0..60_000 {
+            let bits = 2 + round % 52;
+            let divisor = random(bits).max(1);
+            let bits = (bits + 18).min(60);
+            let (mut numerator, mut slope) = (random(bits) - (1 << (bits - 1)), random(bits - 8) - (1 << (bits - 9)));
+            if round % 3 == 0 {
+                // Exact quotients every few lanes.
+                let every = 1 + random(4);
+                slope = slope / divisor * divisor / every;
+                numerator = numerator / divisor * divisor - slope * random(5);
+            }
+            let mut steady = Steady::default();
+            if !steady.set(numerator, slope, divisor, 600, 0) {
+                continue;
+            }
+            let mut first = 0;
+            for count in [256, 16, 17 + random(7) as usize] {
+                let mut out = vec![0_i32; count.next_multiple_of(STEP)];
+                let found = steady.run(count, &mut out);
+                for (k, got) in out.iter().enumerate() {
+                    let at = i128::from(numerator) + i128::from(slope) * (first + k.min(count - 1)) as i128;
+                    let (floor, rest) = (at.div_euclid(i128::from(divisor)), at.rem_euclid(i128::from(divisor)));
+                    if steady.is_exact() || !found {
+                        assert_eq!(i128::from(*got), floor, "{numerator} + {k} {slope} over {divisor}");
+                    } else {
+                        assert!((0..=1).contains(&(i128::from(*got) - floor)));
+                    }
+                    assert!(found || rest != 0);
+                    if steady.is_exact() && k < count {
+                        assert_eq!(steady.whole(k / STEP)[k % STEP], i32::from(rest == 0));
+                    }
+                    (exact, close) = (exact + u64::from(rest == 0), close + u64::from(found && !steady.is_exact()));
+                }
+                first += count;
+            }
+        }
+        assert!(exact > 100_000 && close > 100_000, "{exact} {close}");
+    }
+}
