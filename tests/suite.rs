@@ -68,6 +68,7 @@ mod trace_format;
 mod truth;
 mod vectors;
 mod vectors_committed;
+mod vectors_operations;
 mod vectors_sweep;
 mod vertex_programs;
 mod vertex_scenes;

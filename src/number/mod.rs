@@ -12,18 +12,21 @@
 //! | [`Paired`] of [`Strands`] | the definition and several ideals, which tell the errors of the rules apart | comparisons |
 //! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | the fast engine |
 //! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | the fast engine |
+//! | [`Each`] of `i32` | sixteen of the definition side by side | sweeps of vectors |
 //! | [`Two`] | two 8-bit channels in one word | the fast engine's filter |
 //!
 //! All lanes count in steps of 1/255 (NUM-1): 1.0 is 255.
 
 mod block;
 pub mod convert;
+mod each;
 mod paired;
 mod real;
 mod scalar;
 mod strands;
 
 pub use block::{Halved, Narrow, Quarter, Two, byte_product};
+pub use each::{EACH, Each};
 pub use paired::{Paired, PairedFactor, PairedSum};
 pub use scalar::{Halves, Quarters};
 pub use strands::{STRANDS, Strands};

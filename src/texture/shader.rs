@@ -195,7 +195,9 @@ mod tests {
             let side = 1 << side;
             let entries = m.map(|m| m as f32 / 1024.0);
             let n = i64::from(m[0]) * i64::from(b as i8) + i64::from(m[1]) * i64::from(g as i8);
-            prop_assert_eq!(offset(entries, [b, g], side), (n * i64::from(side)) << (OFFSET_BITS + 8 - 7 - 10));
+            let exact = (i128::from(n) * i128::from(side)) << (OFFSET_BITS + 8 - 7 - 10);
+            let limited = exact.clamp(-OFFSET_LIMIT, OFFSET_LIMIT);
+            prop_assert_eq!(i128::from(offset(entries, [b, g], side)), limited);
         }
 
         #[test]

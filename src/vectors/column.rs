@@ -101,6 +101,8 @@ pub enum Domain {
     Listed(Vec<i64>),
     /// Every word of so many bits, at most 32.
     Word(u32),
+    /// Every word of which only the bits of the second, the mask, may differ from the first; those of the first are 0 there.
+    Bits(u32, u32),
     /// Bits of finite single-precision floats of a magnitude below 2^limit; the first is whether negative ones are among them.
     Float(bool, i32),
 }
@@ -188,6 +190,7 @@ impl Column {
             Some(Domain::Interval(first, last)) => (last - first + 1) as u128,
             Some(Domain::Listed(values)) => values.len() as u128,
             Some(Domain::Word(bits)) => 1 << bits,
+            Some(Domain::Bits(_, mask)) => 1 << mask.count_ones(),
             Some(Domain::Float(negative, limit)) => (positive_floats(*limit) as u128) << u32::from(*negative),
         }
     }
@@ -199,11 +202,17 @@ impl Column {
             Some(Domain::Interval(first, _)) => first + place as i64,
             Some(Domain::Listed(values)) => values.get(place as usize).copied().unwrap_or_default(),
             Some(Domain::Word(_)) => place as i64,
+            Some(Domain::Bits(word, mask)) => i64::from(word | spread(place as u32, *mask)),
             Some(Domain::Float(_, limit)) => {
                 let (positive, place) = (positive_floats(*limit), place as i64);
                 if place < positive { place } else { 0x8000_0000 | (place - positive) }
             }
         }
+    }
+
+    /// Whether its numbers count up by one from place to place.
+    pub fn counts(&self) -> bool {
+        matches!(self.domain, Some(Domain::Interval(..) | Domain::Word(_)))
     }
 
     /// The column with only the numbers from `first` to `last`, in its own order; `None` if either is not among its numbers, if they are the
@@ -220,6 +229,7 @@ impl Column {
             Domain::Word(bits) => {
                 Some(Domain::Interval(first, last)).filter(|_| 0 <= first && first <= last && last < 1 << bits)?
             }
+            Domain::Bits(..) => return None,
             Domain::Float(negative, limit) => {
                 let sign = if *negative { first & 0x8000_0000 } else { 0 };
                 let all = sign..sign + positive_floats(*limit);
@@ -228,6 +238,16 @@ impl Column {
             }
         };
         Some(Column { domain: Some(domain), ..self.clone() })
+    }
+
+    /// The column with only the words that differ from `word` in no bits but those of `mask`, smallest first; `None` if it is none of words, if `word` has one
+    /// of those bits, or if there is more than one way to write it: a mask of no bits, or of the lowest ones and no others, is a number or a range.
+    pub fn masked(&self, word: i64, mask: i64) -> Option<Column> {
+        let Some(Domain::Word(bits)) = self.domain else { return None };
+        let fits = |word: i64| u32::try_from(word).ok().filter(|_| word >> bits == 0);
+        let (word, mask) = fits(word).zip(fits(mask))?;
+        let domain = (word & mask == 0 && mask & mask.wrapping_add(1) != 0).then_some(Domain::Bits(word, mask));
+        Some(Column { domain: Some(domain?), ..self.clone() })
     }
 
     /// The numbers at which something may happen: ends, zero, halves, what lies next to them.
@@ -258,12 +278,24 @@ impl Column {
                     all & 0x0f0f_0f0f,
                 ]
             }
+            Some(Domain::Bits(word, mask)) => vec![(*word).into(), (*word | *mask).into()],
             Some(Domain::Float(negative, limit)) => floats(*negative, *limit),
         };
         values.sort_unstable();
         values.dedup();
         values
     }
+}
+
+/// The lowest bits of a number, in their order, at the places of a mask's bits.
+fn spread(number: u32, mask: u32) -> u32 {
+    let (mut mask, mut number, mut word) = (mask, number, 0);
+    while mask != 0 && number != 0 {
+        let place = mask & mask.wrapping_neg();
+        word |= if number & 1 != 0 { place } else { 0 };
+        (mask, number) = (mask & !place, number >> 1);
+    }
+    word
 }
 
 /// How many floats, 0 included, lie below 2^limit.

@@ -8,6 +8,7 @@ pub mod column;
 pub mod error;
 pub mod gpu;
 pub mod handbook;
+pub mod lanes;
 pub mod pack;
 pub mod part;
 pub mod random;

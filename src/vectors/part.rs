@@ -1,8 +1,10 @@
 //! A part of a unit's rows: those of which some input columns are one number, or lie in a range.
 //!
-//! It is written as `cfg.format=R5G6B5`, or `in.word=00000000..00ffffff`: the numbers as tables have them, both ends included.
+//! It is written as `cfg.format=R5G6B5`, or `in.word=00000000..00ffffff`: the numbers as tables have them, both ends included; words also as
+//! `in.word0=00000000/f800f800`: those that differ from the first in no bits but those of the second. `in.texture.g=in.texture.r`: the number of the other
+//! column.
 
-use super::column::Column;
+use super::column::{Column, Domain};
 use super::unit::Unit;
 
 /// Which rows of a unit.
@@ -10,12 +12,14 @@ use super::unit::Unit;
 pub struct Part {
     columns: Vec<Column>,
     texts: Vec<String>,
+    /// Columns that have the number of another: which, and of which.
+    ties: Vec<[usize; 2]>,
 }
 
 impl Part {
     /// All rows.
     pub fn whole(unit: &dyn Unit) -> Part {
-        Part { columns: unit.inputs(), texts: Vec::new() }
+        Part { columns: unit.inputs(), texts: Vec::new(), ties: Vec::new() }
     }
 
     /// The rows that all of these allow.
@@ -27,9 +31,12 @@ impl Part {
         let mut columns = unit.inputs();
         let mut found: Vec<Option<String>> = vec![None; columns.len()];
         let mut named = vec![false; columns.len()];
+        let mut ties = Vec::new();
         for text in texts.iter().map(AsRef::as_ref) {
             let Some((name, numbers)) = text.split_once('=') else {
-                return Err(format!("`{text}` is not COLUMN=NUMBER or COLUMN=FIRST..LAST"));
+                return Err(format!(
+                    "`{text}` is not COLUMN=NUMBER, COLUMN=FIRST..LAST, COLUMN=WORD/MASK or COLUMN=COLUMN"
+                ));
             };
             let Some(index) = columns.iter().position(|column| column.name == name) else {
                 let known: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
@@ -39,9 +46,26 @@ impl Part {
                 return Err(format!("column `{name}` is there twice"));
             }
             let column = &columns[index];
-            let (first, last) = numbers.split_once("..").unwrap_or((numbers, numbers));
-            let ends = column.kind.read(first).zip(column.kind.read(last));
-            let Some(narrowed) = ends.and_then(|(first, last)| column.narrowed(first, last)) else {
+            if let Some(other) = columns.iter().position(|column| column.name == numbers) {
+                // It takes no numbers of its own any more.
+                let own = column.narrowed(column.nth(0), column.nth(0));
+                let Some(own) = own.filter(|_| other != index && columns[other].kind == column.kind) else {
+                    return Err(format!("`{name}` cannot have the number of `{numbers}`: it takes others"));
+                };
+                ties.push([index, other]);
+                found[index] = Some(text.to_owned());
+                columns[index] = own;
+                continue;
+            }
+            let read = |[a, b]: [&str; 2]| column.kind.read(a).zip(column.kind.read(b));
+            let narrowed = match numbers.split_once('/') {
+                Some((word, mask)) => read([word, mask]).and_then(|(word, mask)| column.masked(word, mask)),
+                None => {
+                    let (first, last) = numbers.split_once("..").unwrap_or((numbers, numbers));
+                    read([first, last]).and_then(|(first, last)| column.narrowed(first, last))
+                }
+            };
+            let Some(narrowed) = narrowed else {
                 return Err(format!("`{name}` does not take `{numbers}`: {}", takes(column)));
             };
             // A range that is the whole column says nothing.
@@ -50,13 +74,36 @@ impl Part {
                 columns[index] = narrowed;
             }
         }
+        let whole = unit.inputs();
+        let chained = |[tied, other]: &&[usize; 2]| {
+            whole[*tied].domain != whole[*other].domain || ties.iter().any(|[index, _]| index == other)
+        };
+        if let Some([tied, other]) = ties.iter().find(chained) {
+            let [tied, other] = [tied, other].map(|index| &columns[*index].name);
+            return Err(format!(
+                "`{tied}` cannot have the number of `{other}`: that has none of its own, or takes others"
+            ));
+        }
+        ties.sort_unstable();
         let texts = found.into_iter().flatten().collect();
-        Ok(Part { columns, texts })
+        Ok(Part { columns, texts, ties })
     }
 
     /// The input columns, with the numbers that they take here.
     pub fn columns(&self) -> &[Column] {
         &self.columns
+    }
+
+    /// Gives columns that have the number of another that number.
+    pub fn tie(&self, inputs: &mut [i64]) {
+        for [tied, other] in &self.ties {
+            inputs[*tied] = inputs[*other];
+        }
+    }
+
+    /// Whether some column has the number of this one.
+    pub fn is_followed(&self, index: usize) -> bool {
+        self.ties.iter().any(|[_, other]| *other == index)
     }
 
     /// What holds, one a column, in the columns' order; empty for all rows.
@@ -65,8 +112,12 @@ impl Part {
     }
 }
 
-/// `NAME=FIRST..LAST`, or `NAME=NUMBER` if it takes but one.
+/// `NAME=FIRST..LAST`, or `NAME=NUMBER` if it takes but one, or `NAME=WORD/MASK`.
 fn written(column: &Column) -> String {
+    if let Some(Domain::Bits(word, mask)) = column.domain {
+        let [word, mask] = [word, mask].map(|word| column.kind.write(word.into()));
+        return format!("{}={word}/{mask}", column.name);
+    }
     let size = column.size();
     let [first, last] = [0, size.saturating_sub(1)].map(|place| column.kind.write(column.nth(place)));
     if size == 1 { format!("{}={first}", column.name) } else { format!("{}={first}..{last}", column.name) }
@@ -85,7 +136,11 @@ fn takes(column: &Column) -> String {
         true => format!(" as {digits} hexadecimal digits, floats of one sign"),
         false => String::new(),
     };
-    format!("it takes {first} to {last}{form}, or FIRST..LAST of them")
+    let masks = match column.domain {
+        Some(Domain::Word(_)) => ", or WORD/MASK: those that differ from WORD, which has none of them, in bits of MASK",
+        _ => "",
+    };
+    format!("it takes {first} to {last}{form}, or FIRST..LAST of them{masks}")
 }
 
 #[cfg(test)]
@@ -107,6 +162,9 @@ mod tests {
                 3 << 32,
                 Some(vec!["cfg.format=L8..A8"]),
             ),
+            ("surface-load", vec!["cfg.format=B8", "in.word=80000000/0f0000f0"], 256, None),
+            ("product", vec!["in.b=in.a"], 513, None),
+            ("product", vec!["in.a=1..2", "in.b=in.a"], 2, None),
             ("mux", vec!["in.spare0.a=-3..-3"], 2, Some(vec!["in.spare0.a=-3"])),
             ("mux", vec!["in.spare0.a=-256..255", "cfg.select=Msb..Lsb"], 1024, Some(vec![])),
             ("mux", vec!["in.spare0.a=1", "cfg.select=Lsb"], 1, Some(vec!["cfg.select=Lsb", "in.spare0.a=1"])),
@@ -134,6 +192,25 @@ mod tests {
             let error = part("mux", &[text]).expect_err(text);
             assert!(error.contains(says), "{error}");
         }
+        for texts in [&["in.a=in.a"][..], &["in.b=in.a", "in.a=in.b"], &["in.b=in.a", "in.c=in.b"], &["in.b=cfg.scale"]]
+        {
+            assert!(part("sum", texts).is_err(), "{texts:?}");
+        }
+        let mut row = [7, 0];
+        part("product", &["in.b=in.a"]).expect("a part").tie(&mut row);
+        assert_eq!(row, [7, 7]);
+        assert!(part("scale-bias", &["in.b=cfg.scale"]).is_err_and(|error| error.contains("cannot have")));
+        // A mask that is a range, or of bits that the word has, or too wide; and numbers have none.
+        for text in ["00000000/000000ff", "00000000/00000000", "00000010/000000f0", "00000000/ff", "00000000/1ffffffff"]
+        {
+            assert!(
+                part("surface-load", &[&format!("in.word={text}")]).is_err_and(|error| error.contains("WORD/MASK"))
+            );
+        }
+        assert!(part("mux", &["in.spare0.a=0/6"]).is_err());
+        let masked = part("surface-load", &["in.word=80000000/0f0000f0"]).expect("a part");
+        let words: Vec<i64> = [0, 1, 0x10, 0xff].map(|place| masked.columns()[1].nth(place)).to_vec();
+        assert_eq!(words, [0x8000_0000, 0x8000_0010, 0x8100_0000, 0x8f00_00f0]);
         assert!(part("mux", &["cfg.select=Msb", "cfg.select=Msb"]).is_err_and(|error| error.contains("twice")));
         let error = part("surface-load", &["in.word=ffff"]).expect_err("too few digits");
         assert!(error.contains("8 hexadecimal digits"), "{error}");

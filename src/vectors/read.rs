@@ -4,10 +4,12 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::cases::{Level, Origin};
+use super::column::Column;
 use super::error::VectorError;
 use super::table::{Contents, FORMAT, LAST, Row, Writer};
-use super::{BEHAVIOUR, units};
-use crate::state::{Named, Profile};
+use super::unit::Conditions;
+use super::{BEHAVIOUR, lanes, units};
+use crate::state::{Named, Policies, Profile};
 
 const AGAIN: &str = "export the pack again";
 
@@ -54,6 +56,8 @@ pub struct Difference {
     pub table: String,
     /// What the model says.
     pub model: String,
+    /// The table and the model agree: it is the model's block lanes that say this.
+    pub in_lanes: bool,
     /// The row as the model has it.
     pub row: Row,
 }
@@ -227,7 +231,7 @@ impl Table {
         self.behaviour == BEHAVIOUR
     }
 
-    /// The rows of which the model says something else.
+    /// The rows of which the model says something else, row by row or in the block lanes of its sweeps.
     pub fn differences(&self) -> Vec<Difference> {
         self.rows.iter().filter_map(|row| self.difference(row)).collect()
     }
@@ -236,13 +240,84 @@ impl Table {
         let row = self.writer.row(&read.inputs, read.origin);
         let line = self.writer.line(&row);
         if line == read.text {
-            return None;
+            return self.difference_of_lanes(read, row);
         }
         let columns = self.writer.inputs().iter().chain(self.writer.results()).map(|column| column.name.as_str());
         let names = ["id"].into_iter().chain(columns).chain(LAST);
         let fields = names.zip(read.text.split('\t').zip(line.split('\t')));
         let (column, (table, model)) = fields.into_iter().find(|(_, (table, model))| table != model)?;
         let (column, table, model) = (column.to_owned(), table.to_owned(), model.to_owned());
-        Some(Difference { line: read.line, id: read.id.clone(), column, table, model, row })
+        Some(Difference { line: read.line, id: read.id.clone(), column, table, model, in_lanes: false, row })
+    }
+
+    fn difference_of_lanes(&self, read: &TableRow, row: Row) -> Option<Difference> {
+        let Contents { unit, profile, .. } = self.contents;
+        let conditions = Conditions { profile, policies: Policies::DEFAULT };
+        let columns = [self.writer.inputs(), self.writer.results()];
+        let found = lanes::outputs(unit, columns, &read.inputs, read.line, &conditions)?;
+        let (index, value) = found.into_iter().find(|(index, value)| row.results[*index] != *value)?;
+        let Column { name, kind, .. } = &columns[1][index];
+        let (column, table, model) = (name.clone(), kind.write(row.results[index]), kind.write(value));
+        Some(Difference { line: read.line, id: read.id.clone(), column, table, model, in_lanes: true, row })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vectors::column::Kind;
+    use crate::vectors::unit::Unit;
+
+    /// Twice a number; in lanes 9 becomes 19.
+    #[derive(Debug)]
+    struct Twice;
+
+    impl Unit for Twice {
+        fn name(&self) -> &'static str {
+            "twice"
+        }
+        fn about(&self) -> &'static str {
+            "a fault in lanes"
+        }
+        fn rules(&self) -> &'static [&'static str] {
+            &["NUM-2"]
+        }
+        fn inputs(&self) -> Vec<Column> {
+            vec![Column::byte("in.x"), Column::flag("in.negative")]
+        }
+        fn results(&self) -> Vec<Column> {
+            vec![Column::result("mid.x", Kind::Unsigned(8)), Column::result("out.y", Kind::Signed(10))]
+        }
+        fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+            let sign = if inputs[1] != 0 { -1 } else { 1 };
+            (results[0], results[1]) = (inputs[0], 2 * sign * inputs[0]);
+        }
+        fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+            for (n, out) in (0..).zip(out.as_chunks_mut().0) {
+                let mut row = inputs.to_vec();
+                row[varying] += n;
+                let twice = 2 * row[0] as i16 + i16::from(row[0] == 9);
+                *out = (if row[1] != 0 { -twice } else { twice }).to_le_bytes();
+            }
+            (varying == 0).then_some([0; 2])
+        }
+    }
+
+    #[test]
+    fn a_difference_in_lanes_is_one() {
+        let contents = Contents { unit: &Twice, profile: Profile::Nv2a, level: Level::L0, seed: 1 };
+        let writer = Writer::new(contents);
+        let rows = (0..512).map(|n| {
+            let row = writer.row(&[n / 2, n % 2], Origin::Exhaustive);
+            let (id, text) = (writer.id(&row.inputs), writer.line(&row));
+            TableRow { line: n as usize, id, inputs: row.inputs, results: row.results, origin: row.origin, text }
+        });
+        let rows = rows.collect();
+        let table = Table { contents, behaviour: BEHAVIOUR, writer, rows };
+        let found = table.differences();
+        let told: Vec<_> =
+            found.iter().map(|d| (d.line, d.column.as_str(), d.table.as_str(), d.model.as_str())).collect();
+        assert_eq!(told, [(18, "out.y", "18", "19"), (19, "out.y", "-18", "-19")]);
+        assert!(found.iter().all(|difference| difference.in_lanes));
     }
 }

@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::cases;
+use super::column::Column;
 use super::part::Part;
 use super::unit::{Conditions, Unit};
 use crate::picture::hexadecimal;
@@ -62,11 +63,31 @@ pub struct Sweep {
 
 /// A result column that is hashed.
 #[derive(Clone, Copy, Debug)]
-struct Output {
-    index: usize,
-    bytes: usize,
+pub(super) struct Output {
+    /// Its place among the results.
+    pub(super) index: usize,
+    /// How many bytes a number takes.
+    pub(super) bytes: usize,
     least: i64,
     greatest: i64,
+}
+
+impl Output {
+    /// Those of a unit with these results.
+    pub(super) fn of(results: &[Column]) -> Vec<Output> {
+        let outputs = results.iter().enumerate().filter(|(_, column)| column.name.starts_with("out."));
+        let output = |(index, column): (usize, &Column)| {
+            let (least, greatest) = column.kind.range();
+            Output { index, bytes: column.kind.bits().div_ceil(8) as usize, least, greatest }
+        };
+        outputs.map(output).collect()
+    }
+
+    /// A number out of its bytes.
+    pub(super) fn read(&self, bytes: &[u8]) -> i64 {
+        let negative = self.least < 0 && bytes.last().is_some_and(|byte| byte & 0x80 != 0);
+        bytes.iter().rev().fold(if negative { -1 } else { 0 }, |number, byte| number << 8 | i64::from(*byte))
+    }
 }
 
 impl Sweep {
@@ -79,13 +100,8 @@ impl Sweep {
     pub fn of(unit: &'static dyn Unit, profile: Profile, part: Part) -> Option<Sweep> {
         let results = unit.results();
         let size = u64::try_from(cases::size(part.columns())).ok().filter(|size| *size <= MOST_ROWS)?;
-        let outputs = results.iter().enumerate().filter(|(_, column)| column.name.starts_with("out."));
-        let outputs = outputs.map(|(index, column)| {
-            let (least, greatest) = column.kind.range();
-            Output { index, bytes: column.kind.bits().div_ceil(8) as usize, least, greatest }
-        });
         let leaves = size.div_ceil(LEAF_ROWS).clamp(1, MOST_LEAVES);
-        Some(Sweep { unit, profile, part, size, leaves, outputs: outputs.collect(), results: results.len() })
+        Some(Sweep { unit, profile, part, size, leaves, outputs: Output::of(&results), results: results.len() })
     }
 
     /// The rows of a leaf, by their places among all.
@@ -119,7 +135,9 @@ pub struct Digesting<'s> {
     buffer: Vec<u8>,
     /// Bytes of it that wait for the hash.
     filled: usize,
-    /// The unit has block lanes.
+    /// Bytes of a row.
+    width: usize,
+    /// Block lanes are used where the unit has them.
     blocks: bool,
     rows: u64,
     /// Rows at the lower and at the upper end.
@@ -133,43 +151,59 @@ impl<'s> Digesting<'s> {
             hash: Sha256::new(),
             buffer: vec![0; BUFFER + 8 * sweep.outputs.len()],
             filled: 0,
+            width: sweep.outputs.iter().map(|output| output.bytes).sum(),
             blocks: true,
             rows: 0,
             ends: [0; 2],
         }
     }
 
-    /// Goes over a range in runs of which only the last input varies.
+    /// Goes over a range in runs of which only one input varies: the last that has more than one number.
     fn rows(&mut self, range: Range<u64>) {
-        let Some((last, leading)) = self.sweep.part.columns().split_last() else { return };
+        let columns = self.sweep.part.columns();
+        let Some(varying) = columns.iter().rposition(|column| column.size() > 1).or(columns.len().checked_sub(1))
+        else {
+            return;
+        };
+        let column = &columns[varying];
         let conditions = Conditions { profile: self.sweep.profile, policies: Policies::DEFAULT };
-        let length = last.size() as u64;
-        let mut inputs = vec![0; leading.len() + 1];
+        // A column that others follow is set together with them, row by row.
+        let most = if self.sweep.part.is_followed(varying) { 1 } else { (BUFFER / self.width) as u64 };
+        let length = column.size() as u64;
+        let mut inputs = vec![0; columns.len()];
         let mut results = vec![0; self.sweep.results];
         let mut place = range.start;
         while place < range.end {
             let start = place % length;
-            let run = (length - start).min(range.end - place).min(BUFFER as u64 / 4);
-            cases::nth(leading, u128::from(place / length), &mut inputs[..leading.len()]);
-            self.blocks &= self.block(&inputs[..leading.len()], last.nth(u128::from(start)), run);
-            if !self.blocks {
-                self.sweep.unit.run(&mut inputs, last, start..start + run, &conditions, &mut results, self);
+            let run = (length - start).min(range.end - place).min(most);
+            cases::nth(columns, u128::from(place), &mut inputs);
+            self.sweep.part.tie(&mut inputs);
+            if !self.block(&mut inputs, varying, run, &conditions) {
+                self.sweep.unit.run(&mut inputs, varying, column, start..start + run, &conditions, &mut results, self);
             }
             place += run;
         }
     }
 
-    /// A run in block lanes, if the unit has them.
-    fn block(&mut self, leading: &[i64], first: i64, run: u64) -> bool {
-        if !self.blocks {
+    /// A run in block lanes, if the unit has them, and no row that has no results.
+    fn block(&mut self, inputs: &mut [i64], varying: usize, run: u64, conditions: &Conditions) -> bool {
+        let (unit, columns) = (self.sweep.unit, self.sweep.part.columns());
+        if !self.blocks || !columns[varying].counts() {
             return false;
         }
-        let bytes = 2 * run as usize;
+        let first = inputs[varying];
+        inputs[varying] = first + run as i64 - 1;
+        let goes = unit.accepts(inputs, conditions.profile);
+        inputs[varying] = first;
+        if !goes || !unit.accepts(inputs, conditions.profile) {
+            return false;
+        }
+        let bytes = self.width * run as usize;
         if self.filled + bytes > BUFFER {
             self.flush();
         }
-        let (pairs, _) = self.buffer[self.filled..self.filled + bytes].as_chunks_mut();
-        let Some(ends) = self.sweep.unit.block(leading, first, pairs) else {
+        let Some(ends) = unit.block(inputs, varying, conditions, &mut self.buffer[self.filled..self.filled + bytes])
+        else {
             return false;
         };
         self.filled += bytes;
@@ -212,6 +246,7 @@ impl<'s> Digesting<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::vectors::random::Random;
     use crate::vectors::units;
 
     #[test]
@@ -226,20 +261,43 @@ mod tests {
     }
 
     /// Block lanes yield what the definition yields, row by row, over ranges that begin and end anywhere.
+    fn compare(sweep: &Sweep, starts: usize) {
+        let mut random = Random::new(3, sweep.unit.name());
+        let rows = sweep.size.min(700);
+        let drawn = (0..starts).map(|_| random.below(u128::from(sweep.size - rows + 1)) as u64);
+        for start in [0, sweep.size - rows].into_iter().chain(drawn) {
+            let range = start..start + rows;
+            let mut plain = Digesting::new(sweep);
+            plain.blocks = false;
+            plain.rows(range.clone());
+            let mut blocks = Digesting::new(sweep);
+            blocks.rows(range);
+            let name = format!("{} {:?} from {start}", sweep.unit.name(), sweep.part.texts());
+            assert_eq!((blocks.rows, blocks.ends), (plain.rows, plain.ends), "{name}");
+            assert_eq!(blocks.finish(), plain.finish(), "{name}");
+        }
+    }
+
     #[test]
     fn blocks_are_the_definition() {
-        for name in ["product", "sum"] {
-            let sweep = Sweep::new(units::by_name(name).expect("a unit"), Profile::Nv2a).expect("not too large");
-            for start in [0, 1, 512, 70_000, sweep.size / 3, sweep.size / 2 + 7, sweep.size - 3_000] {
-                let range = start..start + 3_000;
-                let mut plain = Digesting::new(&sweep);
-                plain.blocks = false;
-                plain.rows(range.clone());
-                let mut blocks = Digesting::new(&sweep);
-                blocks.rows(range);
-                assert_eq!((blocks.rows, blocks.ends), (plain.rows, plain.ends), "{name} from {start}");
-                assert_eq!(blocks.finish(), plain.finish(), "{name} from {start}");
-            }
+        for (unit, only) in [("product", &[][..]), ("sum", &[]), ("sum", &["in.d=7"]), ("sum", &["in.b=7", "in.d=256"])]
+        {
+            let unit = units::by_name(unit).expect("a unit");
+            let part = Part::new(unit, only).expect("a part");
+            compare(&Sweep::of(unit, Profile::Nv2a, part).expect("not too large"), 20);
+        }
+    }
+
+    /// Every committed tree of a part is swept as it is here: in lanes where there are some.
+    #[test]
+    fn committed_parts_in_blocks_are_the_definition() {
+        let digests = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/digests");
+        let list =
+            |folder: &std::path::Path| std::fs::read_dir(folder).expect("trees").flatten().map(|entry| entry.path());
+        let parts: Vec<_> = list(&digests).filter(|path| path.is_dir()).flat_map(|folder| list(&folder)).collect();
+        assert!(parts.len() > 50);
+        for path in parts {
+            compare(&crate::vectors::tree::Tree::read(&path).expect("a tree").1, 3);
         }
     }
 }

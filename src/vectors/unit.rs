@@ -40,28 +40,32 @@ pub trait Unit: Sync + std::fmt::Debug {
     /// Computes the results of one row; both slices are as long as their columns.
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]);
 
-    /// Computes many rows at once, in block lanes, where the unit has a form for it: rows whose inputs but the last are `leading`, the last being
-    /// `first` and the numbers after it. For units with one result column in `out.`, of at most sixteen bits: its numbers, low byte first.
-    /// Returns how many of them are the least and the greatest that the column's type holds; `None`: there is no such form.
-    fn block(&self, _leading: &[i64], _first: i64, _out: &mut [[u8; 2]]) -> Option<[u64; 2]> {
+    /// Computes rows that follow each other at once, in block lanes, where the unit has a form of them: the same inputs but one, `varying`, which counts up
+    /// from where it is. All of them go together. `out` has room for exactly those rows: the numbers of the `out.` columns, each in as many whole bytes
+    /// as its bits need, low byte first.
+    ///
+    /// Returns how many rows have an output that is the least, and how many one that is the greatest, that the column's type holds; `None`: there is no such
+    /// form of these rows. What it yields is what [`evaluate`](Self::evaluate) yields: tests and `ninebit vectors check` hold the two together.
+    fn block(&self, _inputs: &[i64], _varying: usize, _conditions: &Conditions, _out: &mut [u8]) -> Option<[u64; 2]> {
         None
     }
 
-    /// Computes rows of which only the last input varies, over these places of its column, and hands on those whose inputs go together.
+    /// Computes rows of which only the input `varying` varies, over these places of its column, and hands on those whose inputs go together.
     ///
     /// No unit has another: it stands here so that it is compiled for each, without a call through a table for every row.
+    #[allow(clippy::too_many_arguments, reason = "a loop that is compiled for each unit, and what it fills")]
     fn run(
         &self,
         inputs: &mut [i64],
-        last: &Column,
+        varying: usize,
+        column: &Column,
         places: Range<u64>,
         conditions: &Conditions,
         results: &mut [i64],
         digest: &mut Digesting,
     ) {
-        let end = inputs.len() - 1;
         for place in places {
-            inputs[end] = last.nth(u128::from(place));
+            inputs[varying] = column.nth(u128::from(place));
             if self.accepts(inputs, conditions.profile) {
                 self.evaluate(inputs, conditions, results);
                 digest.take(results);
@@ -69,7 +73,7 @@ pub trait Unit: Sync + std::fmt::Debug {
         }
     }
 
-    /// Whether the inputs make sense together on this chip.
+    /// Whether the inputs make sense together on this chip. Of a unit with [`block`](Self::block), rows between two that do, and of which one input varies, do.
     fn accepts(&self, _inputs: &[i64], _profile: Profile) -> bool {
         true
     }

@@ -32,8 +32,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let name = table.contents.unit.name();
         let _ = writeln!(text, "{name}: {} of {} rows differ", differences.len(), table.rows.len());
         for difference in differences.iter().take(SHOWN) {
-            let Difference { line, id, column, table: expected, model, row } = difference;
-            let _ = writeln!(text, "  line {line}, row {id}: {column} is {expected}, the model has {model}");
+            let Difference { line, id, column, table: expected, model, in_lanes, row } = difference;
+            let _ = match in_lanes {
+                false => writeln!(text, "  line {line}, row {id}: {column} is {expected}, the model has {model}"),
+                true => writeln!(
+                    text,
+                    "  line {line}, row {id}: {column} is {expected}, in block lanes the model has {model}: a fault of this program"
+                ),
+            };
             let columns = table.writer.inputs().iter().chain(table.writer.results());
             let numbers = columns.zip(row.inputs.iter().chain(&row.results));
             let shown: Vec<String> = numbers.map(|(c, value)| format!("{}={}", c.name, c.kind.write(*value))).collect();

@@ -27,8 +27,8 @@ pub(crate) struct SweepArguments {
     /// The chip: nv10 or nv2a
     #[arg(long, default_value = "nv2a", value_parser = super::profile)]
     profile: Profile,
-    /// Only rows of which this column has this number, or one of this range: COLUMN=NUMBER or COLUMN=FIRST..LAST, both included; may be given for
-    /// several columns
+    /// Only rows of which this column has this number, or one of this range: COLUMN=NUMBER or COLUMN=FIRST..LAST, both included, or COLUMN=WORD/MASK,
+    /// words that differ from WORD only in bits of MASK, or COLUMN=COLUMN, the number of the other; may be given for several columns
     #[arg(long, value_name = "COLUMN=NUMBERS")]
     only: Vec<String>,
     /// Only a part of the leaves: I/N, I from 1 to N

@@ -1,14 +1,14 @@
-//! Product sums in block lanes, for sweeps: the rules' own text on sixteen-bit registers, compiled for several instruction sets.
+//! Many rows at once, for sweeps: the rules' own text in lanes.
 
 use multiversion::multiversion;
 
 use crate::combiner::general::output;
-use crate::number::Factor;
+use crate::number::{EACH, Each, Factor};
 use crate::state::{Bias, RegisterFloor, Scale};
 
 /// `sum` + `c` d, rounded and saturated, for d from `first` on; low byte first. Returns how many results are -256, and how many are 255.
 ///
-/// `sum` is at full width, in 1/65025.
+/// `sum` is at full width, in 1/65025. Sixteen-bit registers, compiled for several instruction sets.
 #[multiversion(targets("x86_64+avx512f+avx512bw+avx512vl", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(super) fn multiply_add(sum: i32, c: i16, first: i16, out: &mut [[u8; 2]]) -> [u64; 2] {
     let (mut low, mut high) = (0_u32, 0_u32);
@@ -20,4 +20,82 @@ pub(super) fn multiply_add(sum: i32, c: i16, first: i16, out: &mut [[u8; 2]]) ->
         out[n] = value.to_le_bytes();
     }
     [low.into(), high.into()]
+}
+
+/// The inputs of sixteen rows that follow each other: all the same but one, which counts up.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sixteen<'i> {
+    inputs: &'i [i64],
+    varying: usize,
+    numbers: Each<i32>,
+}
+
+impl Sixteen<'_> {
+    /// The input that counts up.
+    #[inline(always)]
+    pub(super) fn numbers(&self) -> Each<i32> {
+        self.numbers
+    }
+
+    /// An input.
+    #[inline(always)]
+    pub(super) fn at(&self, n: usize) -> Each<i32> {
+        if n == self.varying { self.numbers } else { Each::all(self.inputs[n] as i32) }
+    }
+}
+
+/// Rows of N outputs of a byte each, sixteen at a time. Returns how many rows have a 0, and how many a 255.
+///
+/// `inputs` are those of the first row; `varying` is the place of the one that counts up.
+#[inline(always)]
+pub(super) fn bytes<const N: usize>(
+    inputs: &[i64],
+    varying: usize,
+    out: &mut [u8],
+    rows: impl FnMut(&Sixteen) -> [Each<i32>; N],
+) -> [u64; 2] {
+    run::<N, 1>(inputs, varying, out, [0, 255], rows)
+}
+
+/// The same with N outputs of nine bits, in two bytes each: how many rows have a -256, and how many a 255.
+#[inline(always)]
+pub(super) fn registers<const N: usize>(
+    inputs: &[i64],
+    varying: usize,
+    out: &mut [u8],
+    rows: impl FnMut(&Sixteen) -> [Each<i32>; N],
+) -> [u64; 2] {
+    run::<N, 2>(inputs, varying, out, [-256, 255], rows)
+}
+
+#[inline(always)]
+fn run<const N: usize, const WIDTH: usize>(
+    inputs: &[i64],
+    varying: usize,
+    out: &mut [u8],
+    [least, greatest]: [i32; 2],
+    mut rows: impl FnMut(&Sixteen) -> [Each<i32>; N],
+) -> [u64; 2] {
+    let mut ends = [0; 2];
+    let mut first = inputs[varying] as i32;
+    for out in out.chunks_mut(EACH * N * WIDTH) {
+        let mut numbers = [first; EACH];
+        for (n, number) in (0..).zip(&mut numbers) {
+            *number += n;
+        }
+        let values = rows(&Sixteen { inputs, varying, numbers: Each(numbers) });
+        first += EACH as i32;
+        for (row, out) in out.chunks_exact_mut(N * WIDTH).enumerate() {
+            let (mut low, mut high) = (false, false);
+            for (value, out) in values.iter().zip(out.chunks_exact_mut(WIDTH)) {
+                let value = value.0[row];
+                low |= value == least;
+                high |= value == greatest;
+                out.copy_from_slice(&value.to_le_bytes()[..WIDTH]);
+            }
+            ends[0] += u64::from(low);
+            ends[1] += u64::from(high);
+        }
+    }
+    ends
 }

@@ -93,8 +93,9 @@ impl Unit for Product {
         results[1] = written(raw, conditions);
     }
 
-    fn block(&self, leading: &[i64], first: i64, out: &mut [[u8; 2]]) -> Option<[u64; 2]> {
-        Some(block::multiply_add(0, leading[0] as i16, first as i16, out))
+    fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        // A product does not ask which of its factors counts up.
+        Some(block::multiply_add(0, inputs[1 - varying] as i16, inputs[varying] as i16, out.as_chunks_mut().0))
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
@@ -141,9 +142,10 @@ impl Unit for Sum {
         results[3] = written(sum, conditions);
     }
 
-    fn block(&self, leading: &[i64], first: i64, out: &mut [[u8; 2]]) -> Option<[u64; 2]> {
-        let [a, b, c] = [0, 1, 2].map(|n| leading[n] as i16);
-        Some(block::multiply_add(Factor::product(a, b), c, first as i16, out))
+    fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        // Nor does a sum ask which of its products comes first.
+        let [first, other, a, b] = [varying, varying ^ 1, varying ^ 2, varying ^ 3].map(|n| inputs[n] as i16);
+        Some(block::multiply_add(Factor::product(a, b), other, first, out.as_chunks_mut().0))
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {

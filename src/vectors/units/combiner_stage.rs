@@ -1,12 +1,12 @@
 //! Whole general stages: everything is read before anything is written.
 
+use super::block::{self, Sixteen};
 use super::{named, scale_takes_bias, step};
 use crate::combiner::general::{self, PlannedPortion, PlannedStage};
 use crate::combiner::registers::Registers;
-use crate::state::{
-    Bias, CombinerInput, Component, InputMapping, MuxSelect, Policies, Portion, Profile, Register, Scale,
-};
-use crate::trace::{Recorder, Step};
+use crate::number::Lane;
+use crate::state::{Bias, CombinerInput, Component, InputMapping, MuxSelect, Portion, Profile, Register, Scale};
+use crate::trace::{Observer, Recorder, Silent};
 use crate::vectors::column::{Column, Kind};
 use crate::vectors::unit::{Conditions, Reach, Unit};
 
@@ -39,14 +39,6 @@ fn portion(component: Component, mappings: &[i64]) -> Portion {
     portion
 }
 
-fn run(stages: &[PlannedStage], select: MuxSelect, policies: &Policies, registers: &mut Registers<i32>) -> Vec<Step> {
-    let mut recorder = Recorder::default();
-    for stage in stages {
-        general::run(stage, select, policies, registers, &mut recorder);
-    }
-    recorder.steps
-}
-
 /// The configuration that the RGB and the alpha portion share.
 fn configuration(dots: bool) -> Vec<Column> {
     let mut columns: Vec<Column> =
@@ -62,6 +54,29 @@ fn configuration(dots: bool) -> Vec<Column> {
 /// An RGB portion with three outputs.
 #[derive(Debug)]
 pub(super) struct GeneralStage;
+
+/// The registers of a row.
+fn general_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
+    let mut file = Registers::new();
+    for (n, register) in SOURCES.into_iter().enumerate() {
+        let first = 10 + 3 * n;
+        file.load(register, [at(first), at(first + 1), at(first + 2), L::ZERO]);
+    }
+    file.write(Register::Spare0, 3, at(22));
+    file
+}
+
+/// R, G, B of AB, CD and the third output.
+fn general_stage<L: Lane>(inputs: &[i64], mut file: Registers<L>, conditions: &Conditions) -> [L; 9] {
+    let outputs = [Register::Spare0, Register::Spare1, Register::Texture2];
+    let mut rgb = portion(Component::Rgb, &inputs[..4]);
+    (rgb.scale, rgb.bias, rgb.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
+    (rgb.ab_dot_product, rgb.cd_dot_product) = (inputs[8] != 0, inputs[9] != 0);
+    [rgb.ab_output, rgb.cd_output, rgb.sum_output] = outputs;
+    let stage = stage(rgb, Portion::idle(Component::Alpha));
+    general::run(&stage, named(inputs[7]), &conditions.policies, &mut file, &mut Silent);
+    std::array::from_fn(|n| file.read(outputs[n / 3], n % 3))
+}
 
 impl Unit for GeneralStage {
     fn name(&self) -> &'static str {
@@ -104,32 +119,27 @@ impl Unit for GeneralStage {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let mut rgb = portion(Component::Rgb, &inputs[..4]);
-        (rgb.scale, rgb.bias, rgb.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
-        (rgb.ab_dot_product, rgb.cd_dot_product) = (inputs[8] != 0, inputs[9] != 0);
-        (rgb.ab_output, rgb.cd_output, rgb.sum_output) = (Register::Spare0, Register::Spare1, Register::Texture2);
-        let mut file = Registers::new();
-        for (register, values) in SOURCES.into_iter().zip(inputs[10..22].chunks_exact(3)) {
-            file.load(register, [values[0] as i32, values[1] as i32, values[2] as i32, 0]);
-        }
-        file.write(Register::Spare0, 3, inputs[22] as i32);
+        let file = general_file(|n| inputs[n] as i32);
         let takes_cd = general::mux_takes_cd(inputs[22] as i32, named(inputs[7]), &conditions.policies);
-        let stages = [stage(rgb, Portion::idle(Component::Alpha))];
         // The factors by themselves: a trace of each row would be far slower.
-        for (n, input) in rgb.inputs.iter().enumerate() {
+        for (n, input) in portion(Component::Rgb, &inputs[..4]).inputs.iter().enumerate() {
             let x: [i32; 3] = std::array::from_fn(|channel| file.read(input.register, channel));
             let factors = crate::combiner::mapping::map(x, input.mapping, &conditions.policies);
             for (channel, factor) in factors.into_iter().enumerate() {
-                results[3 * n + channel] = <i32 as crate::number::Lane>::observe_factor(factor).0;
+                results[3 * n + channel] = <i32 as Lane>::observe_factor(factor).0;
             }
         }
         results[12] = takes_cd.into();
-        general::run(&stages[0], named(inputs[7]), &conditions.policies, &mut file, &mut crate::trace::Silent);
-        for (n, register) in [Register::Spare0, Register::Spare1, Register::Texture2].into_iter().enumerate() {
-            for channel in 0..3 {
-                results[13 + 3 * n + channel] = file.read(register, channel).into();
-            }
+        for (result, value) in results[13..].iter_mut().zip(general_stage(inputs, file, conditions)) {
+            *result = value.into();
         }
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let rows = |rows: &Sixteen| general_stage(inputs, general_file(|n| rows.at(n)), conditions);
+        // The mux decides by the last.
+        let has = varying >= 10 && !(varying == 22 && inputs[6] != 0);
+        has.then(|| block::registers(inputs, varying, out, rows))
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
@@ -140,6 +150,36 @@ impl Unit for GeneralStage {
 /// An alpha portion with three outputs.
 #[derive(Debug)]
 pub(super) struct AlphaPortion;
+
+/// The registers of a row.
+fn alpha_file<L: Lane>(at: impl Fn(usize) -> L) -> Registers<L> {
+    let mut file = Registers::new();
+    for (n, register) in SOURCES.into_iter().enumerate() {
+        file.load(register, [L::ZERO, L::ZERO, at(12 + 2 * n), at(13 + 2 * n)]);
+    }
+    file.write(Register::Spare0, 3, at(20));
+    file
+}
+
+/// The portion, each input with its component.
+fn alpha_inputs(inputs: &[i64]) -> Portion {
+    let mut alpha = portion(Component::Alpha, &inputs[..4]);
+    for (input, component) in alpha.inputs.iter_mut().zip(&inputs[8..12]) {
+        input.component = if *component == 0 { Component::Blue } else { Component::Alpha };
+    }
+    alpha
+}
+
+/// AB, CD and the third output.
+fn alpha_portion<L: Lane>(inputs: &[i64], mut file: Registers<L>, conditions: &Conditions) -> [L; 3] {
+    let outputs = [Register::Spare1, Register::Texture2, Register::Texture3];
+    let mut alpha = alpha_inputs(inputs);
+    (alpha.scale, alpha.bias, alpha.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
+    [alpha.ab_output, alpha.cd_output, alpha.sum_output] = outputs;
+    let stage = stage(Portion::idle(Component::Rgb), alpha);
+    general::run(&stage, named(inputs[7]), &conditions.policies, &mut file, &mut Silent);
+    outputs.map(|register| file.read(register, 3))
+}
 
 impl Unit for AlphaPortion {
     fn name(&self) -> &'static str {
@@ -176,28 +216,21 @@ impl Unit for AlphaPortion {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let mut alpha = portion(Component::Alpha, &inputs[..4]);
-        for (input, component) in alpha.inputs.iter_mut().zip(&inputs[8..12]) {
-            input.component = if *component == 0 { Component::Blue } else { Component::Alpha };
-        }
-        (alpha.scale, alpha.bias, alpha.mux) = (named(inputs[4]), named(inputs[5]), inputs[6] != 0);
-        let outputs = [Register::Spare1, Register::Texture2, Register::Texture3];
-        [alpha.ab_output, alpha.cd_output, alpha.sum_output] = outputs;
-        let mut file = Registers::new();
-        for (n, register) in SOURCES.into_iter().enumerate() {
-            file.load(register, [0, 0, inputs[12 + 2 * n] as i32, inputs[13 + 2 * n] as i32]);
-        }
-        file.write(Register::Spare0, 3, inputs[20] as i32);
-        for (n, input) in alpha.inputs.iter().enumerate() {
+        let file = alpha_file(|n| inputs[n] as i32);
+        for (n, input) in alpha_inputs(inputs).inputs.iter().enumerate() {
             let x = file.read(input.register, general::source_channel(input, 3));
             let [factor] = crate::combiner::mapping::map([x], input.mapping, &conditions.policies);
-            results[n] = <i32 as crate::number::Lane>::observe_factor(factor).0;
+            results[n] = <i32 as Lane>::observe_factor(factor).0;
         }
-        let stage = stage(Portion::idle(Component::Rgb), alpha);
-        general::run(&stage, named(inputs[7]), &conditions.policies, &mut file, &mut crate::trace::Silent);
-        for (n, register) in outputs.into_iter().enumerate() {
-            results[4 + n] = file.read(register, 3).into();
+        for (result, value) in results[4..].iter_mut().zip(alpha_portion(inputs, file, conditions)) {
+            *result = value.into();
         }
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let rows = |rows: &Sixteen| alpha_portion(inputs, alpha_file(|n| rows.at(n)), conditions);
+        let has = varying >= 12 && !(varying == 20 && inputs[6] != 0);
+        has.then(|| block::registers(inputs, varying, out, rows))
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
@@ -208,6 +241,24 @@ impl Unit for AlphaPortion {
 /// A dot product's blue in the alpha of its destination.
 #[derive(Debug)]
 pub(super) struct BlueToAlpha;
+
+/// Blue of AB and CD, then alpha of SPARE0 and SPARE1.
+fn blue_to_alpha<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &Conditions) -> [L; 4] {
+    let mut rgb = portion(Component::Rgb, &[InputMapping::SignedIdentity as i64; 4]);
+    (rgb.ab_output, rgb.cd_output, rgb.ab_dot_product) = (Register::Spare0, Register::Spare1, inputs[0] != 0);
+    (rgb.ab_blue_to_alpha, rgb.cd_blue_to_alpha) = (inputs[1] != 0, inputs[2] != 0);
+    let mut file = Registers::new();
+    file.load(SOURCES[0], [at(3), at(4), at(5), L::ZERO]);
+    file.load(SOURCES[1], [at(6), at(7), at(8), L::ZERO]);
+    file.load(SOURCES[2], [L::ZERO, L::ZERO, at(9), L::ZERO]);
+    file.load(SOURCES[3], [L::ZERO, L::ZERO, at(10), L::ZERO]);
+    file.write(Register::Spare0, 3, at(11));
+    file.write(Register::Spare1, 3, at(12));
+    let stage = stage(rgb, Portion::idle(Component::Alpha));
+    general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, &mut Silent);
+    [(Register::Spare0, 2), (Register::Spare1, 2), (Register::Spare0, 3), (Register::Spare1, 3)]
+        .map(|(register, channel)| file.read(register, channel))
+}
 
 impl Unit for BlueToAlpha {
     fn name(&self) -> &'static str {
@@ -248,26 +299,17 @@ impl Unit for BlueToAlpha {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let mut rgb = portion(Component::Rgb, &[InputMapping::SignedIdentity as i64; 4]);
-        (rgb.ab_output, rgb.cd_output, rgb.ab_dot_product) = (Register::Spare0, Register::Spare1, inputs[0] != 0);
-        (rgb.ab_blue_to_alpha, rgb.cd_blue_to_alpha) = (inputs[1] != 0, inputs[2] != 0);
-        let v: Vec<i32> = inputs[3..].iter().map(|v| *v as i32).collect();
-        let mut file = Registers::new();
-        file.load(SOURCES[0], [v[0], v[1], v[2], 0]);
-        file.load(SOURCES[1], [v[3], v[4], v[5], 0]);
-        file.load(SOURCES[2], [0, 0, v[6], 0]);
-        file.load(SOURCES[3], [0, 0, v[7], 0]);
-        file.write(Register::Spare0, 3, v[8]);
-        file.write(Register::Spare1, 3, v[9]);
-        let stage = stage(rgb, Portion::idle(Component::Alpha));
-        general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, &mut crate::trace::Silent);
-        for (n, (register, channel)) in
-            [(Register::Spare0, 2), (Register::Spare1, 2), (Register::Spare0, 3), (Register::Spare1, 3)]
-                .into_iter()
-                .enumerate()
-        {
-            results[n] = file.read(register, channel).into();
+        for (result, value) in results.iter_mut().zip(blue_to_alpha(inputs, |n| inputs[n] as i32, conditions)) {
+            *result = value.into();
         }
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let rows = |rows: &Sixteen| {
+            let [_, _, spare0, spare1] = blue_to_alpha(inputs, |n| rows.at(n), conditions);
+            [spare0, spare1]
+        };
+        (varying >= 3).then(|| block::registers(inputs, varying, out, rows))
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
@@ -278,6 +320,34 @@ impl Unit for BlueToAlpha {
 /// A register value handed from one stage to the next.
 #[derive(Debug)]
 pub(super) struct TwoStages;
+
+/// Red of SPARE0 after both.
+fn two_stages<L: Lane, O: Observer>(
+    inputs: &[i64],
+    at: impl Fn(usize) -> L,
+    conditions: &Conditions,
+    observer: &mut O,
+) -> L {
+    let signed = [InputMapping::SignedIdentity as i64; 4];
+    let mut first = portion(Component::Rgb, &signed);
+    (first.scale, first.bias, first.sum_output) = (named(inputs[0]), named(inputs[1]), Register::Spare0);
+    let mut second = portion(Component::Rgb, &signed);
+    let spare0 = CombinerInput { register: Register::Spare0, component: Component::Rgb, mapping: named(inputs[2]) };
+    second.inputs[0] = spare0;
+    second.inputs[1].mapping = named(inputs[3]);
+    second.sum_output = Register::Spare0;
+    let mut file = Registers::new();
+    for (n, register) in SOURCES.into_iter().enumerate() {
+        file.load(register, [at(4 + n); 4]);
+    }
+    let alpha = Portion::idle(Component::Alpha);
+    let mut after = stage(second, alpha);
+    after.index = 1;
+    for stage in [stage(first, alpha), after] {
+        general::run(&stage, MuxSelect::Msb, &conditions.policies, &mut file, observer);
+    }
+    file.read(Register::Spare0, 0)
+}
 
 impl Unit for TwoStages {
     fn name(&self) -> &'static str {
@@ -317,27 +387,18 @@ impl Unit for TwoStages {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let signed = [InputMapping::SignedIdentity as i64; 4];
-        let mut first = portion(Component::Rgb, &signed);
-        (first.scale, first.bias, first.sum_output) = (named(inputs[0]), named(inputs[1]), Register::Spare0);
-        let mut second = portion(Component::Rgb, &signed);
-        let spare0 = CombinerInput { register: Register::Spare0, component: Component::Rgb, mapping: named(inputs[2]) };
-        second.inputs[0] = spare0;
-        second.inputs[1].mapping = named(inputs[3]);
-        second.sum_output = Register::Spare0;
-        let mut file = Registers::new();
-        for (register, value) in SOURCES.into_iter().zip(&inputs[4..]) {
-            file.load(register, [*value as i32; 4]);
-        }
-        let alpha = Portion::idle(Component::Alpha);
-        let mut after = stage(second, alpha);
-        after.index = 1;
-        let steps = run(&[stage(first, alpha), after], MuxSelect::Msb, &conditions.policies, &mut file);
+        let mut recorder = Recorder::default();
+        let out = two_stages(inputs, |n| inputs[n] as i32, conditions, &mut recorder);
         // `spare0.r` is written twice; the first is the first stage's.
-        results[0] = step(&steps, "spare0.r");
-        let mapped = steps.iter().find(|step| step.name == "stage1.rgb.A.r");
+        results[0] = step(&recorder.steps, "spare0.r");
+        let mapped = recorder.steps.iter().find(|step| step.name == "stage1.rgb.A.r");
         results[1] = mapped.map_or(0, |step| if step.per_one == 255 { 2 * step.value } else { step.value });
-        results[2] = file.read(Register::Spare0, 0).into();
+        results[2] = out.into();
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let rows = |rows: &Sixteen| [two_stages(inputs, |n| rows.at(n), conditions, &mut Silent)];
+        (varying >= 4).then(|| block::registers(inputs, varying, out, rows))
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {

@@ -1,10 +1,11 @@
 //! The final combiner, one colour channel and alpha.
 
-use super::{named, step};
+use super::{block, named, step};
 use crate::combiner::final_combiner::{self, PlannedFinal};
 use crate::combiner::registers::Registers;
+use crate::number::{Each, Lane};
 use crate::state::{self, Component, FinalInput, FinalRegister, Register, named as enumeration};
-use crate::trace::Recorder;
+use crate::trace::{Recorder, Silent};
 use crate::vectors::column::{Column, Kind};
 use crate::vectors::unit::{Conditions, Reach, Unit};
 
@@ -24,15 +25,63 @@ enumeration! {
 #[derive(Debug)]
 pub(super) struct FinalCombiner;
 
-/// Registers of A, B, C, D, E, F where they have one of their own.
-const OWN: [(FinalRegister, Register); 6] = [
-    (FinalRegister::Texture0, Register::Texture0),
-    (FinalRegister::Texture1, Register::Texture1),
-    (FinalRegister::PrimaryColor, Register::PrimaryColor),
-    (FinalRegister::Fog, Register::Fog),
-    (FinalRegister::Texture2, Register::Texture2),
-    (FinalRegister::Texture3, Register::Texture3),
+/// What A, B, C, D, E, F read where it is a register of their own.
+const OWN: [FinalRegister; 6] = [
+    FinalRegister::Texture0,
+    FinalRegister::Texture1,
+    FinalRegister::PrimaryColor,
+    FinalRegister::Fog,
+    FinalRegister::Texture2,
+    FinalRegister::Texture3,
 ];
+
+/// Columns of configuration.
+const CONFIGURATION: usize = 14;
+
+/// The registers that hold the inputs in their order, but the last: that is the alpha of SPARE1.
+const REGISTERS: [Register; 8] = [
+    Register::Texture0,
+    Register::Texture1,
+    Register::PrimaryColor,
+    Register::Fog,
+    Register::Texture2,
+    Register::Texture3,
+    Register::Spare0,
+    Register::SecondaryColor,
+];
+
+/// Puts an input into its register.
+fn load<L: Lane>(file: &mut Registers<L>, input: usize, value: L) {
+    match REGISTERS.get(input) {
+        Some(register) => file.load(*register, [value; 4]),
+        None => file.write(Register::Spare1, 3, value),
+    }
+}
+
+/// The combiner of a row. `all`: the colour sum and E F are computed even if nothing reads them.
+fn planned(inputs: &[i64], all: bool) -> PlannedFinal {
+    let flag = |n: usize| inputs[n] != 0;
+    let mut sources: [FinalInput; 6] = [FinalInput::zero(Component::Rgb); 6];
+    for (n, (own, source)) in OWN.into_iter().zip(&mut sources).enumerate() {
+        source.register = match inputs.get(n).filter(|_| n < 4).map(|chosen| named::<Source>(*chosen)) {
+            Some(Source::Sum) => FinalRegister::Spare0PlusSecondary,
+            Some(Source::Product) => FinalRegister::ETimesF,
+            Some(Source::Own) | None => own,
+        };
+        source.invert = flag(4 + n);
+    }
+    let needs = |register| u8::from(all || sources.iter().any(|source| source.register == register));
+    let state = state::FinalCombiner {
+        inputs: sources,
+        g: FinalInput { register: FinalRegister::Spare1, component: Component::Alpha, invert: flag(10) },
+        color_sum_clamp: flag(11),
+        invert_spare0: flag(12),
+        invert_secondary: flag(13),
+        constants: [[0; 4]; 2],
+    };
+    let (product, sum) = (needs(FinalRegister::ETimesF), needs(FinalRegister::Spare0PlusSecondary));
+    PlannedFinal { state, live: 9, product, sum, reads_constants: false, lerps: true }
+}
 
 impl Unit for FinalCombiner {
     fn name(&self) -> &'static str {
@@ -67,38 +116,32 @@ impl Unit for FinalCombiner {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let flag = |n: usize| inputs[n] != 0;
-        let mut file = Registers::new();
-        let mut sources: [FinalInput; 6] = [FinalInput::zero(Component::Rgb); 6];
-        for (n, ((own, register), source)) in OWN.into_iter().zip(&mut sources).enumerate() {
-            file.load(register, [inputs[14 + n] as i32; 4]);
-            source.register = match inputs.get(n).filter(|_| n < 4).map(|chosen| named::<Source>(*chosen)) {
-                Some(Source::Sum) => FinalRegister::Spare0PlusSecondary,
-                Some(Source::Product) => FinalRegister::ETimesF,
-                Some(Source::Own) | None => own,
-            };
-            source.invert = flag(4 + n);
-        }
-        file.load(Register::Spare0, [inputs[20] as i32; 4]);
-        file.load(Register::SecondaryColor, [inputs[21] as i32; 4]);
-        file.write(Register::Spare1, 3, inputs[22] as i32);
-        let state = state::FinalCombiner {
-            inputs: sources,
-            g: FinalInput { register: FinalRegister::Spare1, component: Component::Alpha, invert: flag(10) },
-            color_sum_clamp: flag(11),
-            invert_spare0: flag(12),
-            invert_secondary: flag(13),
-            constants: [[0; 4]; 2],
-        };
-        let planned = PlannedFinal { state, live: 9, product: 1, sum: 1, reads_constants: false, lerps: true };
         let mut recorder = Recorder::default();
-        let (profile, policies) = (conditions.profile, &conditions.policies);
-        let out = final_combiner::run(&planned, profile, policies, &mut file, &mut recorder);
+        let mut file = Registers::new();
+        for (n, value) in inputs[CONFIGURATION..].iter().enumerate() {
+            load(&mut file, n, *value as i32);
+        }
+        let Conditions { profile, policies } = conditions;
+        let out = final_combiner::run(&planned(inputs, true), *profile, policies, &mut file, &mut recorder);
         let names = ["final.sum.r", "final.EF.r", "final.A.r", "final.B.r", "final.C.r", "final.D.r", "final.rgb.r"];
         for (result, name) in results.iter_mut().zip(names) {
             *result = step(&recorder.steps, name);
         }
         (results[7], results[8]) = (out[0].into(), out[3].into());
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let own = varying.checked_sub(CONFIGURATION)?;
+        let (planned, mut file) = (planned(inputs, false), Registers::new());
+        for (n, value) in inputs[CONFIGURATION..].iter().enumerate() {
+            load(&mut file, n, Each::all(*value as i32));
+        }
+        Some(block::bytes(inputs, varying, out, |rows| {
+            load(&mut file, own, rows.numbers());
+            let Conditions { profile, policies } = conditions;
+            let [r, _, _, a] = final_combiner::run(&planned, *profile, policies, &mut file, &mut Silent);
+            [r, a]
+        }))
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {

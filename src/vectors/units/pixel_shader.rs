@@ -1,8 +1,7 @@
 //! One arithmetic instruction of ps.1.1.
 
 use super::named;
-use super::program::{self, CHANNELS};
-use crate::combiner::registers::Registers;
+use super::program::{self, CHANNELS, Through};
 use crate::program::At;
 use crate::program::pixel_shader::{
     Arithmetic, Bank, Context, Mask, Modifier, Operation, PixelShader, Selector, ShaderRegister, Source, Target,
@@ -92,6 +91,14 @@ fn lowered(inputs: &[i64], profile: Profile) -> Option<Combiners> {
     lower(&shader(inputs), &context).ok().map(|lowered| lowered.combiners)
 }
 
+/// The registers of a pixel.
+const PLACES: [(Register, usize); 4] = [
+    (Register::Texture0, CONFIGURATION),
+    (Register::Texture1, CONFIGURATION + 4),
+    (Register::PrimaryColor, CONFIGURATION + 8),
+    (Register::Texture3, CONFIGURATION + 12),
+];
+
 impl Unit for Instruction {
     fn name(&self) -> &'static str {
         "pixel-shader"
@@ -168,12 +175,16 @@ impl Unit for Instruction {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let mut file = Registers::new();
-        let registers = [Register::Texture0, Register::Texture1, Register::PrimaryColor, Register::Texture3];
-        for (register, values) in registers.into_iter().zip(inputs[CONFIGURATION..].chunks_exact(4)) {
-            program::load(&mut file, register, values);
-        }
-        program::run(lowered(inputs, conditions.profile).ok_or(()), file, conditions, results);
+        program::run(lowered(inputs, conditions.profile), &PLACES, inputs, conditions, results);
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        // Which source cnd takes depends on the last column.
+        let decides = named::<Operation>(inputs[0]) == Operation::Cnd && varying == inputs.len() - 1;
+        let through = if decides { Through::Decision } else { Through::Register };
+        let lower = |inputs: &[i64]| lowered(inputs, conditions.profile);
+        let has = varying >= CONFIGURATION;
+        has.then(|| program::block(inputs, varying, through, &PLACES, conditions, out, lower))?
     }
 
     fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {

@@ -1,6 +1,7 @@
 //! Alpha test, blending, surfaces.
 
-use super::named;
+use super::{block, named};
+use crate::number::{Each, Lane};
 use crate::rop::{blend, surface};
 use crate::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
 use crate::trace::Silent;
@@ -61,6 +62,10 @@ impl Unit for AlphaTest {
 #[derive(Debug)]
 pub(super) struct Blend;
 
+fn blend_state(inputs: &[i64]) -> state::Blend {
+    state::Blend { equation: named(inputs[0]), source: named(inputs[1]), destination: named(inputs[2]) }
+}
+
 impl Unit for Blend {
     fn name(&self) -> &'static str {
         "blend"
@@ -91,8 +96,7 @@ impl Unit for Blend {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let state =
-            state::Blend { equation: named(inputs[0]), source: named(inputs[1]), destination: named(inputs[2]) };
+        let state = blend_state(inputs);
         let [source, destination, constant] = [3, 7, 11].map(|first| color(&inputs[first..first + 4]));
         for channel in 0..4 {
             let factor = |f: BlendFactor| i64::from(blend::factor(f, channel, &source, &destination, &constant));
@@ -103,6 +107,25 @@ impl Unit for Blend {
         for (result, value) in results[8..].iter_mut().zip(out) {
             *result = value.into();
         }
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let state = blend_state(inputs);
+        // The signed equations decide by the source.
+        let has = varying >= 3 && !(blend::is_signed(state.equation) && varying < 7);
+        has.then(|| {
+            let mut lanes: [Each<i32>; 12] = std::array::from_fn(|n| Each::all(inputs[3 + n] as i32));
+            block::bytes(inputs, varying, out, |rows| {
+                lanes[varying - 3] = rows.numbers();
+                let [source, destination, constant] = lanes.as_chunks().0 else { return [Each::all(0); 4] };
+                let channel = |channel: usize| {
+                    let factor = |f| blend::factor(f, channel, source, destination, constant);
+                    let (fs, fd) = (factor(state.source), factor(state.destination));
+                    blend::equation(state.equation, source[channel], destination[channel], fs, fd).clamped()
+                };
+                [channel(0), channel(1), channel(2), channel(3)]
+            })
+        })
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {

@@ -1,14 +1,13 @@
 //! One unit of the OpenGL texture environment.
 
 use super::named;
-use super::program::{self, RULES, bytes, colors};
-use crate::combiner::registers::Registers;
+use super::program::{self, RULES, Through, bytes, colors};
 use crate::program::At;
 use crate::program::texture_environment::{
     BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit as Environment,
     lower,
 };
-use crate::state::{Named, Profile, Register, Scale};
+use crate::state::{Combiners, Named, Profile, Register, Scale};
 use crate::vectors::column::{Column, Kind};
 use crate::vectors::unit::{Conditions, Reach, Unit};
 
@@ -21,15 +20,30 @@ fn is_combining(mode: Mode) -> bool {
     matches!(mode, Mode::Combine | Mode::Combine4)
 }
 
-/// Lowers a unit that has a texture of that format, and runs it.
-fn run(unit: Environment, format: BaseFormat, colors: &[i64], conditions: &Conditions, results: &mut [i64]) {
-    let mut file = Registers::new();
-    program::load(&mut file, Register::Texture0, &colors[..4]);
-    program::load(&mut file, Register::PrimaryColor, &colors[4..8]);
+/// What a unit lowers to that has a texture of that format; nothing where the chip has no form for it.
+fn lowered(unit: Environment, format: BaseFormat, profile: Profile) -> Option<Combiners> {
     let environment = TextureEnvironment { units: vec![unit], color_sum: false };
     let textures = [Some(format), None, None, None];
-    let context = Context { profile: conditions.profile, textures, signed: [false; 4], fog: false };
-    program::run(lower(&environment, &context).map(|lowered| lowered.combiners), file, conditions, results);
+    let context = Context { profile, textures, signed: [false; 4], fog: false };
+    lower(&environment, &context).map(|lowered| lowered.combiners).ok()
+}
+
+/// The registers of a pixel: the texture's input `first` and the next three, then the primary colour's.
+fn places(first: usize) -> [(Register, usize); 2] {
+    [(Register::Texture0, first), (Register::PrimaryColor, first + 4)]
+}
+
+/// Rows in block lanes; the constant's columns follow those of the primary colour.
+fn block(
+    inputs: &[i64],
+    varying: usize,
+    first: usize,
+    conditions: &Conditions,
+    out: &mut [u8],
+    lower: impl Fn(&[i64]) -> Option<Combiners>,
+) -> Option<[u64; 2]> {
+    let through = if varying >= first + 8 { Through::Constant } else { Through::Register };
+    (varying >= first).then(|| program::block(inputs, varying, through, &places(first), conditions, out, lower))?
 }
 
 /// The modes of OpenGL 1.1.
@@ -50,6 +64,11 @@ fn as_format(format: BaseFormat, [r, g, b, a]: [i64; 4]) -> [i64; 4] {
 
 fn texture(inputs: &[i64]) -> [i64; 4] {
     as_format(named(inputs[1]), std::array::from_fn(|n| inputs[2 + n]))
+}
+
+fn classic(inputs: &[i64], profile: Profile) -> Option<Combiners> {
+    let unit = Environment { mode: named(inputs[0]), color: bytes(&inputs[10..14]), ..Environment::initial() };
+    lowered(unit, named(inputs[1]), profile)
 }
 
 impl Unit for Classic {
@@ -87,8 +106,11 @@ impl Unit for Classic {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let unit = Environment { mode: named(inputs[0]), color: bytes(&inputs[10..14]), ..Environment::initial() };
-        run(unit, named(inputs[1]), &inputs[2..10], conditions, results);
+        program::run(classic(inputs, conditions.profile), &places(2), inputs, conditions, results);
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        block(inputs, varying, 2, conditions, out, |inputs| classic(inputs, conditions.profile))
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
@@ -113,6 +135,26 @@ fn of_alpha(operand: Operand) -> Operand {
         Operand::SourceColor | Operand::SourceAlpha => Operand::SourceAlpha,
         Operand::OneMinusSourceColor | Operand::OneMinusSourceAlpha => Operand::OneMinusSourceAlpha,
     }
+}
+
+fn combine(inputs: &[i64], profile: Profile) -> Option<Combiners> {
+    let (function, scale): (Function, Scale) = (named(inputs[1]), named(inputs[2]));
+    let operands: [Operand; 4] = std::array::from_fn(|n| named(inputs[3 + n]));
+    let half = |function, operands: [Operand; 4]| Half {
+        function: At::default_of(function),
+        sources: SOURCES.map(At::default_of),
+        operands: operands.map(At::default_of),
+        scale,
+    };
+    let alpha = if function.is_dot() { Function::Modulate } else { function };
+    let unit = Environment {
+        mode: named(inputs[0]),
+        rgb: half(function, operands),
+        alpha: half(alpha, operands.map(of_alpha)),
+        color: bytes(&inputs[15..19]),
+        ..Environment::initial()
+    };
+    lowered(unit, BaseFormat::Rgba, profile)
 }
 
 impl Unit for Combine {
@@ -161,23 +203,11 @@ impl Unit for Combine {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let (function, scale): (Function, Scale) = (named(inputs[1]), named(inputs[2]));
-        let operands: [Operand; 4] = std::array::from_fn(|n| named(inputs[3 + n]));
-        let half = |function, operands: [Operand; 4]| Half {
-            function: At::default_of(function),
-            sources: SOURCES.map(At::default_of),
-            operands: operands.map(At::default_of),
-            scale,
-        };
-        let alpha = if function.is_dot() { Function::Modulate } else { function };
-        let unit = Environment {
-            mode: named(inputs[0]),
-            rgb: half(function, operands),
-            alpha: half(alpha, operands.map(of_alpha)),
-            color: bytes(&inputs[15..19]),
-            ..Environment::initial()
-        };
-        run(unit, BaseFormat::Rgba, &inputs[7..15], conditions, results);
+        program::run(combine(inputs, conditions.profile), &places(7), inputs, conditions, results);
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        block(inputs, varying, 7, conditions, out, |inputs| combine(inputs, conditions.profile))
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {

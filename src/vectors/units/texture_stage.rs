@@ -1,13 +1,12 @@
 //! One Direct3D texture stage.
 
 use super::named;
-use super::program::{self, RULES, bytes, colors};
-use crate::combiner::registers::Registers;
+use super::program::{self, RULES, Through, bytes, colors};
 use crate::program::At;
 use crate::program::texture_stages::{
     ArgumentSource, Context, Half, Operation, StageArgument, TextureStage, TextureStages, lower,
 };
-use crate::state::{Named, Profile, Register};
+use crate::state::{Combiners, Named, Profile, Register};
 use crate::vectors::column::{Column, Kind};
 use crate::vectors::unit::{Conditions, Reach, Unit};
 
@@ -28,6 +27,48 @@ fn copy(source: ArgumentSource) -> TextureStage {
     let argument = StageArgument::new(source);
     let select = || half(Operation::SelectArg1, [argument; 3]);
     TextureStage { color: select(), alpha: select(), ..TextureStage::initial(0) }
+}
+
+/// Columns of configuration.
+const CONFIGURATION: usize = 5;
+
+/// The first column of the texture factor.
+const FACTOR: usize = CONFIGURATION + 12;
+
+fn operation(inputs: &[i64]) -> Operation {
+    named(inputs[0])
+}
+
+/// What a row lowers to; nothing where the chip has no form for it.
+fn lowered(inputs: &[i64], profile: Profile) -> Option<Combiners> {
+    let operation = operation(inputs);
+    let argument =
+        |source, flags: &[i64]| StageArgument { source, complement: flags[0] != 0, alpha_replicate: flags[1] != 0 };
+    let arguments = [
+        StageArgument::new(ArgumentSource::TextureFactor),
+        argument(ArgumentSource::Texture, &inputs[1..3]),
+        argument(ArgumentSource::Current, &inputs[3..5]),
+    ];
+    let alpha = if operation.is_color_only() { Operation::SelectArg2 } else { operation };
+    let tested =
+        TextureStage { color: half(operation, arguments), alpha: half(alpha, arguments), ..TextureStage::initial(1) };
+    let stages = match operation {
+        Operation::PreModulate => vec![tested, copy(ArgumentSource::Current)],
+        _ => vec![copy(ArgumentSource::Texture), tested],
+    };
+    let stages = TextureStages { stages, texture_factor: bytes(&inputs[FACTOR..]), specular_enable: false };
+    let bound = [true, true, false, false];
+    let context = Context { profile, bound, signed: [false; 4], fog: false };
+    lower(&stages, &context).map(|lowered| lowered.combiners).ok()
+}
+
+/// The registers of a pixel.
+fn places(inputs: &[i64]) -> [(Register, usize); 3] {
+    let (own, other) = match operation(inputs) {
+        Operation::PreModulate => (Register::Texture0, Register::Texture1),
+        _ => (Register::Texture1, Register::Texture0),
+    };
+    [(own, CONFIGURATION), (other, CONFIGURATION + 4), (Register::PrimaryColor, CONFIGURATION + 8)]
 }
 
 impl Unit for Stage {
@@ -57,33 +98,15 @@ impl Unit for Stage {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let operation: Operation = named(inputs[0]);
-        let argument =
-            |source, flags: &[i64]| StageArgument { source, complement: flags[0] != 0, alpha_replicate: flags[1] != 0 };
-        let arguments = [
-            StageArgument::new(ArgumentSource::TextureFactor),
-            argument(ArgumentSource::Texture, &inputs[1..3]),
-            argument(ArgumentSource::Current, &inputs[3..5]),
-        ];
-        let alpha = if operation.is_color_only() { Operation::SelectArg2 } else { operation };
-        let tested = TextureStage {
-            color: half(operation, arguments),
-            alpha: half(alpha, arguments),
-            ..TextureStage::initial(1)
-        };
-        let mut file = Registers::new();
-        let (stages, own, other) = if operation == Operation::PreModulate {
-            (vec![tested, copy(ArgumentSource::Current)], Register::Texture0, Register::Texture1)
-        } else {
-            (vec![copy(ArgumentSource::Texture), tested], Register::Texture1, Register::Texture0)
-        };
-        program::load(&mut file, own, &inputs[5..9]);
-        program::load(&mut file, other, &inputs[9..13]);
-        program::load(&mut file, Register::PrimaryColor, &inputs[13..17]);
-        let stages = TextureStages { stages, texture_factor: bytes(&inputs[17..21]), specular_enable: false };
-        let bound = [true, true, false, false];
-        let context = Context { profile: conditions.profile, bound, signed: [false; 4], fog: false };
-        program::run(lower(&stages, &context).map(|lowered| lowered.combiners), file, conditions, results);
+        let lowered = lowered(inputs, conditions.profile);
+        program::run(lowered, &places(inputs), inputs, conditions, results);
+    }
+
+    fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
+        let lower = |inputs: &[i64]| lowered(inputs, conditions.profile);
+        let through = if varying >= FACTOR { Through::Constant } else { Through::Register };
+        let has = varying >= CONFIGURATION;
+        has.then(|| program::block(inputs, varying, through, &places(inputs), conditions, out, lower))?
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {

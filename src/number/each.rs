@@ -1,0 +1,232 @@
+//! Sixteen of the definition side by side: every operation is that of the scalar lane, on each of them, but that a sum is rounded without a division.
+
+use super::{Blend, Factor, Halves, Lane, Quarters, Register, Sum};
+use crate::state::RegisterFloor;
+use std::ops::{Add, Sub};
+
+/// How many there are.
+pub const EACH: usize = 16;
+
+/// A value of each of sixteen evaluations that take the same decisions: [`decision`](Lane::decision) and what observers see is that of the first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Each<T>(pub [T; EACH]);
+
+impl<T: Copy> Each<T> {
+    /// The same value everywhere.
+    #[inline(always)]
+    pub fn all(value: T) -> Each<T> {
+        Each([value; EACH])
+    }
+
+    // Plain loops: they become vector instructions.
+    #[inline(always)]
+    fn map<U: Copy>(self, f: impl Fn(T) -> U) -> Each<U> {
+        let mut out = [f(self.0[0]); EACH];
+        for n in 1..EACH {
+            out[n] = f(self.0[n]);
+        }
+        Each(out)
+    }
+
+    #[inline(always)]
+    fn zip<V: Copy, U: Copy>(self, other: Each<V>, f: impl Fn(T, V) -> U) -> Each<U> {
+        let mut out = [f(self.0[0], other.0[0]); EACH];
+        for n in 1..EACH {
+            out[n] = f(self.0[n], other.0[n]);
+        }
+        Each(out)
+    }
+}
+
+impl<T: Copy + Add<Output = T>> Add for Each<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.zip(other, |a, b| a + b)
+    }
+}
+
+impl<T: Copy + Sub<Output = T>> Sub for Each<T> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.zip(other, |a, b| a - b)
+    }
+}
+
+impl Blend for Each<i32> {
+    type Weight = Each<i32>;
+    const WHOLE: Self = Each([i32::WHOLE; EACH]);
+    #[inline(always)]
+    fn times(self, weight: Self) -> Self {
+        self.zip(weight, i32::times)
+    }
+    #[inline(always)]
+    fn round8(self) -> Self {
+        self.map(i32::round8)
+    }
+}
+
+impl Register for Each<i32> {
+    type Factor = Each<Halves>;
+    type Expanded = Each<Halves>;
+    const ZERO: Self = Each([i32::ZERO; EACH]);
+    const ONE: Self = Each([i32::ONE; EACH]);
+    const HALF: Self = Each([i32::HALF; EACH]);
+    #[inline(always)]
+    fn max0(self) -> Self {
+        self.map(i32::max0)
+    }
+    #[inline(always)]
+    fn factor(self) -> Each<Halves> {
+        self.map(i32::factor)
+    }
+    #[inline(always)]
+    fn twice(self) -> Each<Halves> {
+        self.map(i32::twice)
+    }
+    #[inline(always)]
+    fn halved(self) -> Self {
+        self.map(i32::halved)
+    }
+    #[inline(always)]
+    fn saturated(self, floor: RegisterFloor) -> Self {
+        self.map(|v| v.saturated(floor))
+    }
+}
+
+impl Factor for Each<Halves> {
+    type Sum = Each<Quarters>;
+    type Register = Each<i32>;
+    #[inline(always)]
+    fn product(self, other: Self) -> Each<Quarters> {
+        self.zip(other, Halves::product)
+    }
+}
+
+/// NUM-2 without a division, for |n| <= 400 000 times four: floor(m / 255) of m = floor((q + 510) / 4).
+#[inline(always)]
+fn rounded(q: Quarters) -> i32 {
+    let m = ((q.0 + 510) >> 2) - 127;
+    (m * 257 + (m >> 8) + 32646) >> 16
+}
+
+impl Sum for Each<Quarters> {
+    type Register = Each<i32>;
+    #[inline(always)]
+    fn rounded(self) -> Each<i32> {
+        self.map(rounded)
+    }
+}
+
+impl Lane for Each<i32> {
+    type Mapped = Each<Halves>;
+    type Full = Each<Quarters>;
+    const STEP: Self = Each([i32::STEP; EACH]);
+    #[inline(always)]
+    fn byte(value: u8) -> Self {
+        Each::all(i32::byte(value))
+    }
+    #[inline(always)]
+    fn texel(value: i32, numerator: i32, denominator: i32) -> Self {
+        Each::all(i32::texel(value, numerator, denominator))
+    }
+    #[inline(always)]
+    fn signed_texel(self) -> Self {
+        self.map(i32::signed_texel)
+    }
+    #[inline(always)]
+    fn weight(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
+        Each::all(i32::weight(fixed, ideal))
+    }
+    #[inline(always)]
+    fn value(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
+        Each::all(i32::value(fixed, ideal))
+    }
+    #[inline(always)]
+    fn multiplied(self, fixed: i32, _factor: impl FnOnce() -> f64) -> Self {
+        Each::all(fixed)
+    }
+    #[inline(always)]
+    fn halfway(a: Self, b: Self) -> Each<Halves> {
+        a.zip(b, i32::halfway)
+    }
+    #[inline(always)]
+    fn negated(factor: Each<Halves>) -> Each<Halves> {
+        factor.map(i32::negated)
+    }
+    #[inline(always)]
+    fn widened(self) -> Each<Quarters> {
+        self.map(i32::widened)
+    }
+    #[inline(always)]
+    fn rounded_half(sum: Each<Quarters>) -> Self {
+        sum.map(i32::rounded_half)
+    }
+    #[inline(always)]
+    fn clamped(self) -> Self {
+        self.map(i32::clamped)
+    }
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.zip(other, i32::least)
+    }
+    #[inline(always)]
+    fn greatest(self, other: Self) -> Self {
+        self.zip(other, i32::greatest)
+    }
+    #[inline(always)]
+    fn decision(self) -> i32 {
+        self.0[0]
+    }
+    #[inline(always)]
+    fn truncated(self, shift: u32) -> Self {
+        self.map(|v| v.truncated(shift))
+    }
+    fn observe(self) -> (i64, Option<f64>) {
+        self.0[0].observe()
+    }
+    fn observe_factor(factor: Each<Halves>) -> (i64, Option<f64>) {
+        i32::observe_factor(factor.0[0])
+    }
+    fn observe_sum(sum: Each<Quarters>) -> (i64, Option<f64>) {
+        i32::observe_sum(sum.0[0])
+    }
+    fn observe_weight(weight: Self) -> (i64, Option<f64>) {
+        i32::observe_weight(weight.0[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whole products and those with half a step, as far as two dot products reach.
+    #[test]
+    fn rounding_without_a_division_is_exact() {
+        for q in -1_600_000..=1_600_000_i32 {
+            assert_eq!(rounded(Quarters(q)), Quarters(q).rounded(), "{q}");
+        }
+    }
+
+    /// A few numbers through every operation that a rule of combiners or blending uses: as the definition has them, one by one.
+    #[test]
+    fn each_is_the_definition() {
+        let numbers: Each<i32> = Each(std::array::from_fn(|n| n as i32 * 37 - 256));
+        let others = numbers.map(|v| 99 - v / 2);
+        for (n, (a, b)) in numbers.0.into_iter().zip(others.0).enumerate() {
+            let product = numbers.factor().product(others.twice());
+            let one = a.factor().product(b.twice());
+            assert_eq!((product.0[n], product.rounded().0[n]), (one, one.rounded()));
+            assert_eq!((product + product - numbers.widened()).0[n], one + one - a.widened());
+            assert_eq!(<Each<i32> as Lane>::rounded_half(product).0[n], i32::rounded_half(one));
+            assert_eq!((numbers - others).saturated(RegisterFloor::Full).0[n], (a - b).saturated(RegisterFloor::Full));
+            assert_eq!(numbers.max0().halved().clamped().0[n], a.max0().halved().clamped());
+            assert_eq!((numbers.least(others).0[n], numbers.greatest(others).0[n]), (a.min(b), a.max(b)));
+            assert_eq!(<Each<i32> as Lane>::negated(numbers.factor()).0[n], i32::negated(a.factor()));
+            assert_eq!(Lane::halfway(numbers, others).0[n], <i32 as Lane>::halfway(a, b));
+            assert_eq!(numbers.truncated(3).0[n], a.truncated(3));
+            assert_eq!(numbers.times(others).round8().0[n], a.times(b).round8());
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! `docs/operations.md` names every operation of every unit, and every operation of up to 2^32 inputs has its digest tree; what the page takes
+//! apart may be taken apart.
+#![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, Profile, TextureFormat};
+use ninebit::texture::compressed;
+use ninebit::vectors::column::{Column, Kind};
+use ninebit::vectors::random::Random;
+use ninebit::vectors::sweep::Sweep;
+use ninebit::vectors::tree::Tree;
+use ninebit::vectors::unit::{Conditions, Unit};
+use ninebit::vectors::units;
+
+/// A row of the table.
+struct Row {
+    unit: String,
+    operation: String,
+    bits: u32,
+    trees: Vec<String>,
+}
+
+/// All trees under `vectors/digests`, by their name: the path without the ending.
+fn trees() -> BTreeMap<String, Sweep> {
+    let folder = Path::new("vectors/digests");
+    let list = |folder: &Path| -> Vec<PathBuf> {
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
+    };
+    let paths = list(folder).into_iter().flat_map(|path| if path.is_dir() { list(&path) } else { vec![path] });
+    let named = paths.map(|path| {
+        let name = path.strip_prefix(folder).unwrap().with_extension("");
+        (name.to_str().unwrap().to_owned(), Tree::read(&path).unwrap().1)
+    });
+    named.collect()
+}
+
+/// The rows of the table, `FOLDER/*` as the trees of that folder.
+fn table(trees: &BTreeMap<String, Sweep>) -> Vec<Row> {
+    let text = std::fs::read_to_string("docs/operations.md").unwrap();
+    let rows = text.lines().filter(|line| line.starts_with("| `"));
+    let row = |line: &str| {
+        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
+        let [unit, operation, bits, named] = cells[..] else { panic!("{line}") };
+        let names = named.split(", ").filter(|name| *name != "none").map(|name| name.trim_matches('`'));
+        let trees = names.flat_map(|name| match name.strip_suffix('*') {
+            Some(folder) => trees.keys().filter(|tree| tree.starts_with(folder)).cloned().collect(),
+            None => vec![name.to_owned()],
+        });
+        let [unit, operation] = [unit.trim_matches('`'), operation].map(str::to_owned);
+        Row { unit, operation, bits: bits.parse().unwrap(), trees: trees.collect() }
+    };
+    rows.map(row).collect()
+}
+
+/// How many bits the inputs of these columns take, rounded up, configuration not among them.
+fn bits(columns: &[Column]) -> u32 {
+    let inputs = columns.iter().filter(|column| column.name.starts_with("in."));
+    inputs.map(|column| (column.size() as f64).log2()).sum::<f64>().ceil() as u32
+}
+
+#[test]
+fn every_operation_of_up_to_32_bits_has_its_tree() {
+    let trees = trees();
+    let rows = table(&trees);
+    let mut named = BTreeSet::new();
+    for Row { unit, operation, bits: said, trees: own } in &rows {
+        let whole = bits(&units::by_name(unit).unwrap_or_else(|| panic!("no unit {unit}")).inputs());
+        assert!(*said <= whole, "{unit}: {operation} has more inputs than the unit");
+        if own.is_empty() {
+            assert!(*said > 32, "{unit}: {operation} has {said} bits and no tree");
+        }
+        let most = own.iter().map(|name| {
+            assert!(named.insert(name), "{name} stands there twice");
+            let sweep = trees.get(name).unwrap_or_else(|| panic!("there is no tree {name}"));
+            assert_eq!(sweep.unit.name(), unit, "{name}");
+            bits(sweep.part.columns())
+        });
+        // A name of an operation stands for what one number of its configuration does.
+        assert!(most.max().is_none_or(|most| most == *said), "{unit}: {operation}");
+    }
+    let unnamed: Vec<&String> = trees.keys().filter(|name| !named.contains(name)).collect();
+    assert!(unnamed.is_empty(), "not in docs/operations.md: {unnamed:?}");
+    for unit in units::all() {
+        let own: Vec<&Row> = rows.iter().filter(|row| row.unit == unit.name()).collect();
+        assert!(!own.is_empty(), "docs/operations.md lacks {}", unit.name());
+        let whole = bits(&unit.inputs());
+        let above = own.iter().filter(|row| row.trees.is_empty());
+        let swept: Vec<&Sweep> = own.iter().flat_map(|row| &row.trees).map(|name| &trees[name]).collect();
+        assert!(whole > 32 || !swept.is_empty(), "{} has {whole} bits and no tree", unit.name());
+        let above: Vec<&Row> = above.copied().collect();
+        if swept.is_empty() {
+            assert_eq!(above[0].bits, whole, "{}", unit.name());
+            continue;
+        }
+        for (n, column) in unit.inputs().into_iter().enumerate() {
+            // Every choice that the unit has occurs in some tree: an operation that comes to be has none, and fails here.
+            if let Kind::Name(names) = column.kind {
+                let taken: BTreeSet<i64> = swept.iter().flat_map(|sweep| numbers(&sweep.part.columns()[n])).collect();
+                let missing: Vec<&str> =
+                    numbers(&column).filter(|n| !taken.contains(n)).map(|n| names[n as usize]).collect();
+                assert!(missing.is_empty(), "{} {}: no tree has {missing:?}", unit.name(), column.name);
+            } else if column.name.starts_with("in.") {
+                // And so does every input, unless it is one more channel of what another is.
+                let varies = swept.iter().any(|sweep| sweep.part.columns()[n].size() > 1 || sweep.part.is_followed(n));
+                let channel = [".g", ".b", ".r"].iter().any(|end| column.name.ends_with(end));
+                assert!(varies || channel || !above.is_empty(), "{} {}", unit.name(), column.name);
+            }
+        }
+    }
+}
+
+fn numbers(column: &Column) -> impl Iterator<Item = i64> {
+    (0..column.size()).map(|place| column.nth(place))
+}
+
+fn evaluate(unit: &dyn Unit, inputs: &[i64]) -> Vec<i64> {
+    let mut results = vec![0; unit.results().len()];
+    unit.evaluate(inputs, &Conditions { profile: Profile::Nv2a, policies: Policies::DEFAULT }, &mut results);
+    results
+}
+
+/// A tree of Nv2a is one of Nv10 too; compressed blocks have trees of their own.
+#[test]
+fn both_chips_have_the_same_trees() {
+    let mut count = 0;
+    for (name, sweep) in trees() {
+        let mut random = Random::new(2, &name);
+        if sweep.unit.profiles().len() == 1 || sweep.unit.name() == "compressed-block" {
+            continue;
+        }
+        let other = Sweep::of(sweep.unit, Profile::Nv10, sweep.part.clone()).unwrap();
+        let rows = sweep.size.min(500);
+        for _ in 0..3 {
+            let start = random.below(u128::from(sweep.size - rows + 1)) as u64;
+            assert_eq!(sweep.digest(start..start + rows), other.digest(start..start + rows), "{name} from {start}");
+        }
+        count += 1;
+    }
+    assert!(count > 50);
+}
+
+/// A channel with any factors is what red with the constant's red and alpha as factors is: blending is one operation of four bytes, and a factor
+/// another of what it reads.
+#[test]
+fn a_blend_depends_on_its_factors_by_their_values() {
+    let unit = units::by_name("blend").unwrap();
+    let mut random = Random::new(1, "factors");
+    for equation in 0..BlendEquation::ALL.len() as i64 {
+        for (source, destination) in (0..BlendFactor::ALL.len() as i64).flat_map(|s| (0..15).map(move |d| (s, d))) {
+            for _ in 0..12 {
+                let mut row: Vec<i64> = [equation, source, destination].to_vec();
+                row.extend((0..12).map(|_| random.below(256) as i64));
+                let results = evaluate(unit, &row);
+                for channel in 0..4 {
+                    let [s, d] = [row[3 + channel], row[7 + channel]];
+                    let [fs, fd] = [results[channel], results[4 + channel]];
+                    let named = [BlendFactor::ConstantColor as i64, BlendFactor::ConstantAlpha as i64];
+                    let plain = [&[equation, named[0], named[1]][..], &[s, 0, 0, 0, d, 0, 0, 0, fs, 0, 0, fd]].concat();
+                    assert_eq!(evaluate(unit, &plain)[8], results[8 + channel], "{row:?} channel {channel}");
+                }
+            }
+        }
+    }
+}
+
+/// Every pair of end points of one channel, with each code, at each texel, among two sets of other channels: only which of the end points is larger, taken
+/// as one number of sixteen bits, reaches across.
+#[test]
+fn channels_of_a_block_meet_in_nothing_but_the_comparison() {
+    let fields = [(11, 32), (5, 64), (0, 32)];
+    for (channel, (shift, levels)) in fields.into_iter().enumerate() {
+        let mask = (levels - 1) << shift;
+        for (first, second) in (0..levels).flat_map(|a| (0..levels).map(move |b| (a << shift, b << shift))) {
+            for code in [0, 0x5555_5555, 0xaaaa_aaaa, 0xffff_ffff_u32] {
+                // Other channels that leave the comparison to this one, or decide it.
+                let others = [[0x1234, 0x1234], [0xffff, 0x0000], [0x0000, 0xffff]];
+                let word = |[a, b]: [u32; 2]| (second | b & !mask) << 16 | first | a & !mask;
+                let four = |[a, b]: [u32; 2]| (first | a & !mask) > (second | b & !mask);
+                for (at, dithered) in (0..16).flat_map(|at| [(at, false), (at, true)]) {
+                    let texel = |others| {
+                        let block = [word(others), code];
+                        compressed::decode(TextureFormat::Dxt1, dithered, &block, at % 4, at / 4).bytes[channel]
+                    };
+                    let plain = others.map(|others| (four(others), texel(others)));
+                    for (n, m) in [(0, 1), (0, 2), (1, 2)] {
+                        assert!(plain[n].0 != plain[m].0 || plain[n].1 == plain[m].1, "{first:x} {second:x} {code:x}");
+                    }
+                }
+            }
+        }
+    }
+}
