@@ -2,10 +2,12 @@
 //! remainders. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "an estimate of a quotient, which its remainder corrects")]
 
-use super::BLOCK;
+use super::fetch::Numbers;
 use super::kernels::STEP;
 use super::planes::Plane;
-use super::quotient::{IOTA_REAL, nearest};
+use super::quotient::{IOTA_REAL, break_ties, nearest};
+use super::triangle::{Piece, Planes, Setup, Varying, narrow};
+use super::{BLOCK, Compiled};
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
 
@@ -232,6 +234,125 @@ pub(super) struct SteadyRow {
     pub(super) weights: ([Steady; 2], bool),
     /// Nothing else varies.
     pub(super) complete: bool,
+}
+
+impl Setup<'_> {
+    /// What is known of a row before its pieces, from its first pixel on. Without it none of them is steady.
+    #[inline(always)]
+    pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &Compiled, varying: &mut Varying) {
+        let SteadyRow { samplers, weights, complete } = &mut varying.steady;
+        *complete = false;
+        weights.1 = false;
+        for sampler in samplers.iter_mut() {
+            sampler.1 = false;
+        }
+        if self.denominator.x() != 0 {
+            return;
+        }
+        let triangle = &self.context.triangle;
+        let e = triangle.edges(i, j);
+        let d = self.denominator.exact(&e).c;
+        *complete = !compiled.samples_pixels && compiled.fog.is_none() && self.context.draw.depth_test.is_none();
+        for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
+            if let (Planes::Plane(planes), false) = (planes, sampler.mixes) {
+                let bias = sampler.bias();
+                *is = u.begin(&planes[0], triangle, &e, d, columns, bias)
+                    && v.begin(&planes[1], triangle, &e, d, columns, bias);
+            }
+            *complete &= *is || matches!(planes, Planes::Shared);
+        }
+        if let (Some(planes), ([w0, w2], is)) = (&self.weights, weights) {
+            *is =
+                w0.begin(&planes[0], triangle, &e, d, columns, 0) && w2.begin(&planes[1], triangle, &e, d, columns, 0);
+            *complete &= *is;
+        }
+    }
+
+    /// What of a row is known before its pieces, for one of them.
+    #[inline(always)]
+    pub(super) fn steady(&self, piece: Piece<'_>, compiled: &Compiled, varying: &mut Varying) {
+        let Varying { coordinates, weights: [w0, w2], narrow: [narrow0, narrow2], whole, steady, .. } = &mut *varying;
+        let (lanes, triangle) = (piece.lanes(), &self.context.triangle);
+        for (n, planes) in self.samplers.iter().enumerate() {
+            let (([along, down], true), Planes::Plane(planes)) = (&mut steady.samplers[n], planes) else { continue };
+            let [u, v] = &mut coordinates[n];
+            let (u, v) = (&mut u[lanes.clone()], &mut v[lanes.clone()]);
+            let found = [along.run(piece.count, u), down.run(piece.count, v)];
+            if found[0] | found[1] {
+                let bias = compiled.samplers[n].bias();
+                let exact = [along.is_exact(), down.is_exact()];
+                self.settle_steady(piece, planes, bias, found, exact, u, v, &mut whole[0]);
+            }
+        }
+        if let (([first, third], true), Some(planes)) = (&mut steady.weights, &self.weights) {
+            let (narrow0, narrow2) = (&mut narrow0[lanes.clone()], &mut narrow2[lanes.clone()]);
+            let found = first.run(piece.count, narrow0) | third.run(piece.count, narrow2);
+            if found && !first.is_exact() {
+                let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes]);
+                widen(narrow0, w0);
+                widen(narrow2, w2);
+                let e = triangle.edges(piece.first.0, piece.first.1);
+                self.settle_weights::<true>(piece, planes, &e, w0, w2, whole);
+                narrow(w0, narrow0);
+                narrow(w2, narrow2);
+            } else if found && !triangle.exact_reciprocal {
+                steady_ties([first, third], piece.count, narrow0, narrow2);
+            }
+        }
+    }
+
+    /// INT-4, INT-4t of coordinates on a row of which they are known, where some may be exact.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "each result apart, so that the compiler sees that none overlaps another"
+    )]
+    fn settle_steady(
+        &self,
+        piece: Piece<'_>,
+        planes: &[Plane; 2],
+        bias: i32,
+        found: [bool; 2],
+        exact: [bool; 2],
+        u: &mut [i32],
+        v: &mut [i32],
+        whole: &mut Numbers<i32>,
+    ) {
+        let triangle = &self.context.triangle;
+        let found = [0, 1].map(|n| found[n] && (!exact[n] || planes[n].lowers(triangle)));
+        let e = triangle.edges(piece.first.0, piece.first.1);
+        self.settle_coordinates::<true>(piece, bias, planes, found, &e, u, v, whole);
+    }
+}
+
+/// INT-3 of weights that are exact where something is tied.
+#[inline(always)]
+fn steady_ties([first, third]: [&Steady; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
+    let ((w0, _), (w2, _)) = (w0.as_chunks_mut::<STEP>(), w2.as_chunks_mut::<STEP>());
+    for (step, (w0, w2)) in w0.iter_mut().zip(w2.iter_mut()).enumerate() {
+        let (whole0, whole2) = (first.whole(step), third.whole(step));
+        let mut tied = 0;
+        for k in 0..STEP {
+            tied |= whole0[k] | whole2[k];
+        }
+        if tied != 0 {
+            let (mut floors0, mut floors2) = ([0; STEP], [0; STEP]);
+            widen(w0, &mut floors0);
+            widen(w2, &mut floors2);
+            break_ties(&mut floors0, &mut floors2, &whole0, &whole2);
+            narrow(&floors0, w0);
+            narrow(&floors2, w2);
+        }
+    }
+    repeat(count, w0);
+    repeat(count, w2);
+}
+
+/// The same in 32 bits.
+#[inline(always)]
+fn widen(narrow: &[u16], out: &mut [i32]) {
+    for (out, narrow) in out.iter_mut().zip(narrow) {
+        *out = i32::from(*narrow);
+    }
 }
 
 #[cfg(test)]

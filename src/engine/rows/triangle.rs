@@ -8,7 +8,7 @@ use super::kernels::{LANES, Row, STEP};
 use super::levels::{Quads, Reads};
 use super::planes::{Plane, inverse};
 use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
-use super::steady::{Steady, SteadyRow, repeat};
+use super::steady::SteadyRow;
 use super::{Compiled, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
@@ -39,8 +39,8 @@ pub(super) struct Setup<'a> {
     pub(super) context: &'a TriangleContext<'a>,
     pub(super) denominator: Plane,
     /// 256 b0 and 256 b2, where some colour varies.
-    weights: Option<[Plane; 2]>,
-    samplers: Vec<Planes>,
+    pub(super) weights: Option<[Plane; 2]>,
+    pub(super) samplers: Vec<Planes>,
     pub(super) fog: Option<Box<Fog>>,
     /// Bits of the largest D.
     pub(super) bits: u32,
@@ -63,12 +63,12 @@ pub(super) struct Varying {
     pub(super) reads: Vec<Reads>,
     pub(super) quads: Box<Quads>,
     /// Of the row whose pieces come now.
-    steady: SteadyRow,
+    pub(super) steady: SteadyRow,
     /// W0 and W2 while they are settled.
-    weights: [Numbers<i32>; 2],
+    pub(super) weights: [Numbers<i32>; 2],
     /// The same in 16 bits.
     pub(super) narrow: [Numbers<u16>; 2],
-    whole: [Numbers<i32>; 2],
+    pub(super) whole: [Numbers<i32>; 2],
 }
 
 impl Default for Varying {
@@ -131,18 +131,31 @@ impl<'a> Setup<'a> {
         };
         let weighted = varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
         let inverse = inverse(triangle);
-        let plane = |g: [i64; 3]| Plane::new(triangle, &inverse, g);
         samplers.clear();
         for sampler in &compiled.samplers {
             let coordinates = &context.coordinates[sampler.unit];
             samplers.push(match coordinates {
                 _ if sampler.shares.is_some() => Planes::Shared,
-                Some(Coordinates::Plane(g)) => Planes::Plane([plane(g[0]), plane(g[1])]),
-                Some(Coordinates::Direction(g)) => {
-                    Planes::Direction([plane(g[0]), plane(g[1]), plane(g[2])], only_face(g))
+                Some(Coordinates::Plane(g)) => {
+                    Planes::Plane([Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])])
                 }
+                Some(Coordinates::Direction(g)) => Planes::Direction(
+                    [
+                        Plane::new(triangle, &inverse, g[0]),
+                        Plane::new(triangle, &inverse, g[1]),
+                        Plane::new(triangle, &inverse, g[2]),
+                    ],
+                    only_face(g),
+                ),
                 Some(Coordinates::Ratio(g)) => match positive(*g, sampler.sides) {
-                    Some((g, reach)) => Planes::Ratio([plane(g[0]), plane(g[1]), plane(g[2])], reach),
+                    Some((g, reach)) => Planes::Ratio(
+                        [
+                            Plane::new(triangle, &inverse, g[0]),
+                            Plane::new(triangle, &inverse, g[1]),
+                            Plane::new(triangle, &inverse, g[2]),
+                        ],
+                        reach,
+                    ),
                     None => Planes::Other,
                 },
                 None => Planes::Other,
@@ -152,7 +165,7 @@ impl<'a> Setup<'a> {
         let least = p[0].min(p[1]).min(p[2]) as f64 * triangle.doubled_area as f64;
         Setup {
             widest: 1.0 / least,
-            denominator: plane(p),
+            denominator: Plane::new(triangle, &inverse, p),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
             fog: compiled.fog.and_then(|_| Fog::new(context)).map(Box::new),
@@ -164,37 +177,6 @@ impl<'a> Setup<'a> {
     /// What [`new`](Self::new) was given.
     pub(super) fn given_back(self) -> Vec<Planes> {
         self.samplers
-    }
-
-    /// What is known of a row before its pieces, from its first pixel on. Without it none of them is steady.
-    #[inline(always)]
-    pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &Compiled, varying: &mut Varying) {
-        let SteadyRow { samplers, weights, complete } = &mut varying.steady;
-        *complete = false;
-        weights.1 = false;
-        for sampler in samplers.iter_mut() {
-            sampler.1 = false;
-        }
-        if self.denominator.x() != 0 {
-            return;
-        }
-        let triangle = &self.context.triangle;
-        let e = triangle.edges(i, j);
-        let d = self.denominator.exact(&e).c;
-        *complete = !compiled.samples_pixels && compiled.fog.is_none() && self.context.draw.depth_test.is_none();
-        for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
-            if let (Planes::Plane(planes), false) = (planes, sampler.mixes) {
-                let bias = sampler.bias();
-                *is = u.begin(&planes[0], triangle, &e, d, columns, bias)
-                    && v.begin(&planes[1], triangle, &e, d, columns, bias);
-            }
-            *complete &= *is || matches!(planes, Planes::Shared);
-        }
-        if let (Some(planes), ([w0, w2], is)) = (&self.weights, weights) {
-            *is =
-                w0.begin(&planes[0], triangle, &e, d, columns, 0) && w2.begin(&planes[1], triangle, &e, d, columns, 0);
-            *complete &= *is;
-        }
     }
 
     /// Everything that varies, for a piece. `ROW`: its pixels are on one row, one beside the other.
@@ -430,68 +412,13 @@ impl<'a> Setup<'a> {
         }
     }
 
-    /// What of a row is known before its pieces, for one of them.
-    #[inline(always)]
-    fn steady(&self, piece: Piece<'_>, compiled: &Compiled, varying: &mut Varying) {
-        let Varying { coordinates, weights: [w0, w2], narrow: [narrow0, narrow2], whole, steady, .. } = &mut *varying;
-        let (lanes, triangle) = (piece.lanes(), &self.context.triangle);
-        for (n, planes) in self.samplers.iter().enumerate() {
-            let (([along, down], true), Planes::Plane(planes)) = (&mut steady.samplers[n], planes) else { continue };
-            let [u, v] = &mut coordinates[n];
-            let (u, v) = (&mut u[lanes.clone()], &mut v[lanes.clone()]);
-            let found = [along.run(piece.count, u), down.run(piece.count, v)];
-            if found[0] | found[1] {
-                let bias = compiled.samplers[n].bias();
-                let exact = [along.is_exact(), down.is_exact()];
-                self.settle_steady(piece, planes, bias, found, exact, u, v, &mut whole[0]);
-            }
-        }
-        if let (([first, third], true), Some(planes)) = (&mut steady.weights, &self.weights) {
-            let (narrow0, narrow2) = (&mut narrow0[lanes.clone()], &mut narrow2[lanes.clone()]);
-            let found = first.run(piece.count, narrow0) | third.run(piece.count, narrow2);
-            if found && !first.is_exact() {
-                let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes]);
-                widen(narrow0, w0);
-                widen(narrow2, w2);
-                let e = triangle.edges(piece.first.0, piece.first.1);
-                self.settle_weights::<true>(piece, planes, &e, w0, w2, whole);
-                narrow(w0, narrow0);
-                narrow(w2, narrow2);
-            } else if found && !triangle.exact_reciprocal {
-                steady_ties([first, third], piece.count, narrow0, narrow2);
-            }
-        }
-    }
-
-    /// INT-4, INT-4t of coordinates on a row of which they are known, where some may be exact.
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "each result apart, so that the compiler sees that none overlaps another"
-    )]
-    fn settle_steady(
-        &self,
-        piece: Piece<'_>,
-        planes: &[Plane; 2],
-        bias: i32,
-        found: [bool; 2],
-        exact: [bool; 2],
-        u: &mut [i32],
-        v: &mut [i32],
-        whole: &mut Numbers<i32>,
-    ) {
-        let triangle = &self.context.triangle;
-        let found = [0, 1].map(|n| found[n] && !(exact[n] && !planes[n].lowers(triangle)));
-        let e = triangle.edges(piece.first.0, piece.first.1);
-        self.settle_coordinates::<true>(piece, bias, planes, found, &e, u, v, whole);
-    }
-
     /// INT-4, INT-4t of estimates of which some lane is not proved.
     #[inline(always)]
     #[allow(
         clippy::too_many_arguments,
         reason = "each result apart, so that the compiler sees that none overlaps another"
     )]
-    fn settle_coordinates<const ROW: bool>(
+    pub(super) fn settle_coordinates<const ROW: bool>(
         &self,
         piece: Piece<'_>,
         bias: i32,
@@ -521,7 +448,7 @@ impl<'a> Setup<'a> {
 
     /// INT-2, INT-3 likewise.
     #[inline(always)]
-    fn settle_weights<const ROW: bool>(
+    pub(super) fn settle_weights<const ROW: bool>(
         &self,
         piece: Piece<'_>,
         planes: &[Plane; 2],
@@ -615,41 +542,10 @@ fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
 
 /// Weights in 16 bits.
 #[inline(always)]
-fn narrow(wide: &[i32], out: &mut [u16]) {
+pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
     for (out, wide) in out.iter_mut().zip(wide) {
         *out = *wide as u16;
     }
-}
-
-/// The same in 32 bits.
-#[inline(always)]
-fn widen(narrow: &[u16], out: &mut [i32]) {
-    for (out, narrow) in out.iter_mut().zip(narrow) {
-        *out = i32::from(*narrow);
-    }
-}
-
-/// INT-3 of weights that are exact where something is tied.
-#[inline(always)]
-fn steady_ties([first, third]: [&Steady; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
-    let ((w0, _), (w2, _)) = (w0.as_chunks_mut::<STEP>(), w2.as_chunks_mut::<STEP>());
-    for (step, (w0, w2)) in w0.iter_mut().zip(w2.iter_mut()).enumerate() {
-        let (whole0, whole2) = (first.whole(step), third.whole(step));
-        let mut tied = 0;
-        for k in 0..STEP {
-            tied |= whole0[k] | whole2[k];
-        }
-        if tied != 0 {
-            let (mut floors0, mut floors2) = ([0; STEP], [0; STEP]);
-            widen(w0, &mut floors0);
-            widen(w2, &mut floors2);
-            break_ties(&mut floors0, &mut floors2, &whole0, &whole2);
-            narrow(&floors0, w0);
-            narrow(&floors2, w2);
-        }
-    }
-    repeat(count, w0);
-    repeat(count, w2);
 }
 
 /// INT-2 of a channel.
