@@ -151,11 +151,11 @@ impl Steady {
         let (divisor, slack) = (self.divisor, self.slack());
         let looked = (divisor >> self.shift) as i32;
         let (out, _) = out.as_chunks_mut::<STEP>();
-        let mut at = self.here;
+        let (mut at, step, shift) = (self.here, self.step, self.shift);
         for start in &mut self.starts[..out.len().min(STEPS)] {
             // Less a divisor, so that the sign is the carry.
-            *start = [at.quotient + 1, (at.remainder >> self.shift) as i32 - looked + slack];
-            at = at.plus(self.step, divisor);
+            *start = [at.quotient + 1, (at.remainder >> shift) as i32 - looked + slack];
+            at = at.plus(step, divisor);
         }
         self.here = at;
         let least = floors(&self.starts, &self.quotients, &self.remainders, looked, out);
@@ -234,14 +234,16 @@ pub(super) struct SteadyRow {
     pub(super) weights: ([Steady; 2], bool),
     /// Nothing else varies.
     pub(super) complete: bool,
+    /// Nothing else is divided by D.
+    pub(super) undivided: bool,
 }
 
 impl Setup<'_> {
     /// What is known of a row before its pieces, from its first pixel on. Without it none of them is steady.
     #[inline(always)]
     pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &Compiled, varying: &mut Varying) {
-        let SteadyRow { samplers, weights, complete } = &mut varying.steady;
-        *complete = false;
+        let SteadyRow { samplers, weights, complete, undivided } = &mut varying.steady;
+        (*complete, *undivided) = (false, false);
         weights.1 = false;
         for sampler in samplers.iter_mut() {
             sampler.1 = false;
@@ -252,7 +254,8 @@ impl Setup<'_> {
         let triangle = &self.context.triangle;
         let e = triangle.edges(i, j);
         let d = self.denominator.exact(&e).c;
-        *complete = !compiled.samples_pixels && compiled.fog.is_none() && self.context.draw.depth_test.is_none();
+        *undivided = compiled.fog.is_none();
+        *complete = *undivided && !compiled.samples_pixels && self.context.draw.depth_test.is_none();
         for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
             if let (Planes::Plane(planes), false) = (planes, sampler.mixes) {
                 let bias = sampler.bias();
@@ -260,11 +263,13 @@ impl Setup<'_> {
                     && v.begin(&planes[1], triangle, &e, d, columns, bias);
             }
             *complete &= *is || matches!(planes, Planes::Shared);
+            *undivided &= *is || !(sampler.mixes || matches!(planes, Planes::Plane(_)));
         }
         if let (Some(planes), ([w0, w2], is)) = (&self.weights, weights) {
             *is =
                 w0.begin(&planes[0], triangle, &e, d, columns, 0) && w2.begin(&planes[1], triangle, &e, d, columns, 0);
             *complete &= *is;
+            *undivided &= *is;
         }
     }
 

@@ -227,26 +227,33 @@ impl<'a> Setup<'a> {
         let e = self.context.triangle.edges(piece.first.0, piece.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = self.denominator.line(&real);
-        let bounds = self.bounds::<FMA, ROW>(piece, &real, denominator);
-        for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
-            if ROW && varying.steady.samplers[n].1 {
-                continue;
-            }
+        let bounds = if ROW && varying.steady.undivided {
+            Bounds { columns: f64::from(piece.at.last), ..Bounds::default() }
+        } else {
+            self.bounds::<FMA, ROW>(piece, &real, denominator)
+        };
+        // In a loop of its own: what compilers compute before it is left out where nothing is divided by D.
+        let divided = if ROW && varying.steady.undivided { 0 } else { self.samplers.len() };
+        for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
             if sampler.mixes {
                 let Varying { reads, quads, .. } = &mut *varying;
                 let Some(reads) = reads.get_mut(n) else { continue };
                 self.levels::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, quads, reads);
+            } else if let (Planes::Plane(planes), false) = (planes, ROW && varying.steady.samplers[n].1) {
+                let Varying { coordinates, whole, .. } = &mut *varying;
+                let lanes = piece.lanes();
+                let [u, v] = &mut coordinates[n];
+                let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
+                let (e, lines) = (&e, (&real, denominator));
+                self.on_planes::<FMA, ROW>(piece, planes, sampler.bias(), e, lines, &bounds, u, v, &mut whole[0]);
+            }
+        }
+        for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
+            if sampler.mixes {
                 continue;
             }
             match planes {
-                Planes::Plane(planes) => {
-                    let Varying { coordinates, whole, .. } = &mut *varying;
-                    let lanes = piece.lanes();
-                    let [u, v] = &mut coordinates[n];
-                    let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
-                    let (e, lines) = (&e, (&real, denominator));
-                    self.on_planes::<FMA, ROW>(piece, planes, sampler.bias(), e, lines, &bounds, u, v, &mut whole[0]);
-                }
+                Planes::Plane(_) | Planes::Shared => {}
                 Planes::Direction(planes, face) => {
                     let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
                     let looking = Looking::new(planes, &real, &bounds);
@@ -273,7 +280,6 @@ impl<'a> Setup<'a> {
                 Planes::Other => {
                     self.defined(piece, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
                 }
-                Planes::Shared => {}
             }
         }
         if let Some(planes) = &self.weights
