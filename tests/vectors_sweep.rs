@@ -230,7 +230,8 @@ fn trees() -> Vec<PathBuf> {
 }
 
 /// Units of which a leaf of eight million rows takes no longer than a test may: `ninebit vectors digest` computes those of the others again.
-const QUICK: [&str; 5] = ["dependent-coordinate", "shader-remap", "surface-load", "surface-store", "texel-expansion"];
+const QUICK: [&str; 6] =
+    ["blend", "dependent-coordinate", "shader-remap", "surface-load", "surface-store", "texel-expansion"];
 
 /// Trees of parts: those of a few rows whole, and a leaf of one of the others of each unit.
 #[test]

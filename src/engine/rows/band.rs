@@ -5,7 +5,6 @@ use super::kernels::{self, LANES, Row};
 use super::levels::Reads;
 use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{IOTA, Positions};
-use super::table::Table;
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
 use super::{BLOCK, Compiled, store};
 use crate::engine::pixel::TriangleContext;
@@ -255,8 +254,8 @@ fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>
     let (Some(words), Some(stored)) = (words.first_chunk_mut::<BLOCK>(), stored.first_chunk_mut::<BLOCK>()) else {
         return;
     };
-    // The sampler, and its table, whose entries are found already.
-    let mut found: Option<(usize, &Table)> = None;
+    // The sampler whose coordinates' entries are found already, and the pitch of its table: axes are the same where coordinates are.
+    let mut found = None;
     for (n, sampler) in compiled.samplers.iter().enumerate() {
         let Some(table) = &sampler.table else { continue };
         let faces = sampler.cube.then_some(&varying.faces[n]);
@@ -267,10 +266,10 @@ fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>
             continue;
         }
         let at = sampler.shares.unwrap_or(n);
-        if !found.is_some_and(|(other, with)| other == at && (with.axes, with.pitch) == (table.axes, table.pitch)) {
+        if found != Some((at, table.pitch)) {
             fetch::locate(table, &mut varying.coordinates[at], faces, work);
         }
-        found = Some((at, table));
+        found = Some((at, table.pitch));
         fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
     }
     if compiled.reads_surface {

@@ -42,6 +42,13 @@ impl Plane {
         }
     }
 
+    /// Those of a direction's components.
+    #[inline(always)]
+    pub(super) fn three(triangle: &Triangle, inverse: &[f64; 3], g: &[[i64; 3]; 3]) -> [Plane; 3] {
+        // Not a closure: one that is called thrice is not inlined.
+        [Plane::new(triangle, inverse, g[0]), Plane::new(triangle, inverse, g[1]), Plane::new(triangle, inverse, g[2])]
+    }
+
     /// 256 b_k.
     #[inline(always)]
     pub(super) fn weight(triangle: &Triangle, k: usize) -> Plane {

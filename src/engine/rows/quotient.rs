@@ -410,4 +410,3 @@ pub(super) fn break_ties(w0: &mut [i32], w2: &mut [i32], whole0: &[i32], whole2:
         *w2 = c - i32::from((*whole2 != 0) & (c > 0) & !third);
     }
 }
-// x

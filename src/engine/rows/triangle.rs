@@ -139,23 +139,9 @@ impl<'a> Setup<'a> {
                 Some(Coordinates::Plane(g)) => {
                     Planes::Plane([Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])])
                 }
-                Some(Coordinates::Direction(g)) => Planes::Direction(
-                    [
-                        Plane::new(triangle, &inverse, g[0]),
-                        Plane::new(triangle, &inverse, g[1]),
-                        Plane::new(triangle, &inverse, g[2]),
-                    ],
-                    only_face(g),
-                ),
+                Some(Coordinates::Direction(g)) => Planes::Direction(Plane::three(triangle, &inverse, g), only_face(g)),
                 Some(Coordinates::Ratio(g)) => match positive(*g, sampler.sides) {
-                    Some((g, reach)) => Planes::Ratio(
-                        [
-                            Plane::new(triangle, &inverse, g[0]),
-                            Plane::new(triangle, &inverse, g[1]),
-                            Plane::new(triangle, &inverse, g[2]),
-                        ],
-                        reach,
-                    ),
+                    Some((g, reach)) => Planes::Ratio(Plane::three(triangle, &inverse, &g), reach),
                     None => Planes::Other,
                 },
                 None => Planes::Other,

@@ -6,6 +6,7 @@ use crate::state::{
     Bias, CombinerInput, Component, FinalCombiner, FinalInput, FinalRegister, InputMapping, MuxSelect, Portion,
     Profile, Register, Scale,
 };
+use crate::vectors::units::final_combiner::OWN;
 
 const IDENTITY: InputMapping = InputMapping::UnsignedIdentity;
 const SIGNED: InputMapping = InputMapping::SignedIdentity;
@@ -257,20 +258,12 @@ pub(super) fn final_combiner(case: &Case) -> Option<Placement> {
         program.stages.push(load(register, [case.number(name); 4])?);
     }
     program.fog = [byte(case.number("in.d"))?; 3];
-    let own = [
-        FinalRegister::Texture0,
-        FinalRegister::Texture1,
-        FinalRegister::PrimaryColor,
-        FinalRegister::Fog,
-        FinalRegister::Texture2,
-        FinalRegister::Texture3,
-    ];
     let invert = |name: &str| case.number(&format!("cfg.invert_{name}")) != 0;
     let mut inputs = [FinalInput::zero(Component::Rgb); 6];
     for (n, name) in ["a", "b", "c", "d", "e", "f"].into_iter().enumerate() {
         // Names of the column: a register of its own, the colour sum, E F.
         let source = if n < 4 { case.number(&format!("cfg.source_{name}")) } else { 0 };
-        let register = [own[n], FinalRegister::Spare0PlusSecondary, FinalRegister::ETimesF][source as usize % 3];
+        let register = [OWN[n], FinalRegister::Spare0PlusSecondary, FinalRegister::ETimesF][source as usize % 3];
         inputs[n] = FinalInput { register, component: Component::Rgb, invert: invert(name) };
     }
     let last = FinalCombiner {

@@ -26,7 +26,7 @@ enumeration! {
 pub(super) struct FinalCombiner;
 
 /// What A, B, C, D, E, F read where it is a register of their own.
-const OWN: [FinalRegister; 6] = [
+pub(in crate::vectors) const OWN: [FinalRegister; 6] = [
     FinalRegister::Texture0,
     FinalRegister::Texture1,
     FinalRegister::PrimaryColor,

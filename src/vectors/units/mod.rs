@@ -3,7 +3,7 @@
 mod block;
 mod combiner;
 mod combiner_stage;
-mod final_combiner;
+pub(super) mod final_combiner;
 mod fog;
 mod number;
 mod pixel_shader;
