@@ -7,7 +7,7 @@ use crate::number::{Lane, convert};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::fog::FogPlane;
 use crate::raster::interpolate::{self, Sample, Settled};
-use crate::raster::setup::Triangle;
+use crate::raster::setup::{Triangle, centres};
 use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
 use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
@@ -24,9 +24,6 @@ pub(crate) struct TriangleContext<'a> {
     /// Its number in the draw.
     pub(crate) number: usize,
     pub(crate) triangle: Triangle,
-    pub(crate) vertices: [&'a Vertex; 3],
-    /// The vertices whose diffuse and specular are taken: all three, or the provoking one thrice.
-    colored: [&'a Vertex; 3],
     pub(super) primary: [[u8; 4]; 3],
     pub(super) secondary: [[u8; 4]; 3],
     pub(super) coordinates: [Option<Coordinates>; 4],
@@ -34,6 +31,7 @@ pub(crate) struct TriangleContext<'a> {
     shader: Option<Box<ShaderSetup>>,
     /// None where the fog register's alpha is not read, or fog is off.
     pub(crate) fog: Option<FogPlane>,
+    /// Depths of the vertices, where they are tested.
     pub(crate) z: [i64; 3],
 }
 
@@ -64,45 +62,92 @@ pub(crate) struct Stored<L> {
 impl<'a> TriangleContext<'a> {
     /// Sets up triangle `number`; `None` when it is culled, empty, or outside `rows`.
     pub(crate) fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
-        let Assembled { vertices, provoking } = draw.assembly.triangles[number];
-        let all = &draw.assembly.vertices;
-        let vertices = vertices.map(|v| &all[v as usize]);
-        let triangle = Triangle::new(vertices.map(|v| v.position), draw.perspective, plan.profile)?;
-        if triangle.rows.1 <= rows.0 || triangle.rows.0 >= rows.1 {
-            return None;
-        }
-        let front = triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
-        match draw.cull {
-            Cull::Front if front => return None,
-            Cull::Back if !front => return None,
-            Cull::None | Cull::Front | Cull::Back => {}
-        }
-        let colored = match draw.shade_model {
-            ShadeModel::Smooth => vertices,
-            ShadeModel::Flat => [&all[provoking as usize]; 3],
-        };
-        let mut coordinates = [None; 4];
-        let shader =
-            draw.shader.as_ref().map(|shader| Box::new(ShaderSetup::new(shader, &draw.units, &triangle, vertices)));
-        for unit in draw.units.iter().filter(|_| shader.is_none()) {
-            let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
-            coordinates[unit.index] = Some(Coordinates::new(&triangle, sets, unit));
-        }
-        let uses_fog = draw.fog.enabled && draw.fog_channels & 8 != 0;
-        Some(TriangleContext {
+        let mut context = TriangleContext::vacant(plan, draw);
+        context.set_up(number, rows).then_some(context)
+    }
+
+    /// A place to [set up](Self::set_up) one triangle of a draw after the other.
+    pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw) -> Self {
+        TriangleContext {
             plan,
             draw,
-            number,
-            fog: uses_fog.then(|| FogPlane::new(&triangle, draw.fog.function, vertices.map(|v| v.fog))),
-            z: vertices.map(|v| convert::depth(v.position[2], draw.depth_bits)),
-            triangle,
-            vertices,
-            colored,
-            primary: colored.map(|v| color_bytes(&v.diffuse)),
-            secondary: colored.map(|v| color_bytes(&v.specular)),
-            coordinates,
-            shader,
-        })
+            number: 0,
+            triangle: Triangle::default(),
+            primary: [[0; 4]; 3],
+            secondary: [[0; 4]; 3],
+            coordinates: [None; 4],
+            shader: None,
+            fog: None,
+            z: [0; 3],
+        }
+    }
+
+    /// Becomes triangle `number`; `false`, and worth nothing, when that is culled, empty, or outside `rows`.
+    #[inline(always)]
+    pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
+        let (plan, draw) = (self.plan, self.draw);
+        let Assembled { vertices: [first, second, third], provoking } = draw.assembly.triangles[number];
+        let all = &draw.assembly.corners;
+        let corners = [&all[first as usize], &all[second as usize], &all[third as usize]];
+        let along = |axis: usize| corners.map(|c| i64::from(c.position[axis]));
+        let (x, y) = (along(0), along(1));
+        let (top, bottom) = centres(y);
+        if bottom <= rows.0.max(top) || top >= rows.1 {
+            return false;
+        }
+        let w = corners.map(|c| c.w);
+        let Some(triangle) = Triangle::snapped(x, y, w, draw.perspective, plan.profile) else { return false };
+        let front = triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
+        match draw.cull {
+            Cull::Front if front => return false,
+            Cull::Back if !front => return false,
+            Cull::None | Cull::Front | Cull::Back => {}
+        }
+        self.number = number;
+        self.triangle = triangle;
+        let colored = match draw.shade_model {
+            ShadeModel::Smooth => corners,
+            ShadeModel::Flat => [&all[provoking as usize]; 3],
+        };
+        self.primary = colored.map(|c| c.primary);
+        self.secondary = colored.map(|c| c.secondary);
+        if let Some(shader) = &draw.shader {
+            self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices())));
+        } else {
+            let vertices = self.vertices();
+            for unit in &draw.units {
+                let set = unit.stage.coordinate_set;
+                let [a, b, c] = vertices;
+                let sets = [a.texture_coordinates[set], b.texture_coordinates[set], c.texture_coordinates[set]];
+                self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
+            }
+        }
+        if draw.fog.enabled && draw.fog_channels & 8 != 0 {
+            let fog = self.vertices().map(|v| v.fog);
+            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, fog));
+        }
+        if draw.depth_test.is_some() {
+            self.z = self.vertices().map(|v| convert::depth(v.position[2], draw.depth_bits));
+        }
+        true
+    }
+
+    /// Its vertices.
+    #[inline(always)]
+    pub(crate) fn vertices(&self) -> [&'a Vertex; 3] {
+        let (assembly, [a, b, c]) = (&self.draw.assembly, self.draw.assembly.triangles[self.number].vertices);
+        [&assembly.vertices[a as usize], &assembly.vertices[b as usize], &assembly.vertices[c as usize]]
+    }
+
+    /// The vertices whose diffuse and specular are taken: all three, or the provoking one thrice.
+    fn colored(&self) -> [&'a Vertex; 3] {
+        match self.draw.shade_model {
+            ShadeModel::Smooth => self.vertices(),
+            ShadeModel::Flat => {
+                let assembly = &self.draw.assembly;
+                [&assembly.vertices[assembly.triangles[self.number].provoking as usize]; 3]
+            }
+        }
     }
 
     /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the texture shader, the alpha or the depth test.
@@ -174,7 +219,7 @@ impl<'a> TriangleContext<'a> {
                 continue;
             }
             let sources =
-                self.colored.map(|v| if register == Register::PrimaryColor { &v.diffuse } else { &v.specular });
+                self.colored().map(|v| if register == Register::PrimaryColor { &v.diffuse } else { &v.specular });
             let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
                 std::array::from_fn(|k| {
                     let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel));
@@ -228,7 +273,7 @@ impl<'a> TriangleContext<'a> {
         let [r, g, b] = draw.fog.color.map(L::byte);
         let factor = if let Some(plane) = &self.fog {
             let found = plane.at(sample);
-            let ideal = || ideal::fog(&draw.fog.function, self.barycentrics(sample), self.vertices.map(|v| v.fog));
+            let ideal = || ideal::fog(&draw.fog.function, self.barycentrics(sample), self.vertices().map(|v| v.fog));
             let rule = if draw.fog.function.is_some() { Rule::Int5 } else { Rule::Num6 };
             let factor = observer.settle(rule, L::value(i32::from(convert::factor_byte(found.value)), ideal));
             if O::ON {
@@ -278,7 +323,7 @@ impl<'a> TriangleContext<'a> {
         }
         let w = self.w();
         if let (Some(shader), Some(setup)) = (&self.draw.shader, &self.shader) {
-            let (units, vertices, scale) = (&self.draw.units, self.vertices, self.plan.policies.dependent_scale);
+            let (units, vertices, scale) = (&self.draw.units, self.vertices(), self.plan.policies.dependent_scale);
             let chain = Chain { shader, units, setup, textures, vertices, w, scale };
             let values = chain.run(sample, pixel, observer)?;
             for (register, value) in UNITS.into_iter().zip(values) {
@@ -308,7 +353,7 @@ impl<'a> TriangleContext<'a> {
 
     /// w of the vertices; all 1 without perspective.
     fn w(&self) -> [f32; 3] {
-        self.vertices.map(|v| if self.draw.perspective { v.position[3] } else { 1.0 })
+        self.vertices().map(|v| if self.draw.perspective { v.position[3] } else { 1.0 })
     }
 
     /// Where a unit samples; `None` where the texture shader runs it.
@@ -320,7 +365,7 @@ impl<'a> TriangleContext<'a> {
         pixel: (i64, i64),
     ) -> Option<Interpolated<'s>> {
         let coordinates = self.coordinates[unit.index].as_ref()?;
-        let vertices = self.vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
+        let vertices = self.vertices().map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
         Some(Interpolated { unit, coordinates, at: sample, pixel, vertices, w: self.w() })
     }
 
@@ -392,9 +437,9 @@ impl<'a> TriangleContext<'a> {
     pub(super) fn ideal_depth(&self, sample: &Sample<'_>) -> f64 {
         let linear = sample.ideal.map_or_else(
             || ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false),
-            |weights| ideal::linear(weights, self.vertices.map(|v| v.position[3]), self.draw.perspective),
+            |weights| ideal::linear(weights, self.vertices().map(|v| v.position[3]), self.draw.perspective),
         );
-        ideal::depth(linear, self.vertices.map(|v| v.position[2]), self.draw.depth_full)
+        ideal::depth(linear, self.vertices().map(|v| v.position[2]), self.draw.depth_full)
     }
 
     /// The ideal's weights of the three vertices.
@@ -402,14 +447,6 @@ impl<'a> TriangleContext<'a> {
         if let Some(weights) = sample.ideal {
             return weights;
         }
-        ideal::barycentrics(&self.triangle, sample.e, self.vertices.map(|v| v.position[3]), self.draw.perspective)
-    }
-}
-
-/// NUM-4, or the bytes as they are.
-pub(super) fn color_bytes(color: &VertexColor) -> [u8; 4] {
-    match color {
-        VertexColor::Bytes(bytes) => *bytes,
-        VertexColor::Floats(floats) => floats.map(convert::vertex_color),
+        ideal::barycentrics(&self.triangle, sample.e, self.vertices().map(|v| v.position[3]), self.draw.perspective)
     }
 }

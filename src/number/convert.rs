@@ -1,7 +1,7 @@
 //! Entry of floats: a single-precision number is taken apart into integers once, and no float arithmetic follows.
 
 /// f = mantissa * 2^exponent, exactly. `f` is finite.
-#[inline]
+#[inline(always)]
 pub fn split(f: f32) -> (i64, i32) {
     let bits = f.to_bits();
     let exponent = (bits >> 23 & 255) as i32;
@@ -17,17 +17,23 @@ pub fn shift(n: i128, exponent: i32) -> i128 {
 }
 
 /// floor(n by 2^exponent), where the result fits: without 128 bits as long as possible.
-#[inline]
+#[inline(always)]
 pub fn scaled(n: i64, by: i64, exponent: i32) -> i64 {
     match n.checked_mul(by) {
         Some(n) if exponent <= 0 => n >> (-exponent).min(63),
-        _ => shift(i128::from(n) * i128::from(by), exponent) as i64,
+        _ => scaled_in_128_bits(n, by, exponent),
     }
+}
+
+/// Rare: out of the way of the rest.
+#[cold]
+fn scaled_in_128_bits(n: i64, by: i64, exponent: i32) -> i64 {
+    shift(i128::from(n) * i128::from(by), exponent) as i64
 }
 
 /// Block floating point: the largest magnitude keeps exactly `keep` bits, at most 62, the others share its exponent, which is returned;
 /// floors.
-#[inline]
+#[inline(always)]
 pub fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i32) {
     let mut top = None;
     for (n, exponent) in values {

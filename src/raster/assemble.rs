@@ -1,8 +1,8 @@
 //! Vertices and indices to triangles: RAS-4's splits, RAS-5's provoking vertices, RAS-0's clip and limits.
 
 use super::{GUARD, LARGEST_W, SMALLEST_W, project};
-use crate::number::convert::snap;
-use crate::state::{Draw, Positions, ProvokingVertex, Topology, Vertex};
+use crate::number::convert::{snap, vertex_color};
+use crate::state::{Draw, Positions, ProvokingVertex, Topology, Vertex, VertexColor};
 
 /// A triangle of a draw: the order of its vertices matters (INT-2 gives the second one the remainder).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -13,11 +13,26 @@ pub struct Assembled {
     pub provoking: u32,
 }
 
+/// What setting up a triangle takes of a vertex: each number as the chip enters it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Corner {
+    /// x and y, 1/16 pixel (RAS-1); 0 of vertices that no triangle uses.
+    pub position: [i32; 2],
+    /// w.
+    pub w: f32,
+    /// Diffuse (NUM-4).
+    pub primary: [u8; 4],
+    /// Specular (NUM-4).
+    pub secondary: [u8; 4],
+}
+
 /// A draw's vertices in window coordinates, and its triangles in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
     /// Window positions; those of vertices that no triangle uses are left as they were.
     pub vertices: Vec<Vertex>,
+    /// The same vertices as triangles enter them.
+    pub corners: Vec<Corner>,
     /// Triangles in order.
     pub triangles: Vec<Assembled>,
 }
@@ -55,7 +70,29 @@ pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
         .take(MOST_ERRORS)
         .map(|v| PositionError { vertex: v.min(draw.vertices.len() - 1), window: vertices[v].position })
         .collect();
-    if errors.is_empty() { Ok(Assembly { vertices, triangles }) } else { Err(errors) }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let corners = vertices.iter().zip(used).map(|(vertex, used)| corner(vertex, used)).collect();
+    Ok(Assembly { vertices, corners, triangles })
+}
+
+fn corner(vertex: &Vertex, used: bool) -> Corner {
+    let [x, y, _, w] = vertex.position;
+    Corner {
+        position: if used { [snap(x) as i32, snap(y) as i32] } else { [0; 2] },
+        w,
+        primary: color_bytes(&vertex.diffuse),
+        secondary: color_bytes(&vertex.specular),
+    }
+}
+
+/// NUM-4, or the bytes as they are.
+fn color_bytes(color: &VertexColor) -> [u8; 4] {
+    match color {
+        VertexColor::Bytes(bytes) => *bytes,
+        VertexColor::Floats(floats) => floats.map(vertex_color),
+    }
 }
 
 /// RAS-0 for a window position.

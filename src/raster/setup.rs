@@ -11,7 +11,7 @@ pub const PERSPECTIVE_BITS: i32 = 28;
 ///
 /// Edge k at pixel (i, j) is `a[k] i + b[k] j + c[k]`, in 1/256 square pixel, not negative inside; the three add up to
 /// `doubled_area`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Triangle {
     /// Slope of each edge function along x.
     pub a: [i64; 3],
@@ -40,8 +40,13 @@ impl Triangle {
     ///
     /// Positions lie within RAS-0; the plan has checked that.
     pub fn new(positions: [[f32; 4]; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
-        let x = positions.map(|p| snap(p[0]));
-        let y = positions.map(|p| snap(p[1]));
+        let (x, y) = (positions.map(|p| snap(p[0])), positions.map(|p| snap(p[1])));
+        Triangle::snapped(x, y, positions.map(|p| p[3]), perspective, profile)
+    }
+
+    /// The same from x and y after RAS-1, 1/16 pixel.
+    #[inline(always)]
+    pub fn snapped(x: [i64; 3], y: [i64; 3], w: [f32; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
         let (mut a, mut b, mut c) = ([0; 3], [0; 3], [0; 3]);
         let mut area = 0;
@@ -62,14 +67,9 @@ impl Triangle {
             // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
             (a[k], b[k], c[k]) = (16 * da, 16 * db, dc + 8 * da + 8 * db);
         }
-        let w = positions.map(|p| if profile == Profile::Nv10 { w_16_bits(p[3]) } else { p[3] });
+        let w = if profile == Profile::Nv10 { [w_16_bits(w[0]), w_16_bits(w[1]), w_16_bits(w[2])] } else { w };
         let doubled_area = area.abs();
         let one_power_of_two = w[0] == w[1] && w[1] == w[2] && w[0].to_bits() & 0x7f_ffff == 0;
-        // Centres lie at 16 n + 8.
-        let centres = |n: [i64; 3]| {
-            let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
-            ((low - 8).div_euclid(16), (high - 8).div_euclid(16) + 1)
-        };
         Some(Triangle {
             a,
             b,
@@ -114,11 +114,14 @@ impl Triangle {
     }
 
     /// G_k of one coordinate: floor(P_k 256 size s_k), so that u = floor(sum G E / sum P E) in 1/256 texel (INT-4).
+    #[inline(always)]
     pub fn coordinate(&self, s: [f32; 3], size: u32) -> [i64; 3] {
-        std::array::from_fn(|k| {
+        let mut g = [0; 3];
+        for k in 0..3 {
             let (m, e) = split(s[k]);
-            scaled(m * self.p[k], i64::from(size), e + 8)
-        })
+            g[k] = scaled(m * self.p[k], i64::from(size), e + 8);
+        }
+        g
     }
 
     /// A factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5).
@@ -141,11 +144,19 @@ impl Triangle {
     }
 }
 
+/// The first pixel whose centre lies among three positions, 1/16 pixel, and the one after the last: centres lie at 16 n + 8.
+#[inline(always)]
+pub(crate) fn centres(n: [i64; 3]) -> (i64, i64) {
+    let (low, high) = (n[0].min(n[1]).min(n[2]), n[0].max(n[1]).max(n[2]));
+    ((low - 8).div_euclid(16), (high - 8).div_euclid(16) + 1)
+}
+
 /// P_k: the exact product of the other two w, then one common exponent, floors, at least 1.
+#[inline(always)]
 fn perspective_weights(w: [f32; 3]) -> [i64; 3] {
-    let m = w.map(split);
-    let product = |i: usize, j: usize| (m[i].0 * m[j].0, m[i].1 + m[j].1);
-    align([product(1, 2), product(2, 0), product(0, 1)], PERSPECTIVE_BITS).0.map(|n| n.max(1))
+    let ((m0, e0), (m1, e1), (m2, e2)) = (split(w[0]), split(w[1]), split(w[2]));
+    let ([p0, p1, p2], _) = align([(m1 * m2, e1 + e2), (m2 * m0, e2 + e0), (m0 * m1, e0 + e1)], PERSPECTIVE_BITS);
+    [p0.max(1), p1.max(1), p2.max(1)]
 }
 
 #[cfg(test)]

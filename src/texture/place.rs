@@ -22,8 +22,10 @@ pub enum Coordinates {
 
 impl Coordinates {
     /// Sets up the coordinates of a triangle. `vertices` holds s, t, r, q of its three vertices.
+    #[inline(always)]
     pub fn new(triangle: &Triangle, vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
-        let component = |n: usize| vertices.map(|v| v[n]);
+        let [a, b, c] = vertices;
+        let component = |n: usize| [a[n], b[n], c[n]];
         if unit.kind == TextureKind::Cube {
             return Coordinates::Direction(triangle.direction([component(0), component(1), component(2)]));
         }

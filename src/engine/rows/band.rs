@@ -97,11 +97,11 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
     if compiled.reads_surface {
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
+    let mut context = TriangleContext::vacant(plan, draw);
     for number in 0..draw.assembly.triangles.len() {
-        if misses(draw, number, rows) {
+        if !context.set_up(number, rows) {
             continue;
         }
-        let Some(context) = TriangleContext::new(plan, draw, number, rows) else { continue };
         let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
         let triangle = &setup.context.triangle;
         let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
@@ -154,17 +154,6 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
     }
     flush::<FMA>(job, block, band);
     shaded
-}
-
-/// Whether all vertices of a triangle lie above or below some rows, without setting it up.
-#[inline(always)]
-fn misses(draw: &PlannedDraw, number: usize, rows: (i64, i64)) -> bool {
-    let [a, b, c] = draw.assembly.triangles[number].vertices;
-    let all = &draw.assembly.vertices;
-    let (a, b, c) = (all[a as usize].position[1], all[b as usize].position[1], all[c as usize].position[1]);
-    // Positions are snapped later, by less than a pixel.
-    let (above, below) = ((rows.0 - 1) as f32, (rows.1 + 1) as f32);
-    (a < above && b < above && c < above) || (a > below && b > below && c > below)
 }
 
 impl Block {

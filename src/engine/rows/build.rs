@@ -6,13 +6,13 @@ use super::table::Channel;
 use crate::combiner::final_combiner;
 use crate::combiner::general::{PlannedPortion, PlannedStage, source_channel};
 use crate::combiner::registers::REGISTERS;
-use crate::engine::pixel::color_bytes;
 use crate::number::Lane;
 use crate::plan::PlannedDraw;
+use crate::raster::assemble::Corner;
 use crate::rop::surface;
 use crate::state::{
     AddressMode, Bias, Blend, BlendEquation, BlendFactor, CombinerInput, Component, FinalInput, FinalRegister,
-    InputMapping, MuxSelect, Register, Scale, TextureFormat, TextureKind, Vertex, VertexColor,
+    InputMapping, MuxSelect, Register, Scale, TextureFormat, TextureKind,
 };
 use crate::texture::unit::PlannedUnit;
 
@@ -49,8 +49,8 @@ pub(super) fn build(draw: &PlannedDraw, samplers: Option<&[Sampler]>) -> Built {
 fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -> Registers {
     let zero = graph.constant(0);
     let mut registers = [[zero; 4]; REGISTERS];
-    registers[Register::PrimaryColor as usize] = color(draw, |v| &v.diffuse, Input::Primary, graph);
-    registers[Register::SecondaryColor as usize] = color(draw, |v| &v.specular, Input::Secondary, graph);
+    registers[Register::PrimaryColor as usize] = color(draw, |v| v.primary, Input::Primary, graph);
+    registers[Register::SecondaryColor as usize] = color(draw, |v| v.secondary, Input::Secondary, graph);
     for (n, byte) in draw.fog.color.into_iter().enumerate() {
         registers[Register::Fog as usize][n] = graph.constant(i16::from(byte));
     }
@@ -79,13 +79,8 @@ fn inputs(draw: &PlannedDraw, samplers: Option<&[Sampler]>, graph: &mut Graph) -
 }
 
 /// An interpolated colour: channels that are equal at every vertex are one value, those that never differ a constant.
-fn color(
-    draw: &PlannedDraw,
-    of: fn(&Vertex) -> &VertexColor,
-    input: fn(usize) -> Input,
-    graph: &mut Graph,
-) -> [Value; 4] {
-    let bytes: Vec<[u8; 4]> = draw.assembly.vertices.iter().map(|v| color_bytes(of(v))).collect();
+fn color(draw: &PlannedDraw, of: fn(&Corner) -> [u8; 4], input: fn(usize) -> Input, graph: &mut Graph) -> [Value; 4] {
+    let bytes: Vec<[u8; 4]> = draw.assembly.corners.iter().map(of).collect();
     let first = bytes.first().copied().unwrap_or_default();
     [0, 1, 2, 3].map(|channel: usize| {
         if bytes.iter().all(|b| b[channel] == first[channel]) {

@@ -228,11 +228,11 @@ fn compare<const FMA: bool, const ROW: bool>(
         let lane = piece.lane + n;
         let weights = sample.weights().map(|w| w.value as u16);
         let depth = sample.depth(context.z, context.draw.depth_full);
-        assert_eq!(i64::from(varying.depth[lane]), depth, "({i}, {j}) of {:?}", context.vertices);
+        assert_eq!(i64::from(varying.depth[lane]), depth, "({i}, {j}) of {:?}", context.vertices());
         let fog = i16::from(factor_byte(context.fog.as_ref().unwrap().at(&sample).value));
         let slot = usize::from(compiled.fog.unwrap());
-        assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices);
-        assert_eq!(varying.narrow.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices);
+        assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices());
+        assert_eq!(varying.narrow.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices());
         for (index, unit) in context.draw.units.iter().enumerate() {
             let place = context.place(unit, &sample, (i, j)).unwrap();
             let sampler = &compiled.samplers[index];
@@ -243,15 +243,15 @@ fn compare<const FMA: bool, const ROW: bool>(
                     (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
                 };
                 let (got, wanted) = (of(&varying.reads[index]), of(&wanted));
-                assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices);
+                assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
                 continue;
             }
             let bias = if compiled.samplers[index].filters { 128 } else { 0 };
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
-            assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices);
+            assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
             if unit.kind == TextureKind::Cube {
-                assert_eq!(varying.faces[index][lane], place.face() as u32, "({i}, {j}) of {:?}", context.vertices);
+                assert_eq!(varying.faces[index][lane], place.face() as u32, "({i}, {j}) of {:?}", context.vertices());
             }
         }
     }

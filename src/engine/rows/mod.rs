@@ -39,7 +39,7 @@ pub use isa::Isa;
 
 use crate::frame::Surface;
 use crate::plan::{Plan, PlannedDraw};
-use crate::raster::setup::Triangle;
+use crate::raster::assemble::Assembled;
 use crate::rop::surface;
 use crate::state::{Filter, Policies, TEXTURE_UNITS, TextureImage, TextureKind};
 use crate::texture::unit::Image;
@@ -152,12 +152,13 @@ impl Rows {
 }
 
 /// Pixels that a draw covers, more or less: not more than its window for each triangle.
-fn pixels(draw: &PlannedDraw, plan: &Plan) -> u64 {
+fn pixels(draw: &PlannedDraw) -> u64 {
     let window = u64::from(draw.window.width) * u64::from(draw.window.height);
-    let all = &draw.assembly.vertices;
-    let area = |t: &crate::raster::assemble::Assembled| {
-        let positions = t.vertices.map(|v| all[v as usize].position);
-        Triangle::new(positions, draw.perspective, plan.profile).map_or(0, |t| t.doubled_area as u64 / 512)
+    let all = &draw.assembly.corners;
+    let area = |t: &Assembled| {
+        let [a, b, c] = t.vertices.map(|v| all[v as usize].position.map(i64::from));
+        // Twice the area, 1/256 square pixel.
+        ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512
     };
     draw.assembly.triangles.iter().map(|t| area(t).min(window)).sum()
 }
@@ -215,7 +216,7 @@ fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
 
 /// The draw's units, if rows can sample all of them and their tables pay.
 fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Option<Vec<Sampler>> {
-    let pixels = pixels(draw, plan);
+    let pixels = pixels(draw);
     let mut samplers = Vec::with_capacity(draw.units.len());
     for (index, unit) in draw.units.iter().enumerate() {
         let axes = table::axes(unit)?;
