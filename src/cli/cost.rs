@@ -1,5 +1,7 @@
 //! What rendering a scene takes, estimated without rendering it.
 
+use ninebit::plan::PlannedDraw;
+use ninebit::raster::assemble::Corner;
 use ninebit::state::{Draw, Scene, Target, TextureImage, Topology};
 use serde::Serialize;
 
@@ -42,12 +44,17 @@ impl Cost {
             vertices,
             target_pixels,
             texture_bytes,
-            // Targets and texels are held as words; the scene's and the plan's copies of vertices and triangles come on top.
-            memory_bytes: 4 * (words + texels)
-                + vertices * size_of::<ninebit::state::Vertex>() as u64
-                + triangles * 512,
+            // Targets and texels are held as words.
+            memory_bytes: 4 * (words + texels) + scene.draws.iter().map(geometry).sum::<u64>(),
         }
     }
+}
+
+/// Bytes of a draw's vertices and indices, and of what the plan makes of them: window positions and corners.
+fn geometry(draw: &Draw) -> u64 {
+    let planned = size_of::<[f32; 4]>() + size_of::<Corner>();
+    let state = size_of::<Draw>() + size_of::<PlannedDraw>();
+    (state + draw.vertices.bytes() + draw.vertices.len() * planned + size_of_val(&draw.indices[..])) as u64
 }
 
 /// Pixels of a target.

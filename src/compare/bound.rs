@@ -3,7 +3,7 @@
 
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::fog::LARGEST_POWER;
-use crate::state::{ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, Vertex};
+use crate::state::{ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, TriangleVertices};
 use crate::texture::unit::PlannedUnit;
 use crate::trace::Rule;
 
@@ -80,16 +80,16 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
 
 /// The largest relative error of a triangle's weights: the block-floating products of w (INT-1) and w itself (INT-6).
 fn weights(plan: &Plan) -> f64 {
-    triangles(plan).map(|(draw, vertices)| relative(plan, draw, &vertices)).fold(0.0, f64::max)
+    triangles(plan).map(|(draw, vertices)| relative(plan, draw, vertices)).fold(0.0, f64::max)
 }
 
 /// How far weights that are off move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle times their
 /// relative error, twice because their sum is off as well.
 fn coordinate_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
-        let relative = relative(plan, draw, &vertices);
+        let relative = relative(plan, draw, vertices);
         draw.units.iter().flat_map(move |unit| {
-            let sets = vertices.map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
+            let sets = vertices.coordinates(unit.stage.coordinate_set);
             let sides = unit.scale(&unit.levels[0]);
             // Planes are floored to 2^-27 of a step.
             [0, 1].map(|axis| {
@@ -106,14 +106,14 @@ fn coordinate_slack(plan: &Plan) -> f64 {
 /// slope of the function.
 fn fog_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).map(|(draw, vertices)| {
-        let coordinates = vertices.map(|v| f64::from(v.fog));
+        let coordinates = vertices.fog().map(f64::from);
         let Some(function) = &draw.fog.function else { return 0.0 };
         let (p0, p1) = (f64::from(function.p0), f64::from(function.p1));
         if !(p0.is_finite() && p1.is_finite() && coordinates.iter().all(|d| d.is_finite())) {
             return 0.0;
         }
         let ((low, high), largest) = (range(coordinates), coordinates.iter().fold(0.0, |n, d| d.abs().max(n)));
-        let moved = 2.0 * relative(plan, draw, &vertices) * (high - low) + 2.0_f64.powi(-23) * largest;
+        let moved = 2.0 * relative(plan, draw, vertices) * (high - low) + 2.0_f64.powi(-23) * largest;
         let slope = match function.mode {
             FogMode::Linear | FogMode::LinearAbs => 1.0,
             // 16 ln 2 times the largest power.
@@ -132,9 +132,8 @@ fn fog_slack(plan: &Plan) -> f64 {
 /// The same for coordinates that become colours, in steps.
 fn number_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
-        let relative = relative(plan, draw, &vertices);
-        let sets = vertices.map(|v| v.texture_coordinates);
-        let spans = (0..16).map(move |n| range(sets.map(|set| f64::from(set[n / 4][n % 4]))));
+        let relative = relative(plan, draw, vertices);
+        let spans = (0..16).map(move |n| range(vertices.coordinates(n / 4).map(|set| f64::from(set[n % 4]))));
         spans.map(move |(low, high)| 2.0 * relative * (high - low) * 255.0)
     });
     slack.fold(1e-6, f64::max)
@@ -144,15 +143,14 @@ fn any_unit(plan: &Plan, is: impl Fn(&PlannedUnit) -> bool) -> bool {
     plan.draws.iter().flat_map(|draw| &draw.units).any(is)
 }
 
-fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, [&Vertex; 3])> {
-    plan.draws.iter().flat_map(|draw| {
-        let vertices = &draw.assembly.vertices;
-        draw.assembly.triangles.iter().map(move |t| (draw, t.vertices.map(|v| &vertices[v as usize])))
-    })
+fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, TriangleVertices<'_>)> {
+    plan.draws
+        .iter()
+        .flat_map(|draw| (0..draw.assembly.triangles.len()).map(move |number| (draw, draw.assembly.triangle(number))))
 }
 
-fn relative(plan: &Plan, draw: &PlannedDraw, vertices: &[&Vertex; 3]) -> f64 {
-    let (nearest, farthest) = range(vertices.map(|v| f64::from(v.position[3])));
+fn relative(plan: &Plan, draw: &PlannedDraw, vertices: TriangleVertices<'_>) -> f64 {
+    let (nearest, farthest) = range(vertices.position(3).map(f64::from));
     if !draw.perspective || nearest == farthest {
         return 0.0;
     }

@@ -59,8 +59,7 @@ impl Method for Free {
 
 /// The triangle before its vertices are snapped; none if it is culled.
 fn outline(planned: &PlannedDraw, number: usize) -> Option<Outline> {
-    let vertices = planned.assembly.triangles[number].vertices.map(|v| &planned.assembly.vertices[v as usize]);
-    let outline = Outline::new(vertices.map(|v| v.position), planned.perspective)?;
+    let outline = Outline::new(planned.assembly.triangle(number).positions(), planned.perspective)?;
     let front = outline.counter_clockwise == (planned.front_face == FrontFace::CounterClockwise);
     match planned.cull {
         Cull::Front if front => None,

@@ -6,11 +6,11 @@ use crate::combiner::{final_combiner, general};
 use crate::number::{Lane, convert};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::fog::FogPlane;
+use crate::raster::ideal;
 use crate::raster::interpolate::{self, Sample, Settled};
 use crate::raster::setup::{Triangle, centres};
-use crate::raster::{assemble::Assembled, ideal};
 use crate::rop::{blend, surface};
-use crate::state::{Cull, FrontFace, Register, ShadeModel, Vertex, VertexColor};
+use crate::state::{Cull, FrontFace, Register, ShadeModel, TriangleVertices, VertexColor};
 use crate::texture::chain::Chain;
 use crate::texture::place::{Coordinates, Interpolated};
 use crate::texture::stage::ShaderSetup;
@@ -86,7 +86,7 @@ impl<'a> TriangleContext<'a> {
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
         let (plan, draw) = (self.plan, self.draw);
-        let Assembled { vertices: [first, second, third], provoking } = draw.assembly.triangles[number];
+        let [first, second, third] = draw.assembly.triangles.vertices(number);
         let all = &draw.assembly.corners;
         let corners = [&all[first as usize], &all[second as usize], &all[third as usize]];
         let along = |axis: usize| corners.map(|c| i64::from(c.position[axis]));
@@ -107,7 +107,7 @@ impl<'a> TriangleContext<'a> {
         self.triangle = triangle;
         let colored = match draw.shade_model {
             ShadeModel::Smooth => corners,
-            ShadeModel::Flat => [&all[provoking as usize]; 3],
+            ShadeModel::Flat => [&all[draw.assembly.triangles.provoking(number) as usize]; 3],
         };
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
@@ -116,37 +116,36 @@ impl<'a> TriangleContext<'a> {
         } else {
             let vertices = self.vertices();
             for unit in &draw.units {
-                let set = unit.stage.coordinate_set;
-                let [a, b, c] = vertices;
-                let sets = [a.texture_coordinates[set], b.texture_coordinates[set], c.texture_coordinates[set]];
+                let sets = vertices.coordinates(unit.stage.coordinate_set);
                 self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
             }
         }
         if draw.fog.enabled && draw.fog_channels & 8 != 0 {
-            let fog = self.vertices().map(|v| v.fog);
-            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, fog));
+            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, self.vertices().fog()));
         }
         if draw.depth_test.is_some() {
-            self.z = self.vertices().map(|v| convert::depth(v.position[2], draw.depth_bits));
+            self.z = self.vertices().position(2).map(|z| convert::depth(z, draw.depth_bits));
         }
         true
     }
 
     /// Its vertices.
     #[inline(always)]
-    pub(crate) fn vertices(&self) -> [&'a Vertex; 3] {
-        let (assembly, [a, b, c]) = (&self.draw.assembly, self.draw.assembly.triangles[self.number].vertices);
-        [&assembly.vertices[a as usize], &assembly.vertices[b as usize], &assembly.vertices[c as usize]]
+    pub(crate) fn vertices(&self) -> TriangleVertices<'a> {
+        self.draw.assembly.triangle(self.number)
     }
 
-    /// The vertices whose diffuse and specular are taken: all three, or the provoking one thrice.
-    fn colored(&self) -> [&'a Vertex; 3] {
-        match self.draw.shade_model {
-            ShadeModel::Smooth => self.vertices(),
-            ShadeModel::Flat => {
-                let assembly = &self.draw.assembly;
-                [&assembly.vertices[assembly.triangles[self.number].provoking as usize]; 3]
-            }
+    /// A colour of vertex `corner` of the three, as it was given: its own, or the provoking vertex's.
+    fn source(&self, register: Register, corner: usize) -> VertexColor {
+        let assembly = &self.draw.assembly;
+        let vertex = match self.draw.shade_model {
+            ShadeModel::Smooth => assembly.triangles.vertices(self.number)[corner],
+            ShadeModel::Flat => assembly.triangles.provoking(self.number),
+        };
+        if register == Register::PrimaryColor {
+            assembly.vertices.diffuse(vertex as usize)
+        } else {
+            assembly.vertices.specular(vertex as usize)
         }
     }
 
@@ -218,13 +217,12 @@ impl<'a> TriangleContext<'a> {
             if live == 0 {
                 continue;
             }
-            let sources =
-                self.colored().map(|v| if register == Register::PrimaryColor { &v.diffuse } else { &v.specular });
+            let source = |k: usize| self.source(register, k);
             let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
                 std::array::from_fn(|k| {
-                    let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(sources[k], channel));
+                    let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(&source(k), channel));
                     // Bytes are as they were given.
-                    if O::MEASURES && matches!(sources[k], VertexColor::Floats(_)) {
+                    if O::MEASURES && matches!(source(k), VertexColor::Floats(_)) {
                         observer.settle(Rule::Num4, corner)
                     } else {
                         corner
@@ -252,7 +250,7 @@ impl<'a> TriangleContext<'a> {
                     reports::color(
                         name,
                         channel,
-                        (sources, output),
+                        ([0, 1, 2].map(source), output),
                         corners[channel],
                         &weights,
                         value[channel],
@@ -273,7 +271,7 @@ impl<'a> TriangleContext<'a> {
         let [r, g, b] = draw.fog.color.map(L::byte);
         let factor = if let Some(plane) = &self.fog {
             let found = plane.at(sample);
-            let ideal = || ideal::fog(&draw.fog.function, self.barycentrics(sample), self.vertices().map(|v| v.fog));
+            let ideal = || ideal::fog(&draw.fog.function, self.barycentrics(sample), self.vertices().fog());
             let rule = if draw.fog.function.is_some() { Rule::Int5 } else { Rule::Num6 };
             let factor = observer.settle(rule, L::value(i32::from(convert::factor_byte(found.value)), ideal));
             if O::ON {
@@ -353,7 +351,7 @@ impl<'a> TriangleContext<'a> {
 
     /// w of the vertices; all 1 without perspective.
     fn w(&self) -> [f32; 3] {
-        self.vertices().map(|v| if self.draw.perspective { v.position[3] } else { 1.0 })
+        if self.draw.perspective { self.vertices().position(3) } else { [1.0; 3] }
     }
 
     /// Where a unit samples; `None` where the texture shader runs it.
@@ -365,8 +363,7 @@ impl<'a> TriangleContext<'a> {
         pixel: (i64, i64),
     ) -> Option<Interpolated<'s>> {
         let coordinates = self.coordinates[unit.index].as_ref()?;
-        let vertices = self.vertices().map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
-        Some(Interpolated { unit, coordinates, at: sample, pixel, vertices, w: self.w() })
+        Some(Interpolated { unit, coordinates, at: sample, pixel, vertices: self.vertices(), w: self.w() })
     }
 
     /// ROP-1 to ROP-6, DEP-1, DEP-2.
@@ -437,9 +434,9 @@ impl<'a> TriangleContext<'a> {
     pub(super) fn ideal_depth(&self, sample: &Sample<'_>) -> f64 {
         let linear = sample.ideal.map_or_else(
             || ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false),
-            |weights| ideal::linear(weights, self.vertices().map(|v| v.position[3]), self.draw.perspective),
+            |weights| ideal::linear(weights, self.vertices().position(3), self.draw.perspective),
         );
-        ideal::depth(linear, self.vertices().map(|v| v.position[2]), self.draw.depth_full)
+        ideal::depth(linear, self.vertices().position(2), self.draw.depth_full)
     }
 
     /// The ideal's weights of the three vertices.
@@ -447,6 +444,6 @@ impl<'a> TriangleContext<'a> {
         if let Some(weights) = sample.ideal {
             return weights;
         }
-        ideal::barycentrics(&self.triangle, sample.e, self.vertices().map(|v| v.position[3]), self.draw.perspective)
+        ideal::barycentrics(&self.triangle, sample.e, self.vertices().position(3), self.draw.perspective)
     }
 }

@@ -96,7 +96,7 @@ pub(super) fn weights<O: Observer>(
 pub(super) fn color<L: Lane, O: Observer>(
     register: &str,
     channel: usize,
-    (sources, output): ([&VertexColor; 3], Option<&str>),
+    (sources, output): ([VertexColor; 3], Option<&str>),
     corners: [L; 3],
     weights: &[Settled; 2],
     value: L,

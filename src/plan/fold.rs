@@ -6,7 +6,7 @@ use crate::combiner::registers::{bit, bits, initially_undefined};
 use crate::state::{
     AddressMode, Bias, Blend, BlendEquation, BlendFactor, CombinerInput, Component, Draw, FinalInput, FinalRegister,
     GeneralStage, InputMapping, Portion, Register, ShaderOperation, Texture, TextureFormat, TextureImage, TextureUnit,
-    VertexColor,
+    VertexColor, Vertices,
 };
 use crate::texture::format::expand;
 
@@ -111,17 +111,17 @@ pub(super) fn zero_fragment(draw: &Draw, black: &[u8]) -> u8 {
 /// Registers that hold 0 in every pixel before the first stage, as bits of registers and channels.
 fn initially_zero(draw: &Draw, black: &[u8]) -> u64 {
     let mut zero = bits(Register::Zero) | initially_undefined();
-    let colors = |color: fn(&crate::state::Vertex) -> &VertexColor, channel: usize| {
-        draw.vertices.iter().all(|v| match color(v) {
+    let colors = |color: fn(&Vertices, usize) -> VertexColor, channel: usize| {
+        (0..draw.vertices.len()).all(|v| match color(&draw.vertices, v) {
             VertexColor::Bytes(bytes) => bytes[channel] == 0,
             VertexColor::Floats(floats) => floats[channel] <= 0.0,
         })
     };
     for channel in 0..4 {
-        if colors(|v| &v.diffuse, channel) {
+        if colors(Vertices::diffuse, channel) {
             zero |= bit(Register::PrimaryColor, channel);
         }
-        if colors(|v| &v.specular, channel) {
+        if colors(Vertices::specular, channel) {
             zero |= bit(Register::SecondaryColor, channel);
         }
         // TEX-16, and what stages without a texture yield.

@@ -234,8 +234,8 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
         }
         let sampled = unit.filter(|_| matches!(stage.operation, ShaderOperation::Sample) || moves(stage));
         let texture = sampled.map(|unit| (&scene.textures[unit.texture], texture_size(scene, unit.texture)));
-        for (vertex, v) in draw.vertices.iter().enumerate() {
-            let set = v.texture_coordinates[stage.coordinate_set];
+        for vertex in 0..draw.vertices.len() {
+            let set = draw.vertices.coordinates(vertex, stage.coordinate_set);
             // TSH-7 has no use for q.
             let plane = set[3] == 1.0 || moves(stage);
             let far = |n: usize, side: u32| plane && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;

@@ -1,17 +1,9 @@
-//! Vertices and indices to triangles: RAS-4's splits, RAS-5's provoking vertices, RAS-0's clip and limits.
+//! The vertices of a draw to window coordinates: RAS-0's clip and limits.
 
+pub use super::triangles::{Assembled, Triangles};
 use super::{GUARD, LARGEST_W, SMALLEST_W, project};
 use crate::number::convert::{snap, vertex_color};
-use crate::state::{Draw, Positions, ProvokingVertex, Topology, Vertex, VertexColor};
-
-/// A triangle of a draw: the order of its vertices matters (INT-2 gives the second one the remainder).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Assembled {
-    /// Indices into [`Assembly::vertices`].
-    pub vertices: [u32; 3],
-    /// The vertex whose colours a flat triangle takes.
-    pub provoking: u32,
-}
+use crate::state::{Draw, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
 
 /// What setting up a triangle takes of a vertex: each number as the chip enters it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -29,12 +21,24 @@ pub struct Corner {
 /// A draw's vertices in window coordinates, and its triangles in order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Assembly {
-    /// Window positions; those of vertices that no triangle uses are left as they were.
-    pub vertices: Vec<Vertex>,
+    /// Window positions; those of vertices that no triangle uses are left as they were. What they have in common with the
+    /// draw's vertices they share.
+    pub vertices: Vertices,
     /// The same vertices as triangles enter them.
     pub corners: Vec<Corner>,
     /// Triangles in order.
-    pub triangles: Vec<Assembled>,
+    pub triangles: Triangles,
+}
+
+impl Assembly {
+    /// The vertices of triangle `number`.
+    ///
+    /// # Panics
+    /// There is no such triangle.
+    #[inline(always)]
+    pub fn triangle(&self, number: usize) -> TriangleVertices<'_> {
+        self.vertices.triangle(self.triangles.vertices(number))
+    }
 }
 
 /// A vertex outside RAS-0.
@@ -55,42 +59,42 @@ const MOST_ERRORS: usize = 8;
 /// The vertices (eight at most) that a triangle uses and whose window position or w lies outside RAS-0.
 pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
     let mut vertices = draw.vertices.clone();
-    let mut triangles = split(&draw.indices, draw.topology, draw.provoking_vertex);
+    let mut triangles = Triangles::split(&draw.indices, draw.topology, draw.provoking_vertex);
     if let Positions::Clip(viewport) = &draw.positions {
-        triangles = clip_and_project(&mut vertices, triangles, viewport);
+        clip_and_project(&mut vertices, &mut triangles, viewport);
     }
     let mut used = vec![false; vertices.len()];
-    for triangle in &triangles {
+    for triangle in triangles.iter() {
         for v in triangle.vertices {
             used[v as usize] = true;
         }
     }
     let errors: Vec<PositionError> = (0..vertices.len())
-        .filter(|v| used[*v] && !in_range(vertices[*v].position))
+        .filter(|v| used[*v] && !in_range(vertices.position(*v)))
         .take(MOST_ERRORS)
-        .map(|v| PositionError { vertex: v.min(draw.vertices.len() - 1), window: vertices[v].position })
+        .map(|v| PositionError { vertex: v.min(draw.vertices.len() - 1), window: vertices.position(v) })
         .collect();
     if !errors.is_empty() {
         return Err(errors);
     }
-    let corners = vertices.iter().zip(used).map(|(vertex, used)| corner(vertex, used)).collect();
+    let corners = used.iter().enumerate().map(|(v, used)| corner(&vertices, v, *used)).collect();
     Ok(Assembly { vertices, corners, triangles })
 }
 
-fn corner(vertex: &Vertex, used: bool) -> Corner {
-    let [x, y, _, w] = vertex.position;
+fn corner(vertices: &Vertices, index: usize, used: bool) -> Corner {
+    let [x, y, _, w] = vertices.position(index);
     Corner {
         position: if used { [snap(x) as i32, snap(y) as i32] } else { [0; 2] },
         w,
-        primary: color_bytes(&vertex.diffuse),
-        secondary: color_bytes(&vertex.specular),
+        primary: color_bytes(vertices.diffuse(index)),
+        secondary: color_bytes(vertices.specular(index)),
     }
 }
 
 /// NUM-4, or the bytes as they are.
-fn color_bytes(color: &VertexColor) -> [u8; 4] {
+fn color_bytes(color: VertexColor) -> [u8; 4] {
     match color {
-        VertexColor::Bytes(bytes) => *bytes,
+        VertexColor::Bytes(bytes) => bytes,
         VertexColor::Floats(floats) => floats.map(vertex_color),
     }
 }
@@ -102,93 +106,34 @@ fn in_range(p: [f32; 4]) -> bool {
         && (SMALLEST_W..=LARGEST_W).contains(&p[3])
 }
 
-/// RAS-4 and RAS-5. Indices that do not fill a primitive are ignored.
-fn split(indices: &[u32], topology: Topology, provoking: ProvokingVertex) -> Vec<Assembled> {
-    let first = provoking == ProvokingVertex::First;
-    let triangle = |a: usize, b: usize, c: usize, provoking: usize| Assembled {
-        vertices: [indices[a], indices[b], indices[c]],
-        provoking: indices[provoking],
-    };
-    let count = indices.len();
-    let mut out = Vec::new();
-    match topology {
-        Topology::Triangles => {
-            out.extend(
-                (0..count / 3).map(|t| triangle(3 * t, 3 * t + 1, 3 * t + 2, 3 * t + if first { 0 } else { 2 })),
-            );
-        }
-        Topology::TriangleStrip => out.extend((0..count.saturating_sub(2)).map(|i| {
-            let (a, b) = if i % 2 == 0 { (i, i + 1) } else { (i + 1, i) };
-            triangle(a, b, i + 2, if first { i } else { i + 2 })
-        })),
-        Topology::TriangleFan => {
-            out.extend((1..count.saturating_sub(1)).map(|i| triangle(0, i, i + 1, if first { i } else { i + 1 })));
-        }
-        Topology::Quads => out.extend((0..count / 4).flat_map(|q| {
-            let v = 4 * q;
-            [triangle(v, v + 1, v + 2, v + 3), triangle(v, v + 2, v + 3, v + 3)]
-        })),
-        Topology::QuadStrip => out.extend((0..(count / 2).saturating_sub(1)).flat_map(|q| {
-            let v = 2 * q;
-            [triangle(v, v + 1, v + 2, v + 3), triangle(v + 2, v + 1, v + 3, v + 3)]
-        })),
-        Topology::Polygon => out.extend((1..count.saturating_sub(1)).map(|i| triangle(0, i, i + 1, 0))),
+/// Projects what lies in front of w = 2^-20 and replaces triangles that cross it by their pieces, split as a polygon.
+fn clip_and_project(vertices: &mut Vertices, triangles: &mut Triangles, viewport: &Viewport) {
+    let inside = |position: [f32; 4]| position[3] >= SMALLEST_W;
+    if !(0..vertices.len()).all(|v| inside(vertices.position(v))) {
+        clip(vertices, triangles);
     }
-    out
+    vertices.map_positions(|position| if inside(position) { project::window(position, viewport) } else { position });
 }
 
-/// Projects what lies in front of w = 2^-20 and replaces triangles that cross it by their pieces, split as a polygon.
-fn clip_and_project(
-    vertices: &mut Vec<Vertex>,
-    triangles: Vec<Assembled>,
-    viewport: &crate::state::Viewport,
-) -> Vec<Assembled> {
-    let inside: Vec<bool> = vertices.iter().map(|v| v.position[3] >= SMALLEST_W).collect();
-    let mut out = Vec::with_capacity(triangles.len());
-    for triangle in triangles {
-        let corners = triangle.vertices.map(|v| v as usize);
-        if corners.iter().all(|v| inside[*v]) {
-            out.push(triangle);
-        } else if corners.iter().any(|v| inside[*v]) {
-            let polygon = project::clip([&vertices[corners[0]], &vertices[corners[1]], &vertices[corners[2]]]);
-            let start = vertices.len() as u32;
-            out.extend(
+/// Drops triangles behind w = 2^-20; their pieces take the place of those that cross it.
+fn clip(vertices: &mut Vertices, triangles: &mut Triangles) {
+    let mut pieces: Vec<Vertex> = Vec::new();
+    let mut kept = Vec::with_capacity(triangles.len());
+    for triangle in triangles.iter() {
+        let given = vertices.triangle(triangle.vertices);
+        let inside = given.position(3).map(|w| w >= SMALLEST_W);
+        if inside == [true; 3] {
+            kept.push(triangle);
+        } else if inside != [false; 3] {
+            let polygon = project::clip(&given.all());
+            let start = (vertices.len() + pieces.len()) as u32;
+            kept.extend(
                 (1..polygon.len() as u32 - 1)
                     .map(|i| Assembled { vertices: [start, start + i, start + i + 1], provoking: triangle.provoking }),
             );
-            vertices.extend(polygon);
+            pieces.extend(polygon);
         }
     }
-    for vertex in vertices.iter_mut().filter(|v| v.position[3] >= SMALLEST_W) {
-        vertex.position = project::window(vertex.position, viewport);
-    }
-    out
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn shapes(topology: Topology, count: u32, provoking: ProvokingVertex) -> Vec<([u32; 3], u32)> {
-        let indices: Vec<u32> = (0..count).collect();
-        split(&indices, topology, provoking).into_iter().map(|t| (t.vertices, t.provoking)).collect()
-    }
-
-    #[test]
-    fn splits_and_provoking_vertices() {
-        use ProvokingVertex::{First, Last};
-        assert_eq!(shapes(Topology::Triangles, 7, First), [([0, 1, 2], 0), ([3, 4, 5], 3)]);
-        assert_eq!(shapes(Topology::Triangles, 3, Last), [([0, 1, 2], 2)]);
-        assert_eq!(shapes(Topology::TriangleStrip, 5, First), [([0, 1, 2], 0), ([2, 1, 3], 1), ([2, 3, 4], 2)]);
-        assert_eq!(shapes(Topology::TriangleStrip, 4, Last), [([0, 1, 2], 2), ([2, 1, 3], 3)]);
-        assert_eq!(shapes(Topology::TriangleFan, 4, First), [([0, 1, 2], 1), ([0, 2, 3], 2)]);
-        assert_eq!(shapes(Topology::TriangleFan, 4, Last), [([0, 1, 2], 2), ([0, 2, 3], 3)]);
-        assert_eq!(shapes(Topology::Quads, 5, First), [([0, 1, 2], 3), ([0, 2, 3], 3)]);
-        assert_eq!(
-            shapes(Topology::QuadStrip, 6, Last),
-            [([0, 1, 2], 3), ([2, 1, 3], 3), ([2, 3, 4], 5), ([4, 3, 5], 5)]
-        );
-        assert_eq!(shapes(Topology::Polygon, 5, Last), [([0, 1, 2], 0), ([0, 2, 3], 0), ([0, 3, 4], 0)]);
-        assert!(shapes(Topology::TriangleStrip, 2, First).is_empty());
-    }
+    *triangles = kept.into_iter().collect();
+    vertices.extend(pieces);
 }

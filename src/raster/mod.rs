@@ -1,6 +1,6 @@
 //! Rasteriser: triangles from vertices, coverage, and what is interpolated across them.
 //!
-//! [`assemble`] and [`project`] turn a draw's vertices into triangles in window coordinates, once, when the plan is made.
+//! [`triangles`], [`assemble`] and [`project`] turn a draw's vertices into triangles in window coordinates, once, when the plan is made.
 //! [`setup`] takes a triangle's floats apart; from there on everything is integer arithmetic with one answer:
 //! [`interpolate`] holds the definition of weights, coordinates, fog and depth, [`attribute`] that of numbers which are used as numbers.
 
@@ -11,6 +11,7 @@ pub mod ideal;
 pub mod interpolate;
 pub mod project;
 pub mod setup;
+pub mod triangles;
 
 /// RAS-0: snapped window coordinates stay below this many 1/16 pixels in magnitude (4096 pixels).
 pub const GUARD: i64 = 1 << 16;

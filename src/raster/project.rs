@@ -19,11 +19,11 @@ pub fn window(clip: [f32; 4], viewport: &Viewport) -> [f32; 4] {
 /// The part of a clip-space triangle with w >= 2^-20, as a polygon of 0, 3 or 4 vertices in the triangle's order.
 ///
 /// A new vertex is always computed from the inside vertex towards the outside one, so that neighbours meet.
-pub fn clip(triangle: [&Vertex; 3]) -> Vec<Vertex> {
+pub fn clip(triangle: &[Vertex; 3]) -> Vec<Vertex> {
     let inside = |v: &Vertex| v.position[3] >= SMALLEST_W;
     let mut polygon = Vec::with_capacity(4);
     for k in 0..3 {
-        let (from, to) = (triangle[k], triangle[(k + 1) % 3]);
+        let (from, to) = (&triangle[k], &triangle[(k + 1) % 3]);
         match (inside(from), inside(to)) {
             (true, true) => polygon.push(*from),
             (true, false) => polygon.extend([*from, crossing(from, to)]),

@@ -16,6 +16,8 @@ mod round;
 mod tangent;
 mod wavefront;
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 pub use round::{cylinder, torus};
@@ -38,8 +40,8 @@ pub struct Mesh {
     pub binormals: Vec<[f32; 3]>,
     /// s, t.
     pub texture_coordinates: Vec<[f32; 2]>,
-    /// Three a triangle.
-    pub indices: Vec<u32>,
+    /// Three a triangle. Draws share them.
+    pub indices: Arc<[u32]>,
 }
 
 /// Why there is no such mesh.
@@ -91,7 +93,7 @@ pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    cells(&mut mesh, columns, rows);
+    mesh.indices = cells(columns, rows).into();
     Ok(mesh)
 }
 
@@ -122,18 +124,20 @@ pub fn sphere(slices: u32, stacks: u32, radius: f32, repeat: [f32; 2]) -> Result
             mesh.texture_coordinates.push([s, t]);
         }
     }
+    let mut indices = Vec::with_capacity(mesh.positions.len() * 6);
     for stack in 0..stacks {
         for slice in 0..slices {
             let [a, b, c, d] = cell(slices, stack, slice);
             // At the poles one of a cell's two triangles has no area.
             if stack + 1 < stacks {
-                mesh.indices.extend([a, c, d]);
+                indices.extend([a, c, d]);
             }
             if stack > 0 {
-                mesh.indices.extend([a, d, b]);
+                indices.extend([a, d, b]);
             }
         }
     }
+    mesh.indices = indices.into();
     Ok(mesh)
 }
 
@@ -201,20 +205,22 @@ fn cell(columns: u32, row: u32, column: u32) -> [u32; 4] {
 }
 
 /// Two triangles for each cell of a mesh of so many columns and rows.
-fn cells(mesh: &mut Mesh, columns: u32, rows: u32) {
+fn cells(columns: u32, rows: u32) -> Vec<u32> {
+    let mut indices = Vec::with_capacity(columns as usize * rows as usize * 6);
     for row in 0..rows {
         for column in 0..columns {
             let [a, b, c, d] = cell(columns, row, column);
-            mesh.indices.extend([a, c, d, a, d, b]);
+            indices.extend([a, c, d, a, d, b]);
         }
     }
+    indices
 }
 
 fn at_least(shape: &'static str, what: &'static str, minimum: u32, given: u32) -> Result<(), MeshError> {
     if given < minimum { Err(MeshError::TooCoarse { shape, what, minimum, given }) } else { Ok(()) }
 }
 
-/// An empty mesh with room for a lattice of `columns` x `rows` cells.
+/// An empty mesh with room for the vertices of a lattice of `columns` x `rows` cells.
 fn with_room(shape: &'static str, columns: u32, rows: u32) -> Result<Mesh, MeshError> {
     let vertices = (u64::from(columns) + 1).saturating_mul(u64::from(rows) + 1);
     if vertices > u64::from(MAXIMUM_VERTICES) {
@@ -227,7 +233,7 @@ fn with_room(shape: &'static str, columns: u32, rows: u32) -> Result<Mesh, MeshE
         tangents: Vec::with_capacity(vertices),
         binormals: Vec::with_capacity(vertices),
         texture_coordinates: Vec::with_capacity(vertices),
-        indices: Vec::with_capacity(vertices * 6),
+        indices: Arc::default(),
     })
 }
 
@@ -306,7 +312,7 @@ mod tests {
         check(&mesh);
         assert_eq!(mesh.positions, [[-2.0, 1.0, 0.0], [2.0, 1.0, 0.0], [-2.0, -1.0, 0.0], [2.0, -1.0, 0.0]]);
         assert_eq!(mesh.texture_coordinates, [[0.0, 0.0], [3.0, 0.0], [0.0, 1.0], [3.0, 1.0]]);
-        assert_eq!(mesh.indices, [0, 2, 3, 0, 3, 1]);
+        assert_eq!(mesh.indices[..], [0, 2, 3, 0, 3, 1]);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! [`Scene`], the [plan](crate::plan) reduces it to what can reach the frame, and the independent oracle of the test suite
 //! reads it directly. State knows neither RON nor image files.
 
+mod column;
 mod combiner;
 mod named;
 mod policy;
@@ -11,6 +12,9 @@ mod primitive;
 mod rop;
 mod shader;
 mod texture;
+mod vertices;
+
+use std::sync::Arc;
 
 pub use combiner::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
@@ -35,6 +39,7 @@ pub use texture::{
     AddressMode, BORDER_TEXELS, CUBE_FACES, Filter, Level, MipFilter, Palette, TEXTURE_UNITS, Texels, Texture,
     TextureFormat, TextureImage, TextureKind, TextureUnit,
 };
+pub use vertices::{TriangleVertices, Vertices};
 
 named! {
     /// Which chip is modelled: its limits and the rules that differ.
@@ -92,9 +97,9 @@ pub struct Draw {
     /// How positions are to be read.
     pub positions: Positions,
     /// Vertices.
-    pub vertices: Vec<Vertex>,
-    /// Indices into `vertices`, in the order of `topology`.
-    pub indices: Vec<u32>,
+    pub vertices: Vertices,
+    /// Indices into `vertices`, in the order of `topology`. The plan shares them.
+    pub indices: Arc<[u32]>,
     /// How indices form triangles (RAS-4).
     pub topology: Topology,
     /// Smooth or flat colours (RAS-5).

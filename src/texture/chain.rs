@@ -12,7 +12,7 @@ use super::unit::{self, Image, PlannedUnit};
 use crate::number::{Lane, convert};
 use crate::raster::ideal;
 use crate::raster::interpolate::Sample;
-use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, Vertex};
+use crate::state::{DependentScale, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureFormat, TriangleVertices};
 use crate::trace::{Decision, Observer, Rule, Silent, Work};
 
 /// A texture shader with everything that it looks at.
@@ -27,7 +27,7 @@ pub struct Chain<'a, L> {
     /// The images, by number of the texture.
     pub textures: &'a [Image<'a, L>],
     /// The triangle's vertices, for the ideal.
-    pub vertices: [&'a Vertex; 3],
+    pub vertices: TriangleVertices<'a>,
     /// Their w; all 1 without perspective.
     pub w: [f32; 3],
     /// TSH-6.
@@ -138,8 +138,7 @@ impl<L: Lane> Chain<'_, L> {
 
     /// The vertices' coordinate set of a stage.
     fn set(&self, index: usize) -> [[f32; 4]; 3] {
-        let set = self.shader.stages[index].state.coordinate_set;
-        self.vertices.map(|v| v.texture_coordinates[set])
+        self.vertices.coordinates(self.shader.stages[index].state.coordinate_set)
     }
 
     /// The ideal's weights of the vertices.
@@ -158,7 +157,7 @@ impl<L: Lane> Chain<'_, L> {
         let (Some(unit), StageSetup::Places(coordinates)) = (self.unit(index), &self.setup.0[index]) else {
             return black();
         };
-        let (vertices, w) = (self.set(index), self.w);
+        let (vertices, w) = (self.vertices, self.w);
         let place = Interpolated { unit, coordinates, at: at.sample, pixel: at.pixel, vertices, w };
         unit::sample::<L, O>(unit, &self.textures[unit.state.texture], &place, observer)
     }

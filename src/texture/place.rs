@@ -6,7 +6,7 @@ use super::report::Report;
 use super::unit::PlannedUnit;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
 use crate::raster::{ideal, setup::Triangle};
-use crate::state::{Level, Named, TextureKind};
+use crate::state::{Level, Named, TextureKind, TriangleVertices};
 use crate::trace::{Observer, Operand, Rule, Step, plain};
 
 /// A unit's coordinates, set up for one triangle.
@@ -94,8 +94,8 @@ pub struct Interpolated<'a> {
     pub at: &'a Sample<'a>,
     /// Its column and row.
     pub pixel: (i64, i64),
-    /// s, t, r, q of the vertices, for the ideal.
-    pub vertices: [[f32; 4]; 3],
+    /// The vertices of the triangle, for the ideal.
+    pub vertices: TriangleVertices<'a>,
     /// w of the vertices; all 1 without perspective.
     pub w: [f32; 3],
 }
@@ -144,7 +144,8 @@ impl Interpolated<'_> {
     }
 
     fn real_at(&self, weights: [f64; 3], face: Option<Face>) -> Real {
-        let component = |n: usize| ideal::mix(weights, self.vertices.map(|v| f64::from(v[n])));
+        let set = self.vertices.coordinates(self.unit.stage.coordinate_set);
+        let component = |n: usize| ideal::mix(weights, set.map(|v| f64::from(v[n])));
         if let Coordinates::Direction(_) = self.coordinates {
             return real_direction([component(0), component(1), component(2)], face);
         }

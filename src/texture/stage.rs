@@ -4,7 +4,7 @@ use super::place::Coordinates;
 use super::unit::PlannedUnit;
 use crate::raster::attribute::Attribute;
 use crate::raster::setup::Triangle;
-use crate::state::{ShaderOperation, ShaderStage, TEXTURE_UNITS, Vertex};
+use crate::state::{ShaderOperation, ShaderStage, TEXTURE_UNITS, TriangleVertices};
 
 /// A texture shader reduced to what can reach the frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,13 +57,18 @@ pub struct ShaderSetup(pub(super) [StageSetup; TEXTURE_UNITS]);
 
 impl ShaderSetup {
     /// Sets up every stage that runs.
-    pub fn new(shader: &PlannedShader, units: &[PlannedUnit], triangle: &Triangle, vertices: [&Vertex; 3]) -> Self {
+    pub fn new(
+        shader: &PlannedShader,
+        units: &[PlannedUnit],
+        triangle: &Triangle,
+        vertices: TriangleVertices<'_>,
+    ) -> Self {
         ShaderSetup(std::array::from_fn(|index| {
             let planned = &shader.stages[index];
             if !planned.runs() {
                 return StageSetup::Nothing;
             }
-            let set = vertices.map(|v| v.texture_coordinates[planned.state.coordinate_set]);
+            let set = vertices.coordinates(planned.state.coordinate_set);
             let component = |n: usize| set.map(|v| v[n]);
             match (planned.state.operation, planned.unit) {
                 (ShaderOperation::Sample, Some(unit)) => {

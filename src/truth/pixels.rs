@@ -109,11 +109,15 @@ struct Point {
 
 /// The point at a pixel's centre. `None` for a triangle whose corners are not all the mesh's own.
 fn point(planned: &PlannedDraw, mesh: &Arc<Mesh>, triangle: usize, (column, row): (u32, u32)) -> Option<Point> {
-    let corners = planned.assembly.triangles.get(triangle)?.vertices.map(|v| v as usize);
+    let triangles = &planned.assembly.triangles;
+    if triangle >= triangles.len() {
+        return None;
+    }
+    let corners = triangles.vertices(triangle).map(|v| v as usize);
     if corners.iter().any(|corner| *corner >= mesh.positions.len()) {
         return None;
     }
-    let vertices = corners.map(|corner| planned.assembly.vertices[corner]);
+    let vertices = planned.assembly.triangle(triangle).all();
     let outline = Outline::new(vertices.map(|vertex| vertex.position), planned.perspective)?;
     let weights = outline.weights(i64::from(column), i64::from(row));
     let mix = |values: &[[f32; 3]]| mixed(weights, corners.map(|corner| wide(values[corner])));

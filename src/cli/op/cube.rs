@@ -4,7 +4,7 @@ use clap::Args;
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{
-    AddressMode, Filter, Level, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit,
+    AddressMode, Filter, Level, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit, Vertex, Vertices,
 };
 use ninebit::texture::address::address;
 use ninebit::texture::filter::{linear, nearest};
@@ -118,12 +118,15 @@ impl Operation for Cube {
         let [x, y, z] = [values[0], values[1], values[2]];
         let sample = Sample::new(&self.triangle, [1, 0, 0]);
         let float = |n: i64| n as f32;
+        let mut vertex = Vertex::default();
+        vertex.texture_coordinates[self.unit.stage.coordinate_set] = [float(x), float(y), float(z), 1.0];
+        let vertices = Vertices::from(vec![vertex]);
         let place = Interpolated {
             unit: &self.unit,
             coordinates: &Coordinates::Direction([x, y, z].map(|n| [n, 0, 0])),
             at: &sample,
             pixel: (0, 0),
-            vertices: [[float(x), float(y), float(z), 1.0]; 3],
+            vertices: vertices.triangle([0; 3]),
             w: [1.0; 3],
         };
         let (level, face) = (&self.unit.levels[0], place.face());

@@ -158,7 +158,7 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
         target: 0,
         positions: Positions::Window,
         indices: (0..vertices.len() as u32).collect(),
-        vertices,
+        vertices: vertices.into(),
         topology: Topology::Triangles,
         shade_model: ShadeModel::Smooth,
         provoking_vertex: ProvokingVertex::First,

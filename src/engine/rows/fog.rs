@@ -53,7 +53,7 @@ impl Fog {
             FogPlane::Factor(g) => Some(Fog::Factor(plane(*g))),
             FogPlane::Infinite(value) => Some(Fog::Same(i16::from(factor_byte(*value)))),
             FogPlane::Coordinate(function, attribute) => {
-                let [a, b, c] = context.vertices().map(|v| v.fog);
+                let [a, b, c] = context.vertices().fog();
                 if a == b && b == c {
                     // Any sample that the triangle covers.
                     let inside = Sample::new(triangle, [1; 3]);

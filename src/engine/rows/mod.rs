@@ -155,7 +155,7 @@ impl Rows {
 fn pixels(draw: &PlannedDraw) -> u64 {
     let window = u64::from(draw.window.width) * u64::from(draw.window.height);
     let all = &draw.assembly.corners;
-    let area = |t: &Assembled| {
+    let area = |t: Assembled| {
         let [a, b, c] = t.vertices.map(|v| all[v as usize].position.map(i64::from));
         // Twice the area, 1/256 square pixel.
         ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])).unsigned_abs() / 512
@@ -211,7 +211,7 @@ fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
         // Coordinates are limited where they stand.
         && table::axes(a) == table::axes(b)
-        && draw.assembly.vertices.iter().all(|v| v.texture_coordinates[first] == v.texture_coordinates[second])
+        && draw.assembly.vertices.same_coordinates(first, second)
 }
 
 /// The draw's units, if rows can sample all of them and their tables pay.

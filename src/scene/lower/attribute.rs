@@ -9,7 +9,7 @@ use super::names::Names;
 use super::*;
 use crate::scene::mesh::Mesh;
 use crate::scene::raw::Numbers;
-use crate::state::{Vertex, VertexColor};
+use crate::state::{Vertex, VertexColor, Vertices};
 
 /// What of a mesh goes into one output of its vertices.
 pub(super) enum Source {
@@ -146,7 +146,7 @@ impl Outputs {
 }
 
 /// The vertices of a mesh; positions are left in object space.
-pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vec<Vertex> {
+pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vertices {
     let vertex = |index: usize| {
         let [x, y, z] = mesh.positions[index];
         let color = |source: &Source| match source {

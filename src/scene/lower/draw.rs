@@ -13,7 +13,7 @@ use super::*;
 use crate::scene::mesh::Mesh;
 use crate::state::{
     Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
-    Topology,
+    Topology, Vertices,
 };
 
 /// A draw and what else is known of it.
@@ -145,8 +145,8 @@ fn draw<'a>(
         name: header.name,
         target: target.unwrap_or(0),
         positions: Positions::Window,
-        vertices: Vec::new(),
-        indices: Vec::new(),
+        vertices: Vertices::new(),
+        indices: Arc::default(),
         topology,
         shade_model: reader.name_or(&fields.shade_model, ShadeModel::Smooth),
         provoking_vertex: reader.name_or(&fields.provoking_vertex, ProvokingVertex::Last),
@@ -257,10 +257,10 @@ fn feedback(
 fn indices<'a>(
     reader: &mut Reader<'a>,
     fields: &source::Draw<'a>,
-    triangles: Option<Vec<u32>>,
+    triangles: Option<Arc<[u32]>>,
     vertices: usize,
     topology: Topology,
-) -> Option<Vec<u32>> {
+) -> Option<Arc<[u32]>> {
     if let Some(triangles) = triangles {
         let unwanted = fields.indices.as_ref().map(|raw| reader.span(raw));
         let topology_raw = fields.topology.as_ref().filter(|_| topology != Topology::Triangles);
@@ -300,7 +300,7 @@ fn indices<'a>(
         return None;
     }
     fits(reader, fields, indices.len(), topology);
-    Some(indices)
+    Some(indices.into())
 }
 
 /// Whether so many indices make whole primitives.

@@ -1,13 +1,15 @@
 //! Where the vertices of a draw come from, and what the vertex side makes of them.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
 use super::attribute::{Outputs, Source};
 use super::names::Names;
 use super::target::Targets;
+use super::vertex::VertexData;
 use super::*;
 use crate::scene::mesh::Mesh;
-use crate::state::{Positions, VertexColor, VertexProgram, Viewport};
+use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use crate::vertex::fog::{FogEvaluation, FogSource, vertex_factor};
 use crate::vertex::texgen::CoordinateSet;
 use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
@@ -15,17 +17,50 @@ use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 /// The vertices of a draw as they were described.
 pub(super) struct Geometry {
     pub(super) positions: Positions,
-    pub(super) vertices: Vec<crate::state::Vertex>,
+    pub(super) vertices: Vertices,
     pub(super) spans: VertexSpans,
     /// Of a mesh.
-    pub(super) triangles: Option<Vec<u32>>,
+    pub(super) triangles: Option<Arc<[u32]>>,
     /// The mesh that they are of.
     pub(super) mesh: Option<Arc<Mesh>>,
     /// What generated coordinates and fog start from.
-    pub(super) objects: Vec<ObjectVertex>,
+    pub(super) objects: Objects,
     pub(super) model_view: Rows,
     /// The vertex program that made them.
     pub(super) program: Option<VertexProgram>,
+}
+
+/// The vertices of a draw before any transform.
+pub(super) enum Objects {
+    /// Of a mesh, and how many components each coordinate set has.
+    Mesh(Arc<Mesh>, [usize; 4]),
+    /// Listed.
+    Listed(Rc<VertexData>),
+    /// What a vertex program made: its positions are those of the vertices, its fog coordinates these.
+    Program(Vec<f32>),
+}
+
+impl Objects {
+    /// The object that vertex `index` is of.
+    fn at(&self, index: usize, vertex: &Vertex) -> ObjectVertex {
+        match self {
+            Objects::Mesh(mesh, dimensions) => {
+                let [x, y, z] = mesh.positions[index];
+                let normal = mesh.normals[index];
+                ObjectVertex { position: [x, y, z, 1.0], normal, fog_coordinate: 0.0, dimensions: *dimensions }
+            }
+            Objects::Listed(data) => {
+                let vertex::Extra { normal, fog_coordinate, dimensions } = data.extras[index];
+                ObjectVertex { position: data.vertices.position(index), normal, fog_coordinate, dimensions }
+            }
+            Objects::Program(fog_coordinates) => ObjectVertex {
+                position: vertex.position,
+                normal: [0.0; 3],
+                fog_coordinate: fog_coordinates[index],
+                dimensions: [4; 4],
+            },
+        }
+    }
 }
 
 /// Generated texture coordinates, texture matrices and fog, into the vertices. False once a finding has been recorded.
@@ -59,8 +94,9 @@ pub(super) fn vertex_side(
         return false;
     }
     let model_view = ModelView::new(&geometry.model_view);
-    for (index, (vertex, object)) in geometry.vertices.iter_mut().zip(&geometry.objects).enumerate() {
-        let eye = EyeVertex::new(object, &model_view, viewer);
+    let made = geometry.vertices.iter().enumerate().map(|(index, mut vertex)| {
+        let object = geometry.objects.at(index, &vertex);
+        let eye = EyeVertex::new(&object, &model_view, viewer);
         if let Some(sets) = sets {
             let given = vertex.texture_coordinates;
             vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
@@ -76,7 +112,7 @@ pub(super) fn vertex_side(
         } else if !vertex.texture_coordinates.iter().flatten().all(|c| c.is_finite()) {
             "a texture coordinate"
         } else {
-            continue;
+            return Some(vertex);
         };
         reader.push(
             Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
@@ -84,8 +120,10 @@ pub(super) fn vertex_side(
                 .rule("TSH-11")
                 .help("use smaller numbers in the matrices, in the planes or in the position"),
         );
-        return false;
-    }
+        None
+    });
+    let Some(made) = made.collect() else { return false };
+    geometry.vertices = made;
     true
 }
 
@@ -154,7 +192,7 @@ pub(super) fn geometry<'a>(
                 spans: data.spans.clone(),
                 triangles: None,
                 mesh: None,
-                objects: listed(&data),
+                objects: Objects::Listed(data),
                 model_view: matrix::IDENTITY,
                 program: None,
             })
@@ -191,21 +229,14 @@ fn matrix_geometry<'a>(
                 );
             }
             let data = names.vertices(reader, raw)?;
-            (data.vertices.clone(), data.spans.clone(), None, listed(&data))
+            (data.vertices.clone(), data.spans.clone(), None, Objects::Listed(data))
         }
         (None, Some(raw)) => {
             let mesh = names.mesh(reader, raw);
             let outputs = outputs(reader, names, &fields);
             let mesh = mesh?;
             let vertices = attribute::vertices(&mesh, &outputs);
-            let dimensions = outputs.dimensions();
-            let object = |(vertex, normal): (&crate::state::Vertex, &[f32; 3])| ObjectVertex {
-                position: vertex.position,
-                normal: *normal,
-                fog_coordinate: 0.0,
-                dimensions,
-            };
-            let objects = vertices.iter().zip(&mesh.normals).map(object).collect();
+            let objects = Objects::Mesh(Arc::clone(&mesh), outputs.dimensions());
             (vertices, VertexSpans::All(reader.span(raw)), Some(mesh), objects)
         }
         (both, _) => {
@@ -214,10 +245,9 @@ fn matrix_geometry<'a>(
         }
     };
     let (matrix, model_view) = (matrix?, model_view?);
-    for vertex in &mut vertices {
-        vertex.position = crate::vertex::transform(&matrix, vertex.position);
-    }
-    if let Some(bad) = vertices.iter().position(|vertex| !vertex.position.iter().all(|value| value.is_finite())) {
+    vertices.map_positions(|position| crate::vertex::transform(&matrix, position));
+    let finite = |vertex: usize| vertices.position(vertex).iter().all(|value| value.is_finite());
+    if let Some(bad) = (0..vertices.len()).find(|vertex| !finite(*vertex)) {
         let spans = DrawSpans { draw: opening, vertices: spans };
         reader.push(
             Diagnostic::error("NB0207", spans.vertex(bad), format!("the matrix takes vertex {bad} beyond all numbers"))
@@ -231,23 +261,12 @@ fn matrix_geometry<'a>(
         positions: Positions::Clip(viewport),
         vertices,
         spans,
-        triangles: mesh.as_ref().map(|mesh| mesh.indices.clone()),
+        triangles: mesh.as_ref().map(|mesh| Arc::clone(&mesh.indices)),
         mesh,
         objects,
         model_view,
         program: None,
     })
-}
-
-/// Listed vertices as the vertex side takes them.
-pub(super) fn listed(data: &vertex::VertexData) -> Vec<ObjectVertex> {
-    let object = |(vertex, extra): (&crate::state::Vertex, &vertex::Extra)| ObjectVertex {
-        position: vertex.position,
-        normal: extra.normal,
-        fog_coordinate: extra.fog_coordinate,
-        dimensions: extra.dimensions,
-    };
-    data.vertices.iter().zip(&data.extras).map(object).collect()
 }
 
 fn outputs<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::MatrixVertices<'a>) -> Outputs {

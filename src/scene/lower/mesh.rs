@@ -151,16 +151,18 @@ fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
         return None;
     }
     let surface = Surface {
-        positions: data
-            .vertices
-            .iter()
-            .map(|vertex| [vertex.position[0], vertex.position[1], vertex.position[2]])
+        positions: (0..count)
+            .map(|vertex| {
+                let [x, y, z, _] = data.vertices.position(vertex);
+                [x, y, z]
+            })
             .collect(),
         normals: data.extras.iter().map(|extra| extra.normal).collect(),
-        texture_coordinates: data
-            .vertices
-            .iter()
-            .map(|v| [v.texture_coordinates[0][0], v.texture_coordinates[0][1]])
+        texture_coordinates: (0..count)
+            .map(|vertex| {
+                let [s, t, _, _] = data.vertices.coordinates(vertex, 0);
+                [s, t]
+            })
             .collect(),
         indices,
     };

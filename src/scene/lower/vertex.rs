@@ -3,11 +3,11 @@
 use super::names::Names;
 use super::*;
 use crate::scene::raw::Numbers;
-use crate::state::{Vertex, VertexColor};
+use crate::state::{Vertex, VertexColor, Vertices};
 
 /// Vertices and where each stands.
 pub(super) struct VertexData {
-    pub(super) vertices: Vec<Vertex>,
+    pub(super) vertices: Vertices,
     /// What they bring for generated coordinates and fog: normal and fog coordinate.
     pub(super) extras: Vec<Extra>,
     pub(super) spans: VertexSpans,
@@ -48,7 +48,7 @@ pub(super) fn list<'a>(
         extras.push(extra);
         spans.push(reader.span(raw));
     }
-    Some(VertexData { vertices, extras, spans: VertexSpans::Each(spans) })
+    Some(VertexData { vertices: vertices.into(), extras, spans: VertexSpans::Each(spans) })
 }
 
 /// The finding that the scene has more vertices than it may.

@@ -4,14 +4,14 @@
 mod constants;
 mod inputs;
 
-use super::geometry::{Geometry, listed, one_of_vertices_and_mesh, viewport};
+use super::geometry::{Geometry, Objects, one_of_vertices_and_mesh, viewport};
 use super::names::Names;
 use super::program_text::ProgramText;
 use super::target::Targets;
+use super::vertex::VertexData;
 use super::*;
 use crate::program::vertex_shader::{self, Written, print};
-use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Viewport};
-use crate::vertex::ObjectVertex;
+use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use crate::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
 use inputs::{Given, Input};
 
@@ -39,14 +39,14 @@ pub(super) fn geometry<'a>(
         return None;
     }
     let spans = given.spans.clone();
-    let (vertices, objects) = run(reader, &written.shader, &constants, &sources, &given)?;
+    let (vertices, fog_coordinates) = run(reader, &written.shader, &constants, &sources, &given)?;
     Some(Geometry {
         positions: Positions::Clip(viewport),
         vertices,
         spans,
-        triangles: given.mesh.as_ref().map(|mesh| mesh.indices.clone()),
+        triangles: given.mesh.as_ref().map(|mesh| Arc::clone(&mesh.indices)),
         mesh: given.mesh,
-        objects,
+        objects: Objects::Program(fog_coordinates),
         model_view: matrix::IDENTITY,
         program: Some(origin(&written.shader)),
     })
@@ -125,17 +125,11 @@ fn given<'a>(
     match (&fields.vertices, &fields.mesh) {
         (Some(raw), None) => {
             let data = names.vertices(reader, raw)?;
-            let objects = listed(&data);
-            Some(Given { spans: data.spans.clone(), objects, vertices: data.vertices.clone(), mesh: None })
+            Some(Given { spans: data.spans.clone(), listed: Some(data), mesh: None })
         }
         (None, Some(raw)) => {
             let mesh = names.mesh(reader, raw)?;
-            Some(Given {
-                spans: VertexSpans::All(reader.span(raw)),
-                objects: Vec::new(),
-                vertices: Vec::new(),
-                mesh: Some(mesh),
-            })
+            Some(Given { spans: VertexSpans::All(reader.span(raw)), listed: None, mesh: Some(mesh) })
         }
         (both, _) => {
             reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
@@ -144,18 +138,18 @@ fn given<'a>(
     }
 }
 
-/// VTX-3: the vertices that come out. What a set and a fog function start from comes along.
+/// VTX-3: the vertices that come out, and the fog coordinate of each.
 fn run(
     reader: &mut Reader<'_>,
     shader: &VertexShader,
     constants: &Constants,
     sources: &[Input],
     given: &Given,
-) -> Option<(Vec<Vertex>, Vec<ObjectVertex>)> {
+) -> Option<(Vertices, Vec<f32>)> {
     let written = Registers::of(shader);
     let count = given.count();
-    let (mut vertices, mut objects) = (Vec::with_capacity(count), Vec::with_capacity(count));
-    for index in 0..count {
+    let mut fog_coordinates = Vec::with_capacity(count);
+    let vertices = (0..count).map(|index| {
         let mut registers: Inputs = [[0.0; 4]; crate::vertex::shader::INPUTS];
         for (register, source) in registers.iter_mut().zip(sources) {
             *register = inputs::value(source, given, index);
@@ -171,11 +165,10 @@ fn run(
             );
             return None;
         }
-        vertices.push(written.vertex(&outputs));
-        let fog_coordinate = outputs.fog[0];
-        objects.push(ObjectVertex { position: outputs.position, normal: [0.0; 3], fog_coordinate, dimensions: [4; 4] });
-    }
-    Some((vertices, objects))
+        fog_coordinates.push(outputs.fog[0]);
+        Some(written.vertex(&outputs))
+    });
+    Some((vertices.collect::<Option<Vertices>>()?, fog_coordinates))
 }
 
 /// Output registers that a program writes.

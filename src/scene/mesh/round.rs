@@ -32,7 +32,7 @@ pub fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) 
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    cells(&mut mesh, slices, sides);
+    mesh.indices = cells(slices, sides).into();
     Ok(mesh)
 }
 
@@ -68,15 +68,16 @@ pub fn cylinder(
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    cells(&mut mesh, slices, stacks);
+    let mut indices = cells(slices, stacks);
     for up in [1.0, -1.0].into_iter().filter(|_| caps) {
-        disc(&mut mesh, slices, radius, up * (height / 2.0), up);
+        indices.extend(disc(&mut mesh, slices, radius, up * (height / 2.0), up));
     }
+    mesh.indices = indices.into();
     Ok(mesh)
 }
 
-/// A disc at height `y` that faces up (1) or down (-1).
-fn disc(mesh: &mut Mesh, slices: u32, radius: f32, y: f32, up: f32) {
+/// A disc at height `y` that faces up (1) or down (-1): its vertices go into the mesh, its indices come back.
+fn disc(mesh: &mut Mesh, slices: u32, radius: f32, y: f32, up: f32) -> impl Iterator<Item = u32> + use<> {
     let first = mesh.positions.len() as u32;
     // Its middle, then its rim.
     for at in 0..=slices {
@@ -87,11 +88,11 @@ fn disc(mesh: &mut Mesh, slices: u32, radius: f32, y: f32, up: f32) {
         mesh.binormals.push([0.0, 0.0, -up]);
         mesh.texture_coordinates.push([0.5 + 0.5 * x, 0.5 + 0.5 * up * z]);
     }
-    for slice in 0..slices {
+    (0..slices).flat_map(move |slice| {
         let (here, next) = (first + 1 + slice, first + 1 + (slice + 1) % slices);
         // The rim runs counter-clockwise seen from above.
-        mesh.indices.extend(if up > 0.0 { [first, here, next] } else { [first, next, here] });
-    }
+        if up > 0.0 { [first, here, next] } else { [first, next, here] }
+    })
 }
 
 #[cfg(test)]
@@ -136,7 +137,7 @@ mod tests {
                 positions: mesh.positions.clone(),
                 normals: mesh.normals.clone(),
                 texture_coordinates: mesh.texture_coordinates.clone(),
-                indices: mesh.indices.clone(),
+                indices: mesh.indices.to_vec(),
             };
             let found = super::super::tangent::mesh(&surface);
             for (a, b) in mesh.tangents.iter().chain(&mesh.binormals).zip(found.tangents.iter().chain(&found.binormals))

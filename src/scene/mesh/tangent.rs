@@ -99,7 +99,7 @@ pub fn mesh(surface: &Surface) -> Mesh {
             add(sums.entry(key(corner, face.mirrored)).or_default(), scaled(tangent, weight));
         }
     }
-    let mut mesh = Mesh { indices, ..Mesh::default() };
+    let mut mesh = Mesh { indices: indices.into(), ..Mesh::default() };
     for (vertex, mirrored) in split {
         let normal = normals[vertex];
         let sum = sums.get(&key(vertex, mirrored)).copied().unwrap_or_default();
@@ -283,7 +283,7 @@ mod tests {
         // s runs to the middle and back.
         let mesh = mesh(&square([[0.0, 0.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [1.0, 1.0], [0.0, 1.0]]));
         assert_eq!(mesh.positions.len(), 8);
-        assert_eq!(mesh.indices, [0, 3, 4, 0, 4, 1, 6, 7, 5, 6, 5, 2]);
+        assert_eq!(mesh.indices[..], [0, 3, 4, 0, 4, 1, 6, 7, 5, 6, 5, 2]);
         for (vertex, tangent) in [(0, 1.0), (1, 1.0), (4, 1.0), (2, -1.0), (5, -1.0), (6, -1.0), (7, -1.0)] {
             assert!(near(mesh.tangents[vertex], [tangent, 0.0, 0.0]), "{vertex}: {:?}", mesh.tangents[vertex]);
             // Green goes on pointing up.
@@ -348,7 +348,7 @@ mod tests {
             positions: sphere.positions.clone(),
             normals: sphere.normals.clone(),
             texture_coordinates: sphere.texture_coordinates.clone(),
-            indices: sphere.indices.clone(),
+            indices: sphere.indices.to_vec(),
         };
         let mesh = mesh(&surface);
         assert_eq!(mesh.positions.len(), sphere.positions.len());

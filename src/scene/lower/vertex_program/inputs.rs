@@ -1,5 +1,6 @@
 //! What the input registers of a vertex program hold.
 
+use std::rc::Rc;
 use std::sync::Arc;
 
 use super::super::attribute::{self, Source};
@@ -11,14 +12,16 @@ use crate::vertex::shader::INPUTS;
 pub(super) struct Given {
     pub(super) spans: VertexSpans,
     pub(super) mesh: Option<Arc<Mesh>>,
-    /// Of listed vertices.
-    pub(super) objects: Vec<ObjectVertex>,
-    pub(super) vertices: Vec<Vertex>,
+    pub(super) listed: Option<Rc<VertexData>>,
 }
 
 impl Given {
     pub(super) fn count(&self) -> usize {
-        self.mesh.as_ref().map_or(self.vertices.len(), |mesh| mesh.positions.len())
+        match (&self.mesh, &self.listed) {
+            (Some(mesh), _) => mesh.positions.len(),
+            (None, Some(data)) => data.vertices.len(),
+            (None, None) => 0,
+        }
     }
 }
 
@@ -158,13 +161,16 @@ pub(super) fn value(input: &Input, given: &Given, index: usize) -> [f32; 4] {
         }
         (Input::Field(field), _) => field,
     };
-    let (Some(vertex), Some(object)) = (given.vertices.get(index), given.objects.get(index)) else { return [0.0; 4] };
+    let Some(VertexData { vertices, extras, .. }) = given.listed.as_deref() else { return [0.0; 4] };
     match field {
-        Field::Position => object.position,
-        Field::Normal => [object.normal[0], object.normal[1], object.normal[2], 1.0],
-        Field::Diffuse => color::floats(vertex.diffuse),
-        Field::Specular => color::floats(vertex.specular),
-        Field::FogCoordinate => [object.fog_coordinate, 0.0, 0.0, 1.0],
-        Field::Coordinates(set) => vertex.texture_coordinates[*set],
+        Field::Position => vertices.position(index),
+        Field::Normal => {
+            let [x, y, z] = extras[index].normal;
+            [x, y, z, 1.0]
+        }
+        Field::Diffuse => color::floats(vertices.diffuse(index)),
+        Field::Specular => color::floats(vertices.specular(index)),
+        Field::FogCoordinate => [extras[index].fog_coordinate, 0.0, 0.0, 1.0],
+        Field::Coordinates(set) => vertices.coordinates(index, *set),
     }
 }
