@@ -73,8 +73,8 @@ fn scene(perspective: bool) -> Scene {
         name: "surface".to_string(),
         target: 0,
         positions: Positions::Window,
-        vertices,
-        indices: vec![0, 1, 2, 3],
+        vertices: vertices.into(),
+        indices: [0, 1, 2, 3].into(),
         topology: Topology::Quads,
         shade_model: ShadeModel::Smooth,
         provoking_vertex: ProvokingVertex::First,
@@ -157,7 +157,7 @@ fn state(c: &mut Criterion) {
     };
     bench("one_color", &|s| {
         s.draws[0].combiners = shown(FinalRegister::PrimaryColor);
-        s.draws[0].vertices.iter_mut().for_each(|v| v.diffuse = VertexColor::Bytes([1, 2, 3, 4]));
+        s.draws[0].vertices.update(|_, v| v.diffuse = VertexColor::Bytes([1, 2, 3, 4]));
     });
     bench("smooth", &|s| s.draws[0].combiners = shown(FinalRegister::PrimaryColor));
     bench("nearest", &|s| {

@@ -206,13 +206,10 @@ fn one_product_by_hand() {
 fn decisions_that_differ_are_left_out() {
     let plan = flat(|scene| {
         let draw = &mut scene.draws[0];
-        for (vertex, alpha) in draw.vertices.iter_mut().zip([0, 255, 255, 0]) {
-            vertex.diffuse = VertexColor::Bytes([100, 200, 37, alpha]);
-        }
+        draw.vertices
+            .update(|index, vertex| vertex.diffuse = VertexColor::Bytes([100, 200, 37, [0, 255, 255, 0][index]]));
         scene.targets[0].width = 250;
-        for vertex in &mut scene.draws[0].vertices {
-            vertex.position[0] *= 250.0 / 4.0;
-        }
+        scene.draws[0].vertices.update(|_, vertex| vertex.position[0] *= 250.0 / 4.0);
         scene.draws[0].alpha_test = Some(AlphaTest { function: CompareFunction::Greater, reference: 127 });
     });
     let free = compare(&plan, &options(Mode::Free));

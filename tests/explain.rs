@@ -126,7 +126,7 @@ fn empty_draws_are_left_out() {
     let mut scene = quad("");
     scene.draws[0].scissor = Some(Rectangle { x: 4, y: 0, width: 4, height: 4 });
     assert_eq!(invisible(&scene), Some(Invisible::NoPixels));
-    scene.draws[0].indices.clear();
+    scene.draws[0].indices = [].into();
     assert_eq!(invisible(&scene), Some(Invisible::NoTriangles));
 }
 

@@ -106,14 +106,11 @@ fn what_is_left_out_has_its_default() {
         ),
         (Profile::Nv10, "frame", 640, 480, SurfaceFormat::A8R8G8B8, [0, 0, 0, 255], None)
     );
-    assert_eq!(
-        (draw.name.as_str(), draw.indices.as_slice(), draw.topology),
-        ("draw 0", &[0, 1, 2][..], Topology::Triangles)
-    );
+    assert_eq!((draw.name.as_str(), &draw.indices[..], draw.topology), ("draw 0", &[0, 1, 2][..], Topology::Triangles));
     assert_eq!((draw.positions, draw.cull, draw.perspective), (Positions::Window, Cull::None, true));
-    assert_eq!(draw.vertices[1].position, [0.0, 9.0, 0.0, 1.0]);
-    assert_eq!(draw.vertices[1].diffuse, VertexColor::Bytes([255; 4]));
-    assert_eq!(draw.vertices[1].specular, VertexColor::Bytes([0; 4]));
+    assert_eq!(draw.vertices.at(1).position, [0.0, 9.0, 0.0, 1.0]);
+    assert_eq!(draw.vertices.at(1).diffuse, VertexColor::Bytes([255; 4]));
+    assert_eq!(draw.vertices.at(1).specular, VertexColor::Bytes([0; 4]));
     let stage = &draw.combiners.stages[0];
     assert_eq!(draw.combiners.stages.len(), 1);
     assert_eq!((stage.rgb.sum_output, stage.alpha.sum_output), (Register::Spare0, Register::Spare0));
@@ -149,7 +146,7 @@ fn constants_become_bytes_and_vertex_colours_stay() {
          draws: [(vertices: Window([(position: (1, 2, 0.5, 2), diffuse: \"a\", t2: (5))]), indices: [0, 0, 0], \
          blend_constant: \"a\")])",
     );
-    let vertex = loaded.scene.draws[0].vertices[0];
+    let vertex = loaded.scene.draws[0].vertices.at(0);
     assert_eq!(vertex.diffuse, VertexColor::Floats([0.1, 0.2, 0.3, 0.4]));
     assert_eq!((vertex.position, vertex.texture_coordinates[2]), ([1.0, 2.0, 0.5, 2.0], [5.0, 0.0, 0.0, 1.0]));
     assert_eq!(loaded.scene.draws[0].blend_constant, [26, 51, 77, 102]);
@@ -309,7 +306,7 @@ fn matrices_multiply_column_vectors() {
             "(version: 1, profile: Nv2a, names: (matrices: {{ \"up\": Translate(0, 0.5, 0) }}), draws: [(vertices: Matrix(\
              matrix: Product({matrix}, \"up\"), vertices: [(position: (0.25, 0, 0))]), indices: [0, 0, 0])])"
         );
-        parse(&text).scene.draws[0].vertices[0].position
+        parse(&text).scene.draws[0].vertices.at(0).position
     };
     assert_eq!(position("Identity"), [0.25, 0.5, 0.0, 1.0]);
     assert_eq!(position("Scale(2, 4, 1)"), [0.5, 2.0, 0.0, 1.0]);
@@ -329,7 +326,7 @@ fn meshes_bring_vectors_in_tangent_space() {
     );
     let draw = &loaded.scene.draws[0];
     assert_eq!((draw.vertices.len(), draw.indices.len()), (4, 6));
-    let vertex = draw.vertices[0];
+    let vertex = draw.vertices.at(0);
     assert_eq!(vertex.diffuse, VertexColor::Floats([0.5, 0.5, 1.0, 1.0]));
     assert_eq!(vertex.texture_coordinates[1..], [[0.0, 0.0, 1.0, 1.0], [0.0, 0.0, 1.0, 1.0], [1.0, 2.0, 0.0, 1.0]]);
     assert!(matches!(loaded.draw_spans[0].vertices, VertexSpans::All(_)));

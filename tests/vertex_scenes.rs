@@ -5,7 +5,7 @@ use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::explain::{explain, explanation_json, explanation_text};
 use ninebit::limits::Limits;
 use ninebit::scene::{Loaded, parse};
-use ninebit::state::{Vertex, VertexColor};
+use ninebit::state::{Vertex, VertexColor, Vertices};
 use std::path::Path;
 
 #[track_caller]
@@ -26,7 +26,7 @@ fn scene(profile: &str, fields: &str) -> String {
 
 const TRIANGLE: &str = "vertices: [(position: (-1, -1, 0.5), diffuse: (255, 0, 51), t0: (0.25, 0.5)), (position: (3, -1, 0.5)), (position: (-1, 3, 0.5))]";
 
-fn vertices(program: &str) -> Vec<Vertex> {
+fn vertices(program: &str) -> Vertices {
     loaded(&scene("Nv2a", &format!("vertices: Program({TRIANGLE}, {program})"))).scene.draws[0].vertices.clone()
 }
 
@@ -36,14 +36,14 @@ fn outputs_reach_the_rasteriser() {
         "constants: { c0: Matrix(Translate(1, 2, 3)), c9: (0.5, 2), 10: Color((255, 51, 0)), c11: Color(Float(0.5, 0, 0, 0.25)) }, \
          text: \"m4x4 oPos, v0, c0 \\n mad oD0.xyz, v5, c9.x, c9.x \\n mov oD1, c10 \\n mov oT0.xy, v7 \\n mov oT3, c11 \\n mov oFog, c9.y\"",
     );
-    let vertex = made[0];
+    let vertex = made.at(0);
     assert_eq!(vertex.position, [0.0, 1.0, 3.5, 1.0]);
     assert_eq!(vertex.diffuse, VertexColor::Floats([1.0, 0.5, 0.6, 1.0]));
     assert_eq!(vertex.specular, VertexColor::Floats([1.0, 0.2, 0.0, 1.0]));
     let sets = [[0.25, 0.5, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0], [0.0, 0.0, 0.0, 1.0], [0.5, 0.0, 0.0, 0.25]];
     assert_eq!(vertex.texture_coordinates, sets);
     assert_eq!(vertex.fog, 1.0);
-    let bare = vertices("text: \"mov oPos, v0\"")[0];
+    let bare = vertices("text: \"mov oPos, v0\"").at(0);
     assert_eq!(bare, Vertex { position: [-1.0, -1.0, 0.5, 1.0], ..Vertex::default() });
 }
 
@@ -62,7 +62,7 @@ fn a_program_that_only_multiplies_is_the_fixed_pipe() {
     let frames =
         [&fixed, &program].map(|scene| render(&scene.plan, &RenderOptions::default()).surfaces[0].words.clone());
     assert_eq!(fixed.scene.draws[0].indices, program.scene.draws[0].indices);
-    for (a, b) in fixed.scene.draws[0].vertices.iter().zip(&program.scene.draws[0].vertices) {
+    for (a, b) in fixed.scene.draws[0].vertices.iter().zip(program.scene.draws[0].vertices.iter()) {
         assert_eq!((a.position, a.texture_coordinates), (b.position, b.texture_coordinates));
     }
     assert_eq!(frames[0], frames[1]);
@@ -90,9 +90,9 @@ fn fog_comes_from_the_program() {
     };
     let linear = "(mode: Linear, start: 8, end: 16)";
     let written = "mov oFog.x, c0.x";
-    assert_eq!(loaded(&fog("Nv2a", linear, written)).scene.draws[0].vertices[0].fog, 12.0);
-    assert_eq!(loaded(&fog("Nv10", linear, written)).scene.draws[0].vertices[0].fog, 0.5);
-    assert_eq!(loaded(&fog("Nv2a", "(color: (9, 9, 9))", written)).scene.draws[0].vertices[0].fog, 1.0);
+    assert_eq!(loaded(&fog("Nv2a", linear, written)).scene.draws[0].vertices.at(0).fog, 12.0);
+    assert_eq!(loaded(&fog("Nv10", linear, written)).scene.draws[0].vertices.at(0).fog, 0.5);
+    assert_eq!(loaded(&fog("Nv2a", "(color: (9, 9, 9))", written)).scene.draws[0].vertices.at(0).fog, 1.0);
     assert_eq!(refused(&fog("Nv2a", linear, "mov oD0, c0")), ["NB0389"]);
     assert_eq!(refused(&fog("Nv2a", "(mode: Linear, coordinate_source: EyePlane)", written)), ["NB0389"]);
 }
@@ -133,7 +133,7 @@ fn listed_triangles_are_a_mesh() {
     );
     let draw = &loaded(&text).scene.draws[0];
     assert_eq!((draw.vertices.len(), draw.indices.len()), (8, 12));
-    assert_eq!(draw.vertices[0].texture_coordinates[0], [1.0, 0.0, 0.0, 1.0]);
-    assert_eq!(draw.vertices[2].texture_coordinates[0], [-1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(draw.vertices.at(0).texture_coordinates[0], [1.0, 0.0, 0.0, 1.0]);
+    assert_eq!(draw.vertices.at(2).texture_coordinates[0], [-1.0, 0.0, 0.0, 1.0]);
     assert!(draw.vertices.iter().all(|vertex| vertex.texture_coordinates[1] == [0.0, 1.0, 0.0, 1.0]));
 }

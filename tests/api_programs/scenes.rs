@@ -113,7 +113,7 @@ fn camera_space_coordinates_take_a_set_that_nothing_reads() {
     let draw = &loaded.scene.draws[0];
     // Unit 1 reads set 0 as it was given: the normals go to set 1.
     assert_eq!([0, 1].map(|unit| draw.texture_shader[unit].coordinate_set), [1, 0]);
-    assert_eq!(draw.vertices[0].texture_coordinates[1], [0.0, 0.0, 0.0, 1.0]);
+    assert_eq!(draw.vertices.at(0).texture_coordinates[1], [0.0, 0.0, 0.0, 1.0]);
     assert_eq!(parse(&text("texgen: [CameraSpacePosition],")).unwrap_err().diagnostics[0].code, "NB0352");
 }
 
@@ -149,7 +149,7 @@ fn stages_read_one_set_through_their_own_matrices() {
          (color_op: Add, texture_coordinate_index: 0, texture_transform_flags: Count2), (color_op: Add, texture_coordinate_index: 0)])",
     );
     let draw = &loaded.scene.draws[0];
-    let of = |unit: usize| draw.vertices[0].texture_coordinates[draw.texture_shader[unit].coordinate_set];
+    let of = |unit: usize| draw.vertices.at(0).texture_coordinates[draw.texture_shader[unit].coordinate_set];
     // A matrix meets (s, t, 1, 0), so that its third column moves.
     assert_eq!(of(0), [0.5, 2.0, 1.0, 1.0]);
     assert_eq!(of(1), [3.25, 5.5, 1.0, 1.0]);
@@ -161,7 +161,7 @@ fn stages_read_one_set_through_their_own_matrices() {
         "t0: (0.25, 0.5)",
         "textures: [\"t\"], texture_matrices: [Scale(2, 4, 1)], program: TextureStages(stages: [()])",
     );
-    assert_eq!(loaded.scene.draws[0].vertices[0].texture_coordinates[0], [0.5, 2.0, 0.0, 1.0]);
+    assert_eq!(loaded.scene.draws[0].vertices.at(0).texture_coordinates[0], [0.5, 2.0, 0.0, 1.0]);
 }
 
 /// Fog of vertices is the same on both chips, and straight where fog of pixels is not.
@@ -201,7 +201,7 @@ fn a_viewer_far_away_sees_one_reflection() {
     let places = |viewer: &str| {
         let fields = format!("textures: [\"t\"], texgen: [CameraSpaceReflectionVector], {viewer}");
         let (loaded, _) = drawn("Nv2a", CHECKS, "normal: (0, 0, 1)", &fields);
-        [0, 2].map(|vertex: usize| loaded.scene.draws[0].vertices[vertex].texture_coordinates[0])
+        [0, 2].map(|vertex: usize| loaded.scene.draws[0].vertices.at(vertex).texture_coordinates[0])
     };
     let [first, last] = places("");
     assert_ne!(first, last);

@@ -39,7 +39,7 @@ pub fn draw(topology: Topology, vertices: Vec<Vertex>) -> Draw {
         target: 0,
         positions: Positions::Window,
         indices: (0..vertices.len() as u32).collect(),
-        vertices,
+        vertices: vertices.into(),
         topology,
         shade_model: ShadeModel::Smooth,
         provoking_vertex: ProvokingVertex::First,

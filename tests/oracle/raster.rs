@@ -119,7 +119,7 @@ fn to_window(mut v: Vertex, port: &Viewport) -> Vertex {
 
 /// Every triangle of a draw in window space, in order, with flat colours spread over its vertices.
 pub fn triangles(draw: &Draw) -> Vec<[Vertex; 3]> {
-    let vertex = |position: usize| draw.vertices[draw.indices[position] as usize];
+    let vertex = |position: usize| draw.vertices.at(draw.indices[position] as usize);
     let mut out = Vec::new();
     for (corners, provoking) in split_topology(draw) {
         let mut triangle = corners.map(vertex);

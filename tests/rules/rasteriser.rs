@@ -32,7 +32,7 @@ fn examples_of_the_rasteriser() {
     ras0.gives("4095.99 snapped", snap(4095.99), 65_535);
     let refused_by = |x: f32| {
         let mut draw = covering(Vertex::default());
-        draw.vertices[1].position[0] = x;
+        draw.vertices.update(|index, vertex| vertex.position[0] = if index == 1 { x } else { vertex.position[0] });
         let scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
         Plan::compile(&scene, &PlanOptions::default()).err().map(|errors| errors[0].rule)
     };

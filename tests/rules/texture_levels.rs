@@ -12,11 +12,11 @@ use ninebit::texture::lod::log2_ratio;
 fn sampled(kind: TextureKind, side: u32, levels: u32, st: [f32; 3], step: [f32; 3], unit: TextureUnit) -> Pixel {
     let mut draw = covering(Vertex::default());
     // The vertices lie where they lie: coordinates that grow by `step` from pixel to pixel and are `st` at the centre of the first.
-    for vertex in &mut draw.vertices {
+    draw.vertices.update(|_, vertex| {
         let x = vertex.position[0] - 0.5;
         let along = |n: usize| st[n] + step[n] * x;
         vertex.texture_coordinates = [[along(0), along(1), along(2), 1.0]; TEXTURE_UNITS];
-    }
+    });
     draw.textures[0] = Some(unit);
     draw.texture_shader[0] = ShaderStage::conventional(0, true);
     draw.combiners = shows(FinalRegister::Texture0);

@@ -58,7 +58,7 @@ fn examples_of_vertex_programs() {
     );
     let text = "(version: 1, profile: Nv2a, draws: [(vertices: Program(vertices: [(position: (0, 0)), (position: (1, 0)), \
                 (position: (0, 1))], constants: { c0: (0.5, 2, -1) }, text: \"mov oPos, v0 \\n mov oD0.xyz, c0\"))])";
-    let vertex = parse(text, Path::new(""), &Limits::default()).unwrap().scene.draws[0].vertices[0];
+    let vertex = parse(text, Path::new(""), &Limits::default()).unwrap().scene.draws[0].vertices.at(0);
     let VertexColor::Floats(primary) = vertex.diffuse else { panic!("{vertex:?}") };
     vtx3.gives("primary", primary.map(vertex_color), [128, 255, 0, 255]);
     vtx3.gives("secondary", vertex.specular, VertexColor::Bytes([0; 4]));

@@ -80,9 +80,7 @@ fn sum(row: &Row, draw: &mut Draw, spare0: [u8; 3], secondary: [u8; 3]) {
     let stage = &mut draw.combiners.stages[0];
     load(&mut stage.rgb, Register::ConstantColor0, Component::Rgb);
     stage.constants[0] = opaque(spare0);
-    for vertex in &mut draw.vertices {
-        vertex.specular = VertexColor::Bytes(opaque(secondary));
-    }
+    draw.vertices.update(|_, vertex| vertex.specular = VertexColor::Bytes(opaque(secondary)));
     let combiner = &mut draw.combiners.final_combiner;
     combiner.inputs = [FinalInput::zero(Component::Rgb); 6];
     combiner.color_sum_clamp = row.flag("clamp");
@@ -129,10 +127,10 @@ pub fn final_ef(rows: &[Row]) -> Answers {
 
 /// A is the fog factor, B the primary colour, C the fog colour.
 fn fogged(mut draw: Draw, fog: f32, b: [u8; 3], c: [u8; 3]) -> Draw {
-    for vertex in &mut draw.vertices {
+    draw.vertices.update(|_, vertex| {
         vertex.fog = fog;
         vertex.diffuse = VertexColor::Bytes([b[0], b[1], b[2], 255]);
-    }
+    });
     draw.fog = Fog { enabled: true, color: c, function: None };
     let zero = FinalInput::zero(Component::Rgb);
     let factor = FinalInput { register: FinalRegister::Fog, component: Component::Alpha, invert: false };
@@ -164,9 +162,7 @@ pub fn fog_lerp(rows: &[Row]) -> Answers {
 
 fn float_color(row: &Row, draw: &mut Draw) {
     let [r, g, b] = ["red", "green", "blue"].map(|column| row.number(column));
-    for vertex in &mut draw.vertices {
-        vertex.diffuse = VertexColor::Floats([r, g, b, 1.0]);
-    }
+    draw.vertices.update(|_, vertex| vertex.diffuse = VertexColor::Floats([r, g, b, 1.0]));
 }
 
 /// vertex-color: NUM-4.

@@ -42,7 +42,7 @@ pub fn alpha_ramp(rows: &[Row]) -> Answers {
 pub fn triangle_weights(rows: &[Row]) -> Answers {
     let mut scene = cases::r4().scene;
     let draw = &mut scene.draws[0];
-    draw.indices.truncate(3);
+    draw.indices = draw.indices[..3].into();
     for row in rows {
         for (vertex, column) in draw.vertices.iter().zip(["color0", "color1", "color2"]) {
             let [r, g, b] = row.bytes(column);

@@ -108,8 +108,8 @@ fn ties() -> Vec<Vec<String>> {
         ("-Z", [35, 55, 115]),
     ];
     let mut rows = vec![cells(["direction", "face that is read"])];
-    for (n, corner) in scene.draws[0].vertices.chunks(4).enumerate() {
-        let [x, y, z, _] = corner[0].texture_coordinates[0].map(|c| c as i32);
+    for (n, corner) in scene.draws[0].vertices.iter().step_by(4).enumerate() {
+        let [x, y, z, _] = corner.texture_coordinates[0].map(|c| c as i32);
         let square = frame.part(32 * n + 2, 2, 28, 28);
         assert!(square.pixels.iter().all(|pixel| *pixel == square.pixels[0]), "one face in the whole square");
         let face = colors.iter().find(|(_, color)| *color == square.pixels[0]).unwrap().0;

@@ -74,7 +74,7 @@ fn u(covered: &Covered<'_>) -> (i64, i64) {
         coordinates: &coordinates,
         at: &sample,
         pixel: covered.pixel,
-        vertices: covered.coordinates(),
+        vertices: covered.vertices,
         w: covered.w(),
     };
     let settled = place.on(&covered.unit.levels[0])[0];
@@ -96,8 +96,12 @@ fn refused(scene: &Scene) {
     let mut scene = scene.clone();
     scene.draws.truncate(1);
     let mut rules = |texels: f32, q: f32| -> Vec<&'static str> {
-        let far = &mut scene.draws[0].vertices[0].texture_coordinates[0];
-        (far[0], far[3]) = (texels / 16.0, q);
+        scene.draws[0].vertices.update(|index, vertex| {
+            let far = &mut vertex.texture_coordinates[0];
+            if index == 0 {
+                (far[0], far[3]) = (texels / 16.0, q);
+            }
+        });
         let planned = Plan::compile(&scene, &PlanOptions::default());
         planned.err().into_iter().flatten().map(|error| error.rule).collect()
     };

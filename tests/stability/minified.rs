@@ -10,9 +10,8 @@ pub fn section() -> Section {
     let still = plan(&scene);
     let mut moved = still.clone();
     for draw in &mut moved.draws {
-        for vertex in &mut draw.assembly.vertices {
-            vertex.position[0] += 0.5;
-        }
+        draw.assembly.vertices.update(|_, vertex| vertex.position[0] += 0.5);
+        draw.assembly.corners.iter_mut().for_each(|corner| corner.position[0] += 8);
     }
     let (a, b) = (draw(&still), draw(&moved));
     // Which band of the lod each pixel lies in; 0 is magnified.

@@ -72,7 +72,11 @@ pub fn section() -> Section {
 /// RAS-0: what is cut off at w = 2^-20 must lie in the window's domain there, as it does only if it passes close to the eye itself.
 fn floor_below_the_eye_is_refused(scene: &Scene) {
     let mut scene = scene.clone();
-    scene.draws[1].vertices[0].position = [0.0, -1.0, 0.0, -1.0];
+    scene.draws[1].vertices.update(|index, vertex| {
+        if index == 0 {
+            vertex.position = [0.0, -1.0, 0.0, -1.0];
+        }
+    });
     let errors = Plan::compile(&scene, &PlanOptions::default()).unwrap_err();
     assert!(errors.iter().all(|error| error.rule == "RAS-0"), "{errors:?}");
 }

@@ -6,7 +6,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
 use ninebit::scene;
-use ninebit::state::{Scene, Vertex};
+use ninebit::state::{Scene, TriangleVertices};
 use ninebit::texture::lod;
 use ninebit::texture::place::{Coordinates, Interpolated, Place};
 use ninebit::texture::unit::PlannedUnit;
@@ -101,7 +101,7 @@ pub fn rms(a: &Picture, b: &Picture) -> f64 {
 pub struct Covered<'a> {
     pub draw: usize,
     pub triangle: &'a Triangle,
-    pub vertices: [&'a Vertex; 3],
+    pub vertices: TriangleVertices<'a>,
     pub unit: &'a PlannedUnit,
     pub pixel: (i64, i64),
 }
@@ -113,11 +113,11 @@ impl Covered<'_> {
 
     /// Texture coordinates s, t, r, q of the vertices.
     pub fn coordinates(&self) -> [[f32; 4]; 3] {
-        self.vertices.map(|v| v.texture_coordinates[self.unit.stage.coordinate_set])
+        self.vertices.coordinates(self.unit.stage.coordinate_set)
     }
 
     pub fn w(&self) -> [f32; 3] {
-        self.vertices.map(|v| v.position[3])
+        self.vertices.position(3)
     }
 
     /// TEX-10, TEX-11 as the model does it: 256 times the lod before bias and limits.
@@ -129,7 +129,7 @@ impl Covered<'_> {
             coordinates: &coordinates,
             at: &at,
             pixel: self.pixel,
-            vertices: self.coordinates(),
+            vertices: self.vertices,
             w: self.w(),
         };
         lod::log2_ratio(place.quad())
@@ -162,9 +162,9 @@ pub fn visit(plan: &Plan, mut visit: impl FnMut(&Covered<'_>)) {
     for (draw, planned) in plan.draws.iter().enumerate() {
         let window = planned.window;
         let columns = (i64::from(window.x), i64::from(window.x + window.width));
-        for assembled in &planned.assembly.triangles {
-            let vertices = assembled.vertices.map(|v| &planned.assembly.vertices[v as usize]);
-            let Some(triangle) = Triangle::new(vertices.map(|v| v.position), true, plan.profile) else { continue };
+        for number in 0..planned.assembly.triangles.len() {
+            let vertices = planned.assembly.triangle(number);
+            let Some(triangle) = Triangle::new(vertices.positions(), true, plan.profile) else { continue };
             let rows = (i64::from(window.y), i64::from(window.y + window.height));
             for j in triangle.rows.0.max(rows.0)..triangle.rows.1.min(rows.1) {
                 let (low, high) = triangle.span(j, columns);
