@@ -70,5 +70,6 @@ mod vectors;
 mod vectors_committed;
 mod vectors_operations;
 mod vectors_sweep;
+mod vertex_memory;
 mod vertex_programs;
 mod vertex_scenes;

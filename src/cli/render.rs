@@ -61,6 +61,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         engine::render_counted(&plan, &options, &|done, total| progress.report(done as u64, total as u64))
     };
     clock.lap("render");
+    // The picture takes its place in memory.
+    drop(plan);
     let surface = &frames.surfaces[target];
     let pixels = surface.rgba8();
     destination.write(&encode_png(surface.width, surface.height, &pixels, Compression::Fast)?)?;

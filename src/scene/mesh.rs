@@ -93,7 +93,7 @@ pub fn grid(columns: u32, rows: u32, size: [f32; 2], repeat: [f32; 2]) -> Result
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    mesh.indices = cells(columns, rows).into();
+    mesh.indices = cells(columns, rows).collect();
     Ok(mesh)
 }
 
@@ -205,15 +205,12 @@ fn cell(columns: u32, row: u32, column: u32) -> [u32; 4] {
 }
 
 /// Two triangles for each cell of a mesh of so many columns and rows.
-fn cells(columns: u32, rows: u32) -> Vec<u32> {
-    let mut indices = Vec::with_capacity(columns as usize * rows as usize * 6);
-    for row in 0..rows {
-        for column in 0..columns {
-            let [a, b, c, d] = cell(columns, row, column);
-            indices.extend([a, c, d, a, d, b]);
-        }
-    }
-    indices
+fn cells(columns: u32, rows: u32) -> impl Iterator<Item = u32> {
+    // A range that is mapped has a known length: collected, it is written where it stays.
+    (0..6 * columns * rows).map(move |n| {
+        let [a, b, c, d] = cell(columns, n / 6 / columns, n / 6 % columns);
+        [a, c, d, a, d, b][n as usize % 6]
+    })
 }
 
 fn at_least(shape: &'static str, what: &'static str, minimum: u32, given: u32) -> Result<(), MeshError> {

@@ -79,15 +79,6 @@ impl<T: Value> Column<T> {
         }
     }
 
-    /// Whether the first `count` values of both lists are the same.
-    pub(super) fn same(&self, other: &Self, count: usize) -> bool {
-        match (self, other) {
-            (Column::Same(a), Column::Same(b)) => a.same(b),
-            (Column::Each(a), Column::Each(b)) if Arc::ptr_eq(a, b) => true,
-            _ => (0..count).all(|index| self.at(index).same(&other.at(index))),
-        }
-    }
-
     /// Bytes that its values take beside the column itself.
     pub(super) fn bytes(&self) -> usize {
         match self {

@@ -6,7 +6,8 @@ use super::column::Column;
 use super::{TEXTURE_UNITS, Vertex, VertexColor};
 
 /// A list of vertices that takes little memory: a component of an attribute that is the same at all vertices is held once, one that
-/// differs as a column of its own. A copy shares the columns with the list it was made of, until either changes.
+/// differs as a column of its own; coordinate sets that are alike at all vertices are held once as well. A copy shares the columns
+/// with the list it was made of, until either changes.
 #[derive(Clone)]
 pub struct Vertices {
     count: usize,
@@ -15,6 +16,8 @@ pub struct Vertices {
     specular: Colors,
     fog: Column<f32>,
     coordinates: [[Column<f32>; 4]; TEXTURE_UNITS],
+    /// Where each coordinate set is held: the first that is alike. What others hold is not kept.
+    held: [usize; TEXTURE_UNITS],
 }
 
 /// How many vertices are taken apart at a time.
@@ -31,6 +34,7 @@ impl Vertices {
             specular: Colors::of(specular),
             fog: Column::Same(fog),
             coordinates: texture_coordinates.map(|set| set.map(Column::Same)),
+            held: [0; TEXTURE_UNITS],
         }
     }
 
@@ -60,7 +64,7 @@ impl Vertices {
             diffuse: self.diffuse.at(index),
             specular: self.specular.at(index),
             fog: self.fog.at(index),
-            texture_coordinates: self.coordinates.each_ref().map(|set| set.each_ref().map(|c| c.at(index))),
+            texture_coordinates: [0, 1, 2, 3].map(|set| self.coordinates(index, set)),
         }
     }
 
@@ -73,19 +77,22 @@ impl Vertices {
     #[inline(always)]
     pub fn position(&self, index: usize) -> [f32; 4] {
         debug_assert!(index < self.count);
-        self.position.each_ref().map(|component| component.at(index))
+        let [x, y, z, w] = &self.position;
+        [x.at(index), y.at(index), z.at(index), w.at(index)]
     }
 
     /// s, t, r, q of vertex `index`, which must be one of these, in a coordinate set.
     #[inline(always)]
     pub fn coordinates(&self, index: usize, set: usize) -> [f32; 4] {
         debug_assert!(index < self.count);
-        self.coordinates[set].each_ref().map(|component| component.at(index))
+        let [s, t, r, q] = &self.coordinates[self.held[set]];
+        [s.at(index), t.at(index), r.at(index), q.at(index)]
     }
 
     /// Whether two coordinate sets are equal at every vertex.
     pub fn same_coordinates(&self, one: usize, other: usize) -> bool {
-        one == other || (0..self.count).all(|index| self.coordinates(index, one) == self.coordinates(index, other))
+        self.held[one] == self.held[other]
+            || (0..self.count).all(|index| self.coordinates(index, one) == self.coordinates(index, other))
     }
 
     /// Diffuse of vertex `index`, which must be one of these.
@@ -118,17 +125,27 @@ impl Vertices {
 
     /// Puts every vertex where `map` takes its position. Components that stay as they are remain shared.
     pub fn map_positions(&mut self, mut map: impl FnMut([f32; 4]) -> [f32; 4]) {
-        let mut mapped = [0.0; 4].map(Column::Same);
+        let mut mapped: [Option<Column<f32>>; 4] = [const { None }; 4];
         let mut chunk = Vec::with_capacity(CHUNK.min(self.count));
         for start in (0..self.count).step_by(CHUNK) {
             chunk.clear();
             chunk.extend((start..self.count.min(start + CHUNK)).map(|index| map(self.position(index))));
-            for (axis, column) in mapped.iter_mut().enumerate() {
-                column.extend(start, self.count, chunk.iter().map(|position| position[axis]));
+            for (axis, (given, mapped)) in self.position.iter().zip(&mut mapped).enumerate() {
+                let values = chunk.iter().map(|position| position[axis]);
+                let stays = |(n, value): (usize, f32)| value.to_bits() == given.at(start + n).to_bits();
+                if mapped.is_none() && values.clone().enumerate().all(stays) {
+                    continue;
+                }
+                let mapped = mapped.get_or_insert_with(|| {
+                    let mut column = Column::Same(0.0);
+                    column.extend(0, self.count, (0..start).map(|index| given.at(index)));
+                    column
+                });
+                mapped.extend(start, self.count, values);
             }
         }
         for (column, mapped) in self.position.iter_mut().zip(mapped) {
-            if !column.same(&mapped, self.count) {
+            if let Some(mapped) = mapped {
                 *column = mapped;
             }
         }
@@ -136,7 +153,8 @@ impl Vertices {
 
     /// Bytes that the columns take, beside the list itself.
     pub fn bytes(&self) -> usize {
-        let floats = self.position.iter().chain([&self.fog]).chain(self.coordinates.iter().flatten());
+        let sets = (0..TEXTURE_UNITS).filter(|set| self.held[*set] == *set).flat_map(|set| &self.coordinates[set]);
+        let floats = self.position.iter().chain([&self.fog]).chain(sets);
         floats.map(Column::bytes).sum::<usize>() + self.diffuse.bytes() + self.specular.bytes()
     }
 
@@ -148,12 +166,31 @@ impl Vertices {
         self.diffuse.extend(count, capacity, vertices.iter().map(|v| v.diffuse));
         self.specular.extend(count, capacity, vertices.iter().map(|v| v.specular));
         self.fog.extend(count, capacity, vertices.iter().map(|v| v.fog));
-        for (set, columns) in self.coordinates.iter_mut().enumerate() {
+        self.part_sets(vertices);
+        for (set, columns) in self.coordinates.iter_mut().enumerate().filter(|(set, _)| self.held[*set] == *set) {
             for (n, column) in columns.iter_mut().enumerate() {
                 column.extend(count, capacity, vertices.iter().map(|v| v.texture_coordinates[set][n]));
             }
         }
         self.count += vertices.len();
+    }
+
+    /// Gives coordinate sets that were alike so far columns of their own where these vertices tell them apart.
+    fn part_sets(&mut self, vertices: &[Vertex]) {
+        let alike = |one: usize, other: usize| {
+            vertices.iter().all(|v| {
+                let [one, other] = [one, other].map(|set| v.texture_coordinates[set].map(f32::to_bits));
+                one == other
+            })
+        };
+        let before = self.held;
+        for set in 1..TEXTURE_UNITS {
+            let first = (before[set]..set).find(|other| before[*other] == before[set] && alike(*other, set));
+            self.held[set] = first.unwrap_or(set);
+            if before[set] != set && self.held[set] == set {
+                self.coordinates[set] = self.coordinates[before[set]].clone();
+            }
+        }
     }
 }
 
@@ -223,7 +260,7 @@ impl TriangleVertices<'_> {
     /// Their positions.
     #[inline(always)]
     pub fn positions(&self) -> [[f32; 4]; 3] {
-        turned([0, 1, 2, 3].map(|axis| self.position(axis)))
+        turned([self.position(0), self.position(1), self.position(2), self.position(3)])
     }
 
     /// A component of their positions: 0 to 3 for x, y, z, w.
@@ -235,7 +272,8 @@ impl TriangleVertices<'_> {
     /// Their s, t, r, q in a coordinate set.
     #[inline(always)]
     pub fn coordinates(&self, set: usize) -> [[f32; 4]; 3] {
-        turned(self.vertices.coordinates[set].each_ref().map(|component| component.three(self.indices)))
+        let ([s, t, r, q], indices) = (&self.vertices.coordinates[self.vertices.held[set]], self.indices);
+        turned([s.three(indices), t.three(indices), r.three(indices), q.three(indices)])
     }
 
     /// Their fog factors, or coordinates.
@@ -253,8 +291,8 @@ impl fmt::Debug for TriangleVertices<'_> {
 
 /// Components of three vertices to three vertices' components.
 #[inline(always)]
-fn turned(components: [[f32; 3]; 4]) -> [[f32; 4]; 3] {
-    [0, 1, 2].map(|vertex| components.map(|component| component[vertex]))
+fn turned([x, y, z, w]: [[f32; 3]; 4]) -> [[f32; 4]; 3] {
+    [[x[0], y[0], z[0], w[0]], [x[1], y[1], z[1], w[1]], [x[2], y[2], z[2], w[2]]]
 }
 
 /// Colours: bytes or floats, and only if need be some of both.
@@ -323,5 +361,122 @@ impl Colors {
             Colors::Floats(columns) => columns.iter().map(Column::bytes).sum(),
             Colors::Mixed(column) => column.bytes(),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Vertices whose attributes stay as they are for a while, as those of scenes do.
+    fn some(count: std::ops::Range<usize>) -> impl Strategy<Value = Vec<Vertex>> {
+        let number = || prop::sample::select(vec![0.0_f32, -0.0, 1.0, 0.25, -3.5]);
+        let color = || {
+            prop_oneof![
+                prop::sample::select(vec![[0_u8; 4], [255; 4], [1, 2, 3, 4]]).prop_map(VertexColor::Bytes),
+                prop::array::uniform4(number()).prop_map(VertexColor::Floats),
+            ]
+        };
+        let parts = (prop::array::uniform4(number()), color(), color(), number(), prop::array::uniform4(number()));
+        let change = prop::sample::select(vec![0, 0, 0, 1, 2, 4, 8, 16]);
+        prop::collection::vec((parts, change), count).prop_map(|steps| {
+            let mut vertex = Vertex::default();
+            let step = |((position, diffuse, specular, fog, set), change): (([f32; 4], _, _, _, _), i32)| {
+                match change {
+                    1 => vertex.position = position,
+                    2 => vertex.diffuse = diffuse,
+                    4 => vertex.specular = specular,
+                    8 => vertex.fog = fog,
+                    16 => vertex.texture_coordinates[2] = set,
+                    _ => {}
+                }
+                vertex
+            };
+            steps.into_iter().map(step).collect()
+        })
+    }
+
+    /// Every bit of a vertex.
+    fn bits(vertex: &Vertex) -> String {
+        format!("{vertex:?}")
+    }
+
+    proptest! {
+        #[test]
+        fn a_list_holds_what_it_is_given(all in some(0..700), more in some(0..5)) {
+            let mut vertices = Vertices::from(all.clone());
+            let shared = vertices.clone();
+            for vertex in &more {
+                vertices.push(*vertex);
+            }
+            prop_assert_eq!((shared.len(), vertices.len()), (all.len(), all.len() + more.len()));
+            let both: Vec<Vertex> = all.iter().chain(&more).copied().collect();
+            prop_assert!(vertices.iter().map(|v| bits(&v)).eq(both.iter().map(bits)));
+            prop_assert!(shared.iter().map(|v| bits(&v)).eq(all.iter().map(bits)), "a copy changes with the list");
+            for (index, vertex) in both.iter().enumerate() {
+                prop_assert_eq!(vertices.position(index), vertex.position);
+                prop_assert_eq!(vertices.coordinates(index, 2), vertex.texture_coordinates[2]);
+                prop_assert_eq!((vertices.diffuse(index), vertices.specular(index)), (vertex.diffuse, vertex.specular));
+            }
+        }
+
+        #[test]
+        fn triangles_are_of_three_vertices(all in some(1..20), at in prop::array::uniform3(0..1000_u32)) {
+            let vertices = Vertices::from(all.clone());
+            let at = at.map(|index| index % all.len() as u32);
+            let (triangle, expected) = (vertices.triangle(at), at.map(|index| all[index as usize]));
+            prop_assert_eq!(triangle.all(), expected);
+            prop_assert_eq!(triangle.positions(), expected.map(|v| v.position));
+            prop_assert_eq!(triangle.position(3), expected.map(|v| v.position[3]));
+            prop_assert_eq!(triangle.coordinates(2), expected.map(|v| v.texture_coordinates[2]));
+            prop_assert_eq!(triangle.fog(), expected.map(|v| v.fog));
+        }
+
+        #[test]
+        fn lists_are_equal_by_value(all in some(0..30), other in some(0..30)) {
+            prop_assert_eq!(Vertices::from(all.clone()) == Vertices::from(other.clone()), all == other);
+        }
+    }
+
+    fn places(count: usize) -> Vertices {
+        (0..count).map(|n| Vertex { position: [n as f32, 0.0, 0.0, 1.0], ..Vertex::default() }).collect()
+    }
+
+    #[test]
+    fn what_is_the_same_takes_nothing() {
+        assert_eq!(Vertices::from(vec![Vertex::default(); 1000]).bytes(), 0);
+        assert_eq!(places(1000).bytes(), 1000 * 4);
+        // One that differs makes a column, whether it comes last or first; 0 and -0 differ.
+        let mut late = places(1000);
+        late.push(Vertex { fog: -0.0, ..late.at(7) });
+        late.push(Vertex { fog: 1.0, ..late.at(7) });
+        assert!(late.at(1000).fog.is_sign_negative() && late.at(1001).fog == 1.0 && late.at(999).fog == 1.0);
+        assert!(late.bytes() >= 1002 * 8);
+    }
+
+    #[test]
+    fn columns_that_stay_as_they_are_remain_shared() {
+        let given = places(1000);
+        let mut moved = given.clone();
+        moved.map_positions(|[x, y, z, w]| [x, y + 0.5 * x, z, w]);
+        let Column::Each(x) = &given.position[0] else { panic!("a column") };
+        assert!(matches!(&moved.position[0], Column::Each(same) if std::sync::Arc::ptr_eq(same, x)));
+        assert_eq!((given.position(8), moved.position(8)), ([8.0, 0.0, 0.0, 1.0], [8.0, 4.0, 0.0, 1.0]));
+    }
+
+    #[test]
+    fn vertices_change_one_by_one() {
+        let mut vertices = places(3);
+        vertices.update(|index, vertex| vertex.fog = if index == 1 { 0.5 } else { vertex.fog });
+        assert_eq!([0, 1, 2].map(|index| vertices.at(index).fog), [1.0, 0.5, 1.0]);
+        assert_eq!(vertices.at(2).position[0], 2.0);
+    }
+
+    #[test]
+    #[should_panic(expected = "vertex 3 of 3")]
+    fn there_is_nothing_past_the_end() {
+        places(3).at(3);
     }
 }

@@ -20,7 +20,7 @@ use crate::state::{
 pub(super) struct Drawn {
     pub(super) draw: Draw,
     pub(super) spans: DrawSpans,
-    /// The mesh that its vertices are of.
+    /// The mesh that its vertices are of, where the scene has a truth to ask for it.
     pub(super) mesh: Option<Arc<Mesh>>,
     /// Whether it takes part in the scene's truth, if it says so, and where it does.
     pub(super) truth: Option<(bool, Range<usize>)>,
@@ -33,6 +33,7 @@ pub(super) fn draws<'a>(
     targets: &Targets,
     textures: &mut Textures,
     raw: &Option<Raw<'a, source::List<'a, source::Draw<'a>>>>,
+    keeps_meshes: bool,
 ) -> Vec<Drawn> {
     let list = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     if let Some(raw) = raw
@@ -67,7 +68,8 @@ pub(super) fn draws<'a>(
             name = given;
         }
         let header = Header { name, place, opening };
-        if let Some(draw) = draw(reader, names, targets, textures, &fields, header, &mut budget, &written) {
+        if let Some(mut draw) = draw(reader, names, targets, textures, &fields, header, &mut budget, &written) {
+            draw.mesh = draw.mesh.filter(|_| keeps_meshes);
             if let Some(flag) = written.get_mut(draw.draw.target) {
                 *flag = true;
             }

@@ -32,7 +32,7 @@ pub fn torus(slices: u32, sides: u32, radius: f32, tube: f32, repeat: [f32; 2]) 
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    mesh.indices = cells(slices, sides).into();
+    mesh.indices = cells(slices, sides).collect();
     Ok(mesh)
 }
 
@@ -68,7 +68,7 @@ pub fn cylinder(
             mesh.texture_coordinates.push([s, t]);
         }
     }
-    let mut indices = cells(slices, stacks);
+    let mut indices: Vec<u32> = cells(slices, stacks).collect();
     for up in [1.0, -1.0].into_iter().filter(|_| caps) {
         indices.extend(disc(&mut mesh, slices, radius, up * (height / 2.0), up));
     }
