@@ -380,7 +380,7 @@ mod tests {
             ]
         };
         let parts = (prop::array::uniform4(number()), color(), color(), number(), prop::array::uniform4(number()));
-        let change = prop::sample::select(vec![0, 0, 0, 1, 2, 4, 8, 16]);
+        let change = prop::sample::select(vec![0, 0, 0, 0, 1, 2, 4, 8, 16, 32, 64]);
         prop::collection::vec((parts, change), count).prop_map(|steps| {
             let mut vertex = Vertex::default();
             let step = |((position, diffuse, specular, fog, set), change): (([f32; 4], _, _, _, _), i32)| {
@@ -390,6 +390,8 @@ mod tests {
                     4 => vertex.specular = specular,
                     8 => vertex.fog = fog,
                     16 => vertex.texture_coordinates[2] = set,
+                    32 => vertex.texture_coordinates = [set; TEXTURE_UNITS],
+                    64 => [vertex.texture_coordinates[1], vertex.texture_coordinates[3]] = [set; 2],
                     _ => {}
                 }
                 vertex
