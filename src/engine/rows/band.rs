@@ -6,7 +6,7 @@ use super::levels::Reads;
 use super::patch::{Patch, SIDE, is_small};
 use super::quotient::{IOTA, Positions};
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
-use super::{BLOCK, Compiled, store};
+use super::{BLOCK, Compiled, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band};
 use crate::plan::{Plan, PlannedDraw};
@@ -102,8 +102,7 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
         if !context.set_up(number, rows) {
             continue;
         }
-        let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
-        let triangle = &setup.context.triangle;
+        let triangle = &context.triangle;
         let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
         if is_small(triangle) {
             block.patch.cover(triangle, rows, columns);
@@ -112,11 +111,17 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
                 if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
                     flush::<FMA>(job, block, band);
                 }
-                let Block { varying, rows, patch, used, .. } = &mut *block;
+                let Block { varying, rows, patch, used, planes, .. } = &mut *block;
                 let lanes = whole_steps(count);
                 let at = Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
                 let piece = Piece { first, at, count, lane: *used, extent: (SIDE as i32, SIDE as i32) };
-                setup.interpolate::<FMA, false>(piece, compiled, textures, varying, rows);
+                let done =
+                    compiled.plain && small::interpolate::<FMA>(&context, compiled, piece, varying, rows, planes);
+                if !done {
+                    let setup = Setup::new(&context, compiled, std::mem::take(planes));
+                    setup.interpolate::<FMA, false>(piece, compiled, textures, varying, rows);
+                    *planes = setup.given_back();
+                }
                 for n in 0..block.patch.filled {
                     let (j, i, count) = block.patch.runs[n];
                     block.append(band, (i, j), count, compiled.reads_surface);
@@ -124,6 +129,7 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
                 shaded += count as u64;
             }
         } else {
+            let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
             for j in rows.0..rows.1 {
                 let (mut i, end) = triangle.span(j, columns);
                 if i == end {
@@ -149,8 +155,8 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
                     i += count as i64;
                 }
             }
+            block.planes = setup.given_back();
         }
-        block.planes = setup.given_back();
     }
     flush::<FMA>(job, block, band);
     shaded

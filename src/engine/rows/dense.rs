@@ -45,8 +45,8 @@ impl Random {
 }
 
 /// Tiny, slivers, far beyond the frame, one w, few-valued w and coordinates, steep w, one texel a pixel, and round right triangles, whose
-/// weights and coordinates are full of ties.
-fn triangle(r: &mut Random) -> [Vertex; 3] {
+/// weights and coordinates are full of ties. `small`: all of them tiny, with everything else as it is.
+fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
     // Half of them are tiny: they have few pixels each.
     let kind = r.below(18);
     let kind = if kind < 9 { kind } else { 0 };
@@ -55,10 +55,12 @@ fn triangle(r: &mut Random) -> [Vertex; 3] {
     let lean = [r.unit() - 0.5, r.unit() - 0.5, r.unit()];
     let (x0, y0) = (r.below(64) as f32, r.below(64) as f32);
     let legs = [r.of(&[8.0, 10.0, 64.0, 96.0, 128.0, 100.0, 320.0]), r.of(&[8.0, 12.0, 64.0, 80.0, 120.0, 256.0])];
+    let legs = if small { [0; 2].map(|_| r.of(&[1.0, 2.0, 4.0, 5.0, 8.0, 10.0, 14.0])) } else { legs };
     let turn = r.below(3) as usize;
     let mut vertices = [Vertex::default(); 3];
     for (k, vertex) in vertices.iter_mut().enumerate() {
         let (x, y) = match kind {
+            0..7 if small => (cx + 16.0 * (r.unit() - 0.5), cy + 16.0 * (r.unit() - 0.5)),
             0 => (cx + 11.0 * (r.unit() - 0.5), cy + 11.0 * (r.unit() - 0.5)),
             1 => (cx + k as f32 * 200.0 * lean[0] + r.unit(), cy + k as f32 * 200.0 * lean[1] + r.unit()),
             2 => ((r.unit() - 0.5) * 8000.0, (r.unit() - 0.5) * 8000.0),
@@ -210,6 +212,35 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
     }
 }
 
+/// Compares the units on planes and the weights of a small triangle, set up four at a time, with the definition.
+fn compare_small<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    plain: &super::Compiled,
+    piece: Piece<'_>,
+    varying: &mut Varying,
+    rows: &mut [Row],
+) -> bool {
+    let done = super::small::interpolate::<FMA>(context, plain, piece, varying, rows, &mut Vec::new());
+    for n in (0..piece.count).filter(|_| done) {
+        let (sample, lane) = (piece.sample(n, &context.triangle), piece.lane + n);
+        for (index, sampler) in plain.samplers.iter().enumerate() {
+            let unit = &context.draw.units[sampler.index];
+            let place = context.place(unit, &sample, piece.pixel(n)).unwrap();
+            let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - sampler.bias());
+            let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
+            assert_eq!(got, wanted, "unit {index} {:?} of {:?}", piece.pixel(n), context.vertices());
+        }
+        if plain.varies(context) {
+            let weights = sample.weights().map(|w| w.value as u16);
+            let got = varying.narrow.each_ref().map(|w| w[lane]);
+            assert_eq!(got, weights, "{:?} of {:?}", piece.pixel(n), context.vertices());
+        }
+        let depth = sample.depth(context.z, context.draw.depth_full);
+        assert_eq!(i64::from(varying.depth[lane]), depth, "{:?} of {:?}", piece.pixel(n), context.vertices());
+    }
+    done
+}
+
 /// Compares a piece with the definition, pixel by pixel.
 fn compare<const FMA: bool, const ROW: bool>(
     setup: &Setup<'_>,
@@ -261,18 +292,23 @@ fn compare<const FMA: bool, const ROW: bool>(
 fn rows_interpolate_what_the_definition_does() {
     let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let mut random = Random(0x9e37_79b9_7f4a_7c15);
-    let (mut pixels, mut patches, mut round) = (0, 0, 0_u64);
+    let (mut pixels, mut patches, mut fours, mut round) = (0, 0, 0, 0_u64);
     let mut patch = Patch::default();
-    while pixels < wanted {
+    while pixels < wanted || patches < 20_000 {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
         let depth = random.of(DepthFormat::ALL);
         let fog = fog(&mut random);
-        let vertices = (0..64).flat_map(|_| triangle(&mut random)).collect();
+        // Small ones at last, so many that their textures pay.
+        let small = pixels >= wanted;
+        let vertices = (0..if small { 1024 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
         let Ok(plan) = Plan::compile(&scene(vertices, filter, depth, fog), &PlanOptions::default()) else { continue };
         let rows_of_plan = Rows::compile(&plan).unwrap();
         let compiled = rows_of_plan.draw(&plan, 0, &[]);
         assert_eq!(compiled.samplers.len(), 4);
+        // The first one, in every place that a sampler can have.
+        let on_planes = vec![compiled.samplers[0].clone(); 1 + round as usize % 4];
+        let plain = super::Compiled { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
         let draw = &plan.draws[0];
         let (mut varying, mut rows) = (Varying::default(), vec![Row::of(0); compiled.rows.len()]);
         varying.reads.resize(compiled.samplers.len(), Reads::default());
@@ -289,6 +325,12 @@ fn rows_interpolate_what_the_definition_does() {
                 let at = quotient::Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
                 let extent = (SIDE as i32, SIDE as i32);
                 let piece = Piece { first: patch.first, at, count: patch.count, lane: 0, extent };
+                let four = if round.is_multiple_of(4) {
+                    compare_small::<true>(&context, &plain, piece, &mut varying, &mut rows)
+                } else {
+                    compare_small::<false>(&context, &plain, piece, &mut varying, &mut rows)
+                };
+                fours += u64::from(four);
                 if round.is_multiple_of(4) {
                     compare::<true, false>(&setup, &compiled, piece, &mut varying, &mut rows);
                 } else {
@@ -323,6 +365,6 @@ fn rows_interpolate_what_the_definition_does() {
             planes = setup.given_back();
         }
     }
-    assert!(patches > 10);
-    println!("{pixels} pixels, {patches} small triangles");
+    assert!(fours > patches / 2);
+    println!("{pixels} pixels, {patches} small triangles, {fours} of them set up four quotients at a time");
 }

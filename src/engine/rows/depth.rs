@@ -6,7 +6,8 @@
 
 use super::fetch::Numbers;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
-use super::triangle::{Piece, Setup};
+use super::triangle::Piece;
+use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::most_dominant;
 
 /// Twice the area below which quotients of edge functions by it, rounded to double precision, have the right 24 bits.
@@ -26,27 +27,25 @@ struct Depths {
     full: f64,
 }
 
-impl Setup<'_> {
-    /// Depth of the pixels of a piece. Twice the area suits [`LARGEST`], or each pixel is the definition's.
-    #[inline(always)]
-    pub(super) fn depths<const FMA: bool, const ROW: bool>(
-        &self,
-        piece: Piece<'_>,
-        e: &[f64; 3],
-        out: &mut Numbers<u32>,
-    ) {
-        let (triangle, z, full) = (&self.context.triangle, self.context.z, self.context.draw.depth_full);
-        if triangle.doubled_area >= LARGEST {
-            for n in 0..piece.count {
-                out[piece.lane + n] = self.sample(piece, n).depth(z, full) as u32;
-            }
-            return;
+/// Depth of the pixels of a piece. Twice the area suits [`LARGEST`], or each pixel is the definition's.
+#[inline(always)]
+pub(super) fn depths<const FMA: bool, const ROW: bool>(
+    context: &TriangleContext<'_>,
+    piece: Piece<'_>,
+    out: &mut Numbers<u32>,
+) {
+    let (triangle, z, full) = (&context.triangle, context.z, context.draw.depth_full);
+    if triangle.doubled_area >= LARGEST {
+        for n in 0..piece.count {
+            out[piece.lane + n] = piece.sample(n, triangle).depth(z, full) as u32;
         }
-        let edge = |k: usize| Line { c: e[k], x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
-        let depths = Depths { z: [z[0] as f64, z[1] as f64, z[2] as f64], full: full as f64 };
-        let (edges, area) = ([edge(0), edge(1), edge(2)], triangle.doubled_area as f64);
-        depths.along::<FMA, ROW>(piece.at, edges, area, &mut out[piece.lanes()]);
+        return;
     }
+    let e = triangle.edges(piece.first.0, piece.first.1);
+    let edge = |k: usize| Line { c: e[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
+    let depths = Depths { z: [z[0] as f64, z[1] as f64, z[2] as f64], full: full as f64 };
+    let (edges, area) = ([edge(0), edge(1), edge(2)], triangle.doubled_area as f64);
+    depths.along::<FMA, ROW>(piece.at, edges, area, &mut out[piece.lanes()]);
 }
 
 impl Depths {

@@ -5,6 +5,7 @@
 //! | `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
 //! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `steady.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `levels.rs` | textures laid out for rows; address, fetch, filter; lods and levels |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
@@ -29,6 +30,7 @@ mod levels;
 mod patch;
 mod planes;
 mod quotient;
+mod small;
 mod steady;
 mod store;
 mod table;
@@ -37,6 +39,7 @@ mod triangle;
 pub(crate) use band::{Block, Job};
 pub use isa::Isa;
 
+use crate::engine::pixel::TriangleContext;
 use crate::frame::Surface;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Assembled;
@@ -104,7 +107,11 @@ pub(crate) struct Compiled {
     stored: [u16; 4],
     /// Row of the alpha that is tested.
     alpha: u16,
+    /// Channels of the primary and the secondary colour that are read: all bits of their bytes.
+    read: [u32; 2],
     samplers: Vec<Sampler>,
+    /// Nothing varies but colours, depth and coordinates of textures on planes, of one level.
+    plain: bool,
     /// Texture units are the definition's, pixel by pixel.
     samples_pixels: bool,
     /// What the surface holds is read: by the blend, because not all bits are written, or because fragments can be dropped.
@@ -113,6 +120,18 @@ pub(crate) struct Compiled {
     drops: bool,
     /// Some of what the surface holds stays: bits that are not written, or dropped fragments.
     merges: bool,
+}
+
+impl Compiled {
+    /// Whether a colour that is read varies on a triangle.
+    #[inline(always)]
+    fn varies(&self, context: &TriangleContext<'_>) -> bool {
+        let [primary, secondary] = [&context.primary, &context.secondary].map(|colors| {
+            let [a, b, c] = colors.map(u32::from_le_bytes);
+            (a ^ b) | (b ^ c)
+        });
+        (primary & self.read[0]) | (secondary & self.read[1]) != 0
+    }
 }
 
 /// A plan compiled to rows.
@@ -178,7 +197,9 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         destination: [None; 4],
         stored: [0; 4],
         alpha: 0,
+        read: [0; 2],
         samplers,
+        plain: false,
         samples_pixels,
         reads_surface: false,
         drops: false,
@@ -199,6 +220,10 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     compiled.reads_surface = reads || compiled.merges;
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
+    let planes = compiled.samplers.iter().all(|sampler| !(sampler.mixes || sampler.cube));
+    compiled.plain = planes && compiled.fog.is_none() && !compiled.samples_pixels;
+    compiled.read = [compiled.primary, compiled.secondary]
+        .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled
 }
 

@@ -21,7 +21,7 @@ const SLACK_32: f64 = 1.0 / (1_u64 << 20) as f64;
 const COARSEST: f64 = 0.125;
 
 /// Fraction bits of an estimate, where its whole part leaves room for them.
-const FRACTION: u32 = 20;
+const FRACTION: i32 = 20;
 
 /// Lane numbers.
 pub(super) static IOTA: [i32; LANES] = {
@@ -101,29 +101,18 @@ impl Line {
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Scaled {
     /// The numerator, over the denominator that all share.
-    line: Line,
-    base: i32,
-    shift: u32,
-    limit: i32,
+    pub(super) line: Line,
+    pub(super) base: i32,
+    pub(super) shift: u32,
+    pub(super) limit: i32,
     /// The step that a quotient of 0 has, where none is smaller.
-    least: i32,
+    pub(super) least: i32,
 }
 
-/// Powers of two.
-static POWERS: [f64; FRACTION as usize + 1] = powers(false);
-
-/// Their reciprocals.
-static INVERSES: [f64; FRACTION as usize + 1] = powers(true);
-
-const fn powers(inverse: bool) -> [f64; FRACTION as usize + 1] {
-    let mut all = [1.0; FRACTION as usize + 1];
-    let mut n = 0;
-    while n < all.len() {
-        let power = (1_u32 << n) as f64;
-        all[n] = if inverse { 1.0 / power } else { power };
-        n += 1;
-    }
-    all
+/// 2^n of a small n.
+#[inline(always)]
+fn power(n: i32) -> f64 {
+    f64::from_bits(((1023 + n) as u64) << 52)
 }
 
 impl Scaled {
@@ -133,37 +122,42 @@ impl Scaled {
     pub(super) fn new<const ROW: bool>(
         numerator: Line,
         denominator: Line,
+        extent: (f64, f64),
+        reciprocals: (f64, f64),
+        margin: f64,
+        bias: i32,
+    ) -> Option<Scaled> {
+        let (scaled, proves) = Scaled::with_proof::<ROW>(numerator, denominator, extent, reciprocals, margin, bias);
+        proves.then_some(scaled)
+    }
+
+    /// The same, and whether it can prove anything. Without branches: compilers set up several at once.
+    #[inline(always)]
+    pub(super) fn with_proof<const ROW: bool>(
+        numerator: Line,
+        denominator: Line,
         (columns, rows): (f64, f64),
         (reciprocal, widest): (f64, f64),
         margin: f64,
         bias: i32,
-    ) -> Option<Scaled> {
-        let base = whole(numerator.c * reciprocal);
+    ) -> (Scaled, bool) {
+        let first = numerator.c * reciprocal;
+        let base = whole(first);
         let rest = numerator.less(base, denominator);
         let range = rest.c.abs() + rest.x.abs() * columns;
         let range = if ROW { range } else { range + rest.y.abs() * rows } * widest + 4.0;
-        // Also refuses what is no number.
-        let fits = range < 268_435_456.0;
-        if !fits {
-            return None;
-        }
         // Bits of the whole part.
         let bits = (range.to_bits() >> 52) as i32 - 1022;
-        Scaled::with_fraction(rest, denominator, ((30 - bits) as u32).min(FRACTION), margin, base as i32 - bias)
-    }
-
-    #[inline(always)]
-    fn with_fraction(rest: Line, denominator: Line, shift: u32, margin: f64, base: i32) -> Option<Scaled> {
-        let scale = POWERS[shift as usize];
-        let off = margin * scale + 1.0;
-        let proves = off * 8.0 < scale;
-        if !proves {
-            return None;
-        }
-        // The least whole number above half a step and the error.
-        let off = off as i32 + 1;
-        let line = rest.less(f64::from(off) * INVERSES[shift as usize], denominator).times(scale);
-        Some(Scaled { line, base, shift, limit: (1 << shift) - 2 * off, least: i32::MIN })
+        let shift = (30 - bits).clamp(0, FRACTION);
+        let scale = power(shift);
+        // A whole number of steps above half of one and the error.
+        let off = whole(margin * scale + 2.0);
+        let line = rest.less(off * power(-shift), denominator).times(scale);
+        let limit = nearest(scale - 2.0 * off);
+        // Also refuses what is no number.
+        let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & (off * 8.0 < scale);
+        let shift = shift as u32;
+        (Scaled { line, base: nearest(first).wrapping_sub(bias), shift, limit, least: i32::MIN }, proves)
     }
 
     /// The floor that a step stands for, and as its sign bit whether it is not proved.
@@ -175,7 +169,7 @@ impl Scaled {
     /// Of a quotient that is not negative: one that seems to be is 0, proved.
     #[inline(always)]
     pub(super) fn not_negative(mut self) -> Scaled {
-        self.least = self.base.saturating_neg().saturating_mul(1 << self.shift);
+        self.least = self.base.wrapping_neg().wrapping_shl(self.shift);
         self
     }
 
@@ -238,6 +232,55 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
         close[1] |= b_close;
     }
     [close[0] < 0, close[1] < 0]
+}
+
+/// Positions of a piece, and the reciprocals of its denominators.
+#[derive(Clone, Debug)]
+pub(super) struct Reciprocals {
+    x: [f64; LANES],
+    y: [f64; LANES],
+    r: [f64; LANES],
+}
+
+impl Default for Reciprocals {
+    fn default() -> Self {
+        Reciprocals { x: [0.0; LANES], y: [0.0; LANES], r: [0.0; LANES] }
+    }
+}
+
+impl Reciprocals {
+    /// Those of some pixels.
+    #[inline(always)]
+    pub(super) fn set<const FMA: bool>(&mut self, at: Positions<'_>, denominator: Line) {
+        let lanes = at.x.len();
+        let (xs, ys) = (&at.x[..lanes], &at.y[..lanes]);
+        let (to_x, to_y, to_r) = (&mut self.x[..lanes], &mut self.y[..lanes], &mut self.r[..lanes]);
+        for n in 0..lanes {
+            let (x, y) = (f64::from(xs[n]), f64::from(ys[n]));
+            (to_x[n], to_y[n], to_r[n]) = (x, y, 1.0 / denominator.at::<FMA, false>(x, y));
+        }
+    }
+
+    /// [`estimate_two`] of them.
+    #[inline(always)]
+    pub(super) fn estimate<const FMA: bool>(
+        &self,
+        [one, other]: [Scaled; 2],
+        first: &mut [i32],
+        second: &mut [i32],
+    ) -> [bool; 2] {
+        let lanes = first.len();
+        let (second, xs, ys, rs) = (&mut second[..lanes], &self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
+        let mut close = [0_i32; 2];
+        for n in 0..lanes {
+            let (a, a_close) = one.floor(one.step::<FMA, false>(xs[n], ys[n], rs[n]));
+            let (b, b_close) = other.floor(other.step::<FMA, false>(xs[n], ys[n], rs[n]));
+            (first[n], second[n]) = (a, b);
+            close[0] |= a_close;
+            close[1] |= b_close;
+        }
+        [close[0] < 0, close[1] < 0]
+    }
 }
 
 /// [`Scaled`] in single precision, for weights on a row: twice the lanes, a wider margin.

@@ -1,18 +1,22 @@
 //! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a piece.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::depth::depths;
 use super::direction::{Looking, only_face, positive};
 use super::fetch::Numbers;
 use super::fog::Fog;
 use super::kernels::{LANES, Row, STEP};
 use super::levels::{Quads, Reads};
 use super::planes::{Plane, inverse};
-use super::quotient::{Line, Positions, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle};
+use super::quotient::{
+    Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
+};
 use super::steady::SteadyRow;
 use super::{Compiled, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::{self, Sample};
+use crate::raster::setup::Triangle;
 use crate::state::{Register, TEXTURE_UNITS};
 use crate::texture::cube::Face;
 use crate::texture::place::{Coordinates, Place};
@@ -68,6 +72,8 @@ pub(super) struct Varying {
     pub(super) weights: [Numbers<i32>; 2],
     /// The same in 16 bits.
     pub(super) narrow: [Numbers<u16>; 2],
+    /// Of a small triangle.
+    pub(super) reciprocals: Reciprocals,
     pub(super) whole: [Numbers<i32>; 2],
 }
 
@@ -83,6 +89,7 @@ impl Default for Varying {
             steady: SteadyRow::default(),
             weights: [[0; LANES]; 2],
             narrow: [[0; LANES]; 2],
+            reciprocals: Reciprocals::default(),
             whole: [[0; LANES]; 2],
         }
     }
@@ -109,6 +116,12 @@ impl Piece<'_> {
         (self.first.0 + i64::from(self.at.x[n]), self.first.1 + i64::from(self.at.y[n]))
     }
 
+    /// One of its pixels as a sample of the triangle.
+    pub(super) fn sample<'t>(&self, n: usize, triangle: &'t Triangle) -> Sample<'t> {
+        let (i, j) = self.pixel(n);
+        Sample::new(triangle, triangle.edges(i, j))
+    }
+
     /// The lanes that whole steps take.
     pub(super) fn lanes(&self) -> std::ops::Range<usize> {
         self.lane..self.lane + self.at.x.len()
@@ -126,10 +139,7 @@ impl<'a> Setup<'a> {
     pub(super) fn new(context: &'a TriangleContext<'a>, compiled: &Compiled, mut samplers: Vec<Planes>) -> Setup<'a> {
         let triangle = &context.triangle;
         let p = triangle.p;
-        let varies = |slots: &[Option<u16>; 4], colors: &[[u8; 4]; 3]| {
-            (0..4).any(|n| slots[n].is_some() && (colors[0][n] != colors[1][n] || colors[1][n] != colors[2][n]))
-        };
-        let weighted = varies(&compiled.primary, &context.primary) || varies(&compiled.secondary, &context.secondary);
+        let weighted = compiled.varies(context);
         let inverse = inverse(triangle);
         samplers.clear();
         for sampler in &compiled.samplers {
@@ -181,21 +191,7 @@ impl<'a> Setup<'a> {
         if !(ROW && varying.steady.complete) {
             self.estimated::<FMA, ROW>(piece, compiled, varying, rows);
         }
-        let [w0, w2] = &varying.narrow;
-        let sets = [(&compiled.primary, &self.context.primary), (&compiled.secondary, &self.context.secondary)];
-        for (slots, colors) in sets {
-            for channel in 0..4 {
-                let Some(slot) = slots[channel] else { continue };
-                let out = &mut rows[usize::from(slot)].0[piece.lanes()];
-                let corners =
-                    [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
-                if corners[0] == corners[1] && corners[1] == corners[2] {
-                    out.fill(corners[0] as i16);
-                } else {
-                    color(corners, &w0[piece.lanes()], &w2[piece.lanes()], out);
-                }
-            }
-        }
+        colors(self.context, compiled, piece, varying, rows);
         if compiled.samples_pixels {
             self.pixel_by_pixel(piece, compiled, textures, varying, rows);
         }
@@ -290,12 +286,10 @@ impl<'a> Setup<'a> {
             if close {
                 self.settle_weights::<ROW>(piece, planes, &e, w0, w2, whole);
             }
-            for n in 0..2 {
-                narrow(&varying.weights[n][piece.lanes()], &mut varying.narrow[n][piece.lanes()]);
-            }
+            narrow_weights(piece, varying);
         }
         if self.context.draw.depth_test.is_some() {
-            self.depths::<FMA, ROW>(piece, &real, &mut varying.depth);
+            depths::<FMA, ROW>(self.context, piece, &mut varying.depth);
         }
         if let Some(slot) = compiled.fog {
             let Varying { whole: [values, spare], .. } = &mut *varying;
@@ -460,8 +454,7 @@ impl<'a> Setup<'a> {
     }
 
     pub(super) fn sample(&self, piece: Piece<'_>, n: usize) -> Sample<'_> {
-        let (i, j) = piece.pixel(n);
-        Sample::new(&self.context.triangle, self.context.triangle.edges(i, j))
+        piece.sample(n, &self.context.triangle)
     }
 
     /// Coordinates by the definition, pixel by pixel.
@@ -537,6 +530,39 @@ fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
 pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
     for (out, wide) in out.iter_mut().zip(wide) {
         *out = *wide as u16;
+    }
+}
+
+/// Settled weights in 16 bits.
+#[inline(always)]
+pub(super) fn narrow_weights(piece: Piece<'_>, varying: &mut Varying) {
+    // Not a loop over both: it is not always taken apart.
+    let ([w0, w2], [narrow0, narrow2]) = (&varying.weights, &mut varying.narrow);
+    narrow(&w0[piece.lanes()], &mut narrow0[piece.lanes()]);
+    narrow(&w2[piece.lanes()], &mut narrow2[piece.lanes()]);
+}
+
+/// INT-2 of all channels that are read.
+#[inline(always)]
+pub(super) fn colors(
+    context: &TriangleContext<'_>,
+    compiled: &Compiled,
+    piece: Piece<'_>,
+    varying: &Varying,
+    rows: &mut [Row],
+) {
+    let [w0, w2] = &varying.narrow;
+    for (slots, colors) in [(&compiled.primary, &context.primary), (&compiled.secondary, &context.secondary)] {
+        for channel in 0..4 {
+            let Some(slot) = slots[channel] else { continue };
+            let out = &mut rows[usize::from(slot)].0[piece.lanes()];
+            let corners = [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
+            if corners[0] == corners[1] && corners[1] == corners[2] {
+                out.fill(corners[0] as i16);
+            } else {
+                color(corners, &w0[piece.lanes()], &w2[piece.lanes()], out);
+            }
+        }
     }
 }
 

@@ -1,0 +1,252 @@
+//! INT-1 to INT-4t for small triangles whose units are sampled on planes: functions are set up four at a time, in floats alone, and all quotients of
+//! a pixel share one reciprocal. `docs/exactness.md` has the argument.
+#![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
+
+use super::Compiled;
+use super::depth::depths;
+use super::kernels::Row;
+use super::patch::SIDE;
+use super::planes::inverse;
+use super::quotient::{Line, SLACK, Scaled, multiply_add};
+use super::triangle::{Piece, Planes, Setup, Varying, colors, narrow_weights};
+use crate::engine::pixel::TriangleContext;
+use crate::raster::setup::Triangle;
+use crate::state::TEXTURE_UNITS;
+use crate::texture::place::Coordinates;
+
+/// Functions that are set up at once.
+const FOUR: usize = 4;
+
+/// Two quotients that belong together.
+#[derive(Clone, Copy, Debug)]
+enum Pair {
+    None,
+    /// u and v of a sampler.
+    Sampler(usize),
+    /// Weights 0 and 2.
+    Weights,
+}
+
+/// What all functions of a triangle share.
+struct Ground {
+    /// Edge functions at the first pixel, and their slopes.
+    e: [f64; 3],
+    a: [f64; 3],
+    b: [f64; 3],
+    /// The magnitudes of what is added to edge functions within the box, and theirs.
+    terms: [f64; 3],
+    p: [f64; 3],
+    /// 1/P_k.
+    inverse: [f64; 3],
+    denominator: Line,
+    /// Of the first pixel's D.
+    reciprocal: f64,
+    /// Of a D that none is smaller than.
+    widest: f64,
+    /// No term that goes into a D is larger than this many of the smallest.
+    ratio: f64,
+}
+
+impl Ground {
+    #[inline(always)]
+    fn new<const FMA: bool>(triangle: &Triangle, piece: Piece<'_>) -> Ground {
+        let e = real(&triangle.edges(piece.first.0, piece.first.1));
+        let (a, b, p) = (real(&triangle.a), real(&triangle.b), real(&triangle.p));
+        let mut terms = [0.0; 3];
+        for k in 0..3 {
+            terms[k] = e[k] + (a[k].abs() + b[k].abs()) * SIDE as f64;
+        }
+        let denominator = Line { c: sum::<FMA>(&p, &e), x: sum::<FMA>(&p, &a), y: sum::<FMA>(&p, &b) };
+        let least = if p[0] < p[1] { p[0] } else { p[1] };
+        let widest = 1.0 / (if least < p[2] { least } else { p[2] } * triangle.doubled_area as f64);
+        let ratio = sum::<FMA>(&p, &terms) * widest;
+        let reciprocal = 1.0 / denominator.c;
+        Ground { e, a, b, terms, p, inverse: inverse(triangle), denominator, reciprocal, widest, ratio }
+    }
+
+    /// How four quotients are estimated. `g`: their numerators, by vertex.
+    #[inline(always)]
+    fn scaled<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Four {
+        let mut all = Four::default();
+        // Not a struct for each: compilers leave the loop as it is then.
+        for n in 0..FOUR {
+            let g = [g[0][n], g[1][n], g[2][n]];
+            let line = Line { c: sum::<FMA>(&g, &self.e), x: sum::<FMA>(&g, &self.a), y: sum::<FMA>(&g, &self.b) };
+            let size = [g[0].abs(), g[1].abs(), g[2].abs()];
+            // Half a denominator, half a texel, and the rounding of this very number.
+            let most = sum::<FMA>(&size, &self.inverse) + 260.0;
+            let margin = (sum::<FMA>(&size, &self.terms) * self.widest + 2.0 * most * self.ratio) * SLACK;
+            let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (self.reciprocal, self.widest));
+            let (scaled, is) =
+                Scaled::with_proof::<false>(line, self.denominator, extent, reciprocals, margin, bias[n]);
+            (all.c[n], all.x[n], all.y[n]) = (scaled.line.c, scaled.line.x, scaled.line.y);
+            (all.base[n], all.shift[n], all.limit[n]) = (scaled.base, scaled.shift, scaled.limit);
+            all.proves[n] = i32::from(is);
+        }
+        all
+    }
+}
+
+/// [`Scaled`] of four quotients.
+#[derive(Default)]
+struct Four {
+    c: [f64; FOUR],
+    x: [f64; FOUR],
+    y: [f64; FOUR],
+    base: [i32; FOUR],
+    shift: [u32; FOUR],
+    limit: [i32; FOUR],
+    /// 1: it can prove something.
+    proves: [i32; FOUR],
+}
+
+impl Four {
+    #[inline(always)]
+    fn of(&self, n: usize) -> Scaled {
+        let line = Line { c: self.c[n], x: self.x[n], y: self.y[n] };
+        Scaled { line, base: self.base[n], shift: self.shift[n], limit: self.limit[n], least: i32::MIN }
+    }
+}
+
+/// Everything that varies, for the pixels of a small triangle. `false`: not all could be estimated, nothing counts.
+///
+/// `planes` is a place to put things.
+#[inline(always)]
+pub(super) fn interpolate<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    compiled: &Compiled,
+    piece: Piece<'_>,
+    varying: &mut Varying,
+    rows: &mut [Row],
+    planes: &mut Vec<Planes>,
+) -> bool {
+    let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];
+    let mut count = 0;
+    for (n, sampler) in compiled.samplers.iter().enumerate() {
+        if sampler.shares.is_none() {
+            let Some(Coordinates::Plane(_)) = &context.coordinates[sampler.unit] else { return false };
+            pairs[count] = Pair::Sampler(n);
+            count += 1;
+        }
+    }
+    let weighted = compiled.varies(context);
+    if weighted {
+        pairs[count] = Pair::Weights;
+        count += 1;
+    }
+    if count > 0 && !divide::<FMA>(context, compiled, piece, (&pairs, count), varying, planes) {
+        return false;
+    }
+    if context.draw.depth_test.is_some() {
+        depths::<FMA, false>(context, piece, &mut varying.depth);
+    }
+    if weighted {
+        narrow_weights(piece, varying);
+    }
+    colors(context, compiled, piece, varying, rows);
+    true
+}
+
+/// What is divided by D.
+#[inline(always)]
+fn divide<const FMA: bool>(
+    context: &TriangleContext<'_>,
+    compiled: &Compiled,
+    piece: Piece<'_>,
+    (pairs, count): (&[Pair; 2 * TEXTURE_UNITS], usize),
+    varying: &mut Varying,
+    planes: &mut Vec<Planes>,
+) -> bool {
+    let ground = Ground::new::<FMA>(&context.triangle, piece);
+    varying.reciprocals.set::<FMA>(piece.at, ground.denominator);
+    let mut close = [[false; 2]; 2 * TEXTURE_UNITS];
+    for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)
+    {
+        let (mut g, mut bias) = ([[0.0; FOUR]; 3], [0; FOUR]);
+        for (half, pair) in pairs.iter().enumerate() {
+            let (u, v) = (2 * half, 2 * half + 1);
+            match *pair {
+                Pair::None => {}
+                Pair::Sampler(n) => {
+                    let sampler = &compiled.samplers[n];
+                    if let Some(Coordinates::Plane(planes)) = &context.coordinates[sampler.unit] {
+                        for k in 0..3 {
+                            (g[k][u], g[k][v]) = (planes[0][k] as f64, planes[1][k] as f64);
+                        }
+                    }
+                    (bias[u], bias[v]) = (sampler.bias(), sampler.bias());
+                }
+                Pair::Weights => (g[0][u], g[2][v]) = (256.0 * ground.p[0], 256.0 * ground.p[2]),
+            }
+        }
+        let scaled = ground.scaled::<FMA>(&g, &bias);
+        if scaled.proves != [1; FOUR] {
+            return false;
+        }
+        let Varying { coordinates, weights: [w0, w2], reciprocals, .. } = &mut *varying;
+        for (half, (pair, close)) in pairs.iter().zip(close).enumerate() {
+            let (along, down) = (scaled.of(2 * half), scaled.of(2 * half + 1));
+            let at = piece.lanes();
+            match *pair {
+                Pair::None => {}
+                Pair::Sampler(n) => {
+                    let [u, v] = &mut coordinates[n];
+                    *close = reciprocals.estimate::<FMA>([along, down], &mut u[at.clone()], &mut v[at]);
+                }
+                Pair::Weights => {
+                    let scaled = [along.not_negative(), down.not_negative()];
+                    *close = reciprocals.estimate::<FMA>(scaled, &mut w0[at.clone()], &mut w2[at]);
+                }
+            }
+        }
+    }
+    if close.as_flattened().contains(&true) {
+        settle(context, compiled, piece, pairs, &close, varying, planes);
+    }
+    true
+}
+
+/// Settles the pairs of which some lane is not proved.
+#[inline(never)]
+fn settle(
+    context: &TriangleContext<'_>,
+    compiled: &Compiled,
+    piece: Piece<'_>,
+    pairs: &[Pair],
+    close: &[[bool; 2]],
+    varying: &mut Varying,
+    planes: &mut Vec<Planes>,
+) {
+    let e = context.triangle.edges(piece.first.0, piece.first.1);
+    let setup = Setup::new(context, compiled, std::mem::take(planes));
+    for (pair, close) in pairs.iter().zip(close).filter(|(_, close)| close[0] | close[1]) {
+        let Varying { coordinates, weights: [w0, w2], whole, .. } = &mut *varying;
+        match *pair {
+            Pair::None => {}
+            Pair::Sampler(n) => {
+                let ([u, v], bias) = (&mut coordinates[n], compiled.samplers[n].bias());
+                let (u, v) = (&mut u[piece.lanes()], &mut v[piece.lanes()]);
+                if let Planes::Plane(planes) = &setup.samplers[n] {
+                    setup.settle_coordinates::<false>(piece, bias, planes, *close, &e, u, v, &mut whole[0]);
+                }
+            }
+            Pair::Weights => {
+                let (w0, w2) = (&mut w0[piece.lanes()], &mut w2[piece.lanes()]);
+                if let Some(planes) = &setup.weights {
+                    setup.settle_weights::<false>(piece, planes, &e, w0, w2, whole);
+                }
+            }
+        }
+    }
+    *planes = setup.given_back();
+}
+
+#[inline(always)]
+fn sum<const FMA: bool>(g: &[f64; 3], of: &[f64; 3]) -> f64 {
+    multiply_add::<FMA>(g[2], of[2], multiply_add::<FMA>(g[1], of[1], g[0] * of[0]))
+}
+
+#[inline(always)]
+fn real(n: &[i64; 3]) -> [f64; 3] {
+    [n[0] as f64, n[1] as f64, n[2] as f64]
+}
