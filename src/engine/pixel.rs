@@ -63,7 +63,11 @@ impl<'a> TriangleContext<'a> {
     /// Sets up triangle `number`; `None` when it is culled, empty, or outside `rows`.
     pub(crate) fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
         let mut context = TriangleContext::vacant(plan, draw);
-        context.set_up(number, rows).then_some(context)
+        if !context.set_up(number, rows) {
+            return None;
+        }
+        context.complete();
+        Some(context)
     }
 
     /// A place to [set up](Self::set_up) one triangle of a draw after the other.
@@ -82,7 +86,8 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Becomes triangle `number`; `false`, and worth nothing, when that is culled, empty, or outside `rows`.
+    /// Becomes triangle `number`; `false`, and worth nothing, when that is culled, empty, or outside `rows`. Texture coordinates and fog
+    /// are left for [`complete`](Self::complete).
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
         let (plan, draw) = (self.plan, self.draw);
@@ -111,14 +116,21 @@ impl<'a> TriangleContext<'a> {
         };
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
+        if draw.depth_test.is_some() {
+            self.z = self.vertices().map(|v| convert::depth(v.position[2], draw.depth_bits));
+        }
+        true
+    }
+
+    /// Sets up texture coordinates and fog.
+    #[inline(always)]
+    pub(super) fn complete(&mut self) {
+        let draw = self.draw;
         if let Some(shader) = &draw.shader {
             self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices())));
         } else {
-            let vertices = self.vertices();
             for unit in &draw.units {
-                let set = unit.stage.coordinate_set;
-                let [a, b, c] = vertices;
-                let sets = [a.texture_coordinates[set], b.texture_coordinates[set], c.texture_coordinates[set]];
+                let sets = self.coordinate_set(unit.stage.coordinate_set);
                 self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
             }
         }
@@ -126,10 +138,6 @@ impl<'a> TriangleContext<'a> {
             let fog = self.vertices().map(|v| v.fog);
             self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, fog));
         }
-        if draw.depth_test.is_some() {
-            self.z = self.vertices().map(|v| convert::depth(v.position[2], draw.depth_bits));
-        }
-        true
     }
 
     /// Its vertices.
@@ -137,6 +145,13 @@ impl<'a> TriangleContext<'a> {
     pub(crate) fn vertices(&self) -> [&'a Vertex; 3] {
         let (assembly, [a, b, c]) = (&self.draw.assembly, self.draw.assembly.triangles[self.number].vertices);
         [&assembly.vertices[a as usize], &assembly.vertices[b as usize], &assembly.vertices[c as usize]]
+    }
+
+    /// s, t, r, q of its vertices.
+    #[inline(always)]
+    pub(super) fn coordinate_set(&self, set: usize) -> [[f32; 4]; 3] {
+        let [a, b, c] = self.vertices();
+        [a.texture_coordinates[set], b.texture_coordinates[set], c.texture_coordinates[set]]
     }
 
     /// The vertices whose diffuse and specular are taken: all three, or the provoking one thrice.
@@ -365,7 +380,7 @@ impl<'a> TriangleContext<'a> {
         pixel: (i64, i64),
     ) -> Option<Interpolated<'s>> {
         let coordinates = self.coordinates[unit.index].as_ref()?;
-        let vertices = self.vertices().map(|v| v.texture_coordinates[unit.stage.coordinate_set]);
+        let vertices = self.coordinate_set(unit.stage.coordinate_set);
         Some(Interpolated { unit, coordinates, at: sample, pixel, vertices, w: self.w() })
     }
 
