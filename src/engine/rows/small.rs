@@ -122,7 +122,7 @@ impl Four {
     }
 }
 
-/// Everything that varies, for the pixels of a small triangle. `false`: not all could be estimated, nothing counts.
+/// Everything that varies, for the pixels of a small triangle, one at least. `false`: not all could be estimated, nothing counts.
 ///
 /// `planes` is a place to put things.
 #[inline(always)]
