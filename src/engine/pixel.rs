@@ -63,7 +63,11 @@ impl<'a> TriangleContext<'a> {
     /// Sets up triangle `number`; `None` when it is culled, empty, or outside `rows`.
     pub(crate) fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
         let mut context = TriangleContext::vacant(plan, draw);
-        context.set_up(number, rows).then_some(context)
+        if !context.set_up(number, rows) {
+            return None;
+        }
+        context.complete();
+        Some(context)
     }
 
     /// A place to [set up](Self::set_up) one triangle of a draw after the other.
@@ -82,7 +86,8 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Becomes triangle `number`; `false`, and worth nothing, when that is culled, empty, or outside `rows`.
+    /// Becomes triangle `number`; `false`, and worth nothing, when that is culled, empty, or outside `rows`. Texture coordinates and fog
+    /// are left for [`complete`](Self::complete).
     #[inline(always)]
     pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
         let (plan, draw) = (self.plan, self.draw);
@@ -111,28 +116,39 @@ impl<'a> TriangleContext<'a> {
         };
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
-        if let Some(shader) = &draw.shader {
-            self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices())));
-        } else {
-            let vertices = self.vertices();
-            for unit in &draw.units {
-                let sets = vertices.coordinates(unit.stage.coordinate_set);
-                self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
-            }
-        }
-        if draw.fog.enabled && draw.fog_channels & 8 != 0 {
-            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, self.vertices().fog()));
-        }
         if draw.depth_test.is_some() {
             self.z = self.vertices().position(2).map(|z| convert::depth(z, draw.depth_bits));
         }
         true
     }
 
+    /// Sets up texture coordinates and fog.
+    #[inline(always)]
+    pub(super) fn complete(&mut self) {
+        let draw = self.draw;
+        if let Some(shader) = &draw.shader {
+            self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices())));
+        } else {
+            for unit in &draw.units {
+                let sets = self.coordinate_set(unit.stage.coordinate_set);
+                self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
+            }
+        }
+        if draw.fog.enabled && draw.fog_channels & 8 != 0 {
+            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, self.vertices().fog()));
+        }
+    }
+
     /// Its vertices.
     #[inline(always)]
     pub(crate) fn vertices(&self) -> TriangleVertices<'a> {
         self.draw.assembly.triangle(self.number)
+    }
+
+    /// s, t, r, q of its vertices.
+    #[inline(always)]
+    pub(super) fn coordinate_set(&self, set: usize) -> [[f32; 4]; 3] {
+        self.vertices().coordinates(set)
     }
 
     /// A colour of vertex `corner` of the three, as it was given: its own, or the provoking vertex's.

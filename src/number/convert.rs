@@ -35,13 +35,12 @@ fn scaled_in_128_bits(n: i64, by: i64, exponent: i32) -> i64 {
 /// floors.
 #[inline(always)]
 pub fn align<const N: usize>(values: [(i64, i32); N], keep: i32) -> ([i64; N], i32) {
-    let mut top = None;
+    let mut top = i32::MIN;
     for (n, exponent) in values {
-        if n != 0 {
-            top = top.max(Some(64 - n.unsigned_abs().leading_zeros() as i32 + exponent));
-        }
+        let bits = 64 - n.unsigned_abs().leading_zeros() as i32 + exponent;
+        top = top.max(if n == 0 { i32::MIN } else { bits });
     }
-    let top = top.unwrap_or(0);
+    let top = if top == i32::MIN { 0 } else { top };
     let mut aligned = [0; N];
     for (out, (n, exponent)) in aligned.iter_mut().zip(values) {
         let up = exponent + keep - top;

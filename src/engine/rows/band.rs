@@ -116,8 +116,9 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
                 let at = Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
                 let piece = Piece { first, at, count, lane: *used, extent: (SIDE as i32, SIDE as i32) };
                 let done =
-                    compiled.plain && small::interpolate::<FMA>(&context, compiled, piece, varying, rows, planes);
+                    compiled.plain && small::interpolate::<FMA>(&mut context, compiled, piece, varying, rows, planes);
                 if !done {
+                    context.complete();
                     let setup = Setup::new(&context, compiled, std::mem::take(planes));
                     setup.interpolate::<FMA, false>(piece, compiled, textures, varying, rows);
                     *planes = setup.given_back();
@@ -129,6 +130,8 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
                 shaded += count as u64;
             }
         } else {
+            context.complete();
+            let triangle = &context.triangle;
             let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
             for j in rows.0..rows.1 {
                 let (mut i, end) = triangle.span(j, columns);

@@ -70,6 +70,8 @@ pub(crate) struct Sampler {
     index: usize,
     /// Its number.
     unit: usize,
+    /// The coordinate set that it is given.
+    set: usize,
     /// Bilinear.
     filters: bool,
     cube: bool,
@@ -266,6 +268,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
         samplers.push(Sampler {
             index,
             unit: unit.index,
+            set: unit.stage.coordinate_set,
             filters: unit.state.mag_filter == Filter::Linear,
             cube: unit.kind == TextureKind::Cube,
             sides: unit.scale(&unit.levels[0]),

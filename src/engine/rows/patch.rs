@@ -40,10 +40,20 @@ impl Patch {
     /// RAS-3 for a box of pixels, all rows at once.
     #[inline(always)]
     pub(super) fn cover(&mut self, triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) {
+        if rows.1 - rows.0 <= SIDE / 2 {
+            self.cover_rows::<{ SIDE as usize / 2 }>(triangle, rows, columns);
+        } else {
+            self.cover_rows::<{ SIDE as usize }>(triangle, rows, columns);
+        }
+    }
+
+    /// The same for so many rows at most.
+    #[inline(always)]
+    fn cover_rows<const ROWS: usize>(&mut self, triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) {
         (self.count, self.filled) = (0, 0);
         let left = triangle.columns.0;
         let (first, end) = ((columns.0 - left).clamp(0, SIDE) as i32, (columns.1 - left).clamp(0, SIDE) as i32);
-        let (mut low, mut high) = ([first; SIDE as usize], [end; SIDE as usize]);
+        let (mut low, mut high) = ([first; ROWS], [end; ROWS]);
         let e = triangle.edges(left, rows.0);
         for k in 0..3 {
             // Not negative inside: one less where a sample on the edge is another triangle's.
@@ -86,7 +96,7 @@ const BEYOND: i32 = 1 << 23;
 /// That is where i is not below -floor(r / a), or not above floor(r / -a), with r = b j + e, less than 2^18. (r + 1/2) / a is half an a-th from
 /// the next whole number at least, and in single precision off by less than that.
 #[inline(always)]
-fn limit(e: i32, a: i32, b: i32, low: &mut [i32; SIDE as usize], high: &mut [i32; SIDE as usize]) {
+fn limit<const ROWS: usize>(e: i32, a: i32, b: i32, low: &mut [i32; ROWS], high: &mut [i32; ROWS]) {
     // A horizontal edge: all columns of a row or none. What is not a whole number any more is as large.
     let inverse = if a == 0 { 40.0 } else { 1.0 / a.unsigned_abs() as f32 };
     // Which limit an edge is hangs on the triangle: both are computed, and the other one moved out of the way, instead of a branch.

@@ -45,6 +45,9 @@ pub(super) static IOTA_REAL: [f64; LANES] = {
     all
 };
 
+/// Lanes of a piece of few pixels: fewer than a whole step. Code of its own for them has no loops.
+pub(super) const FEW: usize = 8;
+
 /// Where the pixels of a piece lie, relative to its first: columns and, unless all are on one row, rows.
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'a> {
@@ -234,8 +237,9 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     [close[0] < 0, close[1] < 0]
 }
 
-/// Positions of a piece, and the reciprocals of its denominators.
+/// Positions of a piece, and the reciprocals of its denominators. Aligned: what is stored as a vector is loaded as one soon.
 #[derive(Clone, Debug)]
+#[repr(C, align(64))]
 pub(super) struct Reciprocals {
     x: [f64; LANES],
     y: [f64; LANES],
@@ -252,6 +256,18 @@ impl Reciprocals {
     /// Those of some pixels.
     #[inline(always)]
     pub(super) fn set<const FMA: bool>(&mut self, at: Positions<'_>, denominator: Line) {
+        if let (Ok(xs), Ok(ys)) = (<&[i32; FEW]>::try_from(at.x), <&[i32; FEW]>::try_from(at.y)) {
+            for n in 0..FEW {
+                self.x[n] = f64::from(xs[n]);
+            }
+            for n in 0..FEW {
+                self.y[n] = f64::from(ys[n]);
+            }
+            for n in 0..FEW {
+                self.r[n] = 1.0 / denominator.at::<FMA, false>(self.x[n], self.y[n]);
+            }
+            return;
+        }
         let lanes = at.x.len();
         let (xs, ys) = (&at.x[..lanes], &at.y[..lanes]);
         let (to_x, to_y, to_r) = (&mut self.x[..lanes], &mut self.y[..lanes], &mut self.r[..lanes]);
@@ -270,6 +286,11 @@ impl Reciprocals {
         second: &mut [i32],
     ) -> [bool; 2] {
         let lanes = first.len();
+        if let (FEW, Some(first), Some(second)) =
+            (lanes, first.first_chunk_mut::<FEW>(), second.first_chunk_mut::<FEW>())
+        {
+            return [self.few::<FMA>(one, first), self.few::<FMA>(other, second)];
+        }
         let (second, xs, ys, rs) = (&mut second[..lanes], &self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
         let mut close = [0_i32; 2];
         for n in 0..lanes {
@@ -280,6 +301,21 @@ impl Reciprocals {
             close[1] |= b_close;
         }
         [close[0] < 0, close[1] < 0]
+    }
+
+    #[inline(always)]
+    fn few<const FMA: bool>(&self, numerator: Scaled, out: &mut [i32; FEW]) -> bool {
+        let (mut steps, mut close) = ([0; FEW], 0);
+        // Loops of their own: compilers take one apart that does both.
+        for n in 0..FEW {
+            steps[n] = numerator.step::<FMA, false>(self.x[n], self.y[n], self.r[n]);
+        }
+        for n in 0..FEW {
+            let (value, is_close) = numerator.floor(steps[n]);
+            out[n] = value;
+            close |= is_close;
+        }
+        close < 0
     }
 }
 

@@ -7,12 +7,11 @@ use super::depth::depths;
 use super::kernels::Row;
 use super::patch::SIDE;
 use super::planes::inverse;
-use super::quotient::{Line, SLACK, Scaled, multiply_add};
+use super::quotient::{FEW, Line, Positions, SLACK, Scaled, multiply_add};
 use super::triangle::{Piece, Planes, Setup, Varying, colors, narrow_weights};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
-use crate::texture::place::Coordinates;
 
 /// Functions that are set up at once.
 const FOUR: usize = 4;
@@ -45,6 +44,8 @@ struct Ground {
     widest: f64,
     /// No term that goes into a D is larger than this many of the smallest.
     ratio: f64,
+    /// More than a quotient changes where the numerators of the vertices are floored.
+    floors: f64,
 }
 
 impl Ground {
@@ -58,13 +59,26 @@ impl Ground {
         }
         let denominator = Line { c: sum::<FMA>(&p, &e), x: sum::<FMA>(&p, &a), y: sum::<FMA>(&p, &b) };
         let least = if p[0] < p[1] { p[0] } else { p[1] };
-        let widest = 1.0 / (if least < p[2] { least } else { p[2] } * triangle.doubled_area as f64);
+        let least = if least < p[2] { least } else { p[2] };
+        let widest = 1.0 / (least * triangle.doubled_area as f64);
         let ratio = sum::<FMA>(&p, &terms) * widest;
         let reciprocal = 1.0 / denominator.c;
-        Ground { e, a, b, terms, p, inverse: inverse(triangle), denominator, reciprocal, widest, ratio }
+        Ground {
+            e,
+            a,
+            b,
+            terms,
+            p,
+            inverse: inverse(triangle),
+            denominator,
+            reciprocal,
+            widest,
+            ratio,
+            floors: 1.25 / least,
+        }
     }
 
-    /// How four quotients are estimated. `g`: their numerators, by vertex.
+    /// How four quotients are estimated. `g`: their numerators, by vertex, before they are floored.
     #[inline(always)]
     fn scaled<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Four {
         let mut all = Four::default();
@@ -75,7 +89,7 @@ impl Ground {
             let size = [g[0].abs(), g[1].abs(), g[2].abs()];
             // Half a denominator, half a texel, and the rounding of this very number.
             let most = sum::<FMA>(&size, &self.inverse) + 260.0;
-            let margin = (sum::<FMA>(&size, &self.terms) * self.widest + 2.0 * most * self.ratio) * SLACK;
+            let margin = (sum::<FMA>(&size, &self.terms) * self.widest + 2.0 * most * self.ratio) * SLACK + self.floors;
             let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (self.reciprocal, self.widest));
             let (scaled, is) =
                 Scaled::with_proof::<false>(line, self.denominator, extent, reciprocals, margin, bias[n]);
@@ -108,23 +122,29 @@ impl Four {
     }
 }
 
-/// Everything that varies, for the pixels of a small triangle. `false`: not all could be estimated, nothing counts.
+/// Everything that varies, for the pixels of a small triangle, one at least. `false`: not all could be estimated, nothing counts.
 ///
 /// `planes` is a place to put things.
 #[inline(always)]
 pub(super) fn interpolate<const FMA: bool>(
-    context: &TriangleContext<'_>,
+    context: &mut TriangleContext<'_>,
     compiled: &Compiled,
     piece: Piece<'_>,
     varying: &mut Varying,
     rows: &mut [Row],
     planes: &mut Vec<Planes>,
 ) -> bool {
+    let Positions { x, y, .. } = piece.at;
+    let few = Piece { at: Positions { x: &x[..FEW], y: &y[..FEW], ..piece.at }, ..piece };
+    let piece = if piece.count <= FEW { few } else { piece };
     let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];
     let mut count = 0;
     for (n, sampler) in compiled.samplers.iter().enumerate() {
         if sampler.shares.is_none() {
-            let Some(Coordinates::Plane(_)) = &context.coordinates[sampler.unit] else { return false };
+            let [a, b, c] = context.coordinate_set(sampler.set);
+            if [a[3], b[3], c[3]] != [1.0; 3] {
+                return false;
+            }
             pairs[count] = Pair::Sampler(n);
             count += 1;
         }
@@ -150,7 +170,7 @@ pub(super) fn interpolate<const FMA: bool>(
 /// What is divided by D.
 #[inline(always)]
 fn divide<const FMA: bool>(
-    context: &TriangleContext<'_>,
+    context: &mut TriangleContext<'_>,
     compiled: &Compiled,
     piece: Piece<'_>,
     (pairs, count): (&[Pair; 2 * TEXTURE_UNITS], usize),
@@ -169,10 +189,11 @@ fn divide<const FMA: bool>(
                 Pair::None => {}
                 Pair::Sampler(n) => {
                     let sampler = &compiled.samplers[n];
-                    if let Some(Coordinates::Plane(planes)) = &context.coordinates[sampler.unit] {
-                        for k in 0..3 {
-                            (g[k][u], g[k][v]) = (planes[0][k] as f64, planes[1][k] as f64);
-                        }
+                    let (sets, [width, height]) = (context.coordinate_set(sampler.set), sampler.sides);
+                    let (width, height) = (f64::from(256 * width), f64::from(256 * height));
+                    for k in 0..3 {
+                        g[k][u] = f64::from(sets[k][0]) * width * ground.p[k];
+                        g[k][v] = f64::from(sets[k][1]) * height * ground.p[k];
                     }
                     (bias[u], bias[v]) = (sampler.bias(), sampler.bias());
                 }
@@ -209,7 +230,7 @@ fn divide<const FMA: bool>(
 /// Settles the pairs of which some lane is not proved.
 #[inline(never)]
 fn settle(
-    context: &TriangleContext<'_>,
+    context: &mut TriangleContext<'_>,
     compiled: &Compiled,
     piece: Piece<'_>,
     pairs: &[Pair],
@@ -217,6 +238,7 @@ fn settle(
     varying: &mut Varying,
     planes: &mut Vec<Planes>,
 ) {
+    context.complete();
     let e = context.triangle.edges(piece.first.0, piece.first.1);
     let setup = Setup::new(context, compiled, std::mem::take(planes));
     for (pair, close) in pairs.iter().zip(close).filter(|(_, close)| close[0] | close[1]) {

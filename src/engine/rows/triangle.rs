@@ -9,7 +9,7 @@ use super::kernels::{LANES, Row, STEP};
 use super::levels::{Quads, Reads};
 use super::planes::{Plane, inverse};
 use super::quotient::{
-    Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
+    FEW, Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
 };
 use super::steady::SteadyRow;
 use super::{Compiled, Sampler};
@@ -528,6 +528,12 @@ fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
 /// Weights in 16 bits.
 #[inline(always)]
 pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
+    if let (Ok(wide), Ok(out)) = (<&[i32; FEW]>::try_from(wide), <&mut [u16; FEW]>::try_from(&mut *out)) {
+        for n in 0..FEW {
+            out[n] = wide[n] as u16;
+        }
+        return;
+    }
     for (out, wide) in out.iter_mut().zip(wide) {
         *out = *wide as u16;
     }
@@ -569,6 +575,14 @@ pub(super) fn colors(
 /// INT-2 of a channel.
 #[inline(always)]
 fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
+    if let (Ok(w0), Ok(w2), Ok(out)) =
+        (<&[u16; FEW]>::try_from(w0), <&[u16; FEW]>::try_from(w2), <&mut [i16; FEW]>::try_from(&mut *out))
+    {
+        for n in 0..FEW {
+            out[n] = interpolate::color(corners, w0[n], w2[n]) as i16;
+        }
+        return;
+    }
     for ((out, w0), w2) in out.iter_mut().zip(w0).zip(w2) {
         *out = interpolate::color(corners, *w0, *w2) as i16;
     }
