@@ -1,6 +1,7 @@
 //! Triangles to pieces, pieces to blocks, blocks to the surface.
 
 use super::fetch::{self, Workspace};
+use super::isa::Text;
 use super::kernels::{self, LANES, Row};
 use super::levels::Reads;
 use super::patch::{Patch, SIDE, is_small};
@@ -72,8 +73,8 @@ pub(crate) struct Job<'a> {
 
 /// Draws what of a draw falls into a band; covered pixels.
 #[inline(always)]
-pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
-    let Job { plan, draw, compiled, textures } = job;
+pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+    let Job { plan, draw, compiled, .. } = job;
     let mut shaded = 0;
     if draw.folded.invisible.is_some() {
         return shaded;
@@ -106,22 +107,14 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
         let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
         if is_small(triangle) {
             block.patch.cover(triangle, rows, columns);
-            let (first, count) = (block.patch.first, block.patch.count);
+            let count = block.patch.count;
             if count > 0 {
                 if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
-                    flush::<FMA>(job, block, band);
+                    T::flush(job, block, band);
                 }
-                let Block { varying, rows, patch, used, planes, .. } = &mut *block;
-                let lanes = whole_steps(count);
-                let at = Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
-                let piece = Piece { first, at, count, lane: *used, extent: (SIDE as i32, SIDE as i32) };
-                let done =
-                    compiled.plain && small::interpolate::<FMA>(&mut context, compiled, piece, varying, rows, planes);
-                if !done {
+                if !(compiled.plain && T::plain(&mut context, compiled, block)) {
                     context.complete();
-                    let setup = Setup::new(&context, compiled, std::mem::take(planes));
-                    setup.interpolate::<FMA, false>(piece, compiled, textures, varying, rows);
-                    *planes = setup.given_back();
+                    T::patch(&context, job, block);
                 }
                 for n in 0..block.patch.filled {
                     let (j, i, count) = block.patch.runs[n];
@@ -144,15 +137,14 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
                 while i < end {
                     let wanted = ((end - i) as usize).min(BLOCK);
                     if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
-                        flush::<FMA>(job, block, band);
+                        T::flush(job, block, band);
                     }
                     let count = wanted.min(BLOCK - block.used);
                     let lanes = whole_steps(count);
                     let last = count as i32 - 1;
                     let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
                     let piece = Piece { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
-                    let Block { varying, rows, .. } = &mut *block;
-                    setup.interpolate::<FMA, true>(piece, compiled, textures, varying, rows);
+                    T::row(&setup, piece, job, block);
                     block.append(band, (i, j), count, compiled.reads_surface);
                     shaded += count as u64;
                     i += count as i64;
@@ -161,8 +153,43 @@ pub(super) fn run<const FMA: bool>(job: Job<'_>, band: &mut Band<'_>, block: &mu
             block.planes = setup.given_back();
         }
     }
-    flush::<FMA>(job, block, band);
+    T::flush(job, block, band);
     shaded
+}
+
+/// What varies across the small triangle whose patch the block has, if it is of a plain draw. `false`: not all could be estimated.
+#[inline(always)]
+pub(super) fn plain<const FMA: bool>(
+    context: &mut TriangleContext<'_>,
+    compiled: &Compiled,
+    block: &mut Block,
+) -> bool {
+    let Block { varying, rows, patch, used, planes, .. } = block;
+    small::interpolate::<FMA>(context, compiled, piece(patch, *used), varying, rows, planes)
+}
+
+/// The same for any draw.
+#[inline(always)]
+pub(super) fn patch<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+    let Block { varying, rows, patch, used, planes, .. } = block;
+    let setup = Setup::new(context, job.compiled, std::mem::take(planes));
+    setup.interpolate::<FMA, false>(piece(patch, *used), job.compiled, job.textures, varying, rows);
+    *planes = setup.given_back();
+}
+
+/// The pixels of a patch.
+#[inline(always)]
+fn piece(patch: &Patch, lane: usize) -> Piece<'_> {
+    let lanes = whole_steps(patch.count);
+    let at = Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
+    Piece { first: patch.first, at, count: patch.count, lane, extent: (SIDE as i32, SIDE as i32) }
+}
+
+/// What varies along a piece of a row.
+#[inline(always)]
+pub(super) fn row<const FMA: bool>(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
+    let Block { varying, rows, .. } = block;
+    setup.interpolate::<FMA, true>(piece, job.compiled, job.textures, varying, rows);
 }
 
 impl Block {
@@ -243,7 +270,7 @@ fn copy<const MASKS: bool>(from: &[u32], to: &mut [u32], count: usize) {
 
 /// Computes and stores a block.
 #[inline(always)]
-fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Job { draw, compiled, .. } = job;
     let Block { rows, varying, work, runs, used, taken, words, stored, depth, alive, .. } = block;
     if *used == 0 {

@@ -1,6 +1,9 @@
 //! One text, compiled for several instruction sets, and the choice among them.
 
+use super::Compiled;
 use super::band::{self, Block, Job};
+use super::triangle::{Piece, Setup};
+use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Band;
 use crate::state::{Named, named};
 use multiversion::multiversion;
@@ -25,9 +28,9 @@ impl Isa {
     pub fn is_available(self) -> bool {
         match self {
             Isa::Baseline => true,
-            Isa::V2 => has_v2(),
-            Isa::V3 => has_v3(),
-            Isa::V4 => has_v4(),
+            Isa::V2 => v2::is_available(),
+            Isa::V3 => v3::is_available(),
+            Isa::V4 => v4::is_available(),
         }
     }
 
@@ -37,45 +40,111 @@ impl Isa {
     }
 }
 
+/// The text for an instruction set: parts of their own, because what compilers do to one loop should not hang on how many others stand in the
+/// same function.
+pub(super) trait Text {
+    /// [`band::flush`].
+    fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
+    /// [`band::plain`].
+    fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool;
+    /// [`band::patch`].
+    fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
+    /// [`band::row`].
+    fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block);
+}
+
+/// The text for what the program was compiled for.
+struct Baseline;
+
+impl Text for Baseline {
+    fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+        band::flush::<false>(job, block, band);
+    }
+    fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool {
+        band::plain::<false>(context, compiled, block)
+    }
+    fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+        band::patch::<false>(context, job, block);
+    }
+    fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
+        band::row::<false>(setup, piece, job, block);
+    }
+}
+
 /// A version of the text for a target; where the machine lacks it, a version that does nothing and says so.
 macro_rules! version {
-    ($has:ident, $run:ident, $target:literal, $fma:literal) => {
-        #[multiversion(targets($target))]
-        fn $has() -> bool {
-            match_target! { $target => true, _ => false }
-        }
+    ($version:ident, $target:literal, $fma:literal) => {
+        mod $version {
+            use super::*;
 
-        #[multiversion(targets($target))]
-        fn $run(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> Option<u64> {
-            match_target! { $target => Some(band::run::<$fma>(job, band, block)), _ => { let _ = (job, band, block); None } }
+            struct Version;
+
+            impl Text for Version {
+                fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+                    flush(job, block, band);
+                }
+                fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool {
+                    plain(context, compiled, block)
+                }
+                fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+                    patch(context, job, block);
+                }
+                fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
+                    row(setup, piece, job, block);
+                }
+            }
+
+            #[multiversion(targets($target))]
+            pub(super) fn is_available() -> bool {
+                match_target! { $target => true, _ => false }
+            }
+
+            #[multiversion(targets($target))]
+            pub(super) fn run(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> Option<u64> {
+                match_target! { $target => Some(band::run::<Version>(job, band, block)), _ => { let _ = (job, band, block); None } }
+            }
+
+            #[multiversion(targets($target))]
+            fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+                match_target! { $target => band::flush::<$fma>(job, block, band), _ => { let _ = (job, block, band); } }
+            }
+
+            #[multiversion(targets($target))]
+            fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool {
+                match_target! { $target => band::plain::<$fma>(context, compiled, block), _ => { let _ = (context, compiled, block); false } }
+            }
+
+            #[multiversion(targets($target))]
+            fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+                match_target! { $target => band::patch::<$fma>(context, job, block), _ => { let _ = (context, job, block); } }
+            }
+
+            #[multiversion(targets($target))]
+            fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
+                match_target! { $target => band::row::<$fma>(setup, piece, job, block), _ => { let _ = (setup, piece, job, block); } }
+            }
         }
     };
 }
-version!(has_v2, run_v2, "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false);
+version!(v2, "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false);
+version!(v3, "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true);
 version!(
-    has_v3,
-    run_v3,
-    "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave",
-    true
-);
-version!(
-    has_v4,
-    run_v4,
+    v4,
     "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave",
     true
 );
 
 fn run_baseline(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
-    band::run::<false>(job, band, block)
+    band::run::<Baseline>(job, band, block)
 }
 
 /// Draws what of a draw falls into a band, by an instruction set that the machine has; covered pixels.
 pub(crate) fn run(isa: Isa, job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let shaded = match isa {
         Isa::Baseline => None,
-        Isa::V2 => run_v2(job, band, block),
-        Isa::V3 => run_v3(job, band, block),
-        Isa::V4 => run_v4(job, band, block),
+        Isa::V2 => v2::run(job, band, block),
+        Isa::V3 => v3::run(job, band, block),
+        Isa::V4 => v4::run(job, band, block),
     };
     shaded.unwrap_or_else(|| run_baseline(job, band, block))
 }

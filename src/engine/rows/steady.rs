@@ -140,7 +140,7 @@ impl Steady {
     /// Floors of `count` lanes; whole steps are written, whose later lanes repeat the last. Says whether a lane may be exact or, unless all
     /// are [right](Self::is_exact), one too large. Pieces begin at whole steps.
     #[inline(always)]
-    pub(super) fn run<T: Written>(&mut self, count: usize, out: &mut [T]) -> bool {
+    pub(super) fn run<T: Written + Default>(&mut self, count: usize, out: &mut [T]) -> bool {
         if self.slope == 0 {
             let floor = T::of(self.here.quotient);
             for out in out {
@@ -193,23 +193,30 @@ impl Steady {
     }
 }
 
-/// Floors of steps of lanes, and the least of what remains, for each place in a step. As parameters of their own, tables are known not to
-/// overlap the result.
+/// Floors of steps of lanes, and the least of what remains, for each place in a step.
 #[inline(always)]
-fn floors<T: Written>(
+fn floors<T: Written + Default>(
     starts: &[[i32; 2]; STEPS],
     quotients: &[i32; STEP],
     remainders: &[i32; STEP],
     divisor: i32,
     out: &mut [[T; STEP]],
 ) -> [u32; STEP] {
+    // Copies, and a step of its own: whatever becomes of the functions around, nothing here can overlap the result.
+    let (quotients, remainders) = (*quotients, *remainders);
     let mut least = [u32::MAX; STEP];
     for ([quotient, remainder], out) in starts.iter().zip(out) {
+        let (mut sums, mut step) = ([0; STEP], [T::default(); STEP]);
         for k in 0..STEP {
-            let sum = remainder + remainders[k];
-            out[k] = T::of(quotient + quotients[k] + (sum >> 31));
-            least[k] = least[k].min(sum as u32).min((sum + divisor) as u32);
+            sums[k] = remainder + remainders[k];
         }
+        for k in 0..STEP {
+            step[k] = T::of(quotient + quotients[k] + (sums[k] >> 31));
+        }
+        for k in 0..STEP {
+            least[k] = least[k].min(sums[k] as u32).min((sums[k] + divisor) as u32);
+        }
+        *out = step;
     }
     least
 }
