@@ -101,15 +101,16 @@ impl<'a> TriangleContext<'a> {
             return false;
         }
         let w = corners.map(|c| c.w);
-        let Some(triangle) = Triangle::snapped(x, y, w, draw.perspective, plan.profile) else { return false };
-        let front = triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
+        if !self.triangle.set(x, y, w, draw.perspective, plan.profile) {
+            return false;
+        }
+        let front = self.triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
         match draw.cull {
             Cull::Front if front => return false,
             Cull::Back if !front => return false,
             Cull::None | Cull::Front | Cull::Back => {}
         }
         self.number = number;
-        self.triangle = triangle;
         let colored = match draw.shade_model {
             ShadeModel::Smooth => corners,
             ShadeModel::Flat => [&all[draw.assembly.triangles.provoking(number) as usize]; 3],

@@ -41,12 +41,13 @@ impl Triangle {
     /// Positions lie within RAS-0; the plan has checked that.
     pub fn new(positions: [[f32; 4]; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
         let (x, y) = (positions.map(|p| snap(p[0])), positions.map(|p| snap(p[1])));
-        Triangle::snapped(x, y, positions.map(|p| p[3]), perspective, profile)
+        let mut triangle = Triangle::default();
+        triangle.set(x, y, positions.map(|p| p[3]), perspective, profile).then_some(triangle)
     }
 
-    /// The same from x and y after RAS-1, 1/16 pixel.
+    /// Becomes the triangle of these x and y after RAS-1, 1/16 pixel, and w. `false`, and worth nothing: zero area.
     #[inline(always)]
-    pub fn snapped(x: [i64; 3], y: [i64; 3], w: [f32; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
+    pub fn set(&mut self, x: [i64; 3], y: [i64; 3], w: [f32; 3], perspective: bool, profile: Profile) -> bool {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
         let (mut a, mut b, mut c) = ([0; 3], [0; 3], [0; 3]);
         let mut area = 0;
@@ -57,32 +58,24 @@ impl Triangle {
             area = a[k] * x[k] + b[k] * y[k] + c[k];
         }
         if area == 0 {
-            return None;
+            return false;
         }
         let sign = area.signum();
-        let mut owns = [false; 3];
         for k in 0..3 {
             let (da, db, dc) = (a[k] * sign, b[k] * sign, c[k] * sign);
-            owns[k] = da > 0 || (da == 0 && db > 0);
+            self.owns[k] = da > 0 || (da == 0 && db > 0);
             // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
-            (a[k], b[k], c[k]) = (16 * da, 16 * db, dc + 8 * da + 8 * db);
+            (self.a[k], self.b[k], self.c[k]) = (16 * da, 16 * db, dc + 8 * da + 8 * db);
         }
         let w = if profile == Profile::Nv10 { [w_16_bits(w[0]), w_16_bits(w[1]), w_16_bits(w[2])] } else { w };
-        let doubled_area = area.abs();
+        self.p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
+        self.doubled_area = area.abs();
+        (self.rows, self.columns) = (centres(y), centres(x));
+        // y points down, so a positive area turns clockwise for the viewer.
+        self.counter_clockwise = area < 0;
         let one_power_of_two = w[0] == w[1] && w[1] == w[2] && w[0].to_bits() & 0x7f_ffff == 0;
-        Some(Triangle {
-            a,
-            b,
-            c,
-            owns,
-            p: if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] },
-            doubled_area,
-            rows: centres(y),
-            columns: centres(x),
-            // y points down, so a positive area turns clockwise for the viewer.
-            counter_clockwise: area < 0,
-            exact_reciprocal: doubled_area.count_ones() == 1 && (!perspective || one_power_of_two),
-        })
+        self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || one_power_of_two);
+        true
     }
 
     /// The three edge functions at the centre of pixel (i, j).

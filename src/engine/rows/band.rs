@@ -100,15 +100,10 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
     }
     let mut context = TriangleContext::vacant(plan, draw);
     for number in 0..draw.assembly.triangles.len() {
-        if !context.set_up(number, rows) {
-            continue;
-        }
-        let triangle = &context.triangle;
-        let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
-        if is_small(triangle) {
-            block.patch.cover(triangle, rows, columns);
-            let count = block.patch.count;
-            if count > 0 {
+        match T::enter(&mut context, number, (rows, columns), &mut block.patch) {
+            Entered::Nothing => {}
+            Entered::Small => {
+                let count = block.patch.count;
                 if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
                     T::flush(job, block, band);
                 }
@@ -122,39 +117,71 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
                 }
                 shaded += count as u64;
             }
-        } else {
-            context.complete();
-            let triangle = &context.triangle;
-            let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
-            for j in rows.0..rows.1 {
-                let (mut i, end) = triangle.span(j, columns);
-                if i == end {
-                    continue;
-                }
-                // Where rows of lanes begin, so that no step lies across two cache lines.
-                block.used = whole_steps(block.used);
-                setup.begin_row((i, j), end - i, compiled, &mut block.varying);
-                while i < end {
-                    let wanted = ((end - i) as usize).min(BLOCK);
-                    if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
-                        T::flush(job, block, band);
+            Entered::Large => {
+                context.complete();
+                let triangle = &context.triangle;
+                let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
+                let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
+                for j in rows.0..rows.1 {
+                    let (mut i, end) = triangle.span(j, columns);
+                    if i == end {
+                        continue;
                     }
-                    let count = wanted.min(BLOCK - block.used);
-                    let lanes = whole_steps(count);
-                    let last = count as i32 - 1;
-                    let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
-                    let piece = Piece { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
-                    T::row(&setup, piece, job, block);
-                    block.append(band, (i, j), count, compiled.reads_surface);
-                    shaded += count as u64;
-                    i += count as i64;
+                    // Where rows of lanes begin, so that no step lies across two cache lines.
+                    block.used = whole_steps(block.used);
+                    setup.begin_row((i, j), end - i, compiled, &mut block.varying);
+                    while i < end {
+                        let wanted = ((end - i) as usize).min(BLOCK);
+                        if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
+                            T::flush(job, block, band);
+                        }
+                        let count = wanted.min(BLOCK - block.used);
+                        let lanes = whole_steps(count);
+                        let last = count as i32 - 1;
+                        let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
+                        let piece = Piece { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
+                        T::row(&setup, piece, job, block);
+                        block.append(band, (i, j), count, compiled.reads_surface);
+                        shaded += count as u64;
+                        i += count as i64;
+                    }
                 }
+                block.planes = setup.given_back();
             }
-            block.planes = setup.given_back();
         }
     }
     T::flush(job, block, band);
     shaded
+}
+
+/// What of a triangle is to be drawn.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) enum Entered {
+    #[default]
+    Nothing,
+    /// The pixels that the patch has.
+    Small,
+    /// It is walked row by row.
+    Large,
+}
+
+/// Sets up a triangle, as far as it lies in some rows and columns.
+#[inline(always)]
+pub(super) fn enter<const WIDE: bool>(
+    context: &mut TriangleContext<'_>,
+    number: usize,
+    (rows, columns): ((i64, i64), (i64, i64)),
+    patch: &mut Patch,
+) -> Entered {
+    if !context.set_up(number, rows) {
+        return Entered::Nothing;
+    }
+    let triangle = &context.triangle;
+    if !is_small(triangle) {
+        return Entered::Large;
+    }
+    patch.cover(triangle, (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1)), columns);
+    if patch.count > 0 { Entered::Small } else { Entered::Nothing }
 }
 
 /// What varies across the small triangle whose patch the block has, if it is of a plain draw. `false`: not all could be estimated.

@@ -1,7 +1,8 @@
 //! One text, compiled for several instruction sets, and the choice among them.
 
 use super::Compiled;
-use super::band::{self, Block, Job};
+use super::band::{self, Block, Entered, Job};
+use super::patch::Patch;
 use super::triangle::{Piece, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Band;
@@ -42,56 +43,38 @@ impl Isa {
 
 /// The text for an instruction set: parts of their own, because what compilers do to one loop should not hang on how many others stand in the
 /// same function.
-pub(super) trait Text {
-    /// [`band::flush`].
-    fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
-    /// [`band::plain`].
-    fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool;
-    /// [`band::patch`].
-    fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
-    /// [`band::row`].
-    fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block);
-}
+///
+/// Where the machine lacks a set, its parts do nothing and its `run` says so.
+macro_rules! text {
+    ({ $($version:ident: $target:literal, $wide:literal;)* } $parts:tt) => {
+        text!(@parts $parts);
+        $(text!(@version $version, $target, $wide, $parts);)*
+    };
+    (@parts { $($(#[$meta:meta])* fn $part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
+        pub(super) trait Text {
+            $($(#[$meta])* fn $part($($name: $type),*) $(-> $out)?;)*
+        }
 
-/// The text for what the program was compiled for.
-struct Baseline;
+        /// What the program was compiled for.
+        struct Baseline;
 
-impl Text for Baseline {
-    fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
-        band::flush::<false>(job, block, band);
-    }
-    fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool {
-        band::plain::<false>(context, compiled, block)
-    }
-    fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
-        band::patch::<false>(context, job, block);
-    }
-    fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
-        band::row::<false>(setup, piece, job, block);
-    }
-}
-
-/// A version of the text for a target; where the machine lacks it, a version that does nothing and says so.
-macro_rules! version {
-    ($version:ident, $target:literal, $fma:literal) => {
+        impl Text for Baseline {
+            $(fn $part($($name: $type),*) $(-> $out)? {
+                band::$part::<false>($($name),*)
+            })*
+        }
+    };
+    (@version $version:ident, $target:literal, $wide:literal,
+        { $($(#[$meta:meta])* fn $part:ident($($name:ident: $type:ty),*) $(-> $out:ty)?;)* }) => {
         mod $version {
             use super::*;
 
             struct Version;
 
             impl Text for Version {
-                fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
-                    flush(job, block, band);
-                }
-                fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool {
-                    plain(context, compiled, block)
-                }
-                fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
-                    patch(context, job, block);
-                }
-                fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
-                    row(setup, piece, job, block);
-                }
+                $(fn $part($($name: $type),*) $(-> $out)? {
+                    $part($($name),*)
+                })*
             }
 
             #[multiversion(targets($target))]
@@ -104,35 +87,32 @@ macro_rules! version {
                 match_target! { $target => Some(band::run::<Version>(job, band, block)), _ => { let _ = (job, band, block); None } }
             }
 
-            #[multiversion(targets($target))]
-            fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
-                match_target! { $target => band::flush::<$fma>(job, block, band), _ => { let _ = (job, block, band); } }
-            }
-
-            #[multiversion(targets($target))]
-            fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool {
-                match_target! { $target => band::plain::<$fma>(context, compiled, block), _ => { let _ = (context, compiled, block); false } }
-            }
-
-            #[multiversion(targets($target))]
-            fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
-                match_target! { $target => band::patch::<$fma>(context, job, block), _ => { let _ = (context, job, block); } }
-            }
-
-            #[multiversion(targets($target))]
-            fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
-                match_target! { $target => band::row::<$fma>(setup, piece, job, block), _ => { let _ = (setup, piece, job, block); } }
-            }
+            $(#[multiversion(targets($target))]
+            fn $part($($name: $type),*) $(-> $out)? {
+                match_target! { $target => band::$part::<$wide>($($name),*), _ => { let _ = ($($name),*); Default::default() } }
+            })*
         }
     };
 }
-version!(v2, "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false);
-version!(v3, "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true);
-version!(
-    v4,
-    "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave",
-    true
-);
+text! {
+    {
+        v2: "x86_64+cmpxchg16b+popcnt+sse3+sse4.1+sse4.2+ssse3", false;
+        v3: "x86_64+avx+avx2+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true;
+        v4: "x86_64+avx+avx2+avx512bw+avx512cd+avx512dq+avx512f+avx512vl+bmi1+bmi2+cmpxchg16b+f16c+fma+lzcnt+movbe+popcnt+sse3+sse4.1+sse4.2+ssse3+xsave", true;
+    }
+    {
+        /// [`band::flush`].
+        fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
+        /// [`band::enter`].
+        fn enter(context: &mut TriangleContext<'_>, number: usize, window: ((i64, i64), (i64, i64)), patch: &mut Patch) -> Entered;
+        /// [`band::plain`].
+        fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool;
+        /// [`band::patch`].
+        fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
+        /// [`band::row`].
+        fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block);
+    }
+}
 
 fn run_baseline(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     band::run::<Baseline>(job, band, block)

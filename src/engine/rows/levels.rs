@@ -125,8 +125,12 @@ impl Setup<'_> {
     fn planes_of(&self, unit: &PlannedUnit, planes: &[Plane; 2], level: usize) -> [Plane; 2] {
         let triangle = &self.context.triangle;
         let [s, t] = unit.plane_shifts(&unit.levels[level]);
-        let plane = |g: [i64; 3]| Plane::new(triangle, &inverse(triangle), g);
-        [plane(planes[0].g.map(|g| g >> s)), plane(planes[1].g.map(|g| g >> t))]
+        let (inverse, [u, v]) = (inverse(triangle), [planes[0].g, planes[1].g]);
+        // Neither closures nor `map`: they are not always inlined, and what is not inlined lacks the caller's instruction set.
+        [
+            Plane::new(triangle, &inverse, [u[0] >> s, u[1] >> s, u[2] >> s]),
+            Plane::new(triangle, &inverse, [v[0] >> t, v[1] >> t, v[2] >> t]),
+        ]
     }
 
     /// TEX-11: u and v at the three pixels of each quad, 1/65536 texel of level 0. `false`: nothing would be proved.

@@ -181,6 +181,12 @@ impl Scaled {
     fn step<const FMA: bool, const ROW: bool>(&self, x: f64, y: f64, r: f64) -> i32 {
         ((self.line.at::<FMA, ROW>(x, y) * r + MAGIC).to_bits() as i32).max(self.least)
     }
+
+    /// The [floor](Self::floor) of a lane, given the reciprocal of its denominator.
+    #[inline(always)]
+    fn at<const FMA: bool, const ROW: bool>(&self, x: f64, y: f64, r: f64) -> (i32, i32) {
+        self.floor(self.step::<FMA, ROW>(x, y, r))
+    }
 }
 
 /// [`estimate_two`] of one lane. `None`: it is not proved.
@@ -193,7 +199,7 @@ pub(super) fn prove<const ROW: bool>(
     let (x, y) = position::<ROW>(n, f64::from(at.last), at.x, at.y, &IOTA_REAL);
     let r = 1.0 / denominator.at::<false, ROW>(x, y);
     let floor = |numerator: &Scaled| {
-        let (value, close) = numerator.floor(numerator.step::<false, ROW>(x, y, r));
+        let (value, close) = numerator.at::<false, ROW>(x, y, r);
         (close >= 0).then_some(value)
     };
     Some([floor(&numerators[0])?, floor(&numerators[1])?])
@@ -228,8 +234,7 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
-        let (a, a_close) = one.floor(one.step::<FMA, ROW>(x, y, r));
-        let (b, b_close) = other.floor(other.step::<FMA, ROW>(x, y, r));
+        let ((a, a_close), (b, b_close)) = (one.at::<FMA, ROW>(x, y, r), other.at::<FMA, ROW>(x, y, r));
         (first[n], second[n]) = (a, b);
         close[0] |= a_close;
         close[1] |= b_close;
@@ -294,8 +299,8 @@ impl Reciprocals {
         let (second, xs, ys, rs) = (&mut second[..lanes], &self.x[..lanes], &self.y[..lanes], &self.r[..lanes]);
         let mut close = [0_i32; 2];
         for n in 0..lanes {
-            let (a, a_close) = one.floor(one.step::<FMA, false>(xs[n], ys[n], rs[n]));
-            let (b, b_close) = other.floor(other.step::<FMA, false>(xs[n], ys[n], rs[n]));
+            let (x, y, r) = (xs[n], ys[n], rs[n]);
+            let ((a, a_close), (b, b_close)) = (one.at::<FMA, false>(x, y, r), other.at::<FMA, false>(x, y, r));
             (first[n], second[n]) = (a, b);
             close[0] |= a_close;
             close[1] |= b_close;

@@ -525,7 +525,7 @@ fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
     sample.coordinate(&plane.g).value as i32 - bias
 }
 
-/// Weights in 16 bits.
+/// Weights in 16 bits. [`FEW`] lanes apart, of which the compiler knows the number: one vector, and no loop around it.
 #[inline(always)]
 pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
     if let (Ok(wide), Ok(out)) = (<&[i32; FEW]>::try_from(wide), <&mut [u16; FEW]>::try_from(&mut *out)) {
@@ -572,7 +572,7 @@ pub(super) fn colors(
     }
 }
 
-/// INT-2 of a channel.
+/// INT-2 of a channel; [`FEW`] lanes apart, as in [`narrow`].
 #[inline(always)]
 fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
     if let (Ok(w0), Ok(w2), Ok(out)) =
