@@ -1,6 +1,7 @@
 #!/bin/sh
 # Times the workloads by Mesa's llvmpipe and by ninebit in turn, and prints medians of the rounds and their ratio.
 #   benches/peers/compare.sh [ROUNDS [ISA [THREADS]]]
+# One thread stays on one processor, the last that the script may use: both are timed there.
 # Installs Mesa, EGL, libpng and a C compiler from Debian's packages where they are missing (as root).
 set -eu
 rounds=${1:-5} isa=${2:-} threads=${3:-1}
@@ -25,14 +26,19 @@ export LIBGL_ALWAYS_SOFTWARE=1 EGL_LOG_LEVEL=fatal GALLIUM_DRIVER=llvmpipe
 if [ "$threads" = 1 ]; then LP_NUM_THREADS=0; else LP_NUM_THREADS=$threads; fi
 export LP_NUM_THREADS
 
+pin=
+if [ "$threads" = 1 ] && command -v taskset >/dev/null; then pin="taskset -c $(taskset -cp $$ | sed 's/.*[ ,-]//')"; fi
+
 round=0
 while [ "$round" -lt "$rounds" ]; do
     round=$((round + 1))
-    "$work/llvmpipe" "$scenes" 60 2>/dev/null | tee "$work/peer.txt" | grep -v '^#' | while read -r name pixels median least; do
+    # shellcheck disable=SC2086 # a command and its arguments, or nothing
+    $pin "$work/llvmpipe" "$scenes" 60 2>/dev/null | tee "$work/peer.txt" | grep -v '^#' | while read -r name pixels median least; do
         echo "$name peer $pixels $median $least" >>"$work/all"
     done
     for n in 1 2 3 4 5 6; do
-        "$ninebit" bench "$scenes/w$n.ron" --threads "$threads" ${isa:+--isa "$isa"} --json |
+        # shellcheck disable=SC2086
+        $pin "$ninebit" bench "$scenes/w$n.ron" --threads "$threads" ${isa:+--isa "$isa"} --json |
             awk -v name="w$n" '
                 /"shaded_pixels"/ { gsub(/[^0-9]/, ""); pixels = $0 }
                 /"ns_per_shaded_pixel"/ { inside = 1 }

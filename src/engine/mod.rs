@@ -1,9 +1,11 @@
 //! The engines: a plan in, frames or the trace of one pixel out.
 //!
 //! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; `walk.rs` walks triangles and
-//! quads: the scalar engine, which is the definition. `rows/` is the fast engine: the same bytes, a block of pixels at a time. This module
-//! runs draws and bands of rows on threads. A pixel's result is a pure function of the plan, whatever the engine, bands and threads.
+//! quads: the scalar engine, which is the definition. `rows/` is the fast engine: the same bytes, a block of pixels at a time. `bins.rs` tells
+//! which triangles meet which bands of rows. This module runs draws and bands of rows on threads. A pixel's result is a pure function of the
+//! plan, whatever the engine, bands and threads.
 
+mod bins;
 mod counting;
 pub(crate) mod pixel;
 mod report;
@@ -21,6 +23,7 @@ use crate::rop::surface;
 use crate::state::{Target, Texture, TextureImage, named};
 use crate::texture::unit::Image;
 use crate::trace::Silent;
+use bins::Bins;
 use rows::Rows;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
@@ -103,6 +106,8 @@ pub struct Renderer<'a> {
     band: Option<usize>,
     threads: usize,
     pool: Option<rayon::ThreadPool>,
+    /// Of each draw that the fast engine draws in several bands, if it has more than a few triangles.
+    bins: Vec<Option<Bins>>,
 }
 
 impl<'a> Renderer<'a> {
@@ -121,7 +126,20 @@ impl<'a> Renderer<'a> {
             .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
         let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan)).flatten();
         let threads = pool.as_ref().map_or(1, |pool| pool.current_num_threads() + 1);
-        Renderer { plan, rows, isa, band: options.band, threads, pool }
+        let mut renderer = Renderer { plan, rows, isa, band: options.band, threads, pool, bins: Vec::new() };
+        if renderer.rows.is_some() {
+            renderer.bins = renderer.groups().flat_map(|draws| renderer.bin(draws)).collect();
+        }
+        renderer
+    }
+
+    /// The bins of some draws that are drawn together.
+    fn bin(&self, draws: Range<usize>) -> impl Iterator<Item = Option<Bins>> {
+        let (height, bands) = (self.band(&draws), self.bands(&draws));
+        self.plan.draws[draws].iter().map(move |draw| {
+            let pays = bands > 1 && draw.assembly.triangles.len() > FEW;
+            pays.then(|| Bins::new(&draw.assembly, height, bands))
+        })
     }
 
     /// The instruction set that the fast engine uses.
@@ -169,7 +187,8 @@ impl<'a> Renderer<'a> {
             // What is set up for a triangle is set up for each band that it meets.
             (Some(_), 1) if draws.len() == 1 || triangles > FEW * draws.len() => height,
             (Some(_), 1) => CACHED / width,
-            (Some(_), threads) => height.div_ceil(4 * threads),
+            // More would share the work more evenly; but triangles on a border are set up on both sides of it.
+            (Some(_), threads) => height.div_ceil(3 * threads),
         };
         // Even, so that quads stay whole.
         self.band.unwrap_or(rows.min(height).max(BAND)).max(1).next_multiple_of(2)
@@ -193,23 +212,24 @@ impl<'a> Renderer<'a> {
         };
         let pool = self.pool.as_ref().filter(|_| draws.clone().map(window).sum::<usize>() >= SMALL);
         let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
+        let height = self.band(&draws);
         let run = |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, block: &mut rows::Block| {
             for ((index, compiled), shaded) in draws.clone().zip(&compiled).zip(&shaded) {
                 let draw = &plan.draws[index];
                 let pixels = match compiled {
-                    Some(compiled) => rows::isa::run(
-                        self.isa,
-                        rows::Job { plan, draw, compiled: compiled.as_ref(), textures },
-                        band,
-                        block,
-                    ),
+                    Some(compiled) => {
+                        let bins = self.bins.get(index).and_then(Option::as_ref);
+                        let triangles = bins.map(|bins| bins.of(band.first_row / height));
+                        let job = rows::Job { plan, draw, compiled: compiled.as_ref(), textures, triangles };
+                        rows::isa::run(self.isa, job, band, block)
+                    }
                     None => walk::draw(plan, draw, textures, band, &mut Silent).0,
                 };
                 shaded.fetch_add(pixels, Ordering::Relaxed);
                 band_done();
             }
         };
-        draw_bands(plan, plan.draws[draws.start].target, self.band(&draws), frames, pool, &run);
+        draw_bands(plan, plan.draws[draws.start].target, height, frames, pool, &run);
         shaded.into_iter().map(AtomicU64::into_inner).collect()
     }
 }

@@ -69,6 +69,8 @@ pub(crate) struct Job<'a> {
     pub(crate) draw: &'a PlannedDraw,
     pub(crate) compiled: &'a Compiled,
     pub(crate) textures: &'a [Image<'a, i32>],
+    /// The numbers of the triangles to look at, in order; `None`: all.
+    pub(crate) triangles: Option<&'a [u32]>,
 }
 
 /// Draws what of a draw falls into a band; covered pixels.
@@ -99,7 +101,9 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
     let mut context = TriangleContext::vacant(plan, draw);
-    for number in 0..draw.assembly.triangles.len() {
+    let count = job.triangles.map_or(draw.assembly.triangles.len(), <[u32]>::len);
+    for n in 0..count {
+        let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
         match T::enter(&mut context, number, (rows, columns), &mut block.patch) {
             Entered::Nothing => {}
             Entered::Small => {
