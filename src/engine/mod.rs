@@ -106,7 +106,7 @@ pub struct Renderer<'a> {
     band: Option<usize>,
     threads: usize,
     pool: Option<rayon::ThreadPool>,
-    /// Of each draw that the fast engine draws in several bands, if it has more than a few triangles.
+    /// Of each draw that the fast engine draws in several bands.
     bins: Vec<Option<Bins>>,
 }
 
@@ -136,10 +136,7 @@ impl<'a> Renderer<'a> {
     /// The bins of some draws that are drawn together.
     fn bin(&self, draws: Range<usize>) -> impl Iterator<Item = Option<Bins>> {
         let (height, bands) = (self.band(&draws), self.bands(&draws));
-        self.plan.draws[draws].iter().map(move |draw| {
-            let pays = bands > 1 && draw.assembly.triangles.len() > FEW;
-            pays.then(|| Bins::new(&draw.assembly, height, bands))
-        })
+        self.plan.draws[draws].iter().map(move |draw| (bands > 1).then(|| Bins::new(&draw.assembly, height, bands)))
     }
 
     /// The instruction set that the fast engine uses.
@@ -221,7 +218,7 @@ impl<'a> Renderer<'a> {
                         let bins = self.bins.get(index).and_then(Option::as_ref);
                         let triangles = bins.map(|bins| bins.of(band.first_row / height));
                         let job = rows::Job { plan, draw, compiled: compiled.as_ref(), textures, triangles };
-                        rows::isa::run(self.isa, job, band, block)
+                        if triangles == Some(&[]) { 0 } else { rows::isa::run(self.isa, job, band, block) }
                     }
                     None => walk::draw(plan, draw, textures, band, &mut Silent).0,
                 };

@@ -179,7 +179,8 @@ fn divide<const FMA: bool>(
 ) -> bool {
     let ground = Ground::new::<FMA>(&context.triangle, piece);
     varying.reciprocals.set::<FMA>(piece.at, ground.denominator);
-    let mut close = [[false; 2]; 2 * TEXTURE_UNITS];
+    // Whether anything is close, apart: looking for it among them would wait until they are stored.
+    let (mut close, mut settles) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
     for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)
     {
         let (mut g, mut bias) = ([[0.0; FOUR]; 3], [0; FOUR]);
@@ -219,9 +220,10 @@ fn divide<const FMA: bool>(
                     *close = reciprocals.estimate::<FMA>(scaled, &mut w0[at.clone()], &mut w2[at]);
                 }
             }
+            settles |= close[0] | close[1];
         }
     }
-    if close.as_flattened().contains(&true) {
+    if settles {
         settle(context, compiled, piece, pairs, &close, varying, planes);
     }
     true
