@@ -4,13 +4,14 @@ use super::fetch::{self, Workspace};
 use super::isa::Text;
 use super::kernels::{self, LANES, Row};
 use super::levels::Reads;
-use super::patch::{Patch, SIDE, is_small};
+use super::patch::{Patch, SIDE, is_box, is_small};
 use super::quotient::{IOTA, Positions};
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
 use super::{BLOCK, Compiled, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band};
 use crate::plan::{Plan, PlannedDraw};
+use crate::raster::setup::Triangle;
 use crate::state::MipFilter;
 use crate::texture::unit::Image;
 
@@ -62,6 +63,9 @@ impl Default for Block {
     }
 }
 
+/// Some rows and columns, as half-open ranges.
+pub(super) type Window = ((i64, i64), (i64, i64));
+
 /// Everything of a draw that is the same for all of its blocks.
 #[derive(Clone, Copy)]
 pub(crate) struct Job<'a> {
@@ -106,20 +110,22 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
         let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
         match T::enter(&mut context, number, (rows, columns), &mut block.patch) {
             Entered::Nothing => {}
-            Entered::Small => {
-                let count = block.patch.count;
-                if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
-                    T::flush(job, block, band);
+            Entered::Box => shaded += draw_patch::<T>(job, &mut context, band, block),
+            Entered::Boxes => {
+                let (rows, columns) = common(&context.triangle, (rows, columns));
+                let mut top = rows.0;
+                while top < rows.1 {
+                    let (bottom, mut left) = ((top + SIDE).min(rows.1), columns.0);
+                    while left < columns.1 {
+                        let right = (left + SIDE).min(columns.1);
+                        T::cover(&context.triangle, (top, bottom), (left, right), &mut block.patch);
+                        if block.patch.count > 0 {
+                            shaded += draw_patch::<T>(job, &mut context, band, block);
+                        }
+                        left = right;
+                    }
+                    top = bottom;
                 }
-                if !(compiled.plain && T::plain(&mut context, compiled, block)) {
-                    context.complete();
-                    T::patch(&context, job, block);
-                }
-                for n in 0..block.patch.filled {
-                    let (j, i, count) = block.patch.runs[n];
-                    block.append(band, (i, j), count, compiled.reads_surface);
-                }
-                shaded += count as u64;
             }
             Entered::Large => {
                 context.complete();
@@ -158,15 +164,45 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
     shaded
 }
 
+/// Draws the pixels that the patch has, one at least; how many they are.
+#[inline(always)]
+fn draw_patch<T: Text>(job: Job<'_>, context: &mut TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
+    let compiled = job.compiled;
+    let count = block.patch.count;
+    if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
+        T::flush(job, block, band);
+    }
+    if !(compiled.plain && T::plain(context, compiled, block)) {
+        context.complete();
+        T::patch(context, job, block);
+    }
+    for n in 0..block.patch.filled {
+        let (j, i, count) = block.patch.runs[n];
+        block.append(band, (i, j), count, compiled.reads_surface);
+    }
+    count as u64
+}
+
 /// What of a triangle is to be drawn.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) enum Entered {
     #[default]
     Nothing,
     /// The pixels that the patch has.
-    Small,
+    Box,
+    /// It is cut into boxes.
+    Boxes,
     /// It is walked row by row.
     Large,
+}
+
+/// The rows and columns of a triangle's box among some.
+#[inline(always)]
+fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
+    (
+        (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1)),
+        (triangle.columns.0.max(columns.0), triangle.columns.1.min(columns.1)),
+    )
 }
 
 /// Sets up a triangle, as far as it lies in some rows and columns.
@@ -174,18 +210,31 @@ pub(super) enum Entered {
 pub(super) fn enter<const WIDE: bool>(
     context: &mut TriangleContext<'_>,
     number: usize,
-    (rows, columns): ((i64, i64), (i64, i64)),
+    window: Window,
     patch: &mut Patch,
 ) -> Entered {
-    if !context.set_up(number, rows) {
+    if !context.set_up(number, window.0) {
         return Entered::Nothing;
     }
     let triangle = &context.triangle;
     if !is_small(triangle) {
         return Entered::Large;
     }
-    patch.cover(triangle, (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1)), columns);
-    if patch.count > 0 { Entered::Small } else { Entered::Nothing }
+    let (rows, columns) = common(triangle, window);
+    if rows.0 >= rows.1 || columns.0 >= columns.1 {
+        return Entered::Nothing;
+    }
+    if !is_box(rows, columns) {
+        return Entered::Boxes;
+    }
+    patch.cover(triangle, rows, columns);
+    if patch.count > 0 { Entered::Box } else { Entered::Nothing }
+}
+
+/// The pixels of a box of a triangle that is cut into boxes.
+#[inline(always)]
+pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, rows: (i64, i64), columns: (i64, i64), patch: &mut Patch) {
+    patch.cover(triangle, rows, columns);
 }
 
 /// What varies across the small triangle whose patch the block has, if it is of a plain draw. `false`: not all could be estimated.

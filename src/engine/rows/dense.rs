@@ -320,28 +320,37 @@ fn rows_interpolate_what_the_definition_does() {
             let triangle = &setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
             if is_small(triangle) {
-                patch.cover(triangle, window, columns);
-                let lanes = whole_steps(patch.count);
-                let at = quotient::Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
-                let extent = (SIDE as i32, SIDE as i32);
-                let piece = Piece { first: patch.first, at, count: patch.count, lane: 0, extent };
-                let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
-                let four = if patch.count == 0 {
-                    true
-                } else if round.is_multiple_of(4) {
-                    compare_small::<true>(&mut alone, &plain, piece, &mut varying, &mut rows)
-                } else {
-                    compare_small::<false>(&mut alone, &plain, piece, &mut varying, &mut rows)
-                };
-                fours += u64::from(four);
-                if round.is_multiple_of(4) {
-                    compare::<true, false>(&setup, &compiled, piece, &mut varying, &mut rows);
-                } else {
-                    compare::<false, false>(&setup, &compiled, piece, &mut varying, &mut rows);
+                let (left, right) = (triangle.columns.0.max(columns.0), triangle.columns.1.min(columns.1));
+                let mut covered = 0;
+                for (top, left) in (window.0..window.1)
+                    .step_by(SIDE as usize)
+                    .flat_map(|top| (left..right).step_by(SIDE as usize).map(move |left| (top, left)))
+                {
+                    patch.cover(triangle, (top, (top + SIDE).min(window.1)), (left, (left + SIDE).min(right)));
+                    if patch.count == 0 {
+                        continue;
+                    }
+                    let lanes = whole_steps(patch.count);
+                    let at = quotient::Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
+                    let extent = (SIDE as i32, SIDE as i32);
+                    let piece = Piece { first: patch.first, at, count: patch.count, lane: 0, extent };
+                    let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
+                    let four = if round.is_multiple_of(4) {
+                        compare_small::<true>(&mut alone, &plain, piece, &mut varying, &mut rows)
+                    } else {
+                        compare_small::<false>(&mut alone, &plain, piece, &mut varying, &mut rows)
+                    };
+                    fours += u64::from(four);
+                    if round.is_multiple_of(4) {
+                        compare::<true, false>(&setup, &compiled, piece, &mut varying, &mut rows);
+                    } else {
+                        compare::<false, false>(&setup, &compiled, piece, &mut varying, &mut rows);
+                    }
+                    (covered, patches) = (covered + patch.count, patches + 1);
                 }
-                let covered = (window.0..window.1).map(|j| triangle.span(j, columns)).map(|(a, b)| (b - a) as usize);
-                assert_eq!(patch.count, covered.sum::<usize>());
-                (pixels, patches) = (pixels + patch.count as u64, patches + 1);
+                let spans = (window.0..window.1).map(|j| triangle.span(j, columns)).map(|(a, b)| (b - a) as usize);
+                assert_eq!(covered, spans.sum::<usize>());
+                pixels += covered as u64;
             } else {
                 for j in window.0..window.1 {
                     let (mut i, end) = triangle.span(j, columns);
@@ -369,5 +378,5 @@ fn rows_interpolate_what_the_definition_does() {
         }
     }
     assert!(fours > patches / 2);
-    println!("{pixels} pixels, {patches} small triangles, {fours} of them set up four quotients at a time");
+    println!("{pixels} pixels, {patches} boxes of small triangles, {fours} of them set up four quotients at a time");
 }

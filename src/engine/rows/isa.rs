@@ -1,11 +1,12 @@
 //! One text, compiled for several instruction sets, and the choice among them.
 
 use super::Compiled;
-use super::band::{self, Block, Entered, Job};
+use super::band::{self, Block, Entered, Job, Window};
 use super::patch::Patch;
 use super::triangle::{Piece, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Band;
+use crate::raster::setup::Triangle;
 use crate::state::{Named, named};
 use multiversion::multiversion;
 use multiversion::target::match_target;
@@ -105,7 +106,9 @@ text! {
         /// [`band::flush`].
         fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// [`band::enter`].
-        fn enter(context: &mut TriangleContext<'_>, number: usize, window: ((i64, i64), (i64, i64)), patch: &mut Patch) -> Entered;
+        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, patch: &mut Patch) -> Entered;
+        /// [`band::cover`].
+        fn cover(triangle: &Triangle, rows: (i64, i64), columns: (i64, i64), patch: &mut Patch);
         /// [`band::plain`].
         fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool;
         /// [`band::patch`].

@@ -1,22 +1,36 @@
-//! RAS-3 for small triangles: all pixels of one at once, instead of row by row.
+//! RAS-3 for small triangles: all pixels of a box at once, instead of row by row.
 #![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
 use super::kernels::STEP;
 use crate::raster::setup::Triangle;
 
-/// Most columns and rows of the box of a small triangle. It covers half of the box and its diagonal: a block holds it.
+/// Most columns and rows of a box whose pixels are found, and interpolated, at once.
 pub(super) const SIDE: i64 = 16;
 
-/// Most pixels of a small triangle, and what whole steps write past them.
-const MOST: usize = (SIDE * SIDE / 2 + SIDE) as usize + 2 * STEP;
+/// Most columns and rows of the box of a triangle that is cut into boxes.
+const WIDEST: i64 = 64;
 
-/// Whether a triangle is handled as one piece instead of row by row.
+/// The same with one w. Such triangles are full of exact quotients: along rows these come by steps, in boxes they have to be settled.
+const WIDEST_FLAT: i64 = SIDE;
+
+/// Most pixels of a box, and what whole steps write past them.
+const MOST: usize = (SIDE * SIDE) as usize + 2 * STEP;
+
+/// Whether a triangle is handled as boxes, or as one, instead of row by row.
 #[inline(always)]
 pub(super) fn is_small(triangle: &Triangle) -> bool {
-    triangle.rows.1 - triangle.rows.0 <= SIDE && triangle.columns.1 - triangle.columns.0 <= SIDE
+    let p = &triangle.p;
+    let widest = if p[0] == p[1] && p[1] == p[2] { WIDEST_FLAT } else { WIDEST };
+    triangle.rows.1 - triangle.rows.0 <= widest && triangle.columns.1 - triangle.columns.0 <= widest
 }
 
-/// The pixels of a small triangle.
+/// Whether so many rows and columns are one box.
+#[inline(always)]
+pub(super) fn is_box(rows: (i64, i64), columns: (i64, i64)) -> bool {
+    rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE
+}
+
+/// The pixels of a small triangle in a box.
 #[derive(Debug)]
 pub(super) struct Patch {
     /// Column and row of the first pixel.
@@ -37,7 +51,7 @@ impl Default for Patch {
 }
 
 impl Patch {
-    /// RAS-3 for a box of pixels, all rows at once.
+    /// RAS-3 for [a box](is_box) of pixels of a [small](is_small) triangle, all rows at once.
     #[inline(always)]
     pub(super) fn cover(&mut self, triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) {
         if rows.1 - rows.0 <= SIDE / 2 {
@@ -51,9 +65,8 @@ impl Patch {
     #[inline(always)]
     fn cover_rows<const ROWS: usize>(&mut self, triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) {
         (self.count, self.filled) = (0, 0);
-        let left = triangle.columns.0;
-        let (first, end) = ((columns.0 - left).clamp(0, SIDE) as i32, (columns.1 - left).clamp(0, SIDE) as i32);
-        let (mut low, mut high) = ([first; ROWS], [end; ROWS]);
+        let left = columns.0;
+        let (mut low, mut high) = ([0; ROWS], [(columns.1 - left) as i32; ROWS]);
         let e = triangle.edges(left, rows.0);
         for k in 0..3 {
             // Not negative inside: one less where a sample on the edge is another triangle's.
@@ -93,8 +106,9 @@ const BEYOND: i32 = 1 << 23;
 
 /// Limits the columns of each row of a box to those where a i + b j + e is not negative.
 ///
-/// That is where i is not below -floor(r / a), or not above floor(r / -a), with r = b j + e, less than 2^18. (r + 1/2) / a is half an a-th from
-/// the next whole number at least, and in single precision off by less than that.
+/// That is where i is not below -floor(r / a), or not above floor(r / -a), with r = b j + e, less than 2^22. (r + 1/2) / a is half an a-th from
+/// the next whole number at least, and in single precision off by less than that where it is below 32, as a is below 2^15; beyond that the
+/// whole box lies on one side.
 #[inline(always)]
 fn limit<const ROWS: usize>(e: i32, a: i32, b: i32, low: &mut [i32; ROWS], high: &mut [i32; ROWS]) {
     // A horizontal edge: all columns of a row or none. What is not a whole number any more is as large.
@@ -112,6 +126,52 @@ fn limit<const ROWS: usize>(e: i32, a: i32, b: i32, low: &mut [i32; ROWS], high:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::state::Profile;
+
+    /// The rows of all boxes of triangles of all sizes and shapes are what spans say.
+    #[test]
+    fn boxes_hold_the_spans() {
+        let mut state = 0x1234_5678_u64;
+        let mut random = |n: i64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 33) as i64 % n
+        };
+        let (mut patch, mut triangle, mut drawn) = (Patch::default(), Triangle::default(), 0);
+        for round in 0..40_000 {
+            // 1/16 pixel; every third is a sliver.
+            let (size, thin) = (1 + random(16 * WIDEST), if round % 3 == 0 { 1 + random(40) } else { 16 * WIDEST });
+            let (x0, y0) = (random(4000), random(4000));
+            let x = [x0, x0 + random(size), x0 + random(size)];
+            let mut y = [y0, y0 + random(size), y0 + random(size)];
+            if thin < size {
+                y = [0, 1, 2].map(|k| y0 + (x[k] - x0) / 2 + random(thin) / 2);
+            }
+            let w = [1.0, 1.5, 2.0];
+            if !triangle.set(x, y, w, true, Profile::Nv2a) || !is_small(&triangle) {
+                continue;
+            }
+            drawn += 1;
+            let (rows, columns) = (triangle.rows, triangle.columns);
+            for top in (rows.0..rows.1).step_by(SIDE as usize) {
+                for left in (columns.0..columns.1).step_by(SIDE as usize) {
+                    let (bottom, right) = ((top + SIDE).min(rows.1), (left + SIDE).min(columns.1));
+                    patch.cover(&triangle, (top, bottom), (left, right));
+                    let spans = (top..bottom).map(|j| (j, triangle.span(j, (left, right))));
+                    let wanted: Vec<_> =
+                        spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| (j, s.0, (s.1 - s.0) as usize)).collect();
+                    assert_eq!(patch.runs[..patch.filled], wanted, "{triangle:?} ({left}, {top})");
+                    let mut pixels =
+                        wanted.iter().flat_map(|(j, first, count)| (0..*count).map(move |n| (first + n as i64, *j)));
+                    for n in 0..patch.count {
+                        let at = (patch.first.0 + i64::from(patch.x[n]), patch.first.1 + i64::from(patch.y[n]));
+                        assert_eq!(Some(at), pixels.next());
+                    }
+                    assert_eq!(pixels.next(), None);
+                }
+            }
+        }
+        assert!(drawn > 30_000);
+    }
 
     /// Every slope and many values, those around a whole number of columns above all.
     #[test]
