@@ -33,6 +33,8 @@ pub(crate) struct TriangleContext<'a> {
     pub(crate) fog: Option<FogPlane>,
     /// Depths of the vertices, where they are tested.
     pub(crate) z: [i64; 3],
+    /// Coordinates and fog are this triangle's.
+    complete: bool,
 }
 
 /// A covered pixel before shading.
@@ -83,6 +85,7 @@ impl<'a> TriangleContext<'a> {
             shader: None,
             fog: None,
             z: [0; 3],
+            complete: false,
         }
     }
 
@@ -110,7 +113,7 @@ impl<'a> TriangleContext<'a> {
             Cull::Back if !front => return false,
             Cull::None | Cull::Front | Cull::Back => {}
         }
-        self.number = number;
+        (self.number, self.complete) = (number, false);
         let colored = match draw.shade_model {
             ShadeModel::Smooth => corners,
             ShadeModel::Flat => [&all[draw.assembly.triangles.provoking(number) as usize]; 3],
@@ -123,9 +126,12 @@ impl<'a> TriangleContext<'a> {
         true
     }
 
-    /// Sets up texture coordinates and fog.
+    /// Sets up texture coordinates and fog, if they are not.
     #[inline(always)]
     pub(super) fn complete(&mut self) {
+        if std::mem::replace(&mut self.complete, true) {
+            return;
+        }
         let draw = self.draw;
         if let Some(shader) = &draw.shader {
             self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices())));
