@@ -37,6 +37,8 @@ pub(crate) struct Arguments {
 #[derive(Debug, Serialize)]
 struct Measured {
     scene: String,
+    /// What drew it.
+    engine: &'static str,
     /// Covered pixels of all draws.
     shaded_pixels: u64,
     frames: u32,
@@ -78,6 +80,7 @@ impl Spread {
 struct Document {
     format: &'static str,
     version: &'static str,
+    /// What was asked for.
     engine: &'static str,
     isa: &'static str,
     threads: usize,
@@ -130,6 +133,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let frame_microseconds = Spread::of(&times);
         document.scenes.push(Measured {
             scene: path.display().to_string(),
+            engine: renderer.engine().name(),
             shaded_pixels,
             frames: arguments.frames,
             load_microseconds,
@@ -169,9 +173,11 @@ fn text(document: &Document) -> String {
         let pixel = measured.ns_per_shaded_pixel;
         let spread = format!("{:.3} ({:.3}, {:.3})", pixel.median, pixel.p10, pixel.p90);
         let peak = measured.peak_memory_bytes.map_or_else(|| "-".to_owned(), |n| format!("{:.1}", n as f64 / 1e6));
+        let by =
+            if measured.engine == document.engine { "" } else { " (drawn by the scalar engine, for its policies)" };
         let _ = writeln!(
             text,
-            "{:>10} {:>10.3} {:>10} {:>10.3} {:>22}  {}",
+            "{:>10} {:>10.3} {:>10} {:>10.3} {:>22}  {}{by}",
             measured.shaded_pixels,
             (measured.load_microseconds + measured.prepare_microseconds) / 1e3,
             peak,

@@ -139,6 +139,11 @@ impl<'a> Renderer<'a> {
         self.plan.draws[draws].iter().map(move |draw| (bands > 1).then(|| Bins::new(&draw.assembly, height, bands)))
     }
 
+    /// The engine that draws: under policies that are not the default ones it is the definition.
+    pub fn engine(&self) -> Engine {
+        if self.rows.is_some() { Engine::Fast } else { Engine::Scalar }
+    }
+
     /// The instruction set that the fast engine uses.
     pub fn isa(&self) -> Isa {
         self.isa
