@@ -40,8 +40,11 @@ pub(super) fn draw<O: Observer>(
     (shaded, stored)
 }
 
-/// The part of some rows, as a half-open range, that lies in a draw's window, and its columns.
-pub(crate) fn window(planned: &PlannedDraw, rows: (i64, i64)) -> ((i64, i64), (i64, i64)) {
+/// Some rows and columns, as half-open ranges.
+pub(crate) type Window = ((i64, i64), (i64, i64));
+
+/// The part of some rows that lies in a draw's window, and its columns.
+pub(crate) fn window(planned: &PlannedDraw, rows: (i64, i64)) -> Window {
     let window = &planned.window;
     let columns = (i64::from(window.x), i64::from(window.x + window.width));
     ((rows.0.max(i64::from(window.y)), rows.1.min(i64::from(window.y + window.height))), columns)

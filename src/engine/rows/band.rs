@@ -4,12 +4,12 @@ use super::fetch::{self, Workspace};
 use super::isa::Text;
 use super::kernels::{self, LANES, Row};
 use super::levels::Reads;
-use super::patch::{Patch, SIDE, is_box, is_small};
+use super::patch::{Patch, SIDE, boxes, is_box, is_small};
 use super::quotient::{IOTA, Positions};
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
 use super::{BLOCK, Compiled, small, store};
 use crate::engine::pixel::TriangleContext;
-use crate::engine::walk::{self, Band};
+use crate::engine::walk::{self, Band, Window};
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::setup::Triangle;
 use crate::state::MipFilter;
@@ -63,9 +63,6 @@ impl Default for Block {
     }
 }
 
-/// Some rows and columns, as half-open ranges.
-pub(super) type Window = ((i64, i64), (i64, i64));
-
 /// Everything of a draw that is the same for all of its blocks.
 #[derive(Clone, Copy)]
 pub(crate) struct Job<'a> {
@@ -112,25 +109,17 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
             Entered::Nothing => {}
             Entered::Box => shaded += draw_patch::<T>(job, &mut context, band, block),
             Entered::Boxes => {
-                let (rows, columns) = common(&context.triangle, (rows, columns));
-                let mut top = rows.0;
-                while top < rows.1 {
-                    let (bottom, mut left) = ((top + SIDE).min(rows.1), columns.0);
-                    while left < columns.1 {
-                        let right = (left + SIDE).min(columns.1);
-                        T::cover(&context.triangle, (top, bottom), (left, right), &mut block.patch);
-                        if block.patch.count > 0 {
-                            shaded += draw_patch::<T>(job, &mut context, band, block);
-                        }
-                        left = right;
+                for window in boxes(common(&context.triangle, (rows, columns))) {
+                    T::cover(&context.triangle, window, &mut block.patch);
+                    if block.patch.count > 0 {
+                        shaded += draw_patch::<T>(job, &mut context, band, block);
                     }
-                    top = bottom;
                 }
             }
             Entered::Large => {
                 context.complete();
                 let triangle = &context.triangle;
-                let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));
+                let (rows, columns) = common(triangle, (rows, columns));
                 let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
                 for j in rows.0..rows.1 {
                     let (mut i, end) = triangle.span(j, columns);
@@ -198,7 +187,7 @@ pub(super) enum Entered {
 
 /// The rows and columns of a triangle's box among some.
 #[inline(always)]
-fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
+pub(super) fn common(triangle: &Triangle, (rows, columns): Window) -> Window {
     (
         (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1)),
         (triangle.columns.0.max(columns.0), triangle.columns.1.min(columns.1)),
@@ -220,21 +209,22 @@ pub(super) fn enter<const WIDE: bool>(
     if !is_small(triangle) {
         return Entered::Large;
     }
-    let (rows, columns) = common(triangle, window);
+    let window = common(triangle, window);
+    let (rows, columns) = window;
     if rows.0 >= rows.1 || columns.0 >= columns.1 {
         return Entered::Nothing;
     }
-    if !is_box(rows, columns) {
+    if !is_box(window) {
         return Entered::Boxes;
     }
-    patch.cover(triangle, rows, columns);
+    patch.cover(triangle, window);
     if patch.count > 0 { Entered::Box } else { Entered::Nothing }
 }
 
 /// The pixels of a box of a triangle that is cut into boxes.
 #[inline(always)]
-pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, rows: (i64, i64), columns: (i64, i64), patch: &mut Patch) {
-    patch.cover(triangle, rows, columns);
+pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, patch: &mut Patch) {
+    patch.cover(triangle, window);
 }
 
 /// What varies across the small triangle whose patch the block has, if it is of a plain draw. `false`: not all could be estimated.
@@ -259,7 +249,7 @@ pub(super) fn patch<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>
 
 /// The pixels of a patch.
 #[inline(always)]
-fn piece(patch: &Patch, lane: usize) -> Piece<'_> {
+pub(super) fn piece(patch: &Patch, lane: usize) -> Piece<'_> {
     let lanes = whole_steps(patch.count);
     let at = Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
     Piece { first: patch.first, at, count: patch.count, lane, extent: (SIDE as i32, SIDE as i32) }

@@ -4,9 +4,10 @@
 //! the variable a small part of it runs.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
+use super::band::{common, piece};
 use super::kernels::Row;
 use super::levels::Reads;
-use super::patch::{Patch, SIDE, is_small};
+use super::patch::{Patch, boxes, is_small};
 use super::quotient::{self, IOTA};
 use super::triangle::{Piece, Setup, Varying, whole_steps};
 use super::{BLOCK, Rows};
@@ -320,20 +321,13 @@ fn rows_interpolate_what_the_definition_does() {
             let triangle = &setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
             if is_small(triangle) {
-                let (left, right) = (triangle.columns.0.max(columns.0), triangle.columns.1.min(columns.1));
                 let mut covered = 0;
-                for (top, left) in (window.0..window.1)
-                    .step_by(SIDE as usize)
-                    .flat_map(|top| (left..right).step_by(SIDE as usize).map(move |left| (top, left)))
-                {
-                    patch.cover(triangle, (top, (top + SIDE).min(window.1)), (left, (left + SIDE).min(right)));
+                for window in boxes(common(triangle, (whole, columns))) {
+                    patch.cover(triangle, window);
                     if patch.count == 0 {
                         continue;
                     }
-                    let lanes = whole_steps(patch.count);
-                    let at = quotient::Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
-                    let extent = (SIDE as i32, SIDE as i32);
-                    let piece = Piece { first: patch.first, at, count: patch.count, lane: 0, extent };
+                    let piece = piece(&patch, 0);
                     let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
                     let four = if round.is_multiple_of(4) {
                         compare_small::<true>(&mut alone, &plain, piece, &mut varying, &mut rows)

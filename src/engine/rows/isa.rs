@@ -1,11 +1,11 @@
 //! One text, compiled for several instruction sets, and the choice among them.
 
 use super::Compiled;
-use super::band::{self, Block, Entered, Job, Window};
+use super::band::{self, Block, Entered, Job};
 use super::patch::Patch;
 use super::triangle::{Piece, Setup};
 use crate::engine::pixel::TriangleContext;
-use crate::engine::walk::Band;
+use crate::engine::walk::{Band, Window};
 use crate::raster::setup::Triangle;
 use crate::state::{Named, named};
 use multiversion::multiversion;
@@ -45,7 +45,8 @@ impl Isa {
 /// The text for an instruction set: parts of their own, because what compilers do to one loop should not hang on how many others stand in the
 /// same function.
 ///
-/// Where the machine lacks a set, its parts do nothing and its `run` says so.
+/// Where the machine lacks a set, its parts do nothing and its `run` says so. Each part is told whether the set fuses multiplications with
+/// additions and, as all that do so, stores lanes one by one.
 macro_rules! text {
     ({ $($version:ident: $target:literal, $wide:literal;)* } $parts:tt) => {
         text!(@parts $parts);
@@ -108,7 +109,7 @@ text! {
         /// [`band::enter`].
         fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, patch: &mut Patch) -> Entered;
         /// [`band::cover`].
-        fn cover(triangle: &Triangle, rows: (i64, i64), columns: (i64, i64), patch: &mut Patch);
+        fn cover(triangle: &Triangle, window: Window, patch: &mut Patch);
         /// [`band::plain`].
         fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool;
         /// [`band::patch`].

@@ -2,6 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "quotients whose floors are certain")]
 
 use super::kernels::STEP;
+use crate::engine::walk::Window;
 use crate::raster::setup::Triangle;
 
 /// Most columns and rows of a box whose pixels are found, and interpolated, at once.
@@ -24,10 +25,19 @@ pub(super) fn is_small(triangle: &Triangle) -> bool {
     triangle.rows.1 - triangle.rows.0 <= widest && triangle.columns.1 - triangle.columns.0 <= widest
 }
 
-/// Whether so many rows and columns are one box.
+/// Whether some rows and columns are one box.
 #[inline(always)]
-pub(super) fn is_box(rows: (i64, i64), columns: (i64, i64)) -> bool {
+pub(super) fn is_box((rows, columns): Window) -> bool {
     rows.1 - rows.0 <= SIDE && columns.1 - columns.0 <= SIDE
+}
+
+/// The boxes that some rows and columns are cut into, from left to right and then downwards.
+#[inline(always)]
+pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
+    let cut = |(first, end): (i64, i64)| {
+        (first..end).step_by(SIDE as usize).map(move |first| (first, (first + SIDE).min(end)))
+    };
+    cut(rows).flat_map(move |rows| cut(columns).map(move |columns| (rows, columns)))
 }
 
 /// The pixels of a small triangle in a box.
@@ -53,17 +63,18 @@ impl Default for Patch {
 impl Patch {
     /// RAS-3 for [a box](is_box) of pixels of a [small](is_small) triangle, all rows at once.
     #[inline(always)]
-    pub(super) fn cover(&mut self, triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) {
+    pub(super) fn cover(&mut self, triangle: &Triangle, window: Window) {
+        let (rows, _) = window;
         if rows.1 - rows.0 <= SIDE / 2 {
-            self.cover_rows::<{ SIDE as usize / 2 }>(triangle, rows, columns);
+            self.cover_rows::<{ SIDE as usize / 2 }>(triangle, window);
         } else {
-            self.cover_rows::<{ SIDE as usize }>(triangle, rows, columns);
+            self.cover_rows::<{ SIDE as usize }>(triangle, window);
         }
     }
 
     /// The same for so many rows at most.
     #[inline(always)]
-    fn cover_rows<const ROWS: usize>(&mut self, triangle: &Triangle, rows: (i64, i64), columns: (i64, i64)) {
+    fn cover_rows<const ROWS: usize>(&mut self, triangle: &Triangle, (rows, columns): Window) {
         (self.count, self.filled) = (0, 0);
         let left = columns.0;
         let (mut low, mut high) = ([0; ROWS], [(columns.1 - left) as i32; ROWS]);
@@ -151,23 +162,20 @@ mod tests {
                 continue;
             }
             drawn += 1;
-            let (rows, columns) = (triangle.rows, triangle.columns);
-            for top in (rows.0..rows.1).step_by(SIDE as usize) {
-                for left in (columns.0..columns.1).step_by(SIDE as usize) {
-                    let (bottom, right) = ((top + SIDE).min(rows.1), (left + SIDE).min(columns.1));
-                    patch.cover(&triangle, (top, bottom), (left, right));
-                    let spans = (top..bottom).map(|j| (j, triangle.span(j, (left, right))));
-                    let wanted: Vec<_> =
-                        spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| (j, s.0, (s.1 - s.0) as usize)).collect();
-                    assert_eq!(patch.runs[..patch.filled], wanted, "{triangle:?} ({left}, {top})");
-                    let mut pixels =
-                        wanted.iter().flat_map(|(j, first, count)| (0..*count).map(move |n| (first + n as i64, *j)));
-                    for n in 0..patch.count {
-                        let at = (patch.first.0 + i64::from(patch.x[n]), patch.first.1 + i64::from(patch.y[n]));
-                        assert_eq!(Some(at), pixels.next());
-                    }
-                    assert_eq!(pixels.next(), None);
+            for (rows, columns) in boxes((triangle.rows, triangle.columns)) {
+                assert!(is_box((rows, columns)));
+                patch.cover(&triangle, (rows, columns));
+                let spans = (rows.0..rows.1).map(|j| (j, triangle.span(j, columns)));
+                let wanted: Vec<_> =
+                    spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| (j, s.0, (s.1 - s.0) as usize)).collect();
+                assert_eq!(patch.runs[..patch.filled], wanted, "{triangle:?} {rows:?} {columns:?}");
+                let mut pixels =
+                    wanted.iter().flat_map(|(j, first, count)| (0..*count).map(move |n| (first + n as i64, *j)));
+                for n in 0..patch.count {
+                    let at = (patch.first.0 + i64::from(patch.x[n]), patch.first.1 + i64::from(patch.y[n]));
+                    assert_eq!(Some(at), pixels.next());
                 }
+                assert_eq!(pixels.next(), None);
             }
         }
         assert!(drawn > 30_000);
