@@ -36,19 +36,10 @@ fn dot3() -> Combiners {
     rgb.inputs[0] = input(Register::Texture0, InputMapping::ExpandNormal);
     rgb.inputs[1] = input(Register::PrimaryColor, InputMapping::ExpandNormal);
     (rgb.ab_output, rgb.ab_dot_product) = (Register::Spare0, true);
-    let stage = GeneralStage { rgb, alpha: Portion::idle(Component::Alpha), constants: [[0; 4]; 2] };
-    let mut inputs = [FinalInput::zero(Component::Rgb); 6];
-    inputs[3].register = FinalRegister::Spare0;
-    let g = FinalInput { register: FinalRegister::Zero, component: Component::Alpha, invert: true };
-    let final_combiner = FinalCombiner {
-        inputs,
-        g,
-        color_sum_clamp: false,
-        invert_spare0: false,
-        invert_secondary: false,
-        constants: [[0; 4]; 2],
-    };
-    Combiners { stages: vec![stage], mux_select: MuxSelect::Msb, final_combiner }
+    let stage = GeneralStage { rgb, ..GeneralStage::default() };
+    let mut final_combiner = FinalCombiner::showing(FinalRegister::Spare0);
+    final_combiner.g = FinalInput { invert: true, ..FinalInput::zero(Component::Alpha) };
+    Combiners { stages: vec![stage], final_combiner, ..Combiners::default() }
 }
 
 fn scene(perspective: bool) -> Scene {
@@ -70,38 +61,15 @@ fn scene(perspective: bool) -> Scene {
     ];
     let unit = TextureUnit::new(0);
     let draw = Draw {
-        name: "surface".to_string(),
-        target: 0,
-        positions: Positions::Window,
         vertices: vertices.into(),
         indices: [0, 1, 2, 3].into(),
         topology: Topology::Quads,
-        shade_model: ShadeModel::Smooth,
-        provoking_vertex: ProvokingVertex::First,
-        perspective: true,
-        cull: Cull::None,
-        front_face: FrontFace::CounterClockwise,
-        scissor: None,
-        fog: Fog { enabled: false, color: [0; 3], function: None },
         textures: [Some(unit), None, None, None],
         texture_shader: [0, 1, 2, 3].map(|n| ShaderStage::conventional(n, n == 0)),
         combiners: dot3(),
-        program_origin: vec![],
-        vertex_program: None,
-        alpha_test: None,
-        depth_test: None,
-        blend: None,
-        blend_constant: [0; 4],
-        color_mask: [true; 4],
+        ..Draw::default()
     };
-    let target = Target {
-        name: "frame".to_string(),
-        width: WIDTH,
-        height: HEIGHT,
-        format: SurfaceFormat::A8R8G8B8,
-        clear_color: [0, 0, 0, 255],
-        depth: None,
-    };
+    let target = Target { clear_color: [0, 0, 0, 255], ..Target::new(WIDTH, HEIGHT, SurfaceFormat::A8R8G8B8) };
     Scene {
         profile: Profile::Nv10,
         targets: vec![target],

@@ -6,7 +6,7 @@
 #[path = "../tests/common/build.rs"]
 mod build;
 
-use build::{draw, shows, target, vertex};
+use build::{draw, target, vertex};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
@@ -45,7 +45,7 @@ fn scene(texture: Option<Texture>, unit: TextureUnit, ratio: f32) -> Scene {
     if texture.is_some() {
         draw.textures[0] = Some(unit);
         draw.texture_shader[0] = ShaderStage::conventional(0, true);
-        draw.combiners = shows(FinalRegister::Texture0);
+        draw.combiners = Combiners::showing(FinalRegister::Texture0);
     }
     Scene {
         profile: Profile::Nv2a,

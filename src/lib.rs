@@ -14,7 +14,8 @@
 //! * [`scene`] reads and checks RON text; [`limits`] says how much it accepts.
 //! * [`state`] is what remains: plain data in the chip's own terms. It can also be built directly, as below.
 //! * [`plan`] keeps what can reach a frame. Whatever can fail has failed when a [`plan::Plan`] exists.
-//! * [`engine`] walks triangles in 2x2 quads and runs the blocks for each pixel: [`raster`], [`texture`], [`combiner`], [`rop`].
+//! * [`engine`] draws: by default blocks of 256 pixels at a time, or pixel by pixel as the definition reads. Both run the rules of
+//!   [`raster`], [`texture`], [`combiner`] and [`rop`] and store the same bytes.
 //! * [`number`] holds the lanes: the integers of the definition, the real numbers of the ideal, and both side by side. Each rule is one
 //!   text, generic over the lane.
 //! * [`trace`] is how the blocks report what they do; [`report`] prints it.
@@ -31,58 +32,15 @@
 //! use ninebit::plan::{Plan, PlanOptions};
 //! use ninebit::state::*;
 //!
-//! let mut inputs = [FinalInput::zero(Component::Rgb); 6];
-//! inputs[0].register = FinalRegister::ConstantColor0; // A
-//! inputs[1].register = FinalRegister::PrimaryColor; // B
-//! let final_combiner = FinalCombiner {
-//!     inputs,
-//!     g: FinalInput { register: FinalRegister::Zero, component: Component::Alpha, invert: true },
-//!     color_sum_clamp: false,
-//!     invert_spare0: false,
-//!     invert_secondary: false,
-//!     constants: [[128, 128, 128, 0], [0; 4]],
-//! };
-//! let idle = GeneralStage {
-//!     rgb: Portion::idle(Component::Rgb),
-//!     alpha: Portion::idle(Component::Alpha),
-//!     constants: [[128, 128, 128, 0], [0; 4]],
-//! };
+//! let mut combiners = Combiners::default();
+//! combiners.final_combiner = FinalCombiner { constants: [[128; 4], [0; 4]], ..FinalCombiner::default() };
+//! combiners.final_combiner.inputs[0].register = FinalRegister::ConstantColor0; // A
+//! combiners.final_combiner.inputs[1].register = FinalRegister::PrimaryColor; // B
 //! let corner = |x: f32, y: f32| Vertex { position: [x, y, 0.0, 1.0], ..Vertex::default() };
-//! let draw = Draw {
-//!     name: "triangle".into(),
-//!     target: 0,
-//!     positions: Positions::Window,
-//!     vertices: vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(0.0, 2.0)].into(),
-//!     indices: [0, 1, 2].into(),
-//!     topology: Topology::Triangles,
-//!     shade_model: ShadeModel::Smooth,
-//!     provoking_vertex: ProvokingVertex::First,
-//!     perspective: true,
-//!     cull: Cull::None,
-//!     front_face: FrontFace::CounterClockwise,
-//!     scissor: None,
-//!     fog: Fog { enabled: false, color: [0; 3], function: None },
-//!     textures: [None; TEXTURE_UNITS],
-//!     texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, false)),
-//!     combiners: Combiners { stages: vec![idle], mux_select: MuxSelect::Msb, final_combiner },
-//!     program_origin: vec![],
-//!     vertex_program: None,
-//!     alpha_test: None,
-//!     depth_test: None,
-//!     blend: None,
-//!     blend_constant: [0; 4],
-//!     color_mask: [true; 4],
-//! };
-//! let target = Target {
-//!     name: "frame".into(),
-//!     width: 1,
-//!     height: 1,
-//!     format: SurfaceFormat::A8R8G8B8,
-//!     clear_color: [0; 4],
-//!     depth: None,
-//! };
-//! let scene =
-//!     Scene { profile: Profile::Nv10, targets: vec![target], textures: vec![], palettes: vec![], draws: vec![draw] };
+//! let vertices = vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(0.0, 2.0)].into();
+//! let draw = Draw { vertices, indices: [0, 1, 2].into(), combiners, ..Draw::default() };
+//! let targets = vec![Target::new(1, 1, SurfaceFormat::A8R8G8B8)];
+//! let scene = Scene { profile: Profile::Nv2a, targets, draws: vec![draw], ..Scene::default() };
 //! let plan = Plan::compile(&scene, &PlanOptions::default()).expect("within the limits");
 //! let frames = render(&plan, &RenderOptions::default());
 //! assert_eq!(frames.surfaces[0].words, [0xff80_8080]);

@@ -28,7 +28,7 @@ fn the_excerpt_is_in_the_trace() {
     let readme = std::fs::read_to_string("README.md").unwrap();
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     let excerpt = readme.split("```text\n").nth(1).unwrap().split("```").next().unwrap();
-    let plan = plan("constant-light.ron");
+    let plan = plan("lit-stone.ron");
     let trace = trace_text(&plan, &engine::trace(&plan, 0, (200, 300), None).unwrap());
     let lines: Vec<String> = trace.lines().map(words).collect();
     for line in excerpt.lines() {

@@ -3,10 +3,7 @@
 use super::{COLORS, TARGET};
 use crate::compare::{CompareOptions, Mode, Statistics, compare};
 use crate::plan::{Plan, PlanOptions};
-use crate::state::{
-    Combiners, Component, ExpandCentre, FinalCombiner, FinalInput, FinalRegister, GeneralStage, MuxSelect, Portion,
-    Scene,
-};
+use crate::state::{Combiners, Component, ExpandCentre, FinalInput, FinalRegister, Scene};
 use crate::truth::{ShadingNormal, Space, Truth, TruthFrame};
 use crate::vector::{Vector, cross, dot, unit_or_zero};
 
@@ -63,24 +60,11 @@ pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNor
     }
 }
 
-/// A program that shows a register.
+/// A program that shows a register, opaque.
 fn showing(register: FinalRegister) -> Combiners {
-    let zero = FinalInput::zero(Component::Rgb);
-    let d = FinalInput { register, ..zero };
-    let constants = [[0; 4]; 2];
-    let (rgb, alpha) = (Portion::idle(Component::Rgb), Portion::idle(Component::Alpha));
-    Combiners {
-        stages: vec![GeneralStage { rgb, alpha, constants }],
-        mux_select: MuxSelect::Msb,
-        final_combiner: FinalCombiner {
-            inputs: [zero, zero, zero, d, zero, zero],
-            g: FinalInput { invert: true, ..FinalInput::zero(Component::Alpha) },
-            color_sum_clamp: true,
-            invert_spare0: false,
-            invert_secondary: false,
-            constants,
-        },
-    }
+    let mut shown = Combiners::showing(register);
+    shown.final_combiner.g = FinalInput { invert: true, ..FinalInput::zero(Component::Alpha) };
+    shown
 }
 
 impl NormalError {

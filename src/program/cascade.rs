@@ -462,9 +462,7 @@ pub(super) fn final_combiner(end: End, alpha_is_blue: bool, constants: [[u8; 4];
     FinalCombiner {
         inputs,
         g: input(FinalRegister::Spare0, if alpha_is_blue { Component::Blue } else { Component::Alpha }),
-        color_sum_clamp: true,
-        invert_spare0: false,
-        invert_secondary: false,
         constants,
+        ..FinalCombiner::default()
     }
 }

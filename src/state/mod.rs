@@ -6,6 +6,7 @@
 
 mod column;
 mod combiner;
+mod default;
 mod named;
 mod policy;
 mod primitive;

@@ -1,6 +1,5 @@
 //! Probes of the raster operations (ROP-1 to ROP-6) and of what is read back from surfaces.
 
-use crate::build::shows;
 use crate::probes::{Answers, single};
 use crate::sheet::{ALPHA_ONLY, OVER, RGB_ONLY, Sheet, bind, cell, copy, opaque};
 use crate::table::{Row, bytes};
@@ -109,7 +108,7 @@ pub fn surface(rows: &[Row]) -> Answers {
         let texture = sheet.reads(canvas, format.texture_format());
         let mut shown = cell(frame, n, [255; 4]);
         bind(&mut shown, 0, texture);
-        shown.combiners = shows(FinalRegister::Texture0);
+        shown.combiners = Combiners::showing(FinalRegister::Texture0);
         opaque(&mut shown);
         sheet.draw(shown);
     }
@@ -128,7 +127,7 @@ pub fn destination_alpha(rows: &[Row]) -> Answers {
         sheet.draw(cell(canvas, n, [0, 0, 0, row.number("cleared_alpha")]));
         sheet.draw(Draw { blend: Some(blend), ..cell(canvas, n, [255, 255, 255, 34]) });
         let mut shown = cell(frame, n, [255; 4]);
-        shown.combiners = shows(FinalRegister::Texture0);
+        shown.combiners = Combiners::showing(FinalRegister::Texture0);
         shown.blend = Some(OVER);
         let read_as = match format {
             SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => TextureFormat::A1R5G5B5,
@@ -161,7 +160,7 @@ pub fn signed_texel(rows: &[Row]) -> Answers {
         let mut shown = cell(frame, n, [255; 4]);
         bind(&mut shown, 0, texture);
         shown.textures[0].as_mut().unwrap().signed[channel(row)] = row.flag("signed");
-        shown.combiners = shows(FinalRegister::Texture0);
+        shown.combiners = Combiners::showing(FinalRegister::Texture0);
         shown.blend = Some(Blend { equation: row.named("equation"), ..OVER });
         sheet.draw(shown);
     }

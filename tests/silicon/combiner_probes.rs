@@ -1,6 +1,5 @@
 //! Probes of the combiners and of what enters them.
 
-use crate::build::shows;
 use crate::probes::{Answers, single};
 use crate::sheet::{OVER, Sheet, bind, cell, input, opaque};
 use crate::table::Row;
@@ -34,7 +33,7 @@ fn load(portion: &mut Portion, register: Register, component: Component) {
 
 fn output(row: &Row, draw: &mut Draw) {
     let [r, g, b] = row.bytes("input");
-    draw.combiners = shows(FinalRegister::Spare0);
+    draw.combiners = Combiners::showing(FinalRegister::Spare0);
     let stage = &mut draw.combiners.stages[0];
     (stage.rgb.bias, stage.rgb.scale) = (row.named("bias"), row.named("scale"));
     load(&mut stage.rgb, Register::ConstantColor0, Component::Rgb);
@@ -202,7 +201,7 @@ pub fn unbound(rows: &[Row]) -> Answers {
     use FinalRegister::{Texture0, Texture1, Texture2, Texture3};
     single(each(rows, |row, mut draw| {
         let register = [Texture0, Texture1, Texture2, Texture3][row.number::<usize>("unit")];
-        draw.combiners = shows(register);
+        draw.combiners = Combiners::showing(register);
         if row.text("component") == "alpha" {
             draw.combiners.final_combiner.inputs[3].component = Component::Alpha;
         }

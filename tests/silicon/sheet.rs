@@ -1,6 +1,6 @@
 //! Many probes in one scene: probe i is pixel i of every target, one row of pixels each.
 
-use crate::build::{draw, shows, target, vertex};
+use crate::build::{draw, target, vertex};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
@@ -93,7 +93,7 @@ pub fn cell(target: usize, probe: usize, color: [u8; 4]) -> Draw {
 pub fn copy(target: usize, texture: usize) -> Draw {
     let mut draw = span(target, 0, WIDTH, [255; 4]);
     bind(&mut draw, 0, texture);
-    draw.combiners = shows(FinalRegister::Texture0);
+    draw.combiners = Combiners::showing(FinalRegister::Texture0);
     draw
 }
 

@@ -94,7 +94,7 @@ impl ApiProgram {
                         reader.push(finding);
                     }
                 }
-                Lowered { combiners: combiner::default_program(), origins: Vec::new(), shader }
+                Lowered { combiners: Combiners::default(), origins: Vec::new(), shader }
             }
         }
     }

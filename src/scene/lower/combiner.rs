@@ -7,8 +7,8 @@ use crate::program::legality::{Help, Notation, stage_count};
 use crate::program::{Part, Place, Places};
 use crate::scene::raw::Tuple;
 use crate::state::{
-    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
-    MuxSelect, Named, Portion, Register, Scale,
+    Bias, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, MuxSelect, Named, Portion,
+    Register, Scale,
 };
 
 /// The words of scene files.
@@ -42,25 +42,6 @@ impl Notation for Fields {
             Help::OtherInput => "read Spare0 or another register",
         }
     }
-}
-
-/// OpenGL's initial program: the colours of the vertices, with fog.
-pub(super) fn default_program() -> Combiners {
-    let one = |component| CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert };
-    let primary = |component| CombinerInput {
-        register: Register::PrimaryColor,
-        component,
-        mapping: InputMapping::UnsignedIdentity,
-    };
-    let portion = |component| {
-        let mut portion = Portion::idle(component);
-        portion.inputs[0] = primary(component);
-        portion.inputs[1] = one(component);
-        portion.sum_output = Register::Spare0;
-        portion
-    };
-    let stage = GeneralStage { rgb: portion(Component::Rgb), alpha: portion(Component::Alpha), constants: [[0; 4]; 2] };
-    Combiners { stages: vec![stage], mux_select: MuxSelect::Msb, final_combiner: FinalCombiner::initial([[0; 4]; 2]) }
 }
 
 /// A program as it is written, and where its parts stand. `None` once the reason has been recorded.
@@ -216,12 +197,13 @@ fn final_combiner<'a>(
     }
     let [a, b, c, d, e, f, g] = inputs;
     let constants = own_constants(reader, names, &fields.constants, Place::FinalConstants, places);
+    let absent = FinalCombiner::default();
     Some(FinalCombiner {
         inputs: [a, b, c, d, e, f],
         g,
-        color_sum_clamp: reader.or(&fields.color_sum_clamp, true),
-        invert_spare0: reader.or(&fields.invert_spare0, false),
-        invert_secondary: reader.or(&fields.invert_secondary, false),
+        color_sum_clamp: reader.or(&fields.color_sum_clamp, absent.color_sum_clamp),
+        invert_spare0: reader.or(&fields.invert_spare0, absent.invert_spare0),
+        invert_secondary: reader.or(&fields.invert_secondary, absent.invert_secondary),
         constants: constants.unwrap_or(shared),
     })
 }

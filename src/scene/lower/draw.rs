@@ -12,8 +12,8 @@ use super::texture::Textures;
 use super::*;
 use crate::scene::mesh::Mesh;
 use crate::state::{
-    Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture, TextureImage,
-    Topology, Vertices,
+    Combiners, Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture,
+    TextureImage, Topology, Vertices,
 };
 
 /// A draw and what else is known of it.
@@ -136,7 +136,7 @@ fn draw<'a>(
             (program_origin, texture_shader) = (lowered.origins, lowered.shader);
             (lowered.combiners, [None, None, None, None])
         }
-        None => (combiner::default_program(), [None, None, None, None]),
+        None => (Combiners::default(), [None, None, None, None]),
     };
     if let Some(made) = &mut geometry
         && !vertex_side(reader, made, &around.sets, &fog, viewer, &header.place)

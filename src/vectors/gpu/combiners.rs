@@ -5,8 +5,8 @@
 
 use super::{Draw, Path, Placement, Read};
 use crate::state::{
-    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
-    MuxSelect, Portion, Profile, Register, Scale,
+    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, InputMapping, MuxSelect,
+    Portion, Profile, Register, Scale,
 };
 
 /// 1 as an input.
@@ -110,10 +110,14 @@ impl Program {
                     |(column, channel): &(String, usize)| Read { column: column.clone(), channel: *channel, weight };
                 output.columns.iter().map(read).collect::<Vec<_>>()
             };
-            draws.push(self.draw(&[], &shown(output.register), reads(1)));
+            draws.push(self.draw(&[], &FinalCombiner::showing(FinalRegister::from(output.register)), reads(1)));
             if self.stages.len() < limit {
                 for after in [negated(output.register), below(output.register)] {
-                    draws.push(self.draw(&[after], &shown(Register::Spare0), reads(-1)));
+                    draws.push(self.draw(
+                        &[after],
+                        &FinalCombiner::showing(FinalRegister::from(Register::Spare0)),
+                        reads(-1),
+                    ));
                 }
             } else if output.columns.iter().any(|(column, _)| expected(column) <= 0) {
                 return None;
@@ -182,21 +186,6 @@ impl Program {
             });
         }
         lines
-    }
-}
-
-/// A register as the final combiner shows it.
-fn shown(register: Register) -> FinalCombiner {
-    let zero = FinalInput::zero(Component::Rgb);
-    let register = FinalRegister::from(register);
-    let read = FinalInput { register, component: Component::Rgb, invert: false };
-    FinalCombiner {
-        inputs: [zero, zero, zero, read, zero, zero],
-        g: FinalInput { component: Component::Alpha, ..read },
-        color_sum_clamp: false,
-        invert_spare0: false,
-        invert_secondary: false,
-        constants: [[0; 4]; 2],
     }
 }
 
