@@ -148,3 +148,66 @@ fn simplify<T: ValueTree>(tree: &mut T, fails: impl Fn(&T::Value) -> bool) {
         }
     }
 }
+
+/// One texture by two units of a draw and by a second draw, each with a state of its own: nothing that is kept for one may serve another that it
+/// does not fit.
+#[test]
+fn engines_agree_on_textures_that_states_share() {
+    let states = [
+        "min_filter: Nearest, mag_filter: Nearest",
+        "min_filter: Linear, mag_filter: Linear",
+        "min_filter: Linear, mag_filter: Nearest",
+        "min_filter: Linear, mag_filter: Nearest, mip_filter: Nearest",
+        "min_filter: Nearest, mag_filter: Linear, mip_filter: Linear",
+        "mip_filter: Linear, lod_bias: 1.5",
+        "mip_filter: Nearest, max_lod: 2",
+        "mip_filter: Linear, min_lod: 3.5",
+        "address: ClampToEdge",
+        "address: ClampToBorder, border_color: (200, 3, 90, 17)",
+        "address: ClampToBorder, border_color: (3, 200, 17, 90), mip_filter: Linear",
+        "address_s: Mirror, mip_filter: Linear",
+        "signed: (true, false, true, false)",
+        "signed: (false, true, false, true), mip_filter: Linear",
+    ];
+    let image = |face: u32| {
+        let word = |x: u32, y: u32| format!("{:08x}", (face << 16 | y << 8 | x).wrapping_mul(0x9e37_79b9));
+        let row = |y: u32| format!("\"{}\"", (0..32).map(|x| word(x, y)).collect::<Vec<_>>().join(" "));
+        format!("Texels(width: 32, height: 32, rows: [{}])", (0..32).map(row).collect::<Vec<_>>().join(", "))
+    };
+    let faces = ["positive_x", "negative_x", "positive_y", "negative_y", "positive_z", "negative_z"];
+    let faces = (0..6).map(|n| format!("{}: {}", faces[n], image(n as u32))).collect::<Vec<_>>().join(", ");
+    let sources = [
+        (image(7), "(0, 0)", "(24, 0)", "(0, 24)"),
+        (format!("Faces({faces})"), "(1, -1, -1)", "(1, -1, 1)", "(-0.2, 1, 0.4)"),
+    ];
+    for (source, a, b, c) in sources {
+        let texture = format!(r#""a": (source: {source}, levels: All)"#);
+        for (n, first) in states.iter().enumerate() {
+            for second in &states {
+                let third = states[(n + 5) % states.len()];
+                let vertex = |x, y, w, at| format!("(position: ({x}, {y}, 0, {w}), t0: {at}, t1: {at})");
+                let vertices = [vertex(0, 96, 1, a), vertex(96, 96, 1, b), vertex(0, 0, 2, c)].join(", ");
+                let draw = |units: String, program: &str| {
+                    format!("(vertices: Window([{vertices}]), textures: [{units}], program: Combiners({program}))")
+                };
+                let unit = |state: &str| format!(r#"(texture: "a", {state})"#);
+                let both = draw(
+                    format!("{}, {}", unit(first), unit(second)),
+                    "stages: [(rgb: (a: SignedIdentity(Texture0), b: UnsignedInvert(Zero), c: Texture1, d: UnsignedInvert(Zero),
+                     sum: Spare0))], final_combiner: (d: Spare0, g: Alpha(Texture1))",
+                );
+                let one = draw(unit(third), "stages: [()], final_combiner: (d: Texture0)");
+                let text = format!(
+                    "(profile: Nv2a, targets: [(name: \"a\", width: 96, height: 96), (name: \"b\", width: 96, height: 96)], textures: {{ {texture} }},
+                      draws: [{both}, {}])",
+                    one.replacen('(', "(target: \"b\", ", 1)
+                );
+                let loaded = scene::parse(&text, Path::new("shared.ron"), &Limits::default())
+                    .unwrap_or_else(|error| panic!("{error}"));
+                if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
+                    panic!("{first} | {second} | {third}: {difference}");
+                }
+            }
+        }
+    }
+}

@@ -132,8 +132,10 @@ pub(super) struct Key {
     texture: usize,
     palette: Option<usize>,
     modes: [AddressMode; 2],
-    filter: Filter,
-    levels: bool,
+    /// Single texels or footprints.
+    linear: bool,
+    /// How many levels, if the lod counts: as many as any lod of the unit can reach.
+    levels: Option<usize>,
     border_color: [u8; 4],
     signed: [bool; 4],
 }
@@ -145,12 +147,17 @@ impl Key {
             texture: state.texture,
             palette: state.palette,
             modes: unit.modes(),
-            filter: state.mag_filter,
-            levels: unit.needs_lod(),
+            linear: linear(unit),
+            levels: unit.needs_lod().then_some(unit.levels.len()),
             border_color: state.border_color,
             signed: state.signed,
         }
     }
+}
+
+/// Whether footprints are read, if only of some levels.
+fn linear(unit: &PlannedUnit) -> bool {
+    unit.needs_lod() || unit.state.mag_filter == Filter::Linear
 }
 
 /// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: it is filtered at 16 bits, or has
@@ -189,7 +196,7 @@ impl Table {
         let axes = levels.first().copied().unwrap_or([Axis { low: 0, high: 0, first: 0, mask: 0, count: 0 }; 2]);
         let [columns, rows] = axes;
         let mixes = unit.needs_lod();
-        let linear = mixes || unit.state.mag_filter == Filter::Linear;
+        let linear = linear(unit);
         let beyond = i32::from(linear);
         let (wide, high) = ((columns.count + beyond) as usize, (rows.count + beyond) as usize);
         let mut all = Vec::new();
