@@ -11,15 +11,14 @@ use thiserror::Error;
 
 use crate::diagnostic::ErrorKind;
 use crate::frame::Surface;
+use crate::limits::{self, FileLimit};
 use crate::picture::digest;
+use crate::read::{self, Kind, ReadError};
 use crate::scene::image::{self, ImageError, ImageLimits, Rgba};
 use crate::scene::path::{PathError, resolve};
 
 /// The version of the format that is written and read.
 pub const VERSION: u32 = 1;
-
-/// The most bytes that an expectation's file may have.
-const MAXIMUM_BYTES: usize = 64 << 10;
 
 /// What one target of a scene is expected to show.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -115,6 +114,9 @@ pub enum ExpectationError {
     /// Not an expectation.
     #[error("{0}")]
     Text(String),
+    /// More bytes than it may have.
+    #[error("it is larger than {0}")]
+    TooLarge(FileLimit),
     /// A file it names is refused.
     #[error(transparent)]
     Path(#[from] PathError),
@@ -147,6 +149,7 @@ impl ExpectationError {
         match self {
             ExpectationError::Path(error) => error.code(),
             ExpectationError::Image(error) => error.code(),
+            ExpectationError::TooLarge(_) => "NB1207",
             _ => "NB1205",
         }
     }
@@ -154,6 +157,7 @@ impl ExpectationError {
     /// What to do about it.
     pub fn help(&self) -> &'static str {
         match self {
+            ExpectationError::TooLarge(_) => "is it an expectation? `ninebit replay --bless` writes one",
             ExpectationError::Text(_) => {
                 "its fields are in `docs/scene-format.md`; `ninebit replay --bless` writes one"
             }
@@ -170,6 +174,7 @@ impl ExpectationError {
             ExpectationError::Path(error) if error.is_missing() => ErrorKind::Missing,
             ExpectationError::Image(error) if error.is_missing() => ErrorKind::Missing,
             ExpectationError::Image(error) if error.is_limit() => ErrorKind::Limit,
+            ExpectationError::TooLarge(_) => ErrorKind::Limit,
             _ => ErrorKind::Invalid,
         }
     }
@@ -198,8 +203,8 @@ impl Expectation {
     /// # Errors
     /// The text is too long, is not RON of this form, or has another version.
     pub fn parse(text: &str) -> Result<Self, ExpectationError> {
-        if text.len() > MAXIMUM_BYTES {
-            return Err(ExpectationError::Text(format!("an expectation has at most {MAXIMUM_BYTES} bytes")));
+        if text.len() as u64 > limits::EXPECTATION.bytes {
+            return Err(ExpectationError::TooLarge(limits::EXPECTATION));
         }
         let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
         let expectation: Expectation =
@@ -209,6 +214,21 @@ impl Expectation {
             return Err(ExpectationError::Text(format!("version {version} is not known; this is version {VERSION}")));
         }
         Ok(expectation)
+    }
+
+    /// Reads an expectation's file; `None` if there is none.
+    ///
+    /// # Errors
+    /// As [`parse`](Self::parse); the file cannot be read, or is not UTF-8.
+    pub fn read(path: &Path) -> Result<Option<Self>, ExpectationError> {
+        let bytes = match read::bytes(path, Kind::Regular, limits::EXPECTATION) {
+            Ok(bytes) => bytes,
+            Err(ReadError::Missing) => return Ok(None),
+            Err(ReadError::TooLarge(limit)) => return Err(ExpectationError::TooLarge(limit)),
+            Err(error) => return Err(ExpectationError::Text(format!("it cannot be read: {error}"))),
+        };
+        let text = String::from_utf8(bytes).map_err(|_| ExpectationError::Text("it is not UTF-8 text".to_owned()))?;
+        Self::parse(&text).map(Some)
     }
 
     /// The text of the expectation.
@@ -326,7 +346,7 @@ mod tests {
         assert_eq!(Expectation::parse(&expectation.to_text()).expect("parses"), expectation);
         assert!(Expectation::parse(&expectation.to_text().replace("version: 1", "version: 2")).is_err());
         assert!(Expectation::parse("(version: 1, colour: 2)").is_err());
-        assert!(Expectation::parse(&" ".repeat(MAXIMUM_BYTES + 1)).is_err());
+        assert!(Expectation::parse(&" ".repeat((64 << 10) + 1)).is_err());
         // However deep the brackets are, the form is refused at the first that does not belong.
         for start in ["", "(version: ", "(needs: [", "(colour: ", "(allowance: (picture: "] {
             assert!(Expectation::parse(&(start.to_owned() + &"([".repeat(30_000))).is_err(), "{start}");

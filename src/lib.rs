@@ -65,6 +65,7 @@ pub mod picture;
 pub mod plan;
 pub mod program;
 pub mod raster;
+pub mod read;
 pub mod replay;
 pub mod report;
 pub mod rop;

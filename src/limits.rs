@@ -1,6 +1,56 @@
-//! How much a scene may ask for.
+//! How much a scene or a file may ask for.
 //!
-//! Scenes come from anywhere. Every size that a scene chooses is compared with one of these before memory or time is spent.
+//! Scenes come from anywhere. Every size that a scene chooses is compared with one of these before memory or time is spent. Files of other kinds have the
+//! limits of [`FILES`].
+
+use std::fmt;
+
+/// The most bytes that a file may have, under the name by which `ninebit limits` lists it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FileLimit {
+    /// Its name in the list.
+    pub name: &'static str,
+    /// Its value.
+    pub bytes: u64,
+    /// What is counted.
+    pub counted: &'static str,
+}
+
+impl fmt::Display for FileLimit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} bytes, the limit `{}`", self.bytes, self.name)
+    }
+}
+
+/// Of `NAME.expect.ron`.
+pub const EXPECTATION: FileLimit =
+    FileLimit { name: "expectation_bytes", bytes: 64 << 10, counted: "bytes of an expectation" };
+/// Of a table of `ninebit op`.
+pub const OPERATION_TABLE: FileLimit =
+    FileLimit { name: "operation_table_bytes", bytes: 64 << 20, counted: "bytes of a table of `ninebit op`" };
+/// Of the manifest of a pack.
+pub const MANIFEST: FileLimit =
+    FileLimit { name: "manifest_bytes", bytes: 4 << 20, counted: "bytes of the manifest of a pack" };
+/// Of a table of vectors or of results.
+pub const VECTOR_TABLE: FileLimit =
+    FileLimit { name: "vector_table_bytes", bytes: 1 << 30, counted: "bytes of a table of vectors or results" };
+/// Of a leaf of a sweep.
+pub const LEAF: FileLimit = FileLimit { name: "leaf_bytes", bytes: 64 << 10, counted: "bytes of a leaf of a sweep" };
+/// Of a tree of digests.
+pub const TREE: FileLimit = FileLimit { name: "tree_bytes", bytes: 16 << 20, counted: "bytes of a tree of digests" };
+/// Of the device file of results.
+pub const DEVICE: FileLimit =
+    FileLimit { name: "device_bytes", bytes: 1 << 20, counted: "bytes of the device file of results" };
+/// Of a list of waivers.
+pub const WAIVERS: FileLimit =
+    FileLimit { name: "waivers_bytes", bytes: 1 << 20, counted: "bytes of a list of waivers" };
+/// Of a page that stands beside scenes.
+pub const PAGE: FileLimit =
+    FileLimit { name: "page_bytes", bytes: 4 << 20, counted: "bytes of a page that a chart reads" };
+
+/// Limits of files that are neither scenes nor named by one.
+pub const FILES: [FileLimit; 9] =
+    [EXPECTATION, OPERATION_TABLE, MANIFEST, VECTOR_TABLE, LEAF, TREE, DEVICE, WAIVERS, PAGE];
 
 /// Upper bounds on everything that a scene chooses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,10 +106,33 @@ impl Default for Limits {
     }
 }
 
+impl Limits {
+    /// [`scene_bytes`](Self::scene_bytes) as the limit of a file.
+    pub fn scene_file(&self) -> FileLimit {
+        FileLimit { name: "scene_bytes", bytes: self.scene_bytes, counted: "bytes of the scene file" }
+    }
+
+    /// [`image_file_bytes`](Self::image_file_bytes) as the limit of a file.
+    pub fn image_file(&self) -> FileLimit {
+        FileLimit { name: "image_file_bytes", bytes: self.image_file_bytes, counted: "bytes of one image file" }
+    }
+
+    /// [`program_bytes`](Self::program_bytes) as the limit of a file.
+    pub fn program_file(&self) -> FileLimit {
+        FileLimit { name: "program_bytes", bytes: self.program_bytes, counted: "bytes of the text of one program" }
+    }
+
+    /// [`mesh_file_bytes`](Self::mesh_file_bytes) as the limit of a file.
+    pub fn mesh_file(&self) -> FileLimit {
+        FileLimit { name: "mesh_file_bytes", bytes: self.mesh_file_bytes, counted: "bytes of one mesh file" }
+    }
+}
+
 /// Every limit: its name, its value, and what is counted.
 pub fn table(limits: &Limits) -> Vec<(&'static str, u64, &'static str)> {
-    vec![
-        ("scene_bytes", limits.scene_bytes, "bytes of the scene file"),
+    let file = |limit: FileLimit| (limit.name, limit.bytes, limit.counted);
+    let mut table = vec![
+        file(limits.scene_file()),
         ("nesting", limits.nesting as u64, "levels of brackets inside each other"),
         ("targets", limits.targets as u64, "render targets"),
         ("target_side", u64::from(limits.target_side), "pixels along a side of a render target"),
@@ -67,11 +140,13 @@ pub fn table(limits: &Limits) -> Vec<(&'static str, u64, &'static str)> {
         ("textures", limits.textures as u64, "textures"),
         ("texture_side", u64::from(limits.texture_side), "texels along a side of a texture"),
         ("texture_bytes", limits.texture_bytes, "bytes of all textures decoded, four a texel"),
-        ("image_file_bytes", limits.image_file_bytes, "bytes of one image file"),
-        ("program_bytes", limits.program_bytes, "bytes of the text of one program"),
-        ("mesh_file_bytes", limits.mesh_file_bytes, "bytes of one mesh file"),
+        file(limits.image_file()),
+        file(limits.program_file()),
+        file(limits.mesh_file()),
         ("draws", limits.draws as u64, "draws"),
         ("vertices", limits.vertices as u64, "vertices of all draws"),
         ("indices", limits.indices as u64, "indices of all draws"),
-    ]
+    ];
+    table.extend(FILES.map(file));
+    table
 }

@@ -95,3 +95,13 @@ fn every_test_file_runs() {
         }
     }
 }
+
+/// Limits and the record of inputs hold for what goes through `read`, so everything has to.
+#[test]
+fn files_are_read_in_one_place() {
+    for (file, text) in sources("src").into_iter().filter(|(file, _)| file != "src/read.rs") {
+        for call in ["fs::read(", "fs::read_to_string(", "File::open("] {
+            assert!(!text.contains(call), "{file} has {call}");
+        }
+    }
+}

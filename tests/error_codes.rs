@@ -69,8 +69,10 @@ fn meanings_and_exit_codes_are_those_of_the_program() {
         let expected = match &code[..4] {
             "NB07" => 7,
             "NB10" if code == "NB1001" => 4,
+            "NB10" if code == "NB1013" => 5,
             "NB10" => 3,
             "NB12" if ["NB1201", "NB1202", "NB1203"].contains(&code.as_str()) => 4,
+            "NB12" if code == "NB1207" => 5,
             "NB12" => 3,
             _ => 6,
         };

@@ -48,6 +48,7 @@ mod docs;
 mod engines;
 mod error_codes;
 mod explain;
+mod files;
 mod op;
 mod oracle;
 mod readme;

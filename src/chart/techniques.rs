@@ -8,6 +8,7 @@ use super::timing::{Effort, Spread, frames};
 use crate::accuracy::{self, Accuracy};
 use crate::engine::RenderOptions;
 use crate::limits::Limits;
+use crate::read::page;
 use crate::scene::{SceneError, load};
 use crate::truth::Truth;
 
@@ -92,7 +93,7 @@ fn parted(stem: &str) -> (String, Option<u32>) {
 
 /// The name of a family: the first heading of the page in its folder, or the folder's name in words.
 pub fn title(folder: &Path, family: &str) -> String {
-    let page = fs::read_to_string(folder.join(family).join("README.md")).unwrap_or_default();
+    let page = page(&folder.join(family).join("README.md")).unwrap_or_default();
     let heading = page.lines().find_map(|line| line.strip_prefix("# ")).map(|line| line.replace('`', ""));
     heading.unwrap_or_else(|| family.replace('-', " "))
 }

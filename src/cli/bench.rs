@@ -8,6 +8,7 @@ use std::time::Instant;
 use clap::Args;
 use ninebit::engine::Renderer;
 use ninebit::output::write_stdout;
+use ninebit::read::page;
 use ninebit::state::Named;
 use serde::Serialize;
 
@@ -158,7 +159,7 @@ fn forget_peak_memory() {
 
 /// The most memory resident so far, in bytes.
 fn peak_memory() -> Option<u64> {
-    let status = std::fs::read_to_string(Path::new("/proc/self/status")).ok()?;
+    let status = page(Path::new("/proc/self/status"))?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(1024 * line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?)
 }

@@ -10,6 +10,7 @@ use ninebit::chart::techniques::{self, TechniqueError};
 use ninebit::chart::timing::Effort;
 use ninebit::chart::{curves, evaluators, surfaces};
 use ninebit::output::write_below;
+use ninebit::read;
 use ninebit::scene::SceneError;
 use ninebit::sweep;
 
@@ -116,7 +117,7 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
 
 /// The page with its section; without such a page, the section alone.
 fn stability_page(path: &Path, section: &str) -> File {
-    let page = std::fs::read_to_string(path).ok().and_then(|page| replace_section(&page, SECTION, section));
+    let page = read::page(path).and_then(|page| replace_section(&page, SECTION, section));
     File::text(STABILITY, page.unwrap_or_else(|| section.to_owned()))
 }
 

@@ -11,7 +11,7 @@ use super::exit::Failure;
 pub(crate) fn run() -> Result<(), Failure> {
     let mut text = String::new();
     for (name, value, counted) in table(&Limits::default()) {
-        let _ = writeln!(text, "{name:<20}{value:>12}  {counted}");
+        let _ = writeln!(text, "{name:<22}{value:>12}  {counted}");
     }
     Ok(write_stdout(text.as_bytes())?)
 }

@@ -73,6 +73,7 @@ impl From<VectorError> for Failure {
     fn from(error: VectorError) -> Self {
         let exit = match error {
             VectorError::Missing { .. } => Exit::Missing,
+            VectorError::TooLarge { .. } => Exit::Limit,
             VectorError::Output(error) => return error.into(),
             _ => Exit::Invalid,
         };

@@ -11,7 +11,7 @@ use super::panels::panels;
 use crate::diagnostic::{ErrorKind, SceneError, Severity};
 use crate::diff;
 use crate::engine::{self, RenderOptions};
-use crate::expectation::{Expectation, ExpectationError, Mismatch, masked_digest};
+use crate::expectation::{Expectation, Mismatch, masked_digest};
 use crate::frame::Surface;
 use crate::limits::Limits;
 use crate::output::{Compression, OutputError, encode_png, write_below};
@@ -68,7 +68,7 @@ fn write_artifacts(replayed: &mut Replayed, folder: &Path) {
 fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) -> Result<Outcome, Problem> {
     let folder = entry.path.parent().unwrap_or(Path::new(""));
     let path = entry.path.with_extension("expect.ron");
-    let expectation = read(&path)?;
+    let expectation = Expectation::read(&path).map_err(|error| refused(&path, &error))?;
     if let Some(expectation) = &expectation {
         let missing = expectation.missing(folder).map_err(|error| refused(&path, &error))?;
         if let Some(first) = missing.first() {
@@ -124,18 +124,6 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
             let subject = Subject { entry, folder, plan: &plan, target, render, expectation: &expectation, options };
             subject.look_into(mismatch, &surface).map(|difference| Outcome::Differs(Box::new(difference)))
         }
-    }
-}
-
-/// Reads an expectation; nothing if there is none.
-fn read(path: &Path) -> Result<Option<Expectation>, Problem> {
-    match std::fs::read(path) {
-        Ok(bytes) => {
-            let text = String::from_utf8(bytes).map_err(|_| ExpectationError::Text("it is not UTF-8 text".to_owned()));
-            text.and_then(|text| Expectation::parse(&text)).map(Some).map_err(|error| refused(path, &error))
-        }
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(refused(path, &ExpectationError::Text(format!("it cannot be read: {error}")))),
     }
 }
 

@@ -4,8 +4,7 @@
 //! guard because decoders panic on bytes nobody thought of. Of a PNG only the chunks that decide the pixels reach the decoder,
 //! so compressed text and profiles are never unpacked. Bytes come out as they are stored: no gamma, no colour management.
 
-use std::fs::File;
-use std::io::{self, Cursor, Read};
+use std::io::{self, Cursor};
 use std::path::{Path, PathBuf};
 
 use image::{DynamicImage, ImageFormat};
@@ -13,6 +12,8 @@ use thiserror::Error;
 
 use super::dds::{self, Dds};
 use crate::guard;
+use crate::limits::{FileLimit, Limits};
+use crate::read::{self, Kind, ReadError};
 
 mod png;
 
@@ -30,6 +31,12 @@ pub struct ImageLimits {
 impl Default for ImageLimits {
     fn default() -> Self {
         ImageLimits { maximum_side: 4096, maximum_decoded_bytes: 64 << 20, maximum_file_bytes: 64 << 20 }
+    }
+}
+
+impl ImageLimits {
+    fn file(&self) -> FileLimit {
+        Limits { image_file_bytes: self.maximum_file_bytes, ..Limits::default() }.image_file()
     }
 }
 
@@ -85,12 +92,12 @@ pub enum ImageError {
         known: &'static str,
     },
     /// More bytes than allowed.
-    #[error("image `{}` is larger than {limit} bytes", path.display())]
+    #[error("image `{}` is larger than {limit}", path.display())]
     FileBytes {
         /// The file.
         path: PathBuf,
         /// [`ImageLimits::maximum_file_bytes`].
-        limit: u64,
+        limit: FileLimit,
     },
     /// More columns or rows than allowed.
     #[error("image `{}` is {width} x {height}; a side may have {limit} pixels at most", path.display())]
@@ -208,7 +215,7 @@ impl ImageError {
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
 pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
-    let bytes = read(path, limits.maximum_file_bytes)?;
+    let bytes = read(path, limits.file())?;
     decode(&bytes, path, limits)
 }
 
@@ -217,7 +224,7 @@ pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
 pub fn open(path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
-    let bytes = read(path, limits.maximum_file_bytes)?;
+    let bytes = read(path, limits.file())?;
     if bytes.starts_with(&dds::SIGNATURE) {
         return dds::decode(&bytes, path, limits).map(Contents::Texture);
     }
@@ -310,26 +317,13 @@ fn to_rgba(decoded: DynamicImage, path: &Path) -> Result<Rgba, ImageError> {
     Ok(Rgba { width, height, pixels })
 }
 
-/// Reads a regular file of at most `limit` bytes.
-pub(super) fn read(path: &Path, limit: u64) -> Result<Vec<u8>, ImageError> {
-    let classify = |source: io::Error| match source.kind() {
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => ImageError::Missing { path: path.to_path_buf() },
-        _ => ImageError::Unreadable { path: path.to_path_buf(), source },
-    };
-    // Before the file is opened: opening a pipe would wait for its other end.
-    let metadata = path.metadata().map_err(classify)?;
-    if !metadata.is_file() {
-        return Err(ImageError::NotAFile { path: path.to_path_buf() });
-    }
-    let too_large = || ImageError::FileBytes { path: path.to_path_buf(), limit };
-    if metadata.len() > limit {
-        return Err(too_large());
-    }
-    let mut bytes = Vec::new();
-    // One byte beyond the limit tells a file that grew meanwhile.
-    File::open(path).map_err(classify)?.take(limit.saturating_add(1)).read_to_end(&mut bytes).map_err(classify)?;
-    if bytes.len() as u64 > limit {
-        return Err(too_large());
-    }
-    Ok(bytes)
+/// Reads a regular file within a limit.
+pub(super) fn read(path: &Path, limit: FileLimit) -> Result<Vec<u8>, ImageError> {
+    let path = path.to_path_buf();
+    read::bytes(&path, Kind::Regular, limit).map_err(|error| match error {
+        ReadError::Missing => ImageError::Missing { path },
+        ReadError::NotRegular => ImageError::NotAFile { path },
+        ReadError::TooLarge(limit) => ImageError::FileBytes { path, limit },
+        ReadError::Refused(source) => ImageError::Unreadable { path, source },
+    })
 }

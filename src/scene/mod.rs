@@ -18,14 +18,13 @@ pub mod texels;
 mod wording;
 mod written;
 
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
 use crate::diagnostic;
 pub use crate::diagnostic::{Diagnostic, ErrorKind, SceneError, Severity, Source, render};
-use crate::limits::Limits;
+use crate::limits::{FileLimit, Limits};
 use crate::plan::Plan;
+use crate::read::{self, Kind, ReadError};
 use crate::state::Scene;
 use crate::truth::Truth;
 pub use lower::{DrawSpans, VertexSpans};
@@ -66,22 +65,19 @@ pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
         suppressed: 0,
         source: Source { name: name.clone(), text },
     };
-    let bytes = match read(path, limits.scene_bytes) {
+    let bytes = match read::bytes(path, Kind::Stream, limits.scene_file()) {
         Ok(bytes) => bytes,
         Err(error) => {
-            let finding = if error.kind() == std::io::ErrorKind::NotFound {
-                Diagnostic::error("NB0111", None, "there is no such scene file")
-                    .help("check the spelling and the folder; upper and lower case count")
-            } else {
-                Diagnostic::error("NB0112", None, format!("the scene file cannot be read: {error}"))
-                    .help("name a regular file that may be read")
+            let finding = match error {
+                ReadError::Missing => Diagnostic::error("NB0111", None, "there is no such scene file")
+                    .help("check the spelling and the folder; upper and lower case count"),
+                ReadError::TooLarge(limit) => too_large(limit),
+                error => Diagnostic::error("NB0112", None, format!("the scene file cannot be read: {error}"))
+                    .help("name a regular file that may be read"),
             };
             return Err(fail(finding, String::new()));
         }
     };
-    if bytes.len() as u64 > limits.scene_bytes {
-        return Err(fail(too_large(limits.scene_bytes), String::new()));
-    }
     match String::from_utf8(bytes) {
         Ok(text) => parse(&text, path, limits),
         Err(error) => {
@@ -95,19 +91,8 @@ pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
     }
 }
 
-fn read(path: &Path, limit: u64) -> std::io::Result<Vec<u8>> {
-    let file = File::open(path)?;
-    if file.metadata()?.is_dir() {
-        return Err(std::io::Error::other("it is a folder"));
-    }
-    let mut bytes = Vec::new();
-    // One byte more than allowed tells a file at the limit from one beyond it.
-    file.take(limit.saturating_add(1)).read_to_end(&mut bytes)?;
-    Ok(bytes)
-}
-
-fn too_large(limit: u64) -> Diagnostic {
-    Diagnostic::error("NB0601", None, format!("the scene file is larger than {limit} bytes"))
+fn too_large(limit: FileLimit) -> Diagnostic {
+    Diagnostic::error("NB0601", None, format!("the scene file is larger than {limit}"))
         .help("move repeated vertex lists to `names`, use generated meshes, or split the scene")
 }
 
@@ -121,7 +106,7 @@ pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, Scene
     let source = Source { name: origin.display().to_string(), text: text.to_owned() };
     if text.len() as u64 > limits.scene_bytes {
         let source = Source { text: String::new(), ..source };
-        return Err(SceneError { diagnostics: vec![too_large(limits.scene_bytes)], suppressed: 0, source });
+        return Err(SceneError { diagnostics: vec![too_large(limits.scene_file())], suppressed: 0, source });
     }
     let folder = origin.parent().unwrap_or(Path::new(""));
     let family = match family::find(text, folder, limits) {

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
+use crate::limits::FileLimit;
 use crate::output::OutputError;
+use crate::read::{self, Kind, ReadError};
 
 /// Why a table or a pack cannot be used.
 #[derive(Debug, Error)]
@@ -24,6 +26,14 @@ pub enum VectorError {
         path: PathBuf,
         /// Why.
         reason: String,
+    },
+    /// A file has more bytes than it may.
+    #[error("`{}` is larger than {limit}", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// How many it may have.
+        limit: FileLimit,
     },
     /// A file does not say what it should.
     #[error("{}: {message}", place(path, *line))]
@@ -65,6 +75,7 @@ impl VectorError {
         match self {
             VectorError::Missing { .. } => "NB1001",
             VectorError::Unreadable { .. } => "NB1002",
+            VectorError::TooLarge { .. } => "NB1013",
             VectorError::Invalid { code, .. } => code,
             VectorError::Output(error) => error.code(),
         }
@@ -75,20 +86,28 @@ impl VectorError {
         match self {
             VectorError::Missing { help, .. } | VectorError::Invalid { help, .. } => help,
             VectorError::Unreadable { .. } => "check that it is a text file that may be read",
+            VectorError::TooLarge { .. } => "`ninebit limits` prints what is allowed; is it the file that was meant?",
             VectorError::Output(error) => error.help(),
         }
+    }
+}
+
+/// Why a file could not be read, as an error about it; `missing` says what to do if it is not there.
+pub fn unread(error: ReadError, path: &Path, missing: &'static str) -> VectorError {
+    let path = path.to_path_buf();
+    match error {
+        ReadError::Missing => VectorError::Missing { path, help: missing },
+        ReadError::TooLarge(limit) => VectorError::TooLarge { path, limit },
+        error => VectorError::Unreadable { path, reason: error.to_string() },
     }
 }
 
 /// Reads a text file.
 ///
 /// # Errors
-/// It does not exist, cannot be read, or is not UTF-8.
-pub fn read_text(path: &Path, missing: &'static str) -> Result<String, VectorError> {
-    let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-        std::io::ErrorKind::NotFound => VectorError::Missing { path: path.to_path_buf(), help: missing },
-        _ => VectorError::Unreadable { path: path.to_path_buf(), reason: error.to_string() },
-    })?;
+/// It does not exist, is larger than the limit, cannot be read, or is not UTF-8.
+pub fn read_text(path: &Path, kind: Kind, limit: FileLimit, missing: &'static str) -> Result<String, VectorError> {
+    let bytes = read::bytes(path, kind, limit).map_err(|error| unread(error, path, missing))?;
     String::from_utf8(bytes)
         .map_err(|_| VectorError::Unreadable { path: path.to_path_buf(), reason: "it is not UTF-8 text".to_owned() })
 }

@@ -17,14 +17,16 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::cases::Level;
-use super::error::{VectorError, read_text};
+use super::error::{VectorError, read_text, unread};
 use super::gpu::write::Batches;
-use super::read::{self, Table};
+use super::read::{Table, parse};
 use super::table::{Contents, Writer};
 use super::view::{Content, Layout, TABLE, View};
 use super::{BEHAVIOUR, Unit};
+use crate::limits::{self, FileLimit};
 use crate::output::{OutputError, PendingFile, make_folder, write_file};
 use crate::picture::hexadecimal;
+use crate::read::{self, Kind, ReadError};
 use crate::state::{Named, Profile};
 
 /// `format` of a manifest.
@@ -233,8 +235,8 @@ fn export_unit(folder: &Path, unit: &'static dyn Unit, options: &Options) -> Res
 /// There is none, or it is not one.
 pub fn manifest(folder: &Path) -> Result<Manifest, VectorError> {
     let path = folder.join(MANIFEST);
-    let text =
-        read_text(&path, "name the folder of a pack; an export that was broken off leaves no manifest: export again")?;
+    let missing = "name the folder of a pack; an export that was broken off leaves no manifest: export again";
+    let text = read_text(&path, Kind::Regular, limits::MANIFEST, missing)?;
     let invalid = |code, message: String, help| VectorError::invalid(code, &path, 0, message, help);
     let value: serde_json::Value = serde_json::from_str(&text)
         .map_err(|error| invalid("NB1010", format!("not a manifest: {error}"), "export the pack again"))?;
@@ -276,14 +278,16 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
     let listed: Vec<PathBuf> = manifest.files.iter().map(|file| folder.join(&file.path)).collect();
     let invalid = |code, path: &Path, message: String, help| VectorError::invalid(code, path, 0, message, help);
     for (file, path) in manifest.files.iter().zip(&listed) {
-        let bytes = std::fs::read(path).map_err(|error| match error.kind() {
-            std::io::ErrorKind::NotFound => {
-                VectorError::Missing { path: path.clone(), help: "the manifest lists it: the pack is not whole" }
-            }
-            _ => VectorError::Unreadable { path: path.clone(), reason: error.to_string() },
-        })?;
-        if bytes.len() as u64 != file.bytes || hexadecimal(&Sha256::digest(&bytes)) != file.sha256 {
-            let message = format!("not the file that the manifest lists ({} bytes, {} there)", bytes.len(), file.bytes);
+        // No byte more than the manifest lists is looked at.
+        let listed = FileLimit { name: "bytes", bytes: file.bytes, counted: "bytes that the manifest lists" };
+        let mut digest = Sha256::new();
+        let length = match read::parts(path, Kind::Regular, listed, |part| digest.update(part)) {
+            Ok(length) => length,
+            Err(ReadError::TooLarge(_)) => path.metadata().map_or(u64::MAX, |metadata| metadata.len()),
+            Err(error) => return Err(unread(error, path, "the manifest lists it: the pack is not whole")),
+        };
+        if length != file.bytes || hexadecimal(&digest.finalize()) != file.sha256 {
+            let message = format!("not the file that the manifest lists ({length} bytes, {} there)", file.bytes);
             return Err(invalid("NB1011", path, message, "it was changed or cut off since the export: export again"));
         }
     }
@@ -306,7 +310,7 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
         .zip(&manifest.files)
         .filter(|(path, _)| path.extension().is_some_and(|extension| extension == "tsv"))
         .map(|(path, file)| {
-            let table = read::parse(&read_text(path, "the pack is not whole")?, path)?;
+            let table = parse(&read_text(path, Kind::Regular, limits::VECTOR_TABLE, "the pack is not whole")?, path)?;
             let Contents { profile, level, seed, .. } = table.contents;
             let own = (profile.name(), level.name(), seed, table.behaviour, table.rows.len());
             let Manifest { profile, level, seed, behaviour_rev, .. } = &manifest;

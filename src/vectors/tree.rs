@@ -13,8 +13,10 @@ use super::error::{VectorError, read_text};
 use super::part::Part;
 use super::sweep::{Leaf, Sweep};
 use super::{BEHAVIOUR, units};
+use crate::limits;
 use crate::output::write_file;
 use crate::picture::hexadecimal;
+use crate::read::Kind;
 use crate::state::{Named, Profile};
 
 /// `format` of a leaf file.
@@ -98,7 +100,7 @@ fn invalid(path: &Path, code: &'static str, message: String, help: &'static str)
 
 /// Reads a leaf file; `None` if it is none, or was changed.
 fn read_leaf(path: &Path) -> Result<Option<(Of, Leaf)>, VectorError> {
-    let text = read_text(path, "the folder has changed meanwhile: try again")?;
+    let text = read_text(path, Kind::Regular, limits::LEAF, "the folder has changed meanwhile: try again")?;
     let file: Option<LeafFile> = serde_json::from_str(&text).ok();
     let whole = file.filter(|file| file.format == LEAF_FORMAT && file.seal == seal(&file.of, &file.leaf));
     Ok(whole.map(|file| (file.of, file.leaf)))
@@ -242,7 +244,7 @@ impl Tree {
     /// # Errors
     /// There is no such file, it is no tree or was changed, or it is of a unit, chip or number of rows that this program does not have.
     pub fn read(path: &Path) -> Result<(Tree, Sweep), VectorError> {
-        let text = read_text(path, "name a tree: `ninebit vectors merge` writes one")?;
+        let text = read_text(path, Kind::Stream, limits::TREE, "name a tree: `ninebit vectors merge` writes one")?;
         let help = "merge the leaves again";
         let wrong = |message: String| invalid(path, "NB1023", message, help);
         let value: serde_json::Value =

@@ -2,19 +2,17 @@
 
 use std::ffi::OsStr;
 use std::fmt::Write;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
+use ninebit::limits::OPERATION_TABLE;
 use ninebit::output::{Destination, write_stdout};
+use ninebit::read::{self, Kind, ReadError};
 use ninebit::trace::Silent;
 
 use super::super::exit::{Exit, Failure, Report};
 use super::super::scene::refuse_overwriting;
 use super::operation::{Operation, shown};
 
-/// Bytes of a table.
-const MOST_BYTES: u64 = 64 << 20;
 /// Broken rows that are named.
 const MOST_ERRORS: usize = 16;
 
@@ -37,24 +35,18 @@ fn read(path: &Path) -> Result<String, Failure> {
         let message = format!("table `{}` cannot be read: {reason}", path.display());
         Failure::invalid("NB0531", message, "name a text file of tab-separated values, in UTF-8")
     };
-    let refused = |error: std::io::Error| match error.kind() {
-        std::io::ErrorKind::NotFound | std::io::ErrorKind::NotADirectory => {
+    let bytes = read::bytes(path, Kind::Stream, OPERATION_TABLE).map_err(|error| match error {
+        ReadError::Missing => {
             let message = format!("table `{}` does not exist", path.display());
             let help = "check the spelling and the folder; upper and lower case count";
             Failure { exit: Exit::Missing, ..Failure::invalid("NB0530", message, help) }
         }
-        _ => unreadable(&error.to_string()),
-    };
-    if !path.metadata().map_err(refused)?.is_file() {
-        return Err(unreadable("it is not a regular file"));
-    }
-    let mut bytes = Vec::new();
-    // One byte more than allowed tells a table at the limit from one beyond it.
-    File::open(path).map_err(refused)?.take(MOST_BYTES + 1).read_to_end(&mut bytes).map_err(refused)?;
-    if bytes.len() as u64 > MOST_BYTES {
-        let message = format!("table `{}` is larger than {MOST_BYTES} bytes", path.display());
-        return Err(Failure { exit: Exit::Limit, ..Failure::invalid("NB0534", message, "split the table") });
-    }
+        ReadError::TooLarge(limit) => {
+            let message = format!("table `{}` is larger than {limit}", path.display());
+            Failure { exit: Exit::Limit, ..Failure::invalid("NB0534", message, "split the table") }
+        }
+        error => unreadable(&error.to_string()),
+    })?;
     String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text"))
 }
 

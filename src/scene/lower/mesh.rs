@@ -178,7 +178,7 @@ fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
     if let Some(known) = names.mesh_files.borrow().get(&name) {
         return known.clone();
     }
-    let file = ProgramText::file_up_to(reader, names, &raw, reader.limits.mesh_file_bytes);
+    let file = ProgramText::file_up_to(reader, names, &raw, reader.limits.mesh_file());
     let mesh = file.and_then(|file| match mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices) {
         Ok(surface) => Some(Arc::new(mesh::mesh(&surface))),
         Err(findings) => {

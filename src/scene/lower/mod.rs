@@ -92,7 +92,7 @@ pub(super) struct Found {
 
 /// The text of what a scene shares with others. `None` once the reason that it cannot be read has been recorded.
 pub(super) fn shared_text<'a>(reader: &mut Reader<'a>, folder: &Path, named: &Raw<'a, String>) -> Option<Arc<File>> {
-    program_text::text_file(reader, folder, named, reader.limits.program_bytes)
+    program_text::text_file(reader, folder, named, reader.limits.program_file())
 }
 
 /// Reads and checks a whole scene; `family` is the text of the file that it names for what it shares with others. Findings are in the reader; `None` if there are errors.

@@ -1,13 +1,12 @@
 //! The text of a program: in the scene or in a file of its own, and where its bytes stand.
 
-use std::fs::File;
-use std::io::{Error, Read};
-use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::names::Names;
 use super::*;
 use crate::diagnostic::{self, Source};
+use crate::limits::FileLimit;
+use crate::read::{self, Kind, ReadError};
 use crate::scene::path;
 use crate::scene::raw::Tuple;
 
@@ -41,22 +40,22 @@ impl ProgramText {
 
     /// A text in a file. `None` once the reason that it cannot be read has been recorded.
     pub(super) fn file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<Self> {
-        named(reader, names, raw, reader.limits.program_bytes)
+        named(reader, names, raw, reader.limits.program_file())
     }
 
-    /// The same of a file of at most `most` bytes.
+    /// The same of a file within a limit of its own.
     pub(super) fn file_up_to<'a>(
         reader: &mut Reader<'a>,
         names: &Names<'a>,
         raw: &Raw<'a, String>,
-        most: u64,
+        most: FileLimit,
     ) -> Option<Self> {
         named(reader, names, raw, most)
     }
 
     fn within_limit(self, reader: &mut Reader<'_>) -> Option<Self> {
-        let most = reader.limits.program_bytes;
-        if self.text.len() as u64 > most {
+        let most = reader.limits.program_file();
+        if self.text.len() as u64 > most.bytes {
             let place = self.span(0..0);
             reader.push(too_large(place, most));
             return None;
@@ -89,8 +88,8 @@ impl ProgramText {
     }
 }
 
-fn too_large(place: Range<usize>, most: u64) -> Diagnostic {
-    Diagnostic::error("NB0610", place, format!("this text has more than {most} bytes"))
+fn too_large(place: Range<usize>, most: FileLimit) -> Diagnostic {
+    Diagnostic::error("NB0610", place, format!("this text is larger than {most}"))
         .label("too large")
         .help("`ninebit limits` prints what is allowed")
 }
@@ -169,20 +168,25 @@ fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
     let opening = reader.range(text.get(..1).unwrap_or(text));
     let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
     let raw = reader.required(&fields.file, "file", "program", opening)?;
-    named(reader, names, &raw, reader.limits.program_bytes)
+    named(reader, names, &raw, reader.limits.program_file())
 }
 
-fn named<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>, most: u64) -> Option<ProgramText> {
+fn named<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, String>,
+    most: FileLimit,
+) -> Option<ProgramText> {
     let file = text_file(reader, &names.folder, raw, most)?;
     Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file) })
 }
 
-/// A text in a file of the scene's folder, of at most `most` bytes. `None` once the reason that it cannot be read has been recorded.
+/// A text in a file of the scene's folder, within a limit. `None` once the reason that it cannot be read has been recorded.
 pub(super) fn text_file<'a>(
     reader: &mut Reader<'a>,
     folder: &Path,
     raw: &Raw<'a, String>,
-    most: u64,
+    most: FileLimit,
 ) -> Option<Arc<diagnostic::File>> {
     let name = reader.read(raw)?;
     let named = reader.span(raw);
@@ -196,18 +200,18 @@ pub(super) fn text_file<'a>(
             return None;
         }
     };
-    let bytes = match bytes(path, most) {
+    let bytes = match read::bytes(&path, Kind::Regular, most) {
         Ok(bytes) => bytes,
+        Err(ReadError::TooLarge(most)) => {
+            reader.push(too_large(named, most));
+            return None;
+        }
         Err(error) => {
             let message = format!("`{}` cannot be read: {error}", shorten(&name));
             reader.push(refuse("NB0540", message, "name a regular file that may be read"));
             return None;
         }
     };
-    if bytes.len() as u64 > most {
-        reader.push(too_large(named, most));
-        return None;
-    }
     let Ok(text) = String::from_utf8(bytes) else {
         let message = format!("`{}` is not UTF-8 text", shorten(&name));
         reader.push(refuse("NB0541", message, "save the file as UTF-8"));
@@ -216,17 +220,6 @@ pub(super) fn text_file<'a>(
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
     let source = Source { name: folder.join(&name).display().to_string(), text };
     Some(Arc::new(diagnostic::File { source, named }))
-}
-
-/// One byte more than allowed tells a file at the limit from one beyond it.
-fn bytes(path: PathBuf, most: u64) -> std::io::Result<Vec<u8>> {
-    let file = File::open(path)?;
-    if !file.metadata()?.is_file() {
-        return Err(Error::other("it is not a regular file"));
-    }
-    let mut bytes = Vec::new();
-    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 #[cfg(test)]

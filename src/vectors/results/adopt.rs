@@ -13,9 +13,11 @@ use sha2::{Digest, Sha256};
 
 use super::compare::Comparison;
 use super::{DEVICE, Results};
+use crate::limits;
 use crate::output::{OutputError, write_file};
 use crate::picture::hexadecimal;
-use crate::vectors::error::VectorError;
+use crate::read::{self, Kind};
+use crate::vectors::error::{VectorError, unread};
 use crate::vectors::pack::Manifest;
 
 /// `format` of the record.
@@ -141,8 +143,8 @@ pub fn adopt(
 
 /// Copies a file; returns its digest.
 fn copy(from: &Path, to: &Path) -> Result<String, VectorError> {
-    let bytes = std::fs::read(from)
-        .map_err(|error| VectorError::Unreadable { path: from.to_path_buf(), reason: error.to_string() })?;
+    let missing = "the folder has changed meanwhile: try again";
+    let bytes = read::bytes(from, Kind::Regular, limits::VECTOR_TABLE).map_err(|error| unread(error, from, missing))?;
     write_file(to, &bytes)?;
     Ok(hexadecimal(&Sha256::digest(&bytes)))
 }

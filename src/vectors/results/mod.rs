@@ -22,6 +22,8 @@ pub use read::parse;
 use super::error::{VectorError, read_text};
 use super::pack::Manifest;
 use super::unit::Unit;
+use crate::limits;
+use crate::read::Kind;
 
 /// `format` of a device file.
 pub const DEVICE_FORMAT: &str = "ninebit-device-1";
@@ -125,8 +127,8 @@ pub struct Results {
 /// A file is missing, cut off, was changed, is of another version or of another pack.
 pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> {
     let device_path = folder.join(DEVICE);
-    let device =
-        device(&read_text(&device_path, "name the folder of results that vectors/harness/gl wrote")?, &device_path)?;
+    let missing = "name the folder of results that vectors/harness/gl wrote";
+    let device = device(&read_text(&device_path, Kind::Regular, limits::DEVICE, missing)?, &device_path)?;
     if device.pack != manifest.root {
         let message = format!("these are results of the pack {:.12}, not of {:.12}", device.pack, manifest.root);
         return Err(VectorError::invalid(
@@ -153,7 +155,7 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
     }
     let mut units = Vec::new();
     for path in paths {
-        let results = parse(&read_text(&path, "draw the pack again")?, &path)?;
+        let results = parse(&read_text(&path, Kind::Regular, limits::VECTOR_TABLE, "draw the pack again")?, &path)?;
         let name = results.unit.name();
         if path.file_stem().is_none_or(|stem| stem != name) {
             return Err(VectorError::invalid(

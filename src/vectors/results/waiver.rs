@@ -4,6 +4,8 @@ use std::path::Path;
 
 use serde::Deserialize;
 
+use crate::limits;
+use crate::read::Kind;
 use crate::vectors::error::{VectorError, read_text};
 use crate::vectors::units;
 
@@ -28,7 +30,7 @@ pub struct Waiver {
 pub fn read(path: &Path) -> Result<Vec<Waiver>, VectorError> {
     let help = r#"a list such as [{"unit": "blend", "maximum": 1, "count": 7, "reason": "..."}]"#;
     let invalid = |line, message: String| VectorError::invalid("NB1034", path, line, message, help);
-    let text = read_text(path, "check the spelling of the file of waivers")?;
+    let text = read_text(path, Kind::Stream, limits::WAIVERS, "check the spelling of the file of waivers")?;
     let waivers: Vec<Waiver> = serde_json::from_str(&text)
         .map_err(|error| invalid(error.line(), format!("not a list of waivers: {error}")))?;
     for (n, waiver) in waivers.iter().enumerate() {

@@ -61,7 +61,7 @@ impl<'a> Sources<'_, 'a> {
         let (_, face) = Level::chain(format, inside[0], inside[1], levels, request.border);
         let words = u64::from(request.faces) * face as u64;
         self.afford(reader, place.clone(), words)?;
-        let limit = reader.limits.image_file_bytes;
+        let limit = reader.limits.image_file();
         let bytes = read_file(reader, self.folder, &file, |path| image::read(path, limit))?;
         let expected = words * u64::from(format.bytes().min(4));
         if bytes.len() as u64 != expected {
