@@ -1,6 +1,5 @@
 //! Examples of the section "Final combiner".
 
-use crate::build::shows;
 use crate::handbook::{example, policy};
 use crate::pixel::{Pixel, covering, load_spare0, scene};
 use ninebit::state::*;
@@ -22,7 +21,7 @@ fn combiner(abcd: [FinalInput; 4], constants: [u8; 2]) -> FinalCombiner {
         inputs: [a, b, c, d, input(FinalRegister::ConstantColor0), input(FinalRegister::ConstantColor1)],
         g: FinalInput { component: Component::Alpha, ..inverted(FinalRegister::Zero) },
         constants: constants.map(|byte| [byte; 4]),
-        ..shows(FinalRegister::Zero).final_combiner
+        ..Combiners::showing(FinalRegister::Zero).final_combiner
     }
 }
 

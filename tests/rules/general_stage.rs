@@ -1,6 +1,5 @@
 //! Examples of the section "General combiner stages".
 
-use crate::build::shows;
 use crate::handbook::{example, policy};
 use crate::pixel::{Pixel, covering, load_spare0, scene};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
@@ -152,7 +151,7 @@ fn examples_of_the_general_stage() {
     cmb12.gives("Nv10", refused("Nv10"), Some(vec![("NB0301", Some("CMB-12"))])).gives("Nv2a", refused("Nv2a"), None);
 
     let cmb13 = example("CMB-13", "without textures SPARE0 starts as (0, 0, 0, 255).");
-    let draw = Draw { combiners: shows(FinalRegister::Spare0), ..covering(Vertex::default()) };
+    let draw = Draw { combiners: Combiners::showing(FinalRegister::Spare0), ..covering(Vertex::default()) };
     let scene = scene(Profile::Nv10, SurfaceFormat::A8R8G8B8, [1, 2, 3, 4], vec![draw]);
     let shown = Pixel::of(&scene, DEFAULT);
     cmb13.gives("the word that shows it", shown.word, 0xff00_0000);

@@ -1,6 +1,5 @@
 //! Examples of compressed textures.
 
-use crate::build::shows;
 use crate::handbook::example;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
@@ -12,7 +11,7 @@ fn sampled(profile: Profile, format: TextureFormat, words: &[u32], x: u32) -> Pi
     draw.texture_shader[0] = ShaderStage::conventional(0, true);
     draw.textures[0] =
         Some(TextureUnit { min_filter: Filter::Nearest, mag_filter: Filter::Nearest, ..TextureUnit::new(0) });
-    draw.combiners = shows(FinalRegister::Texture0);
+    draw.combiners = Combiners::showing(FinalRegister::Texture0);
     draw.combiners.final_combiner.g =
         FinalInput { register: FinalRegister::Texture0, component: Component::Alpha, invert: false };
     let mut scene = scene(profile, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);

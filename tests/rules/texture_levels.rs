@@ -1,6 +1,5 @@
 //! Examples of levels and cube maps.
 
-use crate::build::shows;
 use crate::handbook::{example, root};
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::limits::Limits;
@@ -19,7 +18,7 @@ fn sampled(kind: TextureKind, side: u32, levels: u32, st: [f32; 3], step: [f32; 
     });
     draw.textures[0] = Some(unit);
     draw.texture_shader[0] = ShaderStage::conventional(0, true);
-    draw.combiners = shows(FinalRegister::Texture0);
+    draw.combiners = Combiners::showing(FinalRegister::Texture0);
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
     let (_, face) = Level::chain(TextureFormat::L8, side, side, levels, false);
     let faces = if kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };

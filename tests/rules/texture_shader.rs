@@ -1,6 +1,5 @@
 //! Examples of the section "Texture shader".
 
-use crate::build::shows;
 use crate::handbook::example;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
@@ -31,7 +30,7 @@ fn shaded(word: u32, stages: &[ShaderStage], second: Texture, sets: [[f32; 4]; 4
         draw.textures[index] = stage.operation.samples().then_some(nearest);
     }
     let last = [FinalRegister::Texture0, FinalRegister::Texture1, FinalRegister::Texture2, FinalRegister::Texture3];
-    draw.combiners = shows(last[stages.len() - 1]);
+    draw.combiners = Combiners::showing(last[stages.len() - 1]);
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
     scene.textures = vec![texture("first", TextureKind::TwoDimensional, 1, &[word]), second];
     Pixel::of(&scene, policies)

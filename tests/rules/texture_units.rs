@@ -1,6 +1,5 @@
 //! Examples of the section "Texture units".
 
-use crate::build::shows;
 use crate::handbook::example;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
@@ -14,7 +13,7 @@ fn sampled(format: TextureFormat, words: &[u32], s: f32, q: f32, change: impl Fn
     change(&mut unit);
     draw.texture_shader[0] = ShaderStage::conventional(0, true);
     draw.textures[0] = Some(unit);
-    draw.combiners = shows(FinalRegister::Texture0);
+    draw.combiners = Combiners::showing(FinalRegister::Texture0);
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
     let texels = Texels { width: words.len() as u32, height: 1, levels: 1, border: false, words: words.into() };
     let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
@@ -80,7 +79,7 @@ fn examples_of_texture_units() {
     tex15.gives("u of 1/0", projected(0.0).value("unit0.u"), 1 << 24);
 
     let tex16 = example("TEX-16", "TEXTURE1 of a draw without a second texture is (0, 0, 0, 255).");
-    let unbound = Draw { combiners: shows(FinalRegister::Texture1), ..covering(Vertex::default()) };
+    let unbound = Draw { combiners: Combiners::showing(FinalRegister::Texture1), ..covering(Vertex::default()) };
     let scene = scene(Profile::Nv10, SurfaceFormat::A8R8G8B8, [1, 2, 3, 4], vec![unbound]);
     tex16.gives("the word that shows it", Pixel::of(&scene, Policies::DEFAULT).word, 0xff00_0000);
 
