@@ -260,8 +260,16 @@ fn ordinary_permissions() -> Option<std::fs::Permissions> {
 /// # Errors
 /// Standard output refuses; see [`OutputError::is_broken_pipe`].
 pub fn write_stdout(bytes: &[u8]) -> Result<(), OutputError> {
-    let mut stdout = io::stdout().lock();
-    stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
+    write_stdout_with(|out| out.write_all(bytes))
+}
+
+/// [`write_stdout`] of what `fill` writes.
+///
+/// # Errors
+/// As [`write_stdout`].
+pub fn write_stdout_with(fill: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), OutputError> {
+    let mut stdout = BufWriter::new(io::stdout().lock());
+    fill(&mut stdout).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
 }
 
 /// What a PNG is made for. The pixels are the same.

@@ -1,10 +1,12 @@
 //! Traces: a stored word follows from the numbers of its trace alone, and equals what the engine stores.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
+use crate::bench::Bench;
 use crate::random_scene;
 use crate::recompute;
 
 use ninebit::engine::{self, RenderOptions, TraceError};
+use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::report::{trace_json, trace_text};
 use proptest::strategy::{Strategy, ValueTree};
@@ -59,4 +61,56 @@ fn pixels_and_draws_that_do_not_exist_are_refused() {
     let outside = (plan.targets[0].width, 0);
     assert!(matches!(engine::trace(&plan, 0, outside, None), Err(TraceError::Pixel { .. })));
     assert!(matches!(engine::trace(&plan, 0, (0, 0), Some(plan.draws.len())), Err(TraceError::Draw { .. })));
+}
+
+/// So many triangles over the first pixel, neighbours of different colours.
+fn piled(triangles: usize) -> String {
+    let vertices: String = (0..triangles)
+        .map(|n| {
+            let color = format!("diffuse: ({}, {}, 0)", n % 256, n / 256 % 256);
+            format!("(position: (0, 0), {color}), (position: (2, 0), {color}), (position: (0, 2), {color}),\n")
+        })
+        .collect();
+    format!("(version: 1, profile: Nv2a, targets: [(width: 4, height: 1)], draws: [(vertices: Window([{vertices}]))])")
+}
+
+#[test]
+fn a_long_trace_keeps_the_last_fragments_and_says_what_it_leaves_out() {
+    let bench = Bench::new();
+    bench.write("piled.ron", piled(400));
+    let text = bench.run("trace piled.ron --pixel 0,0").text();
+    assert_eq!(text.matches("\ndraw 0").count(), 256, "{text:.500}");
+    assert!(text.contains("the first 144 fragments are left out: `--fragments N` shows the last N"), "{text:.500}");
+    assert!(text.contains(", triangle 144\n") && text.contains(", triangle 399\n"), "{text:.500}");
+    let two = bench.run("trace piled.ron --pixel 0,0 --fragments 2").text();
+    assert_eq!(two.matches("\ndraw 0").count(), 2, "{two}");
+    let last = text.rfind("\ndraw 0").unwrap();
+    assert!(two.ends_with(&text[last..]), "what is left out is drawn all the same");
+    let document = |fragments: &str| -> Value {
+        let json = bench.run(&format!("trace piled.ron --pixel 0,0 --format json{fragments}")).text();
+        serde_json::from_str(&json).unwrap()
+    };
+    let short = document("");
+    assert_eq!((&short["left_out"], short["draws"].as_array().unwrap().len()), (&144.into(), 256));
+    let all = document(" --fragments 1000");
+    assert_eq!((all.get("left_out"), all["draws"].as_array().unwrap().len()), (None, 400));
+    assert_eq!(all["draws"].as_array().unwrap()[144..], short["draws"].as_array().unwrap()[..]);
+    assert_eq!((&all["word"], &all["shown"]), (&short["word"], &short["shown"]));
+}
+
+#[test]
+fn what_is_streamed_is_what_is_kept() {
+    let bench = Bench::new();
+    bench.write("piled.ron", piled(300));
+    let loaded = ninebit::scene::load(&bench.path("piled.ron"), &Limits::default()).unwrap();
+    {
+        let pixel = (0, 0);
+        let kept = engine::trace(&loaded.plan, 0, pixel, None).unwrap();
+        let command = format!("trace piled.ron --pixel {},{}", pixel.0, pixel.1);
+        assert_eq!(bench.run(&command).text(), trace_text(&loaded.plan, &kept));
+        assert_eq!(bench.run(&format!("{command} --format json")).text(), trace_json(&loaded.plan, &kept));
+    }
+    assert_eq!(bench.run("trace piled.ron --pixel 3,0").text().matches("no triangle covers this pixel").count(), 1);
+    let empty: Value = serde_json::from_str(&bench.run("trace piled.ron --pixel 3,0 --format json").text()).unwrap();
+    assert_eq!(empty["draws"], Value::Array(Vec::new()));
 }

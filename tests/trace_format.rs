@@ -103,18 +103,40 @@ fn keys(value: &Value) -> Words {
     value.as_object().unwrap().keys().cloned().collect()
 }
 
+/// All fields of the page are there; the optional ones only with these values.
+fn with_optional(value: &Value, page: &Words, optional: &[(&str, Option<String>)]) {
+    let mut expected = page.clone();
+    for (name, text) in optional {
+        assert!(page.contains(*name), "{name} is not on the page");
+        match text {
+            Some(text) => assert_eq!(value[*name], text.as_str(), "{value:#}"),
+            None => drop(expected.remove(*name)),
+        }
+    }
+    assert_eq!(keys(value), expected);
+}
+
+/// A value that 31 bits and a sign do not hold, as text.
+fn value_text(value: &Value) -> Option<String> {
+    let integer = value["value"].as_i64().unwrap();
+    let text = if value["per_one"] == 0 { format!("{integer:#010x}") } else { integer.to_string() };
+    i32::try_from(integer).is_err().then_some(text)
+}
+
 impl Seen {
     /// A document: its fields against the page, its operations and names for later.
     fn document(&mut self, page: &Page, document: &Value) {
-        assert_eq!(keys(document), page.document);
+        let word = document["word"].as_u64().unwrap();
+        let word_text = (word >> 31 != 0).then(|| format!("{word:#010x}"));
+        with_optional(document, &page.document, &[("left_out", None), ("word_text", word_text)]);
         assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &1.into()));
         for draw in document["draws"].as_array().unwrap() {
             self.fragments += 1;
             assert_eq!(keys(draw), page.fragment);
             for step in draw["steps"].as_array().unwrap() {
-                assert_eq!(keys(step), page.step);
+                with_optional(step, &page.step, &[("value_text", value_text(step))]);
                 for input in step["inputs"].as_array().unwrap() {
-                    assert_eq!(keys(input), page.input);
+                    with_optional(input, &page.input, &[("value_text", value_text(input))]);
                 }
                 let word = |field: &str| step[field].as_str().unwrap().to_string();
                 assert!(page.operations.contains(&word("operation")), "not on the page: {step:#}");

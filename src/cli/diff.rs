@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use ninebit::diff::{self, Difference, Options};
-use ninebit::engine::{self, PixelTrace, RenderOptions};
+use ninebit::engine::{self, FRAGMENTS, PixelTrace, RenderOptions};
 use ninebit::output::{Compression, Destination, encode_png, write_stdout};
 use ninebit::plan::Plan;
 use ninebit::scene::image::{self, ImageLimits, Rgba};
@@ -139,8 +139,10 @@ fn scene<'a>(
         *count = diff::count(picture, &frame, arguments.ignore_alpha).map_err(|_| other_size())?;
     }
     // The pixels lie within the target, whose size is the pictures'.
-    let traces =
-        difference.regions.iter().filter_map(|region| engine::trace(&plan, target, region.first, None).ok()).collect();
+    // All of them together are no longer than one may be.
+    let fragments = (FRAGMENTS / difference.regions.len().max(1) as u64).max(1);
+    let trace = |first| engine::trace_last(&plan, target, first, None, fragments).ok();
+    let traces = difference.regions.iter().filter_map(|region| trace(region.first)).collect();
     Ok(SceneFindings { path, plan, target: name, different, traces })
 }
 

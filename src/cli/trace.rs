@@ -1,9 +1,9 @@
 //! `ninebit trace`.
 
 use clap::Args;
-use ninebit::engine::{self, TraceError};
-use ninebit::output::write_stdout;
-use ninebit::report::{trace_json, trace_text};
+use ninebit::engine::{FRAGMENTS, TraceError, Tracer};
+use ninebit::output::write_stdout_with;
+use ninebit::report::{write_trace_json, write_trace_text};
 use ninebit::state::Scene;
 
 use super::exit::Failure;
@@ -23,6 +23,9 @@ pub(crate) struct Arguments {
     /// Which render target the pixel is in [default: the scene's first]
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
+    /// Show at most so many fragments, the last ones
+    #[arg(long, value_name = "N", default_value_t = FRAGMENTS, value_parser = clap::value_parser!(u64).range(1..))]
+    fragments: u64,
     /// How to print it
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
     format: Format,
@@ -32,14 +35,12 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, plan) = arguments.scene.load(context)?;
     let target = super::scene::chosen_target(&scene, arguments.target.as_deref())?;
-    let trace =
-        engine::trace(&plan, target, arguments.pixel, arguments.draw).map_err(|error| outside(&scene, &error))?;
-    let text = match arguments.format {
-        Format::Text => trace_text(&plan, &trace),
-        Format::Json => trace_json(&plan, &trace),
-    };
-    write_stdout(text.as_bytes())?;
-    Ok(())
+    let Arguments { pixel, draw, fragments, .. } = *arguments;
+    let tracer = Tracer::new(&plan, target, pixel, draw, fragments).map_err(|error| outside(&scene, &error))?;
+    Ok(write_stdout_with(|out| match arguments.format {
+        Format::Text => write_trace_text(out, &plan, &tracer),
+        Format::Json => write_trace_json(out, &plan, &tracer),
+    })?)
 }
 
 fn outside(scene: &Scene, error: &TraceError) -> Failure {

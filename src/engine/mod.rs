@@ -15,7 +15,7 @@ pub(crate) mod walk;
 
 pub use counting::{DrawCounts, count, fragments};
 pub use rows::Isa;
-pub use tracing::{DrawTrace, PixelTrace, TraceError, trace};
+pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
 
 use crate::frame::{Frames, Surface};
 use crate::plan::Plan;

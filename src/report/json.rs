@@ -1,10 +1,12 @@
 //! A trace as one JSON document; `docs/trace-format.md` describes it.
 
-use crate::engine::{DrawTrace, PixelTrace};
+use super::text::integer;
+use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use crate::plan::Plan;
 use crate::state::{Named, POLICIES, Policies, Policy, StageOrigin};
-use crate::trace::{Operand, Step};
+use crate::trace::{Operand, SINGLE, Step};
 use serde_json::{Value, json};
+use std::io;
 
 /// Version of the document.
 const VERSION: u32 = 1;
@@ -16,9 +18,35 @@ pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
     text
 }
 
+/// Writes the same document while the trace is made, a fragment at a time.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_trace_json(out: &mut dyn io::Write, plan: &Plan, tracer: &Tracer<'_>) -> io::Result<()> {
+    let pretty = |value: &Value| serde_json::to_string_pretty(value).unwrap_or_default();
+    let cleared = tracer.cleared();
+    let head = pretty(&json!({ "cleared": cleared }));
+    write!(out, "{},\n  \"draws\": [", head.trim_end_matches("\n}"))?;
+    let mut between = "\n    ";
+    let end = tracer.run(|fragment| {
+        let text = pretty(&draw(&fragment)).replace('\n', "\n    ");
+        write!(out, "{}{text}", std::mem::replace(&mut between, ",\n    "))
+    })?;
+    let closing = if between.starts_with(',') { "\n  ]" } else { "]" };
+    let (x, y) = tracer.pixel();
+    let (target, left_out, TraceEnd { shown, word }) = (tracer.target().name.clone(), tracer.left_out(), end);
+    let mut rest = trace_value(plan, &PixelTrace { target, x, y, cleared, shown, word, left_out, draws: Vec::new() });
+    if let Some(fields) = rest.as_object_mut() {
+        for written in ["cleared", "draws"] {
+            fields.remove(written);
+        }
+    }
+    writeln!(out, "{closing},{}", pretty(&rest).trim_start_matches('{'))
+}
+
 /// The same document as a value, to stand in another one.
 pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
-    json!({
+    let mut value = json!({
         "format": "ninebit-trace",
         "version": VERSION,
         "profile": plan.profile.name(),
@@ -29,7 +57,19 @@ pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
         "shown": trace.shown,
         "word": trace.word,
         "draws": trace.draws.iter().map(draw).collect::<Vec<_>>(),
-    })
+    });
+    if trace.left_out > 0 {
+        value["left_out"] = json!(trace.left_out);
+    }
+    if let Some(text) = beyond_31_bits(i64::from(trace.word), SINGLE) {
+        value["word_text"] = json!(text);
+    }
+    value
+}
+
+/// An integer as text, if not every reader's integers hold it: one that takes more than 31 bits and a sign.
+fn beyond_31_bits(value: i64, per_one: i64) -> Option<String> {
+    i32::try_from(value).is_err().then(|| integer(value, per_one))
 }
 
 /// Every policy's value.
@@ -61,7 +101,7 @@ pub(crate) fn origins(origins: &[StageOrigin]) -> Value {
 }
 
 fn step(step: &Step) -> Value {
-    json!({
+    let mut value = json!({
         "block": step.block,
         "rule": step.rule,
         "name": step.name,
@@ -72,9 +112,17 @@ fn step(step: &Step) -> Value {
         "real": step.real(),
         "ideal": step.ideal,
         "note": step.note,
-    })
+    });
+    if let Some(text) = beyond_31_bits(step.value, step.per_one) {
+        value["value_text"] = json!(text);
+    }
+    value
 }
 
 fn operand(operand: &Operand) -> Value {
-    json!({ "name": operand.name, "value": operand.value, "per_one": operand.per_one })
+    let mut value = json!({ "name": operand.name, "value": operand.value, "per_one": operand.per_one });
+    if let Some(text) = beyond_31_bits(operand.value, operand.per_one) {
+        value["value_text"] = json!(text);
+    }
+    value
 }

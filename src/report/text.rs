@@ -1,11 +1,12 @@
 //! A trace as text: one line a step, the integer, its real value, the ideal and the rule.
 
-use crate::engine::{DrawTrace, PixelTrace};
+use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use crate::plan::Plan;
 use crate::state::{Named, POLICIES, Policies};
 use crate::texture::cube::Face;
 use crate::trace::{Operand, SINGLE, Step};
 use std::fmt::Write;
+use std::io;
 
 /// The trace of a pixel as text.
 pub fn trace_text(plan: &Plan, trace: &PixelTrace) -> String {
@@ -16,18 +17,59 @@ pub fn trace_text(plan: &Plan, trace: &PixelTrace) -> String {
 }
 
 fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result {
-    let [r, g, b, a] = trace.cleared;
-    writeln!(out, "pixel {},{} of target `{}`, profile {}", trace.x, trace.y, trace.target, plan.profile.name())?;
-    write!(out, "{}", policies_text(&plan.policies))?;
-    writeln!(out, "cleared to R {r} G {g} B {b} A {a}")?;
-    if trace.draws.is_empty() {
-        writeln!(out, "\nno triangle covers this pixel")?;
-    }
+    let PixelTrace { target, x, y, cleared, left_out, .. } = trace;
+    write_head(out, plan, target, (*x, *y), *cleared, *left_out)?;
     for draw in &trace.draws {
         write_draw(out, draw)?;
     }
-    let [r, g, b, a] = trace.shown;
-    writeln!(out, "\nat the end the surface holds {:#010x}, shown as R {r} G {g} B {b} A {a}", trace.word)
+    write_end(out, trace.draws.is_empty(), &TraceEnd { shown: trace.shown, word: trace.word })
+}
+
+/// Writes a trace as text while it is made, a fragment at a time.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_trace_text(out: &mut dyn io::Write, plan: &Plan, tracer: &Tracer<'_>) -> io::Result<()> {
+    let mut text = String::new();
+    let _ = write_head(&mut text, plan, &tracer.target().name, tracer.pixel(), tracer.cleared(), tracer.left_out());
+    out.write_all(text.as_bytes())?;
+    let mut empty = true;
+    let end = tracer.run(|draw| {
+        empty = false;
+        text.clear();
+        let _ = write_draw(&mut text, &draw);
+        out.write_all(text.as_bytes())
+    })?;
+    text.clear();
+    let _ = write_end(&mut text, empty, &end);
+    out.write_all(text.as_bytes())
+}
+
+fn write_head(
+    out: &mut String,
+    plan: &Plan,
+    target: &str,
+    (x, y): (u32, u32),
+    cleared: [u8; 4],
+    left_out: u64,
+) -> std::fmt::Result {
+    let [r, g, b, a] = cleared;
+    writeln!(out, "pixel {x},{y} of target `{target}`, profile {}", plan.profile.name())?;
+    write!(out, "{}", policies_text(&plan.policies))?;
+    writeln!(out, "cleared to R {r} G {g} B {b} A {a}")?;
+    match left_out {
+        0 => Ok(()),
+        1 => writeln!(out, "\nthe first fragment is left out: `--fragments N` shows the last N"),
+        left_out => writeln!(out, "\nthe first {left_out} fragments are left out: `--fragments N` shows the last N"),
+    }
+}
+
+fn write_end(out: &mut String, empty: bool, end: &TraceEnd) -> std::fmt::Result {
+    if empty {
+        writeln!(out, "\nno triangle covers this pixel")?;
+    }
+    let [r, g, b, a] = end.shown;
+    writeln!(out, "\nat the end the surface holds {:#010x}, shown as R {r} G {g} B {b} A {a}", end.word)
 }
 
 /// The policies that are not the default, one a line.
@@ -81,6 +123,16 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
         }
         let real = if step.per_one == 1 { String::new() } else { format!("{:.6}", step.real()) };
         let ideal = step.ideal.filter(|_| step.per_one != 1).map_or(String::new(), |i| format!("{i:.6}"));
+        let (mut name, mut expression) = (name.as_str(), expression.as_str());
+        // What is wider than its column stands above, so that the numbers stay below each other.
+        if name.chars().count() > names {
+            writeln!(out, "    {name}")?;
+            name = "";
+        }
+        if expression.chars().count() > expressions {
+            writeln!(out, "    {name:names$}  {expression}")?;
+            (name, expression) = ("", "");
+        }
         let line = format!(
             "    {name:names$}  {expression:expressions$}  {:>integers$} {real:>10} {ideal:>10}  {}",
             integer(step.value, step.per_one),
