@@ -33,7 +33,7 @@ pub const MANIFEST: FileLimit =
     FileLimit { name: "manifest_bytes", bytes: 4 << 20, counted: "bytes of the manifest of a pack" };
 /// Of a table of vectors or of results.
 pub const VECTOR_TABLE: FileLimit =
-    FileLimit { name: "vector_table_bytes", bytes: 1 << 30, counted: "bytes of a table of vectors or results" };
+    FileLimit { name: "vector_table_bytes", bytes: 2 << 30, counted: "bytes of a table of vectors or results" };
 /// Of a leaf of a sweep.
 pub const LEAF: FileLimit = FileLimit { name: "leaf_bytes", bytes: 64 << 10, counted: "bytes of a leaf of a sweep" };
 /// Of a tree of digests.

@@ -7,25 +7,25 @@ use std::time::{Duration, Instant};
 use crate::bench::Bench;
 
 /// A scene of one triangle whose program stands in a file.
-const SCENE: &str = r#"(version: 1, targets: {"frame": (width: 8, height: 8)}, draws: [(
-    target: "frame", topology: Triangles, vertices: [(position: (0, 0, 0, 1)), (position: (8, 0, 0, 1)), (position: (0, 8, 0, 1))],
-    program: Combiners(file: "program.txt"),
+const SCENE: &str = r#"(version: 1, profile: Nv2a, targets: [(name: "frame", width: 8, height: 8)], draws: [(
+    vertices: Window([(position: (0, 0)), (position: (8, 0)), (position: (0, 8))]),
+    program: CombinerText(file: "program.txt"),
 )])"#;
 
 fn sparse(bench: &Bench, name: &str) {
     let path = bench.path(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
-    File::create(path).unwrap().set_len(8 << 30).unwrap();
+    File::create(path).unwrap().set_len(64 << 30).unwrap();
 }
 
-/// The command is refused with this code, names the limit, and is done before eight gigabytes could have been read.
+/// The command is refused with this code, names the limit, and is done before so many gigabytes could have been read.
 fn beyond(bench: &Bench, command: &str, code: &str, limit: &str) {
     let begin = Instant::now();
     let run = bench.run(command);
     let text = run.stderr.clone() + &String::from_utf8_lossy(&run.stdout);
     assert_eq!(run.status, 5, "{command}: {text}");
     assert!(text.contains(code) && text.contains(&format!("`{limit}`")), "{command}: {text}");
-    assert!(begin.elapsed() < Duration::from_secs(1), "{command}: {:?}", begin.elapsed());
+    assert!(begin.elapsed() < Duration::from_secs(10), "{command}: {:?}", begin.elapsed());
     let listed = bench.run("limits").text();
     assert!(listed.lines().any(|line| line.split(' ').next() == Some(limit)), "{listed}");
 }
@@ -35,7 +35,6 @@ fn every_kind_of_file_has_a_limit() {
     let bench = Bench::new();
     sparse(&bench, "sparse");
     beyond(&bench, "check sparse", "NB0601", "scene_bytes");
-    beyond(&bench, "texture sparse", "NB0601", "scene_bytes");
     sparse(&bench, "program.txt");
     bench.write("scene.ron", SCENE);
     beyond(&bench, "check scene.ron", "NB0610", "program_bytes");
@@ -76,7 +75,7 @@ fn files_of_packs_and_results_have_limits() {
     sparse(&bench, "pack/units/product.tsv");
     let begin = Instant::now();
     bench.run("vectors check pack").failed(3, "NB1011");
-    assert!(begin.elapsed() < Duration::from_secs(1), "{:?}", begin.elapsed());
+    assert!(begin.elapsed() < Duration::from_secs(10), "{:?}", begin.elapsed());
 }
 
 #[cfg(unix)]

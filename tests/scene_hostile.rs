@@ -154,3 +154,56 @@ proptest! {
         survive(&text[..place.index(text.len() + 1)].iter().collect::<String>());
     }
 }
+
+/// Findings that are only counted need no suggestion: the time grows with the text, not with its square.
+#[test]
+fn thousands_of_misspelt_names_are_refused_at_once() {
+    let list = |line: &dyn Fn(usize) -> String| (0..8000).map(line).collect::<String>();
+    let tables = [
+        (
+            format!("colors: {{{}}}", list(&|n| format!("\"colour-number-{n:04}\": (1, 2, 3),"))),
+            list(&|n| format!("(position: (0, 0), diffuse: \"color-numbre-{n:04}\"),")),
+        ),
+        (
+            format!("vectors: {{{}}}", list(&|n| format!("\"vector-number-{n:04}\": (1, 2, 3),"))),
+            list(&|n| format!("(position: \"vectro-number-{n:04}\"),")),
+        ),
+    ];
+    for (names, vertices) in tables {
+        let text = format!("(version: 1, profile: Nv2a, names: ({names}), draws: [(vertices: Window([{vertices}]))])");
+        let begin = Instant::now();
+        let error = refuse(&text);
+        assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
+        assert!(error.diagnostics.iter().all(|finding| finding.code == "NB0208"), "{error:.2000}");
+        assert!(error.suppressed >= 7900, "{}", error.suppressed);
+        let help = error.diagnostics.iter().filter_map(|finding| finding.help.as_deref());
+        assert!(help.filter(|help| help.contains("did you mean")).count() > 50, "{error:.2000}");
+    }
+}
+
+#[test]
+fn too_many_of_something_says_so_once_and_by_how_much() {
+    let triangle = "vertices: Window([(position: (0, 0)), (position: (1, 0)), (position: (0, 1))])";
+    let list = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
+    let textures = list(17, &|n| format!("\"t{n}\": (source: Solid(width: 1, height: 1, color: (0, 0, 0))),"));
+    let uses = list(17, &|n| format!("({triangle}, textures: [\"t{n}\"]),"));
+    let targets = list(20, &|n| format!("(name: \"g{n}\", width: 1, height: 1),"));
+    let aimed = list(20, &|n| format!("(target: \"g{n}\", {triangle}),"));
+    for (text, code, message) in [
+        (
+            format!("(version: 1, profile: Nv2a, textures: {{{textures}}}, draws: [{uses}])"),
+            "NB0605",
+            "17 textures are 1 more than the limit `textures` of 16 allows",
+        ),
+        (
+            format!("(version: 1, profile: Nv2a, targets: [{targets}], draws: [{aimed}])"),
+            "NB0608",
+            "20 render targets are 4 more than the limit `targets` of 16 allows",
+        ),
+    ] {
+        let error = refuse(&text);
+        let codes: Vec<&str> = error.diagnostics.iter().map(|finding| finding.code).collect();
+        assert_eq!(codes, [code], "{error}");
+        assert_eq!(error.diagnostics[0].message, message);
+    }
+}

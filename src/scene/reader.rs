@@ -1,5 +1,6 @@
 //! Reads raw values, gathers what is wrong with them, and says it in the words of the format.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
 use ron::Options;
@@ -66,6 +67,11 @@ impl<'a> Reader<'a> {
         } else {
             self.suppressed += 1;
         }
+    }
+
+    /// Whether a further error would only be counted: its words need not be chosen.
+    fn is_full(&self) -> bool {
+        self.errors > 0 && self.diagnostics.len() >= MOST_DIAGNOSTICS
     }
 
     /// Where in the file a part of its text lies.
@@ -244,9 +250,9 @@ impl<'a> Reader<'a> {
     ) -> Option<([f32; 4], usize)> {
         let name = self.read(&raw.as_other::<String>())?;
         let place = self.span(raw);
-        let Some(vector) = self.vectors.0.iter_mut().find(|vector| vector.name == name) else {
+        let Some(vector) = self.vectors.named(&name) else {
             let vectors = std::mem::take(&mut self.vectors);
-            let known = vectors.0.iter().map(|vector| vector.name.as_str());
+            let known = vectors.list.iter().map(|vector| vector.name.as_str());
             unknown_name(self, place, "vector", &name, known, "define it in `names: (vectors: { ... })`");
             self.vectors = vectors;
             return None;
@@ -329,7 +335,7 @@ impl<'a> Reader<'a> {
         own: &Option<Raw<'a, Entries<'a, T>>>,
         shared: &Option<Raw<'a, Entries<'a, T>>>,
     ) -> Vec<Entry<'a, T>> {
-        let mut seen: std::collections::HashMap<String, Range<usize>> = std::collections::HashMap::new();
+        let mut seen: HashMap<String, Range<usize>> = HashMap::new();
         let mut table = Vec::new();
         for (field, shared) in [(shared, true), (own, false)] {
             let Some(entries) = field.as_ref().and_then(|raw| self.read(raw)) else { continue };
@@ -495,7 +501,21 @@ pub(super) struct Entry<'a, T> {
 
 /// Vectors by name, in the order of the text.
 #[derive(Debug, Default)]
-pub(super) struct Vectors(pub(super) Vec<NamedVector>);
+pub(super) struct Vectors {
+    pub(super) list: Vec<NamedVector>,
+    by_name: HashMap<String, usize>,
+}
+
+impl Vectors {
+    pub(super) fn add(&mut self, vector: NamedVector) {
+        self.by_name.insert(vector.name.clone(), self.list.len());
+        self.list.push(vector);
+    }
+
+    fn named(&mut self, name: &str) -> Option<&mut NamedVector> {
+        self.list.get_mut(*self.by_name.get(name)?)
+    }
+}
 
 /// A vector that is used by name.
 #[derive(Debug)]
@@ -513,6 +533,20 @@ pub(super) struct NamedVector {
 /// Marks a value that is a name out of the state enumeration `T`.
 pub(super) struct Name<T>(std::marker::PhantomData<fn() -> T>);
 
+/// How much more of something there is than a limit allows.
+pub(super) fn too_many(
+    code: &'static str,
+    place: Range<usize>,
+    count: usize,
+    what: &str,
+    limit: &str,
+    most: usize,
+) -> Diagnostic {
+    let message =
+        format!("{count} {what} are {} more than the limit `{limit}` of {most} allows", count.saturating_sub(most));
+    Diagnostic::error(code, place, message).label("too many").help("`ninebit limits` prints what is allowed")
+}
+
 /// The finding that a name is not defined.
 pub(super) fn unknown_name<'n>(
     reader: &mut Reader<'_>,
@@ -522,6 +556,11 @@ pub(super) fn unknown_name<'n>(
     known: impl Iterator<Item = &'n str> + Clone,
     define: &str,
 ) {
+    // What is meant is looked for only where somebody reads it: names and uses may be thousands.
+    if reader.is_full() {
+        reader.push(Diagnostic::error("NB0208", place, ""));
+        return;
+    }
     let help = match closest(name, known.clone()) {
         Some(known) => format!("did you mean \"{}\"?", shorten(known)),
         None => {

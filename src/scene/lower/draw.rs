@@ -39,10 +39,8 @@ pub(super) fn draws<'a>(
     if let Some(raw) = raw
         && list.len() > reader.limits.draws
     {
-        let message = format!("{} draws are more than {}", list.len(), reader.limits.draws);
         reader.push(
-            Diagnostic::error("NB0604", reader.span(raw), message)
-                .label("too many")
+            too_many("NB0604", reader.span(raw), list.len(), "draws", "draws", reader.limits.draws)
                 .help("put several triangles into one draw; `ninebit limits` prints what is allowed"),
         );
         return Vec::new();

@@ -38,7 +38,7 @@ use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
 use super::raw::Raw;
-use super::reader::{Reader, unknown_name};
+use super::reader::{Reader, too_many, unknown_name};
 use super::source;
 use super::wording::shorten;
 use crate::diagnostic::File;

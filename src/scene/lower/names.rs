@@ -236,7 +236,8 @@ impl<'a> Names<'a> {
 
     /// Warns of what nothing refers to.
     pub(super) fn warn_unused(&self, reader: &mut Reader<'a>) {
-        for vector in std::mem::take(&mut reader.vectors).0.into_iter().filter(|vector| !vector.used && !vector.shared)
+        for vector in
+            std::mem::take(&mut reader.vectors).list.into_iter().filter(|vector| !vector.used && !vector.shared)
         {
             reader.push(unused("vector", &vector.name, vector.place));
         }
@@ -258,7 +259,7 @@ fn read_vectors<'a>(
     for Entry { name, place, value: raw, shared } in reader.tables("vector", own, shared) {
         let value =
             value(reader, &raw).and_then(|()| reader.numbers_written(&raw, "a vector", 1, 4, [0.0, 0.0, 0.0, 1.0]));
-        reader.vectors.0.push(NamedVector { name, place, value, used: false, shared });
+        reader.vectors.add(NamedVector { name, place, value, used: false, shared });
     }
 }
 

@@ -13,6 +13,8 @@ pub(super) struct Targets {
     pub(super) list: Vec<Target>,
     by_name: HashMap<String, usize>,
     places: Vec<Range<usize>>,
+    /// There are too many: none is known.
+    unread: bool,
 }
 
 impl Targets {
@@ -20,7 +22,7 @@ impl Targets {
     pub(super) fn find<'a>(&self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
         let name = reader.read(raw)?;
         let found = self.by_name.get(&name).copied();
-        if found.is_none() {
+        if found.is_none() && !self.unread {
             let place = reader.span(raw);
             let known = self.list.iter().map(|target| target.name.as_str());
             unknown_name(reader, place, "target", &name, known, "define it in `targets: [(name: \"...\")]`");
@@ -40,18 +42,15 @@ pub(super) fn targets<'a>(
     names: &Names<'a>,
     raw: &Option<Raw<'a, source::List<'a, source::Target<'a>>>>,
 ) -> Targets {
-    let mut targets = Targets { list: Vec::new(), by_name: HashMap::new(), places: Vec::new() };
+    let mut targets = Targets { list: Vec::new(), by_name: HashMap::new(), places: Vec::new(), unread: false };
     let list = match raw {
         Some(raw) => {
             let list = reader.read(raw).unwrap_or_default();
             let place = reader.span(raw);
             if list.len() > reader.limits.targets {
-                let message = format!("{} render targets are more than {}", list.len(), reader.limits.targets);
-                reader.push(
-                    Diagnostic::error("NB0608", place, message)
-                        .label("too many")
-                        .help("`ninebit limits` prints what is allowed"),
-                );
+                let most = reader.limits.targets;
+                reader.push(too_many("NB0608", place, list.len(), "render targets", "targets", most));
+                targets.unread = true;
                 return targets;
             }
             if list.is_empty() {

@@ -69,13 +69,10 @@ pub(super) fn textures<'a>(
     if let Some(raw) = &file.textures
         && entries.len() > reader.limits.textures
     {
-        let message = format!("{} textures are more than {}", entries.len(), reader.limits.textures);
-        let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0605", place, message)
-                .label("too many")
-                .help("`ninebit limits` prints what is allowed"),
-        );
+        let (place, count, most) = (reader.span(raw), entries.len(), reader.limits.textures);
+        reader.push(too_many("NB0605", place, count, "textures", "textures", most));
+        // Their names are known all the same.
+        textures.by_name = entries.into_iter().map(|entry| (entry.name, None)).collect();
         return textures;
     }
     let mut sources = Sources { names, folder, left: reader.limits.texture_bytes };
