@@ -4,7 +4,7 @@ use crate::diff::{SizeError, highlight};
 use crate::scene::image::Rgba;
 
 /// Columns between two panels.
-const GAP: usize = 8;
+pub(in crate::replay) const GAP: usize = 8;
 
 /// What stands between the panels: a grey that no frame is likely to end with, between black and white.
 const BETWEEN: [u8; 4] = [96, 96, 96, 255];

@@ -5,6 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 use crate::diff::{CHANNELS, Histogram, ranges};
+use crate::replay::panels::GAP;
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
 use crate::report::BesideLine;
 
@@ -96,9 +97,19 @@ fn difference(difference: &Difference) -> Markup {
 }
 
 fn pictures(known: &Known) -> Markup {
+    let (width, height) = (known.difference.width, known.difference.height);
+    // Each title is as wide as its panel. A tall picture does not fill the page's width, but is wide enough for its titles.
+    let [panel, gap] = [width as usize, GAP].map(|columns| format!("minmax(0, {columns}fr)"));
+    let titles = format!("grid-template-columns: {panel} {gap} {panel} {gap} {panel}");
+    let whole = 3 * width as usize + 2 * GAP;
+    let figure = format!("max-width: max(22rem, calc(45rem * {whole} / {height}))");
     html! {
-        div.titles { span { "expected" } span { "drawn" } span { "difference, times " (known.scale) } }
-        (image(&known.panels, "panels", "expected, drawn, difference"))
+        figure style=(figure) {
+            div.titles style=(titles) {
+                span { "expected" } span {} span { "drawn" } span {} span { "difference, times " (known.scale) }
+            }
+            (image(&known.panels, "panels", "expected, drawn, difference"))
+        }
     }
 }
 
