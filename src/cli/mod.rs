@@ -120,13 +120,13 @@ struct Context {
 /// Runs the program.
 pub(crate) fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
-    let color = wanted_color(&arguments);
-    let exit = guarded(color.on_stderr(), || start(&arguments, color));
+    let exit = guarded(wanted_color(&arguments).on_stderr(), || run(&arguments));
     ExitCode::from(exit as u8)
 }
 
-/// Parses the arguments and runs the command.
-fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
+/// Parses the arguments and runs the command. A panic is the caller's.
+pub(crate) fn run(arguments: &[OsString]) -> Exit {
+    let color = wanted_color(arguments);
     let matches = Cli::command().color(color.for_clap()).try_get_matches_from(arguments);
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
