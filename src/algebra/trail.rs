@@ -148,7 +148,7 @@ impl Algebra for Trail {
         self.one(x, |x| (x == 0 && bias == Bias::None).then_some(0))
     }
     fn saturated(&mut self, x: Value) -> Value {
-        self.clamped(x)
+        self.one(x, |x| (0..=255).contains(&x).then_some(x))
     }
     fn written(&mut self, x: Value) -> Value {
         self.made_of(&[x], x.known)

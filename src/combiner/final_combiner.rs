@@ -1,11 +1,11 @@
 //! FIN-1 to FIN-5: the final combiner.
 
 use super::direct::Direct;
-use super::general::load_constants;
+use super::general::{component_channel, load_constants};
 use super::registers::{self, Registers, channel_name};
 use crate::algebra::{Algebra, Site};
 use crate::number::Lane;
-use crate::state::{Component, FinalCombiner, FinalInput, FinalRegister, LerpRounding, Policies, Profile, Register};
+use crate::state::{FinalCombiner, FinalInput, FinalRegister, LerpRounding, Policies, Profile, Register};
 use crate::trace::Silent;
 use crate::trace::{Observer, Operand, Rule, Step, report};
 
@@ -155,21 +155,11 @@ pub fn evaluate<A: Algebra>(
 /// What an input reads, before FIN-1.
 #[inline(always)]
 fn source<R: Copy>(from: &FinalInput, channel: usize, registers: &Registers<R>, specials: &Specials<R>) -> R {
-    let source = source_channel(from, channel);
+    let source = component_channel(from.component, channel);
     match from.register {
         FinalRegister::Spare0PlusSecondary => specials.sum[source],
         FinalRegister::ETimesF => specials.product[source],
         register => registers.read(general(register), source),
-    }
-}
-
-/// The channel of its register that an input reads.
-#[inline(always)]
-pub fn source_channel(from: &FinalInput, channel: usize) -> usize {
-    match from.component {
-        Component::Rgb => channel,
-        Component::Blue => 2,
-        Component::Alpha => 3,
     }
 }
 
@@ -217,7 +207,7 @@ fn report_all<L: Lane, O: Observer>(
     let report_input = |n: usize, channel: usize, value: L, observer: &mut O| {
         let from = if n == 6 { &state.g } else { &state.inputs[n] };
         let x = source(from, channel, registers, &values.specials);
-        let source = source_channel(from, channel);
+        let source = component_channel(from.component, channel);
         let operand = match from.register {
             FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF if source == 3 => "zero.a".to_string(),
             FinalRegister::Spare0PlusSecondary => format!("final.sum.{}", channel_name(source)),

@@ -318,7 +318,13 @@ const fn first_channel<const N: usize>() -> usize {
 /// The channel of its register that an input reads.
 #[inline(always)]
 pub fn source_channel(input: &CombinerInput, channel: usize) -> usize {
-    match input.component {
+    component_channel(input.component, channel)
+}
+
+/// The channel of a register that a component is, for what is computed in `channel`.
+#[inline(always)]
+pub fn component_channel(component: Component, channel: usize) -> usize {
+    match component {
         Component::Rgb => channel,
         Component::Blue => 2,
         Component::Alpha => 3,

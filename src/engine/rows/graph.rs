@@ -384,6 +384,11 @@ impl Graph {
     }
 
     fn products_after(&mut self, bias: Bias, scale: Scale, products: &Products) -> Value {
+        if scale == Scale::One {
+            // A bias of whole steps goes through the rounding.
+            let rounded = self.rounded_products(products);
+            return self.scaled(bias, scale, rounded);
+        }
         let (halves, pairs, (low, high)) = self.pairs(products);
         let end = |sum: i32| kernels::rounded_after(sum, halves, bias, scale);
         self.add(Node::After(bias, scale, halves, Pairs::new(&pairs)), (end(low), end(high)))
