@@ -5,7 +5,8 @@
 
 mod rule;
 
-pub use rule::{Decision, Part, Rule, Work};
+pub use crate::number::Part;
+pub use rule::{Decision, Rule, Work};
 
 use crate::number::Lane;
 
