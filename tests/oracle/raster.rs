@@ -203,8 +203,8 @@ impl Setup {
         } else {
             [1 << 27; 3]
         };
-        let same_power = w[0] == w[1] && w[1] == w[2] && w[0].0.count_ones() == 1;
-        let exact = cross.abs().count_ones() == 1 && (!draw.perspective || same_power);
+        let same = w[0] == w[1] && w[1] == w[2];
+        let exact = cross.abs().count_ones() == 1 && (!draw.perspective || same);
         Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact })
     }
 
