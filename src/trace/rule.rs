@@ -144,7 +144,7 @@ named! {
         Products = "products",
         /// Roundings to 255ths.
         Roundings = "roundings",
-        /// Products, sums and quotients of the dot unit in single precision (TSH-4, TSH-5).
+        /// Products and sums of the dot unit in single precision (TSH-4, TSH-5).
         Dots = "dot operations",
         /// Channels blended.
         Blends = "blended channels",

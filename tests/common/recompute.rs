@@ -301,7 +301,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "is_not_negative" => plain(i128::from(shader::numerator(inputs) >= 0)),
         "remap_zero_to_one" | "remap_d3d" | "remap_gl" | "remap_twos_complement" => shader::remap(operation, inputs),
         "remap_half" | "remap_half_signed" | "third_of_unit" | "float_one" => shader::remap(operation, inputs),
-        "float_product" | "float_sum" | "float_dot" | "float_double_quotient" | "float_reflection" => {
+        "float_product" | "float_sum" | "float_dot" | "float_double" | "float_reflection" => {
             shader::float(operation, inputs)
         }
         "floor_float" => Number { value: shader::floor_float(inputs), per_one: 256 },
