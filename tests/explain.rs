@@ -170,10 +170,22 @@ fn fog_is_a_function_of_what_it_says() {
     for (fog, expected) in [
         ("", vec!["fog.a = smooth(vertices): factors"]),
         ("mode: Linear, start: 0, end: 4", vec!["fog.rgb = (7, 8, 9)/255", "fog.a = 2 + -0.25 d - 1, limited"]),
-        ("mode: LinearAbs, parameters: (1, 0.5)", vec!["fog.a = |1 + 0.5 d - 1|, limited"]),
-        ("mode: Exp, parameters: (1.5, -0.5)", vec!["fog.a = 1.5 + 2^(16 * -0.5 d) - 3/2, limited"]),
-        ("mode: Exp2Abs, parameters: (1.5, -0.5)", vec!["fog.a = |1.5 + 2^(-32 * (-0.5 d)^2) - 3/2|, limited"]),
-        ("mode: Exp, evaluation: PerVertex", vec!["fog.a = smooth(vertices): factors"]),
+        ("mode: LinearAbs, parameters: (1, 0.5)", vec!["fog.a = 1 + 0.5 |d| - 1, limited"]),
+        (
+            "mode: Exp, parameters: (1.5, -0.5)",
+            vec!["fog.a = 2^(16 (e - 3/2)), 1 from e = 3/2 on, 0 below e = 1, e = 1.5 + -0.5 d at the vertices"],
+        ),
+        ("mode: ExpAbs, parameters: (1.5, -0.5)", vec!["fog.a = 2^(-16 |e - 3/2|), 0 from a distance of 1/2 on"]),
+        (
+            "mode: Exp2Abs, parameters: (1.5, -0.5, 0.25)",
+            vec![
+                "fog.a = 2^(-32 (e - 3/2)^2), 0 from a distance of 1/2 on, e = 1.5 + -0.5 d + 0.25 d^2 at the vertices",
+            ],
+        ),
+        (
+            "mode: Linear, start: 0, end: 4, evaluation: PerVertex",
+            vec!["fog.a = e - 1, limited to 0..1, e = 2 + -0.25 d at the vertices"],
+        ),
     ] {
         let scene = quad(&format!("fog: (color: (7, 8, 9), {fog}),"));
         let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();

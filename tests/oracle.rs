@@ -10,8 +10,10 @@ use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::report::trace_text;
 use ninebit::state::{
-    AddressMode, DotMapping, Filter, FogMode, Named, POLICIES, Policies, Scene, TextureFormat, TextureKind,
+    AddressMode, DotMapping, Filter, FogFunction, FogMode, Named, POLICIES, Policies, Profile, Scene, TextureFormat,
+    TextureKind,
 };
+use ninebit::vertex::fog::passed;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
@@ -138,6 +140,45 @@ fn random_scenes_draw_something_of_everything() {
         need("operation", &OPERATIONS);
     }
     assert!(missing.is_empty(), "too seldom: {missing:?}");
+}
+
+/// Patterns of floats of all kinds, most of sizes that reach each other.
+fn number() -> impl Strategy<Value = f32> {
+    let moderate = (any::<u32>(), 118_u32..136).prop_map(|(bits, e)| bits & 0x807f_ffff | e << 23);
+    // Mantissas whose middle is all ones are cut, not rounded.
+    let ones = moderate.clone().prop_map(|bits| bits | 255 << 10);
+    let few = (moderate.clone(), 0_u32..23).prop_map(|(bits, zeros)| bits >> zeros << zeros);
+    let odd = prop::sample::select(vec![
+        0,
+        1 << 31,
+        1,
+        0x7f_ffff,
+        0x80_0000,
+        0x7f80_0000,
+        0xff80_0000,
+        0x7f80_0001,
+        0x7f7f_ffff,
+    ]);
+    prop_oneof![6 => moderate, 2 => ones, 2 => few, 1 => any::<u32>(), 1 => odd].prop_map(f32::from_bits)
+}
+
+proptest! {
+    #![proptest_config(Config { cases: 20_000, failure_persistence: None, ..Config::default() })]
+
+    /// FOG-1, FOG-3, INT-5n: what a vertex passes, of anything.
+    #[test]
+    fn words_of_the_light_unit(
+        mode in 0..FogMode::ALL.len(), p0 in number(), p1 in number(), p2 in prop_oneof![1 => Just(0.0), 1 => number()], d in number(),
+        per_vertex in any::<bool>(),
+    ) {
+        let function = FogFunction { mode: FogMode::ALL[mode], p0, p1, p2, per_vertex };
+        for profile in Profile::ALL {
+            let (got, expected) = (passed(&function, *profile, d), model::fog::at_vertex(&function, *profile, d));
+            let same = got.to_bits() == expected.to_bits() || (got.is_nan() && expected.is_nan());
+            // Zeros of either sign are one.
+            prop_assert!(same || (got == 0.0 && expected == 0.0), "{:?}: {:#x}, oracle {:#x}", profile, got.to_bits(), expected.to_bits());
+        }
+    }
 }
 
 /// Every operation of the texture shader.

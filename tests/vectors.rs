@@ -321,7 +321,7 @@ fn the_command_line_tells_packs_apart() {
     assert!(said(&output).contains("mux: 0 rows more, 0 fewer, 1 changed"), "{output:?}");
     assert_eq!(vectors(&["check", folder.path().to_str().unwrap()]).status.code(), Some(4));
     assert_eq!(vectors(&["export", "--unit", "mix", "-o", good]).status.code(), Some(2));
-    assert_eq!(vectors(&["export", "--unit", "fog-factor", "--profile", "nv10", "-o", good]).status.code(), Some(2));
+    assert_eq!(vectors(&["export", "--unit", "shader-remap", "--profile", "nv10", "-o", good]).status.code(), Some(2));
     let listed = said(&vectors(&["list"]));
     for unit in units::all() {
         assert!(listed.contains(unit.name()) && listed.contains(unit.about()));

@@ -165,7 +165,7 @@ fn places_that_cannot_be_written_are_refused() {
     assert_eq!(ninebit(&["merge", folder, "-o", "/dev/null/tree"]).status.code(), Some(7));
     assert_eq!(ninebit(&["sweep", "--unit", "general-stage", "-o", folder]).status.code(), Some(2));
     assert_eq!(ninebit(&["sweep", "--unit", "mux", "--shard", "0/2", "-o", folder]).status.code(), Some(2));
-    assert_eq!(ninebit(&["sweep", "--unit", "fog-factor", "--profile", "nv10", "-o", folder]).status.code(), Some(2));
+    assert_eq!(ninebit(&["sweep", "--unit", "shader-remap", "--profile", "nv10", "-o", folder]).status.code(), Some(2));
 }
 
 #[test]

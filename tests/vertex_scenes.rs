@@ -91,7 +91,13 @@ fn fog_comes_from_the_program() {
     let linear = "(mode: Linear, start: 8, end: 16)";
     let written = "mov oFog.x, c0.x";
     assert_eq!(loaded(&fog("Nv2a", linear, written)).scene.draws[0].vertices.at(0).fog, 12.0);
-    assert_eq!(loaded(&fog("Nv10", linear, written)).scene.draws[0].vertices.at(0).fog, 0.5);
+    assert_eq!(loaded(&fog("Nv10", linear, written)).scene.draws[0].vertices.at(0).fog, 1.5);
+    let beyond = "rcp oFog.x, c1.x";
+    assert_eq!(loaded(&fog("Nv2a", linear, beyond)).scene.draws[0].vertices.at(0).fog, f32::INFINITY);
+    assert_eq!(loaded(&fog("Nv2a", "(color: (9, 9, 9))", beyond)).scene.draws[0].vertices.at(0).fog, 1.0);
+    let nothing = "rcp r0.x, c1.x \\n mul oFog.x, r0.x, c1.x";
+    assert!(loaded(&fog("Nv2a", linear, nothing)).scene.draws[0].vertices.at(0).fog.is_nan());
+    assert_eq!(refused(&fog("Nv2a", "(color: (9, 9, 9))", nothing)), ["NB0207"]);
     assert_eq!(loaded(&fog("Nv2a", "(color: (9, 9, 9))", written)).scene.draws[0].vertices.at(0).fog, 1.0);
     assert_eq!(refused(&fog("Nv2a", linear, "mov oD0, c0")), ["NB0389"]);
     assert_eq!(refused(&fog("Nv2a", "(mode: Linear, coordinate_source: EyePlane)", written)), ["NB0389"]);

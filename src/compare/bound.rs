@@ -2,7 +2,7 @@
 #![allow(clippy::float_arithmetic, reason = "bounds of errors")]
 
 use crate::plan::{Plan, PlannedDraw};
-use crate::raster::fog::LARGEST_POWER;
+use crate::raster::ideal;
 use crate::state::{ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, TriangleVertices};
 use crate::texture::unit::PlannedUnit;
 use crate::trace::Rule;
@@ -22,9 +22,15 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
             let slack = 2.0 * 255.0 * weights(plan) + 255.0 / 4096.0;
             Some((-1.0 - slack, slack))
         }
-        Rule::Int5 => {
+        Rule::Fog2 => {
             let slack = fog_slack(plan) + 255.0 / 4096.0;
             Some((-1.0 - slack, slack))
+        }
+        // Entries and bytes are rounded, the chord of a segment lies up to 0.96 above the curve, and e is floored to 4096ths where its slope
+        // is up to 16 ln 2; at the table's end the curve is 1.
+        Rule::Fog4 => {
+            let slack = fog_slack(plan) + 255.0 * 11.1 / 4096.0 + 1.0;
+            Some((-1.0 - slack, 1.0 + slack))
         }
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and what the weights are off.
@@ -102,29 +108,32 @@ fn coordinate_slack(plan: &Plan) -> f64 {
     slack.fold(1e-6, f64::max)
 }
 
-/// How far weights that are off and the cut to 24 bits move a fog factor, in steps: what they move the coordinate, times the steepest
-/// slope of the function.
+/// How far the light unit's words, weights that are off and the cut to 24 bits move a fog factor, in steps: what they move d' or e, times
+/// the steepest slope of the function.
 fn fog_slack(plan: &Plan) -> f64 {
     let slack = triangles(plan).map(|(draw, vertices)| {
-        let coordinates = vertices.fog().map(f64::from);
         let Some(function) = &draw.fog.function else { return 0.0 };
-        let (p0, p1) = (f64::from(function.p0), f64::from(function.p1));
-        if !(p0.is_finite() && p1.is_finite() && coordinates.iter().all(|d| d.is_finite())) {
+        let (passed, coordinates) = (vertices.fog(), vertices.fog_coordinates());
+        let real: [f64; 3] = std::array::from_fn(|k| ideal::fog_of_vertex(function, passed[k], coordinates[k]));
+        let (p0, p1) = if function.takes_e() { (0.0, 1.0) } else { (f64::from(function.p0), f64::from(function.p1)) };
+        if !(p0.is_finite()
+            && p1.is_finite()
+            && passed.iter().all(|d| d.is_finite())
+            && real.iter().all(|d| d.is_finite()))
+        {
             return 0.0;
         }
-        let ((low, high), largest) = (range(coordinates), coordinates.iter().fold(0.0, |n, d| d.abs().max(n)));
-        let moved = 2.0 * relative(plan, draw, vertices) * (high - low) + 2.0_f64.powi(-23) * largest;
+        let ((low, high), largest) = (range(real), real.iter().fold(0.0, |n, d| d.abs().max(n)));
+        let rounded = (0..3).map(|k| (f64::from(passed[k]) - real[k]).abs()).fold(0.0, f64::max);
+        let moved = rounded + 2.0 * relative(plan, draw, vertices) * (high - low) + 2.0_f64.powi(-23) * largest;
+        // 16 ln 2; the slope of 2^(-32 x^2) is steepest where x^2 is 1 / (64 ln 2).
         let slope = match function.mode {
-            FogMode::Linear | FogMode::LinearAbs => 1.0,
-            // 16 ln 2 times the largest power.
-            FogMode::Exp | FogMode::ExpAbs => {
-                11.1 * (16.0 * p1 * low).max(16.0 * p1 * high).min(f64::from(LARGEST_POWER)).exp2()
-            }
-            // The slope of 2^(-32 u^2) is steepest where u^2 is 1 / (64 ln 2).
+            FogMode::Linear | FogMode::LinearAbs => p1.abs(),
+            FogMode::Exp | FogMode::ExpAbs => 11.1,
             FogMode::Exp2 | FogMode::Exp2Abs => 4.05,
         };
         // The last term: float64 where large terms cancel.
-        255.0 * (slope * p1.abs() * moved + 2.0_f64.powi(-48) * (p0.abs() + (p1 * largest).abs() + 1.0))
+        255.0 * (slope * moved + 2.0_f64.powi(-48) * (p0.abs() + (p1 * largest).abs() + 1.0))
     });
     slack.fold(0.0, f64::max)
 }

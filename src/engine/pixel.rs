@@ -20,7 +20,7 @@ use crate::trace::{Decision, Observer, Rule, Step, Work, report};
 
 /// A triangle of a draw, set up.
 pub(crate) struct TriangleContext<'a> {
-    plan: &'a Plan,
+    pub(super) plan: &'a Plan,
     pub(crate) draw: &'a PlannedDraw,
     /// Its number in the draw.
     pub(crate) number: usize,
@@ -295,11 +295,18 @@ impl<'a> TriangleContext<'a> {
         let [r, g, b] = draw.fog.color.map(L::byte);
         let factor = if let Some(plane) = &self.fog {
             let found = plane.at(sample);
-            let ideal = || ideal::fog(&draw.fog.function, self.barycentrics(sample), self.vertices().fog());
-            let rule = if draw.fog.function.is_some() { Rule::Int5 } else { Rule::Num6 };
-            let factor = observer.settle(rule, L::value(i32::from(convert::factor_byte(found.value)), ideal));
+            let vertices = self.vertices();
+            let ideal = || {
+                ideal::fog(&draw.fog.function, self.barycentrics(sample), vertices.fog(), vertices.fog_coordinates())
+            };
+            let rule = match draw.fog.function {
+                None => Rule::Num6,
+                Some(function) if function.mode.is_linear() => Rule::Fog2,
+                Some(_) => Rule::Fog4,
+            };
+            let factor = observer.settle(rule, L::value(i32::from(found.byte), ideal));
             if O::ON {
-                reports::fog(sample, plane, found, factor, observer);
+                self.report_fog(sample, plane, found, factor, observer);
             }
             factor
         } else {

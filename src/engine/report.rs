@@ -2,18 +2,19 @@
 
 use super::pixel::TriangleContext;
 use crate::combiner::registers::{self, channel_name};
-use crate::number::Lane;
-use crate::number::convert;
+use crate::number::{Lane, convert, light};
 use crate::plan::PlannedDraw;
-use crate::raster::fog::{FogFactor, FogPlane, POWER_BITS};
+use crate::raster::fog::{FogFactor, FogPlane, FogStep};
 use crate::raster::interpolate::{Sample, Settled};
 use crate::raster::setup;
 use crate::rop::{blend, surface};
-use crate::state::{FogMode, Named, Register, VertexColor};
+use crate::state::{FogFunction, FogMode, Named, Profile, Register, VertexColor};
 use crate::trace::{Observer, Operand, Step, byte, part, plain, report};
+use crate::vertex::fog as vertex_fog;
 
 const RASTER: &str = "rasteriser";
 const INTERPOLATION: &str = "interpolation";
+const FOG: &str = "fog";
 
 /// Edge functions, perspective weights, D.
 pub(super) fn setup<O: Observer>(
@@ -121,64 +122,10 @@ pub(super) fn color<L: Lane, O: Observer>(
     observer.step(report::register_step(INTERPOLATION, "INT-2", name, value).by("interpolate", inputs));
 }
 
-/// INT-5: the fog factor, from factors of the vertices or by a function of their coordinates.
-pub(super) fn fog<L: Lane, O: Observer>(
-    sample: &Sample<'_>,
-    plane: &FogPlane,
-    found: FogFactor,
-    factor: L,
-    observer: &mut O,
-) {
-    const BLOCK: &str = "fog";
-    let give = |observer: &mut O, name: &str, value: i64| {
-        observer.step(Step::given(BLOCK, "INT-5", name, value));
-        plain(name, value)
-    };
-    // What the interpolated quotient is made of.
-    let quotient = |observer: &mut O, g: [i64; 3]| -> Vec<Operand> {
-        let planes: Vec<Operand> = (0..3).map(|k| give(observer, &format!("fog.G{k}"), g[k])).collect();
-        let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
-        planes.into_iter().chain(edges).chain([plain("D", sample.d)]).collect()
-    };
-    let step = Step::given(BLOCK, "INT-5", "fog.4096", found.value);
-    let mut step = match plane {
-        FogPlane::Factor(g) => step.by("floor_factor", quotient(observer, *g)),
-        FogPlane::Infinite(_) => step.note(Some("a coordinate or parameter is not finite".to_string())),
-        FogPlane::Coordinate(function, attribute) => {
-            let (g, exponent) = attribute.numbers();
-            let mut inputs = quotient(observer, g);
-            let (m, e) = found.coordinate;
-            observer.step(Step::given(BLOCK, "INT-5", "fog.d", m).by("truncate_24", inputs.clone()));
-            inputs.push(give(observer, "fog.G.exponent", exponent.into()));
-            observer.step(Step::given(BLOCK, "INT-5", "fog.d.exponent", e.into()).by("truncate_24_exponent", inputs));
-            let coordinate = [plain("fog.d", m), plain("fog.d.exponent", e.into())];
-            let [p0, p1] = [("fog.p0", function.p0), ("fog.p1", function.p1)].map(|(name, p)| {
-                let (m, e) = convert::split(p);
-                [give(observer, name, m), give(observer, &format!("{name}.exponent"), e.into())]
-            });
-            let abs = matches!(function.mode, FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs);
-            match found.power {
-                None => {
-                    let operation = if abs { "fog_linear_abs" } else { "fog_linear" };
-                    step.by(operation, [&p0[..], &p1, &coordinate].concat())
-                }
-                Some(value) => {
-                    let scale = 1 << POWER_BITS;
-                    let squared = matches!(function.mode, FogMode::Exp2 | FogMode::Exp2Abs);
-                    let power = if squared { "fog_power_of_square" } else { "fog_power" };
-                    let sum = if abs { "fog_exponential_abs" } else { "fog_exponential" };
-                    let made = Step::given(BLOCK, "INT-5", "fog.power", value);
-                    observer.step(made.by(power, [&p1[..], &coordinate].concat()).per(scale));
-                    let operand = Operand { per_one: scale, ..plain("fog.power", value) };
-                    step.by(sum, [&p0[..], &[operand]].concat())
-                }
-            }
-        }
-    };
-    step.per_one = 4096;
-    observer.step(step);
-    let inputs = vec![Operand { per_one: 4096, ..plain("fog.4096", found.value) }];
-    observer.step(report::register_step(BLOCK, "NUM-6", "fog.a", factor).by("factor_byte", inputs));
+/// A number of the set-up that a step reads.
+fn given<O: Observer>(observer: &mut O, rule: &'static str, name: &str, value: i64) -> Operand {
+    observer.step(Step::given(FOG, rule, name, value));
+    plain(name, value)
 }
 
 fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O) {
@@ -191,6 +138,142 @@ fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O
 }
 
 impl TriangleContext<'_> {
+    /// FOG-1 to FOG-5, INT-5n: the fog factor, from factors of the vertices or by a function of their coordinates.
+    pub(super) fn report_fog<L: Lane, O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        plane: &FogPlane,
+        found: FogFactor,
+        factor: L,
+        observer: &mut O,
+    ) {
+        // What the interpolated quotient is made of.
+        let quotient = |observer: &mut O, rule, g: [i64; 3]| -> Vec<Operand> {
+            let planes: Vec<Operand> = (0..3).map(|k| given(observer, rule, &format!("fog.G{k}"), g[k])).collect();
+            let edges = (0..3).map(|k| plain(format!("E{k}"), sample.e[k]));
+            planes.into_iter().chain(edges).chain([plain("D", sample.d)]).collect()
+        };
+        if let Some(function) = &self.draw.fog.function {
+            self.report_passed_fog(function, observer);
+        }
+        let factor_in_4096ths = |observer: &mut O, rule, v: i64, operation, inputs| {
+            let mut step = Step::given(FOG, rule, "fog.4096", v).by(operation, inputs);
+            step.per_one = 4096;
+            observer.step(step);
+            ("NUM-6", "factor_byte", vec![Operand { per_one: 4096, ..plain("fog.4096", v) }])
+        };
+        let (rule, operation, inputs) = match (plane, found.from) {
+            (FogPlane::Linear(line, attribute), FogStep::Linear(v, (m, e))) => {
+                let (g, exponent) = attribute.numbers();
+                let mut inputs = quotient(observer, "FOG-2", g);
+                observer.step(Step::given(FOG, "FOG-2", "fog.d", m).by("truncate_24", inputs.clone()));
+                inputs.push(given(observer, "FOG-2", "fog.G.exponent", exponent.into()));
+                observer.step(Step::given(FOG, "FOG-2", "fog.d.exponent", e.into()).by("truncate_24_exponent", inputs));
+                let mut inputs = Vec::new();
+                for (name, p) in [("fog.p0", line.p0), ("fog.p1", line.p1)] {
+                    let (m, e) = convert::split(p);
+                    inputs.push(given(observer, "FOG-2", name, m));
+                    inputs.push(given(observer, "FOG-2", &format!("{name}.exponent"), e.into()));
+                }
+                inputs.extend([plain("fog.d", m), plain("fog.d.exponent", e.into())]);
+                let operation = if line.absolute { "fog_linear_abs" } else { "fog_linear" };
+                factor_in_4096ths(observer, "FOG-2", v, operation, inputs)
+            }
+            (FogPlane::Exponential(mode, attribute), FogStep::Exponential(q)) => {
+                let (g, exponent) = attribute.numbers();
+                let mut inputs = quotient(observer, "FOG-4", g);
+                inputs.push(given(observer, "FOG-4", "fog.G.exponent", exponent.into()));
+                inputs.push(plain("lowered", i64::from(q.lowered)));
+                let note = q.lowered.then(|| "exactly on a step: one step lower (INT-4t)".to_string());
+                observer.step(Step::given(FOG, "FOG-4", "fog.q", q.value).per(4096).by("fog_steps", inputs).note(note));
+                let operation = match mode {
+                    FogMode::Exp => "fog_exp",
+                    FogMode::ExpAbs => "fog_exp_abs",
+                    _ => "fog_exp2",
+                };
+                ("FOG-4", operation, vec![Operand { per_one: 4096, ..plain("fog.q", q.value) }])
+            }
+            (FogPlane::Factor(g), FogStep::Factor(v)) => {
+                let inputs = quotient(observer, "INT-5n", *g);
+                factor_in_4096ths(observer, "INT-5n", v, "floor_factor", inputs)
+            }
+            _ => {
+                let linear = self.draw.fog.function.is_some_and(|function| function.mode.is_linear());
+                let step = report::register_step(FOG, if linear { "FOG-5" } else { "FOG-4" }, "fog.a", factor);
+                let what = "d' or e of a vertex, or a parameter, is not finite".to_string();
+                return observer.step(step.note(Some(what)));
+            }
+        };
+        observer.step(report::register_step(FOG, rule, "fog.a", factor).by(operation, inputs));
+    }
+
+    /// FOG-1 to FOG-3, INT-5n: what the vertices pass of their fog coordinates.
+    fn report_passed_fog<O: Observer>(&self, function: &FogFunction, observer: &mut O) {
+        let word = |observer: &mut O, rule, name: String, value: u32, operation, inputs| {
+            let step = Step::given(FOG, rule, name.clone(), value.into()).by(operation, inputs);
+            observer.step(step.note(Some(f32::from_bits(value).to_string())));
+            plain(name, value.into())
+        };
+        let pattern = |observer: &mut O, name: String, value: f32| {
+            observer
+                .step(Step::given(FOG, "FOG-1", name.clone(), value.to_bits().into()).note(Some(value.to_string())));
+            plain(name, value.to_bits().into())
+        };
+        let vertices = self.vertices();
+        let (passed, coordinates) = (vertices.fog(), vertices.fog_coordinates());
+        let made = [0, 1, 2].map(|k| {
+            let d = coordinates[k]?;
+            let same = vertex_fog::passed(function, self.plan.profile, d).to_bits() == passed[k].to_bits();
+            same.then_some(d)
+        });
+        let mut parameters: Vec<Operand> = Vec::new();
+        if function.takes_e() && made.iter().any(Option::is_some) {
+            for (n, p) in [function.p0, function.p1, function.p2].into_iter().enumerate() {
+                let given = pattern(observer, format!("fog.p{n}.pattern"), p);
+                let name = format!("fog.p{n}.word");
+                parameters.push(word(observer, "FOG-1", name, light::word(p.to_bits()), "light_word", vec![given]));
+            }
+        }
+        for (k, (passed, made)) in passed.into_iter().zip(made).enumerate() {
+            let name = |what: &str| format!("vertex{k}.fog.{what}");
+            let Some(d) = made else {
+                let note = "made at the nearest w, or given".to_string();
+                observer.step(Step::given(FOG, "RAS-0", name("passed"), passed.to_bits().into()).note(Some(note)));
+                continue;
+            };
+            let given = pattern(observer, name("coordinate"), d);
+            let [p0, p1, p2] = parameters.as_slice() else {
+                word(observer, "FOG-2", name("passed"), passed.to_bits(), "light_word", vec![given]);
+                continue;
+            };
+            let unit = vertex_fog::LightFog::new(function, d);
+            let square = vertex_fog::square(d).to_bits();
+            let square = word(observer, "FOG-3", name("square"), square, "square_f32", vec![given.clone()]);
+            let [d, squared] = unit.coordinates;
+            let d = word(observer, "FOG-1", name("word"), d, "light_word", vec![given]);
+            let squared = word(observer, "FOG-1", name("square.word"), squared, "light_word", vec![square]);
+            let product = |observer: &mut O, n: usize, p: &Operand, of| {
+                word(
+                    observer,
+                    "FOG-3",
+                    name(&format!("product{n}")),
+                    unit.products[n - 1],
+                    "light_product",
+                    vec![p.clone(), of],
+                )
+            };
+            let first = product(observer, 1, p1, d);
+            let second = product(observer, 2, p2, squared);
+            let inputs = vec![p0.clone(), first, second];
+            if self.plan.profile == Profile::Nv10 {
+                let e = word(observer, "FOG-3", name("e"), unit.sum, "light_sum", inputs);
+                word(observer, "INT-5n", name("passed"), passed.to_bits(), "copy_bit_11", vec![e]);
+            } else {
+                word(observer, "FOG-3", name("passed"), passed.to_bits(), "light_sum", inputs);
+            }
+        }
+    }
+
     pub(super) fn report_depth<O: Observer>(
         &self,
         sample: &Sample<'_>,

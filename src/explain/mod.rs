@@ -119,20 +119,27 @@ fn fog(planned: &PlannedDraw) -> Vec<String> {
         let factor = match planned.fog.function {
             _ if !planned.fog.enabled => "1: fog is off".to_string(),
             None => "smooth(vertices): factors".to_string(),
-            Some(FogFunction { mode, p0, p1 }) => {
-                let f = match mode {
-                    FogMode::Linear | FogMode::LinearAbs => format!("{p0} + {p1} d - 1"),
-                    FogMode::Exp | FogMode::ExpAbs => format!("{p0} + 2^(16 * {p1} d) - 3/2"),
-                    FogMode::Exp2 | FogMode::Exp2Abs => format!("{p0} + 2^(-32 * ({p1} d)^2) - 3/2"),
-                };
-                let magnitude = matches!(mode, FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs);
-                let f = if magnitude { format!("|{f}|") } else { f };
-                format!("{f}, limited to 0..1, d being the pixel's fog coordinate")
-            }
+            Some(function) => curve(&function),
         };
         lines.push(format!("fog.a = {factor}"));
     }
     lines
+}
+
+/// Fog as a function of the coordinate d.
+fn curve(function: &FogFunction) -> String {
+    let FogFunction { mode, p0, p1, p2, .. } = function;
+    let square = if *p2 == 0.0 { String::new() } else { format!(" + {p2} d^2") };
+    let e = format!("e = {p0} + {p1} d{square} at the vertices");
+    match mode {
+        FogMode::Linear if function.per_vertex => format!("e - 1, limited to 0..1, {e}"),
+        FogMode::LinearAbs if function.per_vertex => format!("|e| - 1, limited to 0..1, {e}"),
+        FogMode::Linear => format!("{p0} + {p1} d - 1, limited to 0..1, d being the pixel's fog coordinate"),
+        FogMode::LinearAbs => format!("{p0} + {p1} |d| - 1, limited to 0..1, d being the pixel's fog coordinate"),
+        FogMode::Exp => format!("2^(16 (e - 3/2)), 1 from e = 3/2 on, 0 below e = 1, {e}"),
+        FogMode::ExpAbs => format!("2^(-16 |e - 3/2|), 0 from a distance of 1/2 on, {e}"),
+        FogMode::Exp2 | FogMode::Exp2Abs => format!("2^(-32 (e - 3/2)^2), 0 from a distance of 1/2 on, {e}"),
+    }
 }
 
 /// What a unit samples, and how.

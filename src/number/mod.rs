@@ -20,6 +20,7 @@
 mod block;
 pub mod convert;
 mod each;
+pub mod light;
 mod paired;
 mod part;
 mod real;

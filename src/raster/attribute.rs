@@ -4,7 +4,7 @@
 //! With E the edge functions and P the perspective weights, the value is sum P x E / sum P E (INT-1, INT-4). An [`Attribute`] keeps
 //! P x of the three vertices, a [`Quotient`] the ratio at a sample; rounding it to a float or to steps sees the exact remainder.
 
-use super::interpolate::Sample;
+use super::interpolate::{Sample, Settled};
 use super::setup::Triangle;
 use crate::number::convert::{align, shift, split};
 
@@ -60,6 +60,13 @@ impl Sample<'_> {
         }
         Quotient { numerator: self.sum(&attribute.g), denominator: self.d, exponent: attribute.exponent }
     }
+
+    /// floor(2^bits times the value), ties as INT-4t has them, at a sample that the triangle covers.
+    pub fn steps(&self, attribute: &Attribute, bits: i32) -> Settled {
+        let (value, exact) = self.attribute(attribute).floor_steps(bits);
+        let lowered = exact && !self.triangle.exact_reciprocal && self.truncation(&attribute.g) > 0;
+        Settled { value: value - i64::from(lowered), lowered }
+    }
 }
 
 impl Quotient {
@@ -87,12 +94,33 @@ impl Quotient {
         f32::from_bits(sign | (field + kept as u32 + u32::from(up)))
     }
 
-    /// The first 24 significant bits, toward zero: (m, e) for m 2^e, 2^23 <= |m| < 2^24. 0 is (0, 0). (INT-5)
+    /// The first 24 significant bits, toward zero: (m, e) for m 2^e, 2^23 <= |m| < 2^24. 0 is (0, 0). (FOG-2)
     pub fn truncated_24(&self) -> (i64, i32) {
         let Some((quotient, exponent, _)) = self.digits() else { return (0, 0) };
         let drop = bits(quotient) - SIGNIFICANT;
         let mantissa = (quotient >> drop) as i64;
         (if self.numerator < 0 { -mantissa } else { mantissa }, exponent + drop)
+    }
+
+    /// floor(value * 2^bits), limited to what 64 bits hold, and whether it is the value, with room for one below it.
+    pub fn floor_steps(&self, bits: i32) -> (i64, bool) {
+        let (mut numerator, mut exponent) = (self.numerator, self.exponent + bits);
+        if numerator == 0 {
+            return (0, true);
+        }
+        if exponent > 0 {
+            // What leaves 127 bits is more than 2^64 times the denominator.
+            if exponent > 126 || numerator.unsigned_abs() >= 1 << (126 - exponent) {
+                return (if numerator < 0 { i64::MIN } else { i64::MAX }, false);
+            }
+            (numerator, exponent) = (numerator << exponent, 0);
+        }
+        let denominator = i128::from(self.denominator);
+        let (whole, rest) = (numerator.div_euclid(denominator), numerator.rem_euclid(denominator));
+        let floor = shift(whole, exponent);
+        let limited = floor.clamp(i128::from(i64::MIN), i128::from(i64::MAX));
+        let exact = rest == 0 && exponent > -127 && floor << -exponent == whole && limited == floor;
+        (limited as i64, exact && limited > i128::from(i64::MIN))
     }
 
     /// floor(value * scale), limited to what 64 bits hold.
@@ -210,6 +238,18 @@ mod tests {
             };
             let limited = expected.clamp(i128::from(i64::MIN), i128::from(i64::MAX)) as i64;
             prop_assert_eq!(quotient(i128::from(n), d, e).floor_times(scale), limited);
+        }
+
+        #[test]
+        fn floors_of_steps(n in -(1_i128 << 101)..1 << 101, d in 1_i64..1 << 62, e in -300..200, bits in 0..20) {
+            let q = quotient(n, d, e);
+            let (floor, exact) = q.floor_steps(bits);
+            prop_assert_eq!(floor, q.floor_times(1 << bits));
+            if exact {
+                prop_assert_eq!(quotient(-n, d, e).floor_steps(bits), (-floor, true));
+            } else if floor.unsigned_abs() < 1 << 62 {
+                prop_assert_eq!(quotient(-n, d, e).floor_steps(bits), (-floor - 1, false));
+            }
         }
 
         #[test]

@@ -1,330 +1,193 @@
-//! INT-5: fog functions, evaluated at each pixel in integers.
+//! FOG-2, FOG-4, FOG-5: what becomes of the fog of the vertices at a pixel, in integers.
 //!
-//! The coordinate d enters with 24 significant bits, p0 and p1 as the single-precision numbers that they are. Linear fog is computed
-//! without error up to the floor to 4096ths; the exponentials have one more step, a power of two floored to 32 fraction bits.
+//! Linear fog is a straight line of the interpolated coordinate, which enters with 24 significant bits; p0 and p1 are the
+//! single-precision numbers that they are, and nothing is lost before the floor to 4096ths. The exponentials are tables of 32 segments,
+//! read at the interpolated e less 3/2.
 
 use super::attribute::Attribute;
-use super::interpolate::Sample;
+use super::interpolate::{Sample, Settled};
 use super::setup::Triangle;
-use crate::number::convert::{shift, split};
+use crate::number::convert::{factor_byte, shift, split};
 use crate::state::{FogFunction, FogMode};
 
-/// Fraction bits of powers of two.
-pub const POWER_BITS: u32 = 32;
+/// Fraction bits of 4096ths.
+pub const FACTOR_BITS: i32 = 12;
 
-/// Exponents of powers are limited to this: fog has no use for larger ones.
-pub const LARGEST_POWER: i32 = 16;
+/// 3/2 in 4096ths: what is taken off e.
+pub const CENTRE: i64 = 6144;
 
-/// Fraction bits of an exponent x of a power.
-const EXPONENT_BITS: i32 = 120;
+/// The steps from the centre at which the tables end, 4096ths.
+pub const TABLE_END: i64 = 2048;
+
+/// Steps of a segment of the tables.
+const SEGMENT: i64 = 64;
+
+/// floor(255 2^(-i/4) + 1/2).
+pub const EXPONENTIAL: [u8; 33] = [
+    255, 214, 180, 152, 128, 107, 90, 76, 64, 54, 45, 38, 32, 27, 23, 19, 16, 13, 11, 9, 8, 7, 6, 5, 4, 3, 3, 2, 2, 2,
+    1, 1, 1,
+];
+
+/// floor(255 2^(-i^2/128) + 1/2).
+pub const SQUARED: [u8; 33] = [
+    255, 254, 250, 243, 234, 223, 210, 196, 180, 164, 148, 132, 117, 102, 88, 75, 64, 53, 44, 36, 29, 23, 19, 15, 11,
+    9, 7, 5, 4, 3, 2, 1, 1,
+];
 
 /// What a triangle's vertices give for fog.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum FogPlane {
-    /// Factors, clamped to 0..1: floor(4096 P_k f_k) (INT-5n).
+    /// Factors, limited to 0..1: floor(4096 P_k f_k) (INT-5n).
     Factor([i64; 3]),
-    /// Coordinates for a function of each pixel.
-    Coordinate(FogFunction, Attribute),
-    /// A coordinate or a parameter is not finite: the factor in 4096ths that stands for it.
-    Infinite(i64),
+    /// d', or e of INT-5n, for a straight line (FOG-2).
+    Linear(Line, Attribute),
+    /// e, for a table (FOG-4).
+    Exponential(FogMode, Attribute),
+    /// Something is not finite: the byte that stands for it (FOG-4, FOG-5).
+    NotFinite(u8),
 }
 
-/// A fog factor, and what it was made of.
+/// p0 + p1 d' - 1, limited to 0..1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Line {
+    /// What d' = 0 gives, and 1.
+    pub p0: f32,
+    /// How it changes with d'.
+    pub p1: f32,
+    /// The magnitude of d' counts.
+    pub absolute: bool,
+}
+
+/// A fog byte, and what it was made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FogFactor {
-    /// In 4096ths, 0..=4096.
-    pub value: i64,
-    /// The coordinate m 2^e as (m, e); (0, 0) where factors are interpolated.
-    pub coordinate: (i64, i32),
-    /// The power of two in 2^-32; none in linear modes.
-    pub power: Option<i64>,
+    /// FOG.a.
+    pub byte: u8,
+    /// The step before.
+    pub from: FogStep,
+}
+
+/// What a fog byte was made of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FogStep {
+    /// A factor in 4096ths, 0..=4096.
+    Factor(i64),
+    /// The same, of the coordinate m 2^e as (m, e).
+    Linear(i64, (i64, i32)),
+    /// Steps of 1/4096 from the centre of the table, less the tie that was lowered.
+    Exponential(Settled),
+    /// Nothing finite.
+    NotFinite,
 }
 
 impl FogPlane {
-    /// Sets up the fog of a triangle from what its vertices have: factors, or coordinates of the function.
+    /// Sets up the fog of a triangle from what its vertices have: factors, or d' or e of the function.
     pub fn new(triangle: &Triangle, function: Option<FogFunction>, vertices: [f32; 3]) -> FogPlane {
-        match function {
-            None => FogPlane::Factor(triangle.factor(vertices.map(|f| f.clamp(0.0, 1.0)))),
-            Some(f) if vertices.iter().chain([&f.p0, &f.p1]).all(|n| n.is_finite()) => {
-                FogPlane::Coordinate(f, triangle.attribute(vertices))
+        let Some(function) = function else {
+            return FogPlane::Factor(triangle.factor(vertices.map(|f| f.clamp(0.0, 1.0))));
+        };
+        let mode = function.mode;
+        let mut finite = vertices.iter().all(|n| n.is_finite());
+        if mode.is_linear() {
+            let (p0, p1) = if function.per_vertex { (0.0, 1.0) } else { (function.p0, function.p1) };
+            finite &= p0.is_finite() && p1.is_finite();
+            if finite {
+                let line = Line { p0, p1, absolute: mode == FogMode::LinearAbs };
+                return FogPlane::Linear(line, triangle.attribute(vertices));
             }
-            Some(f) => FogPlane::Infinite(match f.mode {
-                FogMode::Linear | FogMode::LinearAbs | FogMode::Exp => 4096,
-                FogMode::Exp2 | FogMode::ExpAbs | FogMode::Exp2Abs => 0,
-            }),
+        } else if finite {
+            return FogPlane::Exponential(mode, triangle.attribute(vertices));
         }
+        FogPlane::NotFinite(not_finite(mode))
     }
 
-    /// The factor at a sample.
+    /// The factor at a sample that the triangle covers.
     #[inline]
     pub fn at(&self, sample: &Sample<'_>) -> FogFactor {
         match self {
-            FogPlane::Factor(g) => FogFactor { value: sample.factor(g), coordinate: (0, 0), power: None },
-            FogPlane::Coordinate(function, attribute) => evaluate(function, sample.attribute(attribute).truncated_24()),
-            FogPlane::Infinite(value) => FogFactor { value: *value, coordinate: (0, 0), power: None },
+            FogPlane::Factor(g) => {
+                let v = sample.factor(g);
+                FogFactor { byte: factor_byte(v), from: FogStep::Factor(v) }
+            }
+            FogPlane::Linear(line, attribute) => {
+                let coordinate = sample.attribute(attribute).truncated_24();
+                let v = line.at(coordinate);
+                FogFactor { byte: factor_byte(v), from: FogStep::Linear(v, coordinate) }
+            }
+            FogPlane::Exponential(mode, attribute) => {
+                let steps = sample.steps(attribute, FACTOR_BITS);
+                let q = Settled { value: steps.value.saturating_sub(CENTRE), ..steps };
+                FogFactor { byte: exponential(*mode, q.value), from: FogStep::Exponential(q) }
+            }
+            FogPlane::NotFinite(byte) => FogFactor { byte: *byte, from: FogStep::NotFinite },
         }
     }
 }
 
-/// INT-5 at the coordinate m 2^e given as (m, e), |m| < 2^24; p0 and p1 are finite.
-pub fn evaluate(function: &FogFunction, coordinate: (i64, i32)) -> FogFactor {
-    let (factor, power) = factor(function, coordinate);
-    FogFactor { value: factor >> (POWER_BITS - 12), coordinate, power }
-}
-
-/// The same factor floored to 2^-32, 0..=2^32, and the power of two in it.
-pub fn factor(function: &FogFunction, coordinate: (i64, i32)) -> (i64, Option<i64>) {
-    let (p0, p1) = (split(function.p0), split(function.p1));
-    // d p1, exactly: 48 bits.
-    let product = (coordinate.0 * p1.0, coordinate.1 + p1.1);
-    let power = match function.mode {
-        FogMode::Linear | FogMode::LinearAbs => None,
-        FogMode::Exp | FogMode::ExpAbs => Some(exponent(i128::from(product.0), product.1 + 4)),
-        FogMode::Exp2 | FogMode::Exp2Abs => {
-            let magnitude = i128::from(product.0);
-            Some(exponent(-magnitude * magnitude, 2 * product.1 + 5))
-        }
-    };
-    let power = power.map(power_of_two);
-    let sum = match power {
-        None => Fixed::sum(p0, product).plus(-(1 << POWER_BITS)),
-        Some(power) => Fixed::sum(p0, (0, 0)).plus(power - (3 << (POWER_BITS - 1))),
-    };
-    let factor = match function.mode {
-        FogMode::Linear | FogMode::Exp | FogMode::Exp2 => sum.floor,
-        FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs => sum.magnitude(),
-    };
-    (factor.clamp(0, 1 << POWER_BITS) as i64, power.map(|power| power as i64))
-}
-
-/// A number floored to 2^-32, and whether something was cut off: the number lies above by less than 2^-32. Far outside 0..1 it is
-/// limited and the rest is not kept.
-#[derive(Clone, Copy)]
-struct Fixed {
-    floor: i128,
-    rest: bool,
-}
-
-impl Fixed {
-    /// The sum of two numbers m 2^e of at most 48 bits.
-    fn sum(a: (i64, i32), b: (i64, i32)) -> Fixed {
-        // A zero must not decide where the other one is cut.
-        let ((high, high_at), (low, low_at)) = if b.0 == 0 || (a.0 != 0 && a.1 >= b.1) { (a, b) } else { (b, a) };
-        // If the exponents are further apart than this, the lower number is less than 2^-28 of the higher one: they cannot cancel, and
-        // where the cut at 2^(high_at - 76) is not below 2^-32 the sum is beyond 2^43.
-        let gap = (high_at - low_at).clamp(0, 76);
-        let (low, cut) = floor(i128::from(low), low_at - (high_at - gap));
-        let (sum, at) = ((i128::from(high) << gap) + low, high_at - gap + POWER_BITS as i32);
-        if at <= 0 {
-            let (floor, rest) = floor(sum, at);
-            return Fixed { floor, rest: rest || cut };
-        }
-        // Beyond 2^60 only the sign counts.
-        let limit = 1_i128 << 92;
-        let fits = at < 92 && sum.unsigned_abs() < 1 << (92 - at);
-        Fixed { floor: if fits { sum << at } else { limit * sum.signum() }, rest: cut }
-    }
-
-    /// Adds a multiple of 2^-32.
-    fn plus(self, n: i128) -> Fixed {
-        Fixed { floor: self.floor + n, rest: self.rest }
-    }
-
-    /// The magnitude, floored to 2^-32.
-    fn magnitude(self) -> i128 {
-        if self.floor < 0 { -self.floor - i128::from(self.rest) } else { self.floor }
+/// FOG-4, FOG-5: the byte where something is not finite.
+pub fn not_finite(mode: FogMode) -> u8 {
+    match mode {
+        FogMode::Linear | FogMode::LinearAbs | FogMode::Exp => 255,
+        FogMode::Exp2 | FogMode::ExpAbs | FogMode::Exp2Abs => 0,
     }
 }
 
-/// floor(n 2^exponent), and whether something was cut off. The result fits.
-fn floor(n: i128, exponent: i32) -> (i128, bool) {
-    let floored = shift(n, exponent);
-    (floored, exponent < 0 && shift(floored, -exponent.max(-126)) != n)
-}
-
-/// m 2^e in 2^-120, floored; limited to -64..=16.
-fn exponent(m: i128, e: i32) -> i128 {
-    let top = 128 - m.unsigned_abs().leading_zeros() as i32 + e;
-    let (lowest, highest) = (-64_i128 << EXPONENT_BITS, i128::from(LARGEST_POWER) << EXPONENT_BITS);
-    if m != 0 && top > 6 {
-        return if m < 0 { lowest } else { highest };
+/// FOG-4: the byte of q, steps of 1/4096 by which e lies above 3/2. The mode is not a linear one.
+#[inline]
+pub const fn exponential(mode: FogMode, q: i64) -> u8 {
+    if matches!(mode, FogMode::Exp) && q >= 0 {
+        return 255;
     }
-    shift(m, e + EXPONENT_BITS).clamp(lowest, highest)
-}
-
-/// floor(2^(32 + x)) of x in 2^-120, -64 <= x <= 16.
-///
-/// The fraction's power is a series in 128-bit fixed point of which every operation rounds down, so the result is never above the
-/// true power, and less than 2^-118 of it below (the floor of x included). It is the true floor unless the true power lies within
-/// that distance above a multiple of 2^-32. It is such a multiple only where x is a whole number: there the series gives 1 exactly.
-/// Other powers are irrational; they come that close only by chance, which is 2^-86 for each of the some 2^54 products of d and p1.
-pub fn power_of_two(x: i128) -> i128 {
-    let whole = (x >> EXPONENT_BITS) as i32;
-    let fraction = (x & ((1 << EXPONENT_BITS) - 1)) as u128;
-    if whole < -(POWER_BITS as i32) {
+    let table = if matches!(mode, FogMode::Exp | FogMode::ExpAbs) { &EXPONENTIAL } else { &SQUARED };
+    let n = q.saturating_abs();
+    if n >= TABLE_END {
         return 0;
     }
-    let fraction = fraction << (127 - EXPONENT_BITS);
-    let mut series = 0;
-    let mut n = SERIES.len();
-    while n > 0 {
-        n -= 1;
-        series = SERIES[n] + multiply(series, fraction);
-    }
-    (series >> (127 - POWER_BITS as i32 - whole)) as i128
+    let (i, w) = ((n / SEGMENT) as usize, n % SEGMENT);
+    ((table[i] as i64 * (SEGMENT - w) + table[i + 1] as i64 * w + SEGMENT / 2) / SEGMENT) as u8
 }
 
-/// The natural logarithm of 2, 127 fraction bits, floored.
-const LN_2: u128 = 0x58b9_0bfb_e8e7_bcd5_e4f1_d9cc_01f9_7b57;
-
-/// ln(2)^n / n!, 127 fraction bits, each less than 3 below the true value. The first that is left out is below 2^-129.
-const SERIES: [u128; 31] = {
-    let mut series = [1 << 127; 31];
-    let mut n = 1;
-    while n < series.len() {
-        series[n] = multiply(series[n - 1], LN_2) / n as u128;
-        n += 1;
+impl Line {
+    /// FOG-2: v, 0..=4096, at the coordinate m 2^e given as (m, e), |m| < 2^24; p0 and p1 are finite.
+    pub fn at(&self, coordinate: (i64, i32)) -> i64 {
+        let ((m, e), (m1, e1)) = (coordinate, split(self.p1));
+        let m = if self.absolute { m.abs() } else { m };
+        // 48 bits, exactly.
+        let product = (m * m1, e + e1);
+        (floor_sum(split(self.p0), product) - (1 << FACTOR_BITS)).clamp(0, 1 << FACTOR_BITS) as i64
     }
-    series
-};
+}
 
-/// The floor of a product of numbers with 127 fraction bits. The product is below 2.
-const fn multiply(a: u128, b: u128) -> u128 {
-    const LOW: u128 = u64::MAX as u128;
-    let (a1, a0, b1, b0) = (a >> 64, a & LOW, b >> 64, b & LOW);
-    let middle = a1 * b0 + ((a0 * b0) >> 64);
-    let cross = a0 * b1 + (middle & LOW);
-    let high = a1 * b1 + (middle >> 64) + (cross >> 64);
-    // One bit more from the lower half.
-    high << 1 | (cross >> 63 & 1)
+/// floor(4096 (a + b)) of two numbers m 2^e of at most 48 bits; far outside 0..2 it is limited.
+fn floor_sum(a: (i64, i32), b: (i64, i32)) -> i128 {
+    // A zero must not decide where the other one is cut.
+    let ((high, high_at), (low, low_at)) = if b.0 == 0 || (a.0 != 0 && a.1 >= b.1) { (a, b) } else { (b, a) };
+    // If the exponents are further apart than this, the lower number is less than 2^-28 of the higher one: they cannot cancel, and where the
+    // cut at 2^(high_at - 76) is not below 2^-12 the sum is beyond 2^43.
+    let gap = (high_at - low_at).clamp(0, 76);
+    let sum = (i128::from(high) << gap) + shift(i128::from(low), low_at - (high_at - gap));
+    let at = high_at - gap + FACTOR_BITS;
+    if at <= 0 {
+        return shift(sum, at);
+    }
+    // Beyond 2^60 only the sign counts.
+    let fits = at < 72 && sum.unsigned_abs() < 1 << (72 - at);
+    if fits { sum << at } else { sum.signum() << 72 }
 }
 
 #[cfg(test)]
 mod tests {
     #![allow(clippy::float_arithmetic, reason = "real-number text of the functions")]
     use super::*;
-    use crate::number::convert::factor_byte;
     use crate::state::{Named, Profile};
     use proptest::prelude::*;
 
-    /// Numbers of 192 fraction bits, 32 bits a place, lowest first.
-    type Wide = Vec<u32>;
-    const PLACES: usize = 6;
-
-    fn product(a: &Wide, b: &Wide) -> Wide {
-        let mut out = vec![0_u32; a.len() + b.len()];
-        for (i, x) in a.iter().enumerate() {
-            let mut carry = 0_u64;
-            for (j, y) in b.iter().enumerate() {
-                let sum = u64::from(out[i + j]) + u64::from(*x) * u64::from(*y) + carry;
-                (out[i + j], carry) = (sum as u32, sum >> 32);
-            }
-            out[i + b.len()] = carry as u32;
-        }
-        out
+    fn line(p0: f32, p1: f32) -> Line {
+        Line { p0, p1, absolute: false }
     }
 
-    /// floor(sqrt(a)), a below 4, found bit by bit.
-    fn root(a: &Wide) -> Wide {
-        let mut square = vec![0; PLACES];
-        square.extend(a);
-        let mut root = vec![0; PLACES + 1];
-        for bit in (0..=32 * PLACES).rev() {
-            let mut tried: Wide = root.clone();
-            tried[bit / 32] |= 1 << (bit % 32);
-            let tried_square = product(&tried, &tried);
-            if tried_square[..square.len()].iter().rev().le(square.iter().rev()) {
-                root = tried;
-            }
-        }
-        root
-    }
-
-    /// 2^(2^-k) for k = 1..=120.
-    fn roots() -> Vec<Wide> {
-        let mut two = vec![0; PLACES + 1];
-        two[PLACES] = 2;
-        let mut roots = vec![root(&two)];
-        while roots.len() < 120 {
-            roots.push(root(&roots[roots.len() - 1]));
-        }
-        roots
-    }
-
-    /// floor(2^(32 + x)), x in 2^-120, as a product of roots of 2.
-    fn by_roots(roots: &[Wide], x: i128) -> i128 {
-        let mut power = vec![0; PLACES + 1];
-        power[PLACES] = 1;
-        for (k, root) in roots.iter().enumerate() {
-            if x >> (119 - k) & 1 == 1 {
-                power = product(&power, root)[PLACES..2 * PLACES + 1].to_vec();
-            }
-        }
-        let whole = (x >> 120) as i32;
-        let top = power[2..].iter().rev().fold(0_u128, |n, place| n.wrapping_shl(32) | u128::from(*place));
-        // `top` keeps the 128 highest fraction bits and loses the 1 before them.
-        let keep = 32 + whole;
-        if keep < 0 { 0 } else { (1 << keep) + if keep == 0 { 0 } else { (top >> (128 - keep)) as i128 } }
-    }
-
-    #[test]
-    fn powers_are_those_of_the_roots_of_two() {
-        let roots = roots();
-        let mut seed = 1_u128;
-        let mut next = || {
-            seed = seed.wrapping_mul(0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645).wrapping_add(0x5851_f42d_4c95_7f2d);
-            seed ^ seed >> 64
-        };
-        for n in 0..4000 {
-            let x = (next() as i128 >> 1) % (80 << 120) - (64 << 120);
-            // Fewer bits, as d and p1 of few bits give.
-            let x = if n % 2 == 0 { x } else { x >> (n % 118) << (n % 118) };
-            assert_eq!(power_of_two(x), by_roots(&roots, x), "{x:#x}");
-        }
-        for whole in -33..=16_i128 {
-            for near in [-3, -2, -1, 0, 1, 2, 3, 1 << 60, -(1 << 60)] {
-                let x = ((whole << 120) + near).min(16 << 120);
-                assert_eq!(power_of_two(x), by_roots(&roots, x), "{whole} {near}");
-            }
-        }
-    }
-
-    #[test]
-    fn powers_as_listed() {
-        // floor(2^(32 + x)) to 40 digits by another program.
-        for ((n, k), expected) in [
-            ((-1_i128, 1), 3037000499),
-            ((1_i128, 1), 6074000999),
-            ((-5_i128, 2), 1805811301),
-            ((-12345_i128, 12), 531717233),
-            ((-16777215_i128, 20), 65536),
-            ((-1_i128, 100), 4294967295),
-            ((1_i128, 100), 4294967296),
-            ((-281474976710655_i128, 46), 268435456),
-            ((24691358027469_i128, 41), 10304427973681),
-            ((-33_i128, 0), 0),
-            ((-32_i128, 0), 1),
-            ((-129_i128, 2), 0),
-            ((15_i128, 0), 140737488355328),
-        ] {
-            assert_eq!(power_of_two(n << (120 - k)), expected, "{n} / 2^{k}");
-        }
-    }
-
-    fn function(mode: FogMode, p0: f32, p1: f32) -> FogFunction {
-        FogFunction { mode, p0, p1 }
-    }
-
-    /// In 4096ths.
-    fn real(f: &FogFunction, d: f64) -> f64 {
-        let (p0, p1) = (f64::from(f.p0), f64::from(f.p1));
-        let signed = match f.mode {
-            FogMode::Linear | FogMode::LinearAbs => p0 + d * p1 - 1.0,
-            FogMode::Exp | FogMode::ExpAbs => p0 + (16.0 * d * p1).clamp(-64.0, 16.0).exp2() - 1.5,
-            FogMode::Exp2 | FogMode::Exp2Abs => p0 + (-32.0 * d * d * p1 * p1).exp2() - 1.5,
-        };
-        let abs = matches!(f.mode, FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs);
-        4096.0 * if abs { signed.abs() } else { signed }.clamp(0.0, 1.0)
+    fn magnitude(p0: f32, p1: f32) -> Line {
+        Line { p0, p1, absolute: true }
     }
 
     /// Floats of moderate size, with few or many bits.
@@ -338,77 +201,113 @@ mod tests {
         any::<u32>().prop_map(f32::from_bits).prop_filter("finite", |f| f.is_finite())
     }
 
-    fn mode() -> impl Strategy<Value = FogMode> {
-        (0..FogMode::ALL.len()).prop_map(|n| FogMode::ALL[n])
-    }
-
     proptest! {
         #[test]
         fn linear_fog_is_exact(p0 in moderate(), p1 in moderate(), d in moderate()) {
             // All in 2^-110: 2^-53 times 2^-53 is the last bit of a product, 2^16 its first.
             let at = |(m, e): (i64, i32)| i128::from(m) << (e + 106);
             let (a, b) = (split(d), split(p1));
-            let sum = at(split(p0)) + at((a.0 * b.0, a.1 + b.1)) - (1 << 106);
+            let sum = |d: i64| at(split(p0)) + at((d * b.0, a.1 + b.1)) - (1 << 106);
             let floor = |n: i128| (n >> 94).clamp(0, 4096) as i64;
-            prop_assert_eq!(evaluate(&function(FogMode::Linear, p0, p1), split(d)).value, floor(sum));
-            prop_assert_eq!(evaluate(&function(FogMode::LinearAbs, p0, p1), split(d)).value, floor(sum.abs()));
+            prop_assert_eq!(line(p0, p1).at(a), floor(sum(a.0)));
+            prop_assert_eq!(magnitude(p0, p1).at(a), floor(sum(a.0.abs())));
         }
 
         #[test]
-        fn factors_are_the_real_ones_floored(mode in mode(), p0 in -3.0_f32..3.0, p1 in moderate(), d in moderate()) {
-            let f = function(mode, p0, p1);
-            let value = evaluate(&f, split(d)).value as f64;
-            let real = real(&f, f64::from(d));
-            prop_assert!(value <= real + 1e-6 && real < value + 1.0 + 1e-5, "{value} {real}");
-        }
-
-        #[test]
-        fn factors_of_anything_are_factors(mode in mode(), p0 in finite(), p1 in finite(), d in finite()) {
-            let f = function(mode, p0, p1);
-            let value = evaluate(&f, split(d)).value;
-            prop_assert!((0..=4096).contains(&value));
-            let (real, size) = (real(&f, f64::from(d)), (f64::from(d) * f64::from(p1)).abs().max(f64::from(p0).abs()));
+        fn lines_of_anything_are_factors(p0 in finite(), p1 in finite(), d in finite()) {
+            let value = line(p0, p1).at(split(d));
+            let (p0, product) = (f64::from(p0), f64::from(d) * f64::from(p1));
+            let real = 4096.0 * (p0 + product - 1.0).clamp(0.0, 1.0);
             // Where float64 knows.
-            if size < 1e6 || matches!(mode, FogMode::Linear) && (f64::from(d) * f64::from(p1) + f64::from(p0)).abs() > 1e-9 * size {
+            let size = p0.abs().max(product.abs());
+            if size < 1e6 || (p0 + product).abs() > 1e-9 * size {
                 prop_assert!((value as f64 - real).abs() <= 1.001, "{value} {real}");
+            }
+            prop_assert!((0..=4096).contains(&value));
+        }
+
+        /// The floor of an interpolated e, and its tie, by a division of what is brought to one denominator.
+        #[test]
+        fn steps_are_floors(e in proptest::array::uniform3(-2048_i32..2048), w in prop::sample::select(vec![1.0_f32, 4.0, 3.0])) {
+            let p = [[1.0, 2.0, 0.0, w], [90.0, 7.0, 0.0, 1.0], [13.0, 71.0, 0.0, 1.0]];
+            let triangle = Triangle::new(p, true, Profile::Nv2a).expect("area");
+            let FogPlane::Exponential(_, attribute) =
+                FogPlane::new(&triangle, Some(function(FogMode::Exp)), e.map(|e| e as f32 / 1024.0))
+            else {
+                panic!("finite")
+            };
+            for (i, j) in [(20, 20), (40, 9), (14, 60), (60, 15)] {
+                let sample = Sample::new(&triangle, triangle.edges(i, j));
+                prop_assume!(triangle.covers(sample.e));
+                let numerator: i128 = (0..3).map(|k| i128::from(e[k]) * 4 * i128::from(sample.n[k])).sum();
+                let (floor, tie) = (numerator.div_euclid(sample.d.into()), numerator.rem_euclid(sample.d.into()) == 0);
+                let steps = sample.steps(&attribute, FACTOR_BITS);
+                prop_assert_eq!(i128::from(steps.value + i64::from(steps.lowered)), floor);
+                prop_assert!(tie || !steps.lowered);
+            }
+        }
+    }
+
+    fn function(mode: FogMode) -> FogFunction {
+        FogFunction { mode, p0: 1.5, p1: -0.1, p2: 0.0, per_vertex: false }
+    }
+
+    #[test]
+    fn tables_are_the_real_functions() {
+        for i in 0..33 {
+            let x = i as f64;
+            let nearest = |exponent: f64| (255.0 * exponent.exp2() + 0.5).floor();
+            assert_eq!(f64::from(EXPONENTIAL[i]), nearest(-x / 4.0), "{i}");
+            assert_eq!(f64::from(SQUARED[i]), nearest(-x * x / 128.0), "{i}");
+        }
+        for q in -5000_i64..5000 {
+            let x = q as f64 / 4096.0;
+            for mode in [FogMode::Exp, FogMode::ExpAbs, FogMode::Exp2, FogMode::Exp2Abs] {
+                let real = match mode {
+                    FogMode::Exp => (16.0 * x).min(0.0).exp2(),
+                    FogMode::ExpAbs => (-16.0 * x.abs()).exp2(),
+                    _ => (-32.0 * x * x).exp2(),
+                };
+                // Chords lie above a curve that is bent up, and each end is rounded.
+                assert!((f64::from(exponential(mode, q)) - 255.0 * real).abs() < 2.0, "{mode:?} {q}");
             }
         }
     }
 
     #[test]
-    fn large_terms_cancel_exactly() {
-        let (p0, p1) = (2.0_f32.powi(100), -2.0_f32.powi(60));
-        assert_eq!(evaluate(&function(FogMode::Linear, p0, p1), split(2.0_f32.powi(40))).value, 0);
-        assert_eq!(evaluate(&function(FogMode::LinearAbs, p0, p1), split(2.0_f32.powi(40))).value, 4096);
-        // Coordinates times parameters of which 24 bits each count.
-        let d = (1 << 22) as f32 + 0.5;
-        assert_eq!(
-            evaluate(&function(FogMode::Linear, -(2.0_f32.powi(44)) - 2.0_f32.powi(21), 2.0_f32.powi(22)), split(d))
-                .value,
-            0
-        );
-        let product = (8_388_609.0_f32, 8_388_607.0_f32);
-        // (2^23 + 1)(2^23 - 1) = 2^46 - 1
-        assert_eq!(evaluate(&function(FogMode::Linear, -(2.0_f32.powi(46)), product.0), split(product.1)).value, 0);
-        assert_eq!(evaluate(&function(FogMode::LinearAbs, 2.0_f32.powi(46), -product.0), split(product.1)).value, 0);
-        assert_eq!(
-            evaluate(&function(FogMode::Linear, 2.0_f32.powi(46), -product.0 / 2.0), split(product.1)).value,
-            4096
-        );
+    fn ends_of_the_tables() {
+        use FogMode::{Exp, Exp2, Exp2Abs, ExpAbs};
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, 0)), [255; 4]);
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, 64)), [255, 214, 254, 254]);
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, -64)), [214, 214, 254, 254]);
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, -2047)), [1; 4]);
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, -2048)), [0; 4]);
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, 2048)), [255, 0, 0, 0]);
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, i64::MIN)), [0; 4]);
+        assert_eq!([Exp, ExpAbs, Exp2, Exp2Abs].map(|mode| exponential(mode, i64::MAX)), [255, 0, 0, 0]);
     }
 
     #[test]
-    fn magnitudes_see_what_was_cut_off() {
-        // -1 + 2^-140 is a hair above -1: its magnitude is a hair below 1. -1 - 2^-140 is limited to 1.
+    fn large_terms_cancel_exactly() {
+        let (p0, p1) = (2.0_f32.powi(100), -2.0_f32.powi(60));
+        assert_eq!(line(p0, p1).at(split(2.0_f32.powi(40))), 0);
+        assert_eq!(magnitude(p0, p1).at(split(-(2.0_f32.powi(40)))), 0);
+        // Coordinates times parameters of which 24 bits each count.
+        let d = (1 << 22) as f32 + 0.5;
+        assert_eq!(line(-(2.0_f32.powi(44)) - 2.0_f32.powi(21), 2.0_f32.powi(22)).at(split(d)), 0);
+        let product = (8_388_609.0_f32, 8_388_607.0_f32);
+        // (2^23 + 1)(2^23 - 1) = 2^46 - 1
+        assert_eq!(line(-(2.0_f32.powi(46)), product.0).at(split(product.1)), 0);
+        assert_eq!(line(2.0_f32.powi(46), -product.0 / 2.0).at(split(product.1)), 4096);
+    }
+
+    #[test]
+    fn what_is_below_a_step_counts() {
         let tiny = f32::from_bits(1 << 9);
-        assert_eq!(evaluate(&function(FogMode::LinearAbs, tiny, 0.0), (0, 0)).value, 4095);
-        assert_eq!(evaluate(&function(FogMode::LinearAbs, -tiny, 0.0), (0, 0)).value, 4096);
-        assert_eq!(evaluate(&function(FogMode::LinearAbs, tiny, -tiny), split(1.0)).value, 4096);
-        assert_eq!(evaluate(&function(FogMode::Linear, 2.0, -tiny), split(tiny)).value, 4095);
-        assert_eq!(evaluate(&function(FogMode::Linear, 2.0, tiny), split(tiny)).value, 4096);
-        // 2^x of a hair below 0 is below 1.
-        assert_eq!(evaluate(&function(FogMode::Exp, 1.5, -tiny), split(tiny)).value, 4095);
-        assert_eq!(evaluate(&function(FogMode::Exp, 1.5, -tiny), (0, 0)).value, 4096);
+        assert_eq!(line(2.0, -tiny).at(split(tiny)), 4095);
+        assert_eq!(line(2.0, tiny).at(split(tiny)), 4096);
+        assert_eq!(magnitude(2.0, tiny).at(split(-tiny)), 4096);
+        assert_eq!(magnitude(2.0, -tiny).at(split(-tiny)), 4095);
     }
 
     #[test]
@@ -418,23 +317,45 @@ mod tests {
                 .expect("area");
         let sample = Sample::new(&triangle, triangle.edges(5, 5));
         for mode in FogMode::ALL {
-            let expected = if matches!(mode, FogMode::Linear | FogMode::LinearAbs | FogMode::Exp) { 4096 } else { 0 };
-            let far = FogPlane::new(&triangle, Some(function(*mode, 1.5, -0.1)), [0.0, f32::INFINITY, 1.0]);
-            assert_eq!(far.at(&sample).value, expected);
-            let steep = FogPlane::new(&triangle, Some(function(*mode, f32::NAN, -0.1)), [0.0, 2.0, 1.0]);
-            assert_eq!(steep.at(&sample).value, expected);
-            let plain = FogPlane::new(&triangle, Some(function(*mode, 1.5, -0.1)), [0.0, 2.0, 1.0]);
-            assert!(matches!(plain, FogPlane::Coordinate(..)));
+            let expected = if matches!(mode, FogMode::Linear | FogMode::LinearAbs | FogMode::Exp) { 255 } else { 0 };
+            for beyond in [f32::INFINITY, f32::NEG_INFINITY, f32::NAN] {
+                let far = FogPlane::new(&triangle, Some(function(*mode)), [0.0, beyond, 1.0]);
+                assert_eq!(far.at(&sample), FogFactor { byte: expected, from: FogStep::NotFinite });
+            }
+            let plain = FogPlane::new(&triangle, Some(function(*mode)), [0.0, 2.0, 1.0]);
+            assert!(!matches!(plain, FogPlane::NotFinite(_)));
+        }
+        let steep = FogFunction { p0: f32::NAN, ..function(FogMode::Linear) };
+        assert_eq!(FogPlane::new(&triangle, Some(steep), [0.0, 2.0, 1.0]), FogPlane::NotFinite(255));
+    }
+
+    /// Numbers of the light unit reach the ends of single precision: e far outside the table, also beside small ones.
+    #[test]
+    fn steps_of_anything() {
+        let triangle =
+            Triangle::new([[0.0, 0.0, 0.0, 1.0], [90.0, 0.0, 0.0, 1.0], [0.0, 90.0, 0.0, 3.0]], true, Profile::Nv2a)
+                .expect("area");
+        let far = [f32::MAX, -f32::MAX, 1e-38, -1e-38, 1e-45, 0.0, 1.5];
+        for e in far.iter().flat_map(|a| far.iter().flat_map(|b| far.iter().map(|c| [*a, *b, *c]))) {
+            let plane = FogPlane::new(&triangle, Some(function(FogMode::ExpAbs)), e);
+            for (i, j) in [(5, 5), (30, 20), (0, 88), (88, 0)] {
+                let sample = Sample::new(&triangle, triangle.edges(i, j));
+                assert!(triangle.covers(sample.e));
+                let byte = plane.at(&sample).byte;
+                if e[0] == e[1] && e[1] == e[2] {
+                    assert_eq!(byte, if e[0] == 1.5 { 255 } else { 0 }, "{e:?}");
+                }
+            }
         }
     }
 
     #[test]
     fn distances_of_a_screen() {
         // A row of a linear ramp from 0 to 100, start 0, end 100: byte by byte from 255 to 0, never rising.
-        let f = function(FogMode::Linear, 2.0, -0.01);
+        let f = line(2.0, -0.01);
         let mut last = 255;
         for d in 0..=100_u16 {
-            let byte = factor_byte(evaluate(&f, split(f32::from(d))).value);
+            let byte = factor_byte(f.at(split(f32::from(d))));
             assert!(byte <= last);
             last = byte;
         }

@@ -1,7 +1,7 @@
 //! Interpolation of the ideal: the same sample of the same snapped triangle, in float64 with nothing rounded.
 #![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
 
-use super::fog::LARGEST_POWER;
+use super::fog::not_finite;
 use super::setup::Triangle;
 use crate::state::{FogFunction, FogMode};
 
@@ -44,30 +44,49 @@ pub fn quotient(coordinate: f64, q: f64) -> f64 {
     if quotient.is_nan() { 0.0 } else { quotient }
 }
 
-/// 255 times the fog factor: interpolated from the vertices', or the function of their interpolated coordinate (INT-5).
-pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], vertices: [f32; 3]) -> f64 {
-    let Some(FogFunction { mode, p0, p1 }) = function else {
-        return 255.0 * mix(weights, vertices.map(|f| f64::from(f).clamp(0.0, 1.0)));
+/// 255 times the fog factor: interpolated from the vertices', or the function of their coordinates, in which nothing is rounded: e is
+/// p0 + p1 d + p2 d^2 at the vertices, or what they pass where no coordinate is known.
+pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], coordinates: [Option<f32>; 3]) -> f64 {
+    let Some(function) = function else {
+        return 255.0 * mix(weights, passed.map(|f| f64::from(f).clamp(0.0, 1.0)));
     };
-    let (p0, p1, d) = (f64::from(*p0), f64::from(*p1), mix(weights, vertices.map(f64::from)));
-    if !(p0.is_finite() && p1.is_finite() && vertices.iter().all(|d| d.is_finite())) {
-        return if matches!(mode, FogMode::Linear | FogMode::LinearAbs | FogMode::Exp) { 255.0 } else { 0.0 };
+    let mode = function.mode;
+    let vertices: [f64; 3] = std::array::from_fn(|k| fog_of_vertex(function, passed[k], coordinates[k]));
+    let (p0, p1) = if function.per_vertex { (0.0, 1.0) } else { (f64::from(function.p0), f64::from(function.p1)) };
+    let finite = passed.iter().all(|n| n.is_finite()) && vertices.iter().all(|n| n.is_finite());
+    if !finite || (mode.is_linear() && !(p0.is_finite() && p1.is_finite())) {
+        return f64::from(not_finite(mode));
     }
+    let x = mix(weights, vertices);
+    let above = x - 1.5;
     let factor = match mode {
-        FogMode::Linear | FogMode::LinearAbs => p0 + d * p1 - 1.0,
-        FogMode::Exp | FogMode::ExpAbs => p0 + power_of_two(16.0 * d * p1) - 1.5,
-        FogMode::Exp2 | FogMode::Exp2Abs => p0 + power_of_two(-32.0 * (d * p1) * (d * p1)) - 1.5,
-    };
-    let factor = match mode {
-        FogMode::Linear | FogMode::Exp | FogMode::Exp2 => factor,
-        FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs => factor.abs(),
+        FogMode::Linear => p0 + p1 * x - 1.0,
+        FogMode::LinearAbs => p0 + p1 * x.abs() - 1.0,
+        // Where the table ends, at 2^-8, fog begins to be all.
+        FogMode::Exp if above <= -0.5 => 0.0,
+        FogMode::ExpAbs if above.abs() >= 0.5 => 0.0,
+        FogMode::Exp => power_of_two(16.0 * above),
+        FogMode::ExpAbs => power_of_two(-16.0 * above.abs()),
+        FogMode::Exp2 | FogMode::Exp2Abs => power_of_two(-32.0 * above * above),
     };
     255.0 * factor.clamp(0.0, 1.0)
 }
 
-/// 2^x by a series, so that every machine has the same; x is limited to -64..=16 as INT-5 limits it. Relative error below 2^-51.
+/// What a vertex would pass if nothing were rounded: d, or p0 + p1 d + p2 d^2.
+pub fn fog_of_vertex(function: &FogFunction, passed: f32, coordinate: Option<f32>) -> f64 {
+    match coordinate.map(f64::from) {
+        None => f64::from(passed),
+        Some(d) if !function.takes_e() => d,
+        Some(d) => {
+            let square = if function.p2 == 0.0 { 0.0 } else { f64::from(function.p2) * d * d };
+            f64::from(function.p0) + f64::from(function.p1) * d + square
+        }
+    }
+}
+
+/// 2^x by a series, so that every machine has the same; x is limited to -64..=16. Relative error below 2^-51.
 fn power_of_two(x: f64) -> f64 {
-    let x = x.clamp(-64.0, f64::from(LARGEST_POWER));
+    let x = x.clamp(-64.0, 16.0);
     let whole = (x + 0.5).floor();
     let t = (x - whole) * std::f64::consts::LN_2;
     // |t| < 0.35: the term after the last is below 2^-60.

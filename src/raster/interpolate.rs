@@ -257,13 +257,22 @@ mod tests {
 
     #[test]
     fn power_of_two_areas_lower_nothing() {
-        let t = right_triangle(64.0, 2.0);
-        assert!(t.exact_reciprocal);
-        for j in 0..64 {
-            for i in 0..63 - j {
-                assert!(Sample::new(&t, t.edges(i, j)).weights().iter().all(|w| !w.lowered));
+        for w in [1.0, 2.0, 10.0, 0.7] {
+            let t = right_triangle(64.0, w);
+            assert!(t.exact_reciprocal, "{w}");
+            for j in 0..64 {
+                for i in 0..63 - j {
+                    assert!(Sample::new(&t, t.edges(i, j)).weights().iter().all(|w| !w.lowered), "{w}");
+                }
             }
         }
+    }
+
+    #[test]
+    fn unequal_w_lowers_ties_of_any_area() {
+        let p = [[0.0, 0.0, 0.0, 4.0], [64.0, 0.0, 0.0, 2.0], [0.0, 64.0, 0.0, 2.0]];
+        assert!(!Triangle::new(p, true, Profile::Nv2a).expect("area").exact_reciprocal);
+        assert!(Triangle::new(p, false, Profile::Nv2a).expect("area").exact_reciprocal);
     }
 
     proptest! {

@@ -54,6 +54,7 @@ fn crossing(inside: &Vertex, outside: &Vertex) -> Vertex {
         diffuse: color(inside.diffuse, outside.diffuse),
         specular: color(inside.specular, outside.specular),
         fog: mix(inside.fog, outside.fog),
+        fog_coordinate: inside.fog_coordinate.zip(outside.fog_coordinate).map(|(a, b)| mix(a, b)),
         texture_coordinates: std::array::from_fn(|set| {
             std::array::from_fn(|n| mix(inside.texture_coordinates[set][n], outside.texture_coordinates[set][n]))
         }),

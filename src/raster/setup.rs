@@ -73,8 +73,8 @@ impl Triangle {
         (self.rows, self.columns) = (centres(y), centres(x));
         // y points down, so a positive area turns clockwise for the viewer.
         self.counter_clockwise = area < 0;
-        let one_power_of_two = w[0] == w[1] && w[1] == w[2] && w[0].to_bits() & 0x7f_ffff == 0;
-        self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || one_power_of_two);
+        let equal = w[0] == w[1] && w[1] == w[2];
+        self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || equal);
         true
     }
 
@@ -117,7 +117,7 @@ impl Triangle {
         g
     }
 
-    /// A factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5).
+    /// A factor 0..1 in 4096ths: floor(P_k 4096 f_k) (NUM-6, INT-5n).
     pub fn factor(&self, f: [f32; 3]) -> [i64; 3] {
         std::array::from_fn(|k| {
             let (m, e) = split(f[k]);

@@ -241,8 +241,8 @@ pub(super) fn expression(step: &Step) -> String {
         }
         "float_product" => format!("{} * {}", value(0), value(1)),
         "float_sum" => format!("({} + {}) + {}", value(0), value(1), value(2)),
-        "float_double_quotient" => format!("2 * {} / {}", value(0), value(1)),
-        "float_reflection" => format!("{} * {} - {}", value(0), value(1), value(2)),
+        "float_double" => format!("2 * {}", value(0)),
+        "float_reflection" => format!("{} * {} - {} * {}", value(0), value(1), value(2), value(3)),
         "luminance" => format!("4096 * {} / 255 * ({} / 255 * {} + {})", value(0), value(1), value(2), value(3)),
         "bump_offset" => format!("{} * s8({}) + {} * s8({})", value(0), value(2), value(1), value(3)),
         "nearest_texel" => format!("{} >> 8", value(0)),

@@ -16,6 +16,12 @@ impl Value for f32 {
     }
 }
 
+impl Value for Option<f32> {
+    fn same(&self, other: &Self) -> bool {
+        self.map(f32::to_bits) == other.map(f32::to_bits)
+    }
+}
+
 impl Value for [u8; 4] {
     fn same(&self, other: &Self) -> bool {
         self == other

@@ -103,8 +103,11 @@ pub struct Vertex {
     pub diffuse: VertexColor,
     /// Specular: the secondary colour. Absent in a scene: zero.
     pub specular: VertexColor,
-    /// Fog factor, 0 (all fog) to 1 (no fog); with a [fog function](FogFunction), the coordinate that it is evaluated at.
+    /// What the rasteriser interpolates for fog: a factor, 0 (all fog) to 1 (no fog), or with a [fog function](FogFunction) the d' or e that
+    /// the vertex side made of the coordinate (FOG-2, FOG-3, INT-5n); then it need not be finite.
     pub fog: f32,
+    /// The fog coordinate that `fog` was made of, for the float64 ideal and for traces; `None`: the ideal starts from `fog`.
+    pub fog_coordinate: Option<f32>,
     /// Four coordinate sets of s, t, r, q. Absent components are 0, 0, 0, 1.
     pub texture_coordinates: [[f32; 4]; 4],
 }
@@ -116,6 +119,7 @@ impl Default for Vertex {
             diffuse: VertexColor::Bytes([255; 4]),
             specular: VertexColor::Bytes([0; 4]),
             fog: 1.0,
+            fog_coordinate: None,
             texture_coordinates: [[0.0, 0.0, 0.0, 1.0]; 4],
         }
     }
@@ -135,32 +139,50 @@ pub struct VertexProgram {
 }
 
 named! {
-    /// The curve of a [`FogFunction`] (INT-5).
+    /// The curve of a [`FogFunction`]: the factor as a real function of the coordinate d, x being p0 + p1 d + p2 d^2 - 3/2 (FOG-2, FOG-4).
     pub enum FogMode {
-        /// p0 + d p1 - 1.
+        /// p0 + p1 d - 1.
         Linear,
-        /// p0 + 2^(16 d p1) - 1.5.
+        /// 2^(16 x), 1 above 0.
         Exp,
-        /// p0 + 2^(-32 d^2 p1^2) - 1.5.
+        /// 2^(-32 x^2).
         Exp2,
-        /// The magnitude of `Linear`.
+        /// `Linear` of the magnitude of d.
         LinearAbs,
-        /// The magnitude of `Exp`.
+        /// 2^(-16 |x|).
         ExpAbs,
-        /// The magnitude of `Exp2`.
+        /// 2^(-32 x^2).
         Exp2Abs,
     }
 }
 
-/// Fog factor from the interpolated fog coordinate d, for each pixel (INT-5; nv2a).
+impl FogMode {
+    /// The factor is a straight line.
+    pub fn is_linear(self) -> bool {
+        matches!(self, FogMode::Linear | FogMode::LinearAbs)
+    }
+}
+
+/// Fog of a coordinate d: coefficients at the vertices or, of linear fog, at each pixel, and a curve at each pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FogFunction {
     /// The curve.
     pub mode: FogMode,
-    /// First parameter.
+    /// First parameter, the bias.
     pub p0: f32,
-    /// Second parameter.
+    /// Second parameter, the multiplier of d.
     pub p1: f32,
+    /// Third parameter, the multiplier of d^2; it has no part in linear fog whose coefficients act at the pixels.
+    pub p2: f32,
+    /// Linear fog too has its coefficients applied at the vertices, which pass e: nv10, and nv2a where a draw asks for it (INT-5n).
+    pub per_vertex: bool,
+}
+
+impl FogFunction {
+    /// Whether the vertices pass e and not d' (FOG-2, FOG-3, INT-5n).
+    pub fn takes_e(&self) -> bool {
+        self.per_vertex || !self.mode.is_linear()
+    }
 }
 
 /// Fog colour, and how the fog of the vertices reaches FOG.a (off: 255).
@@ -170,7 +192,7 @@ pub struct Fog {
     pub enabled: bool,
     /// R, G, B bytes of the fog register.
     pub color: [u8; 3],
-    /// What it goes through for each pixel (INT-5); `None`: the vertices give factors, which are interpolated (INT-5n).
+    /// What it goes through (FOG-2 to FOG-5); `None`: the vertices give factors, which are interpolated (INT-5n).
     pub function: Option<FogFunction>,
 }
 

@@ -18,7 +18,7 @@ named! {
         MinusOneToOne,
         /// Two halves of 16 bits / 65535; the third component is 1.
         Hilo1,
-        /// Two signed halves / 32767; the third component completes a unit vector.
+        /// Two signed halves / 32768; the third component completes a unit vector.
         HiloHemisphere,
     }
 }

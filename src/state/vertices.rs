@@ -15,6 +15,7 @@ pub struct Vertices {
     diffuse: Colors,
     specular: Colors,
     fog: Column<f32>,
+    fog_coordinate: Column<Option<f32>>,
     coordinates: [[Column<f32>; 4]; TEXTURE_UNITS],
     /// Where each coordinate set is held: the first that is alike. What others hold is not kept.
     held: [usize; TEXTURE_UNITS],
@@ -26,13 +27,14 @@ const CHUNK: usize = 256;
 impl Vertices {
     /// No vertices.
     pub fn new() -> Self {
-        let Vertex { position, diffuse, specular, fog, texture_coordinates } = Vertex::default();
+        let Vertex { position, diffuse, specular, fog, fog_coordinate, texture_coordinates } = Vertex::default();
         Vertices {
             count: 0,
             position: position.map(Column::Same),
             diffuse: Colors::of(diffuse),
             specular: Colors::of(specular),
             fog: Column::Same(fog),
+            fog_coordinate: Column::Same(fog_coordinate),
             coordinates: texture_coordinates.map(|set| set.map(Column::Same)),
             held: [0; TEXTURE_UNITS],
         }
@@ -64,6 +66,7 @@ impl Vertices {
             diffuse: self.diffuse.at(index),
             specular: self.specular.at(index),
             fog: self.fog.at(index),
+            fog_coordinate: self.fog_coordinate.at(index),
             texture_coordinates: [0, 1, 2, 3].map(|set| self.coordinates(index, set)),
         }
     }
@@ -155,7 +158,8 @@ impl Vertices {
     pub fn bytes(&self) -> usize {
         let sets = (0..TEXTURE_UNITS).filter(|set| self.held[*set] == *set).flat_map(|set| &self.coordinates[set]);
         let floats = self.position.iter().chain([&self.fog]).chain(sets);
-        floats.map(Column::bytes).sum::<usize>() + self.diffuse.bytes() + self.specular.bytes()
+        let fog = self.fog_coordinate.bytes();
+        floats.map(Column::bytes).sum::<usize>() + fog + self.diffuse.bytes() + self.specular.bytes()
     }
 
     fn append(&mut self, vertices: &[Vertex], capacity: usize) {
@@ -166,6 +170,7 @@ impl Vertices {
         self.diffuse.extend(count, capacity, vertices.iter().map(|v| v.diffuse));
         self.specular.extend(count, capacity, vertices.iter().map(|v| v.specular));
         self.fog.extend(count, capacity, vertices.iter().map(|v| v.fog));
+        self.fog_coordinate.extend(count, capacity, vertices.iter().map(|v| v.fog_coordinate));
         self.part_sets(vertices);
         for (set, columns) in self.coordinates.iter_mut().enumerate().filter(|(set, _)| self.held[*set] == *set) {
             for (n, column) in columns.iter_mut().enumerate() {
@@ -276,10 +281,15 @@ impl TriangleVertices<'_> {
         turned([s.three(indices), t.three(indices), r.three(indices), q.three(indices)])
     }
 
-    /// Their fog factors, or coordinates.
+    /// Their fog factors, or d' or e.
     #[inline(always)]
     pub fn fog(&self) -> [f32; 3] {
         self.vertices.fog.three(self.indices)
+    }
+
+    /// The fog coordinates that those were made of.
+    pub fn fog_coordinates(&self) -> [Option<f32>; 3] {
+        self.vertices.fog_coordinate.three(self.indices)
     }
 }
 

@@ -5,10 +5,10 @@
 #![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4); its ideal stands beside it")]
 
 use crate::state::DotMapping;
-use std::ops::{Add, Div, Mul, Sub};
+use std::ops::{Add, Mul, Sub};
 
 /// A number of the dot unit: `f32` the definition, `f64` the ideal.
-pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
+pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> {
     /// 2.
     const TWO: Self;
 }
@@ -38,17 +38,16 @@ pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
         DotMapping::Hilo1 => [(i32::from(halves[0]), 65535), (i32::from(halves[1]), 65535), (1, 1)],
         DotMapping::HiloHemisphere => {
             let [high, low] = halves.map(|half| i32::from(half as i16));
-            [(high, 32767), (low, 32767), (third_of_unit(high, low), 1 << 24)]
+            [(high, 32768), (low, 32768), (third_of_unit(high, low), 1 << 14)]
         }
     }
 }
 
-/// TSH-3: floor(2^24 sqrt(max(0, 1 - x^2 - y^2))) of x = high/32767 and y = low/32767.
+/// TSH-3: floor(2^14 sqrt(max(0, 1 - x^2 - y^2))) of x = high/32768 and y = low/32768.
 fn third_of_unit(high: i32, low: i32) -> i32 {
-    let left = 32767 * 32767 - i64::from(high) * i64::from(high) - i64::from(low) * i64::from(low);
+    let left = (1 << 30) - i64::from(high) * i64::from(high) - i64::from(low) * i64::from(low);
     // floor(floor(sqrt n) / d) is floor(sqrt n / d).
-    let root = (u128::from(left.max(0).unsigned_abs()) << 48).isqrt();
-    (root / 32767) as i32
+    (left.max(0).unsigned_abs().isqrt() / 2) as i32
 }
 
 /// TSH-1 to TSH-3 in single precision: each fraction rounded once.
@@ -79,8 +78,8 @@ pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
 /// Products and sums of a dot product.
 pub const DOT_OPERATIONS: u64 = 5;
 
-/// Products, sums and quotients of a reflection: two dot products, a scale, and a product and a difference for each component.
-pub const REFLECTION_OPERATIONS: u64 = 2 * DOT_OPERATIONS + 2 + 6;
+/// Products and sums of a reflection: two dot products, a scale, and two products and a difference for each component.
+pub const REFLECTION_OPERATIONS: u64 = 2 * DOT_OPERATIONS + 1 + 9;
 
 /// TSH-5: a reflection, with what it is made of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,17 +88,17 @@ pub struct Reflection<N> {
     pub toward: N,
     /// n . n.
     pub square: N,
-    /// 2 (n . e) / (n . n).
+    /// 2 (n . e).
     pub scale: N,
-    /// scale n - e.
+    /// scale n - square e: longer than e by n . n, which a direction does not show.
     pub vector: Vector<N>,
 }
 
-/// TSH-5: the eye vector reflected about a normal of any length.
+/// TSH-5: the direction of the eye vector reflected about a normal of any length, without a division; the zero vector for that of none.
 pub fn reflect<N: Number>(normal: Vector<N>, eye: Vector<N>) -> Reflection<N> {
     let (toward, square) = (dot(normal, eye), dot(normal, normal));
-    let scale = N::TWO * toward / square;
-    let vector = std::array::from_fn(|n| scale * normal[n] - eye[n]);
+    let scale = N::TWO * toward;
+    let vector = std::array::from_fn(|n| scale * normal[n] - square * eye[n]);
     Reflection { toward, square, scale, vector }
 }
 
@@ -146,7 +145,7 @@ mod tests {
             let unsigned = fractions(DotMapping::Hilo1, bytes);
             assert_eq!(unsigned, [(i32::from(half), 65535), (0x1234, 65535), (1, 1)]);
             let signed = fractions(DotMapping::HiloHemisphere, bytes);
-            assert_eq!(signed[..2], [(i32::from(half as i16), 32767), (0x1234, 32767)]);
+            assert_eq!(signed[..2], [(i32::from(half as i16), 32768), (0x1234, 32768)]);
             for mapping in [DotMapping::Hilo1, DotMapping::HiloHemisphere] {
                 assert!(is_nearest(remap(mapping, bytes)[0], fractions(mapping, bytes)[0]));
             }
@@ -155,30 +154,30 @@ mod tests {
 
     #[test]
     fn third_components_complete_unit_vectors() {
-        assert_eq!((third_of_unit(0, 0), third_of_unit(32767, 0), third_of_unit(-32768, 0)), (1 << 24, 0, 0));
+        assert_eq!((third_of_unit(0, 0), third_of_unit(32767, 0), third_of_unit(-32768, 0)), (1 << 14, 127, 0));
         assert_eq!(third_of_unit(30000, 30000), 0);
-        // 3-4-5: x = 3/5, y = 0 gives 4/5, as far as 32767 allows.
-        let third = third_of_unit(19660, 0);
-        assert!((f64::from(third) / f64::from(1 << 24) - 0.8).abs() < 1e-4);
+        // 3-4-5: x = 3/5, y = 0 gives 4/5, as far as 32768 allows.
+        let third = third_of_unit(19661, 0);
+        assert!((f64::from(third) / f64::from(1 << 14) - 0.8).abs() < 1e-4);
     }
 
     #[test]
     fn reflections_of_axes() {
         // About z, an eye in front is mirrored in x and y.
-        assert_eq!(reflect([0.0_f32, 0.0, 2.0], [0.25, -0.5, 1.0]).vector, [-0.25, 0.5, 1.0]);
-        // A normal that points at the eye returns it.
-        assert_eq!(reflect([0.25_f32, 0.5, 1.0], [0.25, 0.5, 1.0]).vector, [0.25, 0.5, 1.0]);
-        assert!(reflect([0.0_f32; 3], [1.0, 0.0, 0.0]).vector.iter().all(|c| c.is_nan()));
+        assert_eq!(reflect([0.0_f32, 0.0, 2.0], [0.25, -0.5, 1.0]).vector, [-1.0, 2.0, 4.0]);
+        // A normal that points at the eye returns its direction.
+        assert_eq!(reflect([0.25_f32, 0.5, 1.0], [0.25, 0.5, 1.0]).vector, [0.25, 0.5, 1.0].map(|c| 1.3125 * c));
+        assert_eq!(reflect([0.0_f32; 3], [1.0, 0.0, 0.0]).vector, [0.0; 3]);
     }
 
     proptest! {
         #[test]
         fn the_third_is_the_floor(high in -32768..=32767_i32, low in -32768..=32767_i32) {
             let third = u128::from(third_of_unit(high, low) as u32);
-            let left = (32767_i64.pow(2) - i64::from(high).pow(2) - i64::from(low).pow(2)).max(0) as u128;
-            // third <= 2^24 sqrt(left) / 32767 < third + 1.
-            prop_assert!((third * 32767).pow(2) <= left << 48);
-            prop_assert!(((third + 1) * 32767).pow(2) > left << 48);
+            let left = (32768_i64.pow(2) - i64::from(high).pow(2) - i64::from(low).pow(2)).max(0) as u128;
+            // third <= 2^14 sqrt(left) / 2^15 < third + 1.
+            prop_assert!((2 * third).pow(2) <= left);
+            prop_assert!((2 * third + 2).pow(2) > left);
         }
 
         /// Each operation is the correctly rounded one: single precision by way of double, which is innocuous for one operation.
@@ -191,13 +190,12 @@ mod tests {
             prop_assert_eq!(moved([a[0], a[1]], [b[0], b[1]]), by_double(x, y, |x, y| x + y));
         }
 
-        /// The reflection keeps the length, and the normal halves the angle.
+        /// The reflection keeps the length, but for the factor n . n, and the normal halves the angle.
         #[test]
         fn reflections_keep_lengths(n in prop::array::uniform3(-2.0..2.0_f64), e in prop::array::uniform3(-2.0..2.0_f64)) {
-            prop_assume!(dot(n, n) > 0.01);
-            let r = reflect(n, e).vector;
-            prop_assert!((dot(r, r) - dot(e, e)).abs() < 1e-9);
-            prop_assert!((dot(r, n) - dot(e, n)).abs() < 1e-9);
+            let (r, square) = (reflect(n, e).vector, dot(n, n));
+            prop_assert!((dot(r, r) - square * square * dot(e, e)).abs() < 1e-9);
+            prop_assert!((dot(r, n) - square * dot(e, n)).abs() < 1e-9);
         }
 
         /// In single precision it stays close to the real one.

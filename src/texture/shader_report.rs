@@ -204,10 +204,11 @@ pub(super) fn reflection<O: Observer>(
     observer.step(step("toward", fixed.toward, real.toward).by("float_dot", toward));
     let square = (0..3).flat_map(|n| [normals(n), normals(n)]).collect();
     observer.step(step("square", fixed.square, real.square).by("float_dot", square));
-    let inputs = vec![float(name(index, "toward"), fixed.toward), float(name(index, "square"), fixed.square)];
-    observer.step(step("scale", fixed.scale, real.scale).by("float_double_quotient", inputs));
+    let inputs = vec![float(name(index, "toward"), fixed.toward)];
+    observer.step(step("scale", fixed.scale, real.scale).by("float_double", inputs));
     for n in 0..3 {
-        let inputs = vec![float(name(index, "scale"), fixed.scale), normals(n), eyes(n)];
+        let (scale, square) = (float(name(index, "scale"), fixed.scale), float(name(index, "square"), fixed.square));
+        let inputs = vec![scale, normals(n), square, eyes(n)];
         let vector = step(&format!("reflection.{}", AXES[n]), fixed.vector[n], real.vector[n]);
         observer.step(vector.by("float_reflection", inputs));
     }

@@ -10,8 +10,10 @@ named! {
         Num4 = "NUM-4",
         /// Fog factors.
         Num6 = "NUM-6",
-        /// Fog functions of an interpolated coordinate, and the byte made of their factor.
-        Int5 = "INT-5",
+        /// Linear fog: the light unit's part, the line, and the byte made of its factor.
+        Fog2 = "FOG-2",
+        /// Exponential fog: the light unit's part and the table.
+        Fog4 = "FOG-4",
         /// Interpolated colours.
         Int2 = "INT-2",
         /// Texture coordinates, as the weights of the filter.
@@ -77,9 +79,8 @@ impl Rule {
     /// The part that the rule's error counts in.
     pub fn part(self) -> Part {
         match self {
-            Rule::Num4 | Rule::Num6 | Rule::Int5 | Rule::Int2 | Rule::Int4 | Rule::Tex12 | Rule::Tex15 => {
-                Part::Interpolation
-            }
+            Rule::Num4 | Rule::Num6 | Rule::Fog2 | Rule::Fog4 | Rule::Int2 => Part::Interpolation,
+            Rule::Int4 | Rule::Tex12 | Rule::Tex15 => Part::Interpolation,
             Rule::Tsh4 | Rule::Tsh6 | Rule::Tsh7 | Rule::Tsh9 => Part::Interpolation,
             Rule::Tex1 | Rule::Tex2 | Rule::Tex3 | Rule::Tex4 | Rule::Tex6 | Rule::Tex9 | Rule::Tex18 | Rule::Tsh8 => {
                 Part::Filtering
@@ -128,7 +129,7 @@ named! {
         Products = "products",
         /// Roundings to 255ths.
         Roundings = "roundings",
-        /// Products, sums and quotients of the dot unit in single precision (TSH-4, TSH-5).
+        /// Products and sums of the dot unit in single precision (TSH-4, TSH-5).
         Dots = "dot operations",
         /// Channels blended.
         Blends = "blended channels",

@@ -1,11 +1,10 @@
-//! Fog coordinates, the parameters of fog functions, and the fog of a chip that evaluates it at its vertices.
+//! Fog coordinates, the parameters of fog functions, and what a vertex passes on of them (FOG-1 to FOG-3, INT-5n).
 #![allow(clippy::float_arithmetic, reason = "the vertex side is f32 by rule")]
 
 use super::EyeVertex;
 use super::vector::length;
-use crate::number::convert::split;
-use crate::raster::fog::{POWER_BITS, factor};
-use crate::state::{FogFunction, FogMode, named};
+use crate::number::light;
+use crate::state::{FogFunction, FogMode, Profile, named};
 
 named! {
     /// Where the coordinate of a fog function comes from.
@@ -25,11 +24,11 @@ named! {
     }
 }
 named! {
-    /// Where a fog function is evaluated.
+    /// Where the coefficients of a fog function are applied.
     pub enum FogEvaluation {
-        /// At each vertex; the factors are interpolated (INT-5n). Direct3D's vertex fog.
+        /// At each vertex, in all modes (INT-5n). Direct3D's vertex fog.
         PerVertex,
-        /// At each pixel (INT-5), on nv2a alone. Direct3D's table fog.
+        /// Those of linear fog at each pixel (FOG-2), on nv2a alone. Direct3D's table fog.
         PerPixel,
     }
 }
@@ -63,54 +62,127 @@ pub fn linear(mode: FogMode, start: f32, end: f32, evaluation: FogEvaluation) ->
         FogEvaluation::PerVertex => (1.0, 0.0),
         FogEvaluation::PerPixel => (end * STEEP, -STEEP),
     };
-    (distance.is_finite() && p0.is_finite() && p1.is_finite()).then_some(FogFunction { mode, p0, p1 })
+    let per_vertex = evaluation == FogEvaluation::PerVertex;
+    (distance.is_finite() && p0.is_finite() && p1.is_finite()).then_some(FogFunction {
+        mode,
+        p0,
+        p1,
+        p2: 0.0,
+        per_vertex,
+    })
 }
 
 /// Fog of a density: e^(-density d), or its square in the exponent.
-pub fn exponential(mode: FogMode, density: f32) -> FogFunction {
+pub fn exponential(mode: FogMode, density: f32, evaluation: FogEvaluation) -> FogFunction {
     let scale = if matches!(mode, FogMode::Exp2 | FogMode::Exp2Abs) { SQUARED } else { EXPONENTIAL };
-    FogFunction { mode, p0: 1.5, p1: -density / scale }
+    let per_vertex = evaluation == FogEvaluation::PerVertex;
+    FogFunction { mode, p0: 1.5, p1: -density / scale, p2: 0.0, per_vertex }
 }
 
-/// INT-5n: the factor at a vertex, with 12 bits of mantissa below the leading one, truncated.
-pub fn vertex_factor(function: &FogFunction, coordinate: f32) -> f32 {
-    let (exact, _) = factor(function, split(coordinate));
-    let bits = i64::BITS - exact.leading_zeros();
-    let cut = exact >> bits.saturating_sub(13) << bits.saturating_sub(13);
-    // 13 bits are exact, and so is a division by a power of two.
-    cut as f32 / (1_i64 << POWER_BITS) as f32
+/// What the light unit makes of a fog coordinate at a vertex, word by word (FOG-3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LightFog {
+    /// FOG-1 of p0, p1 and p2.
+    pub parameters: [u32; 3],
+    /// FOG-1 of d and of d^2.
+    pub coordinates: [u32; 2],
+    /// p1 d and p2 d^2.
+    pub products: [u32; 2],
+    /// Their sum with p0.
+    pub sum: u32,
+}
+
+impl LightFog {
+    /// p0 + p1 d + p2 d^2 in 14 significant bits.
+    pub fn new(function: &FogFunction, d: f32) -> LightFog {
+        let parameters = [function.p0, function.p1, function.p2].map(|p| light::word(p.to_bits()));
+        let coordinates = [d, square(d)].map(|d| light::word(d.to_bits()));
+        let products = [0, 1].map(|n| light::product(parameters[n + 1], coordinates[n]));
+        LightFog { parameters, coordinates, products, sum: light::sum([parameters[0], products[0], products[1]]) }
+    }
+}
+
+/// d^2 as the light unit takes it: the single-precision product.
+pub fn square(d: f32) -> f32 {
+    d * d
+}
+
+/// INT-5n: e as the transform unit of nv10 passes it: bit 10 of a finite word is a copy of bit 11.
+pub fn passed_by_nv10(e: u32) -> u32 {
+    if f32::from_bits(e).is_finite() { e & !(1 << 10) | (e >> 11 & 1) << 10 } else { e }
+}
+
+/// What a vertex passes on for the coordinate d: d' (FOG-2) or e (FOG-3, INT-5n).
+pub fn passed(function: &FogFunction, profile: Profile, d: f32) -> f32 {
+    if !function.takes_e() {
+        return f32::from_bits(light::word(d.to_bits()));
+    }
+    let e = LightFog::new(function, d).sum;
+    f32::from_bits(if profile == Profile::Nv10 { passed_by_nv10(e) } else { e })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::raster::fog::FogPlane;
+    use crate::raster::interpolate::Sample;
+    use crate::raster::setup::Triangle;
     use crate::state::Named;
     use proptest::prelude::*;
 
     fn text(mode: FogMode, d: f64, start: f64, end: f64, density: f64) -> f64 {
         let f: f64 = match mode {
-            FogMode::Linear | FogMode::LinearAbs => (end - d) / (end - start),
+            FogMode::Linear => (end - d) / (end - start),
+            FogMode::LinearAbs => (end - d.abs()) / (end - start),
             FogMode::Exp | FogMode::ExpAbs => (-density * d).exp(),
             FogMode::Exp2 | FogMode::Exp2Abs => (-(density * d) * (density * d)).exp(),
         };
-        if mode == FogMode::LinearAbs { f.abs().min(1.0) } else { f.clamp(0.0, 1.0) }
+        f.clamp(0.0, 1.0)
+    }
+
+    /// The factor, 0 to 1, where all three vertices have the coordinate.
+    fn factor(function: &FogFunction, d: f32) -> f64 {
+        let triangle =
+            Triangle::new([[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]], true, Profile::Nv2a);
+        let triangle = triangle.expect("area");
+        let plane = FogPlane::new(&triangle, Some(*function), [passed(function, Profile::Nv2a, d); 3]);
+        f64::from(plane.at(&Sample::new(&triangle, triangle.edges(3, 3))).byte) / 255.0
     }
 
     proptest! {
         #[test]
         fn parameters_mean_what_the_text_says(
-            mode in 0..FogMode::ALL.len(), d in 0.0_f32..100.0, start in 0.0_f32..50.0, span in 1.0_f32..60.0, density in 0.0_f32..0.2,
+            mode in 0..FogMode::ALL.len(), d in 0.0_f32..100.0, below in any::<bool>(), start in 0.0_f32..50.0, span in 1.0_f32..60.0, density in 0.0_f32..0.2,
         ) {
             let mode = FogMode::ALL[mode];
-            let function = if matches!(mode, FogMode::Linear | FogMode::LinearAbs) {
-                linear(mode, start, start + span, FogEvaluation::PerVertex).expect("finite")
-            } else {
-                exponential(mode, density)
-            };
-            let exact = text(mode, d.into(), start.into(), (start + span).into(), density.into());
-            let factor = vertex_factor(&function, d);
-            prop_assert!((f64::from(factor) - exact).abs() < 2.0_f64.powi(-12), "{factor} {exact}");
-            prop_assert_eq!(factor.to_bits() & 0x7ff, 0);
+            let d = if below && mode == FogMode::LinearAbs { -d } else { d };
+            for evaluation in [FogEvaluation::PerVertex, FogEvaluation::PerPixel] {
+                let function = if mode.is_linear() {
+                    linear(mode, start, start + span, evaluation).expect("finite")
+                } else {
+                    exponential(mode, density, evaluation)
+                };
+                if mode == FogMode::LinearAbs && evaluation == FogEvaluation::PerVertex {
+                    continue;
+                }
+                let exact = text(mode, d.into(), start.into(), (start + span).into(), density.into());
+                let factor = factor(&function, d);
+                // 14 bits of the three terms, which may be 2 + 50 - 50.
+                let off = if mode.is_linear() { 2.0_f64.powi(-12) * (2.0 + f64::from(start + d.abs()) / f64::from(span)) } else { 0.0 };
+                prop_assert!((factor - exact).abs() < 2.0 / 255.0 + off, "{factor} {exact}");
+            }
+        }
+
+        /// Bit 10 is bit 11, whatever is below it is 0.
+        #[test]
+        fn nv10_passes_twelve_bits_and_a_copy(p0 in any::<f32>(), p1 in any::<f32>(), p2 in any::<f32>(), d in any::<f32>()) {
+            let function = FogFunction { mode: FogMode::Exp, p0, p1, p2, per_vertex: true };
+            let (e, old) = (passed(&function, Profile::Nv2a, d), passed(&function, Profile::Nv10, d));
+            prop_assert_eq!(e.is_finite(), old.is_finite());
+            if e.is_finite() {
+                prop_assert_eq!((old.to_bits() & 0x3ff, old.to_bits() >> 10 & 1), (0, old.to_bits() >> 11 & 1));
+                prop_assert_eq!(old.to_bits() >> 11, e.to_bits() >> 11);
+            }
         }
     }
 
@@ -125,10 +197,12 @@ mod tests {
     fn no_distance_is_a_wall() {
         for end in [0.0, 0.1, 50.0, -3.0, 1e9] {
             let function = |evaluation| linear(FogMode::Linear, end, end, evaluation).expect("finite");
-            let around = [end - 0.01 - end.abs() * 1e-6, end, end + 0.01];
-            let factors = around.map(|d| vertex_factor(&function(FogEvaluation::PerPixel), d));
-            assert_eq!(factors, [1.0, 0.0, 0.0], "{end}");
-            let factors = around.map(|d| vertex_factor(&function(FogEvaluation::PerVertex), d));
+            // Further than 14 bits of d tell apart.
+            let around = [end - 0.01 - end.abs() * 1e-3, end, end + 0.01 + end.abs() * 1e-3];
+            let near = f64::from(f32::from_bits(light::word(end.to_bits()))) < f64::from(end);
+            let factors = around.map(|d| factor(&function(FogEvaluation::PerPixel), d));
+            assert_eq!(factors, [1.0, if near { 1.0 } else { 0.0 }, 0.0], "{end}");
+            let factors = around.map(|d| factor(&function(FogEvaluation::PerVertex), d));
             assert_eq!(factors, [0.0; 3], "{end}");
         }
         let of_pixels = |start, end| linear(FogMode::Linear, start, end, FogEvaluation::PerPixel);
@@ -137,6 +211,6 @@ mod tests {
         assert_eq!(of_pixels(1e30, 1e30), None);
         // The other way round is fog that lifts.
         let lifting = of_pixels(24.0, 16.0).expect("finite");
-        assert_eq!([0.0, 16.0, 20.0, 24.0, 30.0].map(|d| vertex_factor(&lifting, d)), [0.0, 0.0, 0.5, 1.0, 1.0]);
+        assert_eq!([0.0, 16.0, 20.0, 24.0, 30.0].map(|d| factor(&lifting, d)), [0.0, 0.0, 127.0 / 255.0, 1.0, 1.0]);
     }
 }

@@ -213,6 +213,12 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         let count = vertices.len();
         vertices[index as usize % count].fog = coordinate;
     }
+    // Most e of exponential fog lie where its tables do.
+    if fog.function.is_some_and(|f| !f.mode.is_linear() && f.p1 < 0.1) {
+        for vertex in &mut vertices {
+            vertex.fog = 1.0 + vertex.fog / 8.0;
+        }
+    }
     let mut indices: Vec<u32> = (0..vertices.len() as u32).collect();
     if c.once_in(8) {
         for index in &mut indices {
@@ -264,7 +270,7 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
 fn fog(c: &mut Choices<'_>, profile: Profile) -> (Fog, Option<(u32, f32)>) {
     let mut c = c.part(16);
     let (enabled, color) = (c.once_in(2), [c.byte(), c.byte(), c.byte()]);
-    let possible = FOG_FUNCTIONS && profile == Profile::Nv2a;
+    let possible = FOG_FUNCTIONS;
     let extreme = c.once_in(12);
     let function = (possible && c.below(3) != 0).then(|| FogFunction {
         mode: c.any(),
@@ -278,6 +284,8 @@ fn fog(c: &mut Choices<'_>, profile: Profile) -> (Fog, Option<(u32, f32)>) {
             0 => c.between(-1.0, 1.0),
             _ => c.pick(&[-0.125, -1.0, 0.25, 0.0, -0.090_168_44, 1e-9]),
         },
+        p2: 0.0,
+        per_vertex: profile == Profile::Nv10 || c.once_in(4),
     });
     let beyond = (function.is_some() && c.once_in(16))
         .then(|| (c.word(), c.pick(&[f32::INFINITY, f32::NEG_INFINITY, f32::NAN])));
@@ -329,6 +337,7 @@ fn vertices(
                 position,
                 diffuse: color(&mut c, colors),
                 specular: color(&mut c, colors),
+                fog_coordinate: None,
                 fog: fog_scale * if c.once_in(2) { c.between(-0.2, 1.2) } else { c.below(17) as f32 / 16.0 },
                 texture_coordinates: std::array::from_fn(|set| coordinates(&mut c, styles[set], [x, y])),
             }

@@ -210,16 +210,31 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "truncate_24_exponent" => plain(truncated_24(inputs).1 + v(7)),
         "fog_linear" | "fog_linear_abs" => {
             // p0 + d p1 - 1
-            let f = sum(&[(v(0), v(1)), (v(2) * v(4), v(3) + v(5)), (-1, 0)]);
-            factor(f, operation.ends_with("_abs"))
+            let d = if operation.ends_with("_abs") { v(4).abs() } else { v(4) };
+            factor(sum(&[(v(0), v(1)), (v(2) * d, v(3) + v(5)), (-1, 0)]))
         }
-        "fog_power" => power_of_two(v(0) * v(2), v(1) + v(3) + 4),
-        "fog_power_of_square" => power_of_two(-(v(0) * v(2)) * (v(0) * v(2)), 2 * (v(1) + v(3)) + 5),
-        "fog_exponential" | "fog_exponential_abs" => {
-            // p0 + y - 3/2
-            let f = sum(&[(v(0), v(1)), (v(2), -32), (-3, -1)]);
-            factor(f, operation.ends_with("_abs"))
+        "fog_steps" => {
+            let quotient: i128 = (0..3).map(|k| v(k) * v(3 + k)).sum();
+            // floor(4096 quotient 2^exponent / D) - 6144 - lowered
+            let (up, bottom) = (v(7) + 12, v(6));
+            let bits = 128 - i128::from(quotient.unsigned_abs().leading_zeros());
+            let floor = if up > 0 && quotient != 0 && bits + up > 126 {
+                if quotient < 0 { i128::from(i64::MIN) } else { i128::from(i64::MAX) }
+            } else if up > 0 {
+                (quotient << up).div_euclid(bottom)
+            } else {
+                quotient.div_euclid(bottom) >> (-up).min(127)
+            };
+            let floor = floor.clamp(i64::MIN.into(), i64::MAX.into());
+            Number { value: (floor - v(8) - 6144).clamp(i64::MIN.into(), i64::MAX.into()), per_one: 4096 }
         }
+        "fog_exp" | "fog_exp_abs" | "fog_exp2" => byte(fog_table(operation, v(0))),
+        "light_word" => plain(light_word(v(0))),
+        "light_product" => plain(light_product(v(0), v(1))),
+        "light_sum" => plain(light_sum([v(0), v(1), v(2)])),
+        "square_f32" => plain((f32::from_bits(v(0) as u32) * f32::from_bits(v(0) as u32)).to_bits().into()),
+        "copy_bit_11" if v(0) >> 23 & 255 == 255 => plain(v(0)),
+        "copy_bit_11" => plain(v(0) & !(1 << 10) | (v(0) >> 11 & 1) << 10),
         "factor_byte" => byte((v(0) - (v(0) >> 8)) >> 4),
         // Texture units.
         "cube_face" => plain(cube_face(inputs)),
@@ -286,7 +301,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "is_not_negative" => plain(i128::from(shader::numerator(inputs) >= 0)),
         "remap_zero_to_one" | "remap_d3d" | "remap_gl" | "remap_twos_complement" => shader::remap(operation, inputs),
         "remap_half" | "remap_half_signed" | "third_of_unit" | "float_one" => shader::remap(operation, inputs),
-        "float_product" | "float_sum" | "float_dot" | "float_double_quotient" | "float_reflection" => {
+        "float_product" | "float_sum" | "float_dot" | "float_double" | "float_reflection" => {
             shader::float(operation, inputs)
         }
         "floor_float" => Number { value: shader::floor_float(inputs), per_one: 256 },
@@ -394,53 +409,105 @@ fn truncated_24(inputs: &[(String, Number)]) -> (i128, i128) {
     (top / bottom * sum.signum(), exponent)
 }
 
-/// The sum of numbers m 2^e in 2^-60, floored term by term, and whether something was cut. A term beyond 2^60 decides alone.
-fn sum(terms: &[(i128, i128)]) -> (i128, bool) {
-    let (mut sum, mut cut) = (0_i128, false);
+/// The sum of numbers m 2^e in 2^-60, floored term by term. A term beyond 2^60 decides alone.
+fn sum(terms: &[(i128, i128)]) -> i128 {
+    let mut sum = 0_i128;
     for (m, e) in terms.iter().filter(|term| term.0 != 0) {
         let up = e + 60;
         let bits = 128 - i128::from(m.unsigned_abs().leading_zeros());
         if bits + up > 120 {
-            return (m.signum() << 120, false);
+            return m.signum() << 120;
         }
-        let part = if up >= 0 { m << up } else { m >> (-up).min(127) };
-        cut |= up < 0 && (up < -120 || part << -up != *m);
-        sum += part;
+        sum += if up >= 0 { m << up } else { m >> (-up).min(127) };
     }
-    (sum, cut)
+    sum
 }
 
-/// A sum in 2^-60, or its magnitude, in 4096ths, limited to 0..4096.
-fn factor((sum, cut): (i128, bool), magnitude: bool) -> Number {
-    let sum = if magnitude && sum < 0 { -sum - i128::from(cut) } else { sum };
+/// A sum in 2^-60 in 4096ths, limited to 0..4096.
+fn factor(sum: i128) -> Number {
     Number { value: (sum >> 48).clamp(0, 4096), per_one: 4096 }
 }
 
-/// floor(2^(32 + m 2^e)) of an exponent limited to -64..16, per 2^32.
-fn power_of_two(m: i128, e: i128) -> Number {
-    let bits = 128 - i128::from(m.unsigned_abs().leading_zeros()) + e;
-    let x = match m.signum() {
-        0 => 0,
-        sign if bits > 6 => (sign * 64) << 110,
-        _ if e + 110 >= 0 => m << (e + 110),
-        _ => m >> (-e - 110).min(127),
-    };
-    let x = x.clamp(-64 << 110, 16 << 110);
-    let (whole, fraction) = (x >> 110, (x & ((1 << 110) - 1)) as u128);
-    // e^(f ln 2) in 2^-110, term after term.
-    let times = |a: u128, b: u128| {
-        let (high, low) = (a >> 55, a & ((1 << 55) - 1));
-        let (b1, b0) = (b >> 55, b & ((1 << 55) - 1));
-        high * b1 + ((high * b0 + low * b1 + ((low * b0) >> 55)) >> 55)
-    };
-    let t = times(fraction, 0x58b9_0bfb_e8e7_bcd5_e4f1_d9cc_01f9_7b57 >> 17);
-    let (mut term, mut sum, mut n) = (1_u128 << 110, 0_u128, 0);
-    while term > 0 {
-        (sum, n) = (sum + term, n + 1);
-        term = times(term, t) / n;
+fn fog_table(operation: &str, q: i128) -> i128 {
+    if operation == "fog_exp" && q >= 0 {
+        return 255;
     }
-    let value = if whole < -32 { 0 } else { (sum >> (78 - whole)) as i128 };
-    Number { value, per_one: 1 << 32 }
+    let n = q.abs();
+    if n >= 2048 {
+        return 0;
+    }
+    let entry = |i: i128| {
+        let i = i as f64;
+        let exponent = if operation == "fog_exp2" { -i * i / 128.0 } else { -i / 4.0 };
+        (255.0 * exponent.exp2() + 0.5).floor() as i128
+    };
+    (entry(n >> 6) * (64 - (n & 63)) + entry((n >> 6) + 1) * (n & 63) + 32) >> 6
+}
+
+const LIGHT_NAN: i128 = 0x7fff_fc00;
+
+/// A word of the light unit as a sign, a mantissa of 14 bits and the exponent's field.
+fn light_parts(word: i128) -> (i128, i128, i128) {
+    let mantissa = if word >> 23 & 255 == 0 { 0 } else { word >> 10 & 0x1fff | 0x2000 };
+    (if word >> 31 & 1 == 1 { -1 } else { 1 }, mantissa, word >> 23 & 255)
+}
+
+fn light_word(pattern: i128) -> i128 {
+    match pattern >> 23 & 255 {
+        0 => 0,
+        255 if pattern & 0x7f_ffff != 0 => LIGHT_NAN,
+        _ if pattern >> 10 & 255 == 255 => pattern >> 10 << 10,
+        _ => (pattern + 0x200) >> 10 << 10,
+    }
+}
+
+/// m 2^(field - 140), truncated to a word.
+fn light_truncated(mut m: i128, mut field: i128) -> i128 {
+    let sign = if m < 0 { 1 << 31 } else { 0 };
+    m = m.abs();
+    if m == 0 {
+        return 0;
+    }
+    while m < 0x2000 {
+        (m, field) = (m * 2, field - 1);
+    }
+    while m >= 0x4000 {
+        (m, field) = (m / 2, field + 1);
+    }
+    match field {
+        ..=0 => 0,
+        255.. => sign | 0x7f7f_fc00,
+        _ => sign | field << 23 | (m & 0x1fff) << 10,
+    }
+}
+
+fn light_product(a: i128, b: i128) -> i128 {
+    let ((sa, ma, fa), (sb, mb, fb)) = (light_parts(a), light_parts(b));
+    if a == LIGHT_NAN || b == LIGHT_NAN {
+        LIGHT_NAN
+    } else if ma == 0 || mb == 0 {
+        0
+    } else if fa == 255 || fb == 255 {
+        0x7f80_0000
+    } else {
+        light_truncated(sa * ma * sb * mb, fa + fb - 140)
+    }
+}
+
+fn light_sum(terms: [i128; 3]) -> i128 {
+    let parts = terms.map(light_parts);
+    if terms.contains(&LIGHT_NAN) {
+        return LIGHT_NAN;
+    }
+    if parts.iter().any(|part| part.2 == 255) {
+        return 0x7f80_0000;
+    }
+    let last = parts.iter().map(|part| part.2).max().unwrap() - 5;
+    let sum = parts.iter().map(|(sign, m, field)| {
+        let up = field - last;
+        sign * if up >= 0 { m << up } else { m >> (-up).min(100) }
+    });
+    light_truncated(sum.sum(), last)
 }
 
 fn sixteen_bits(value: i128) -> Number {

@@ -67,18 +67,18 @@ pub fn remap(operation: &str, inputs: &Inputs) -> Number {
         "remap_gl" => quotient(2 * signed(v(0)) + 1, 255),
         "remap_twos_complement" => quotient(signed(v(0)), 127),
         "remap_half" => quotient(half(0), 65535),
-        "remap_half_signed" => quotient(signed_half(0), 32767),
+        "remap_half_signed" => quotient(signed_half(0), 32768),
         "third_of_unit" => {
-            let left = (32767 * 32767 - signed_half(0).pow(2) - signed_half(2).pow(2)).max(0);
-            // The largest n with n 32767 <= 2^24 sqrt(left), bit by bit.
+            let left = (32768 * 32768 - signed_half(0).pow(2) - signed_half(2).pow(2)).max(0);
+            // The largest n with 2 n <= sqrt(left), bit by bit.
             let mut n = 0;
-            for bit in (0..=24).rev() {
+            for bit in (0..=14).rev() {
                 let more = n | 1 << bit;
-                if (more * 32767) * (more * 32767) <= left << 48 {
+                if 4 * more * more <= left {
                     n = more;
                 }
             }
-            quotient(n, 1 << 24)
+            quotient(n, 1 << 14)
         }
         _ => bits(1.0),
     }
@@ -93,10 +93,10 @@ pub fn float(operation: &str, inputs: &Inputs) -> Number {
             let products = [0, 2, 4].map(|n| f(n) * f(n + 1));
             products[0] + products[1] + products[2]
         }
-        "float_double_quotient" => 2.0 * f(0) / f(1),
+        "float_double" => 2.0 * f(0),
         _ => {
-            let product = f(0) * f(1);
-            product - f(2)
+            let products = [f(0) * f(1), f(2) * f(3)];
+            products[0] - products[1]
         }
     })
 }

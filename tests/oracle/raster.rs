@@ -80,6 +80,7 @@ fn crossing(a: &Vertex, b: &Vertex) -> Vertex {
         diffuse: mix_color(a.diffuse, b.diffuse, t),
         specular: mix_color(a.specular, b.specular, t),
         fog: mix(a.fog, b.fog, t),
+        fog_coordinate: None,
         texture_coordinates: std::array::from_fn(|set| {
             std::array::from_fn(|k| mix(a.texture_coordinates[set][k], b.texture_coordinates[set][k], t))
         }),
@@ -203,8 +204,8 @@ impl Setup {
         } else {
             [1 << 27; 3]
         };
-        let same_power = w[0] == w[1] && w[1] == w[2] && w[0].0.count_ones() == 1;
-        let exact = cross.abs().count_ones() == 1 && (!draw.perspective || same_power);
+        let same = w[0] == w[1] && w[1] == w[2];
+        let exact = cross.abs().count_ones() == 1 && (!draw.perspective || same);
         Some(Setup { vertices, snapped, area: cross.abs(), turn: cross.signum(), p, exact })
     }
 
@@ -256,18 +257,23 @@ impl Setup {
         })
     }
 
-    /// TSH-4, INT-5: a number of the vertices at a pixel, as numerator and exponent; the denominator is the sample's D. The products
-    /// with P share one exponent, 62 bits.
+    /// TSH-4, FOG-2: a number of the vertices at a pixel, as numerator and exponent; the denominator is the sample's D.
     pub fn attribute(&self, sample: &Sample, x: impl Fn(&Vertex) -> f32) -> (i128, i32) {
+        let (g, exponent) = self.attribute_numbers(x);
+        ((0..3).map(|k| g[k] * sample.e[k]).sum(), exponent)
+    }
+
+    /// The products with P, which share one exponent, 62 bits.
+    pub fn attribute_numbers(&self, x: impl Fn(&Vertex) -> f32) -> ([i128; 3], i32) {
         let parts: [(i128, i32); 3] = std::array::from_fn(|k| {
             let (m, e) = split(x(&self.vertices[k]));
             (self.p[k] * m, e)
         });
         let Some(top) = parts.iter().filter(|p| p.0 != 0).map(|p| p.1 + super::real::bits(p.0)).max() else {
-            return (0, 0);
+            return ([0; 3], 0);
         };
         let exponent = top - 62;
-        ((0..3).map(|k| shift(parts[k].0, parts[k].1 - exponent) * sample.e[k]).sum(), exponent)
+        (parts.map(|part| shift(part.0, part.1 - exponent)), exponent)
     }
 
     /// DEP-1: depth in units of a buffer whose largest value is `full`.

@@ -192,18 +192,20 @@ fn mapped(mapping: DotMapping, bytes: [i128; 4]) -> [f32; 3] {
         }
         DotMapping::HiloHemisphere => {
             let [high, low] = [a << 8 | r, g << 8 | b].map(|v| signed(true, v, 16));
-            let whole = 32767 * 32767;
-            let left = (whole - high * high - low * low).max(0);
-            // floor(2^24 sqrt(left / whole)) is the root of the floor.
-            let third = (((left << 48) / whole) as u128).isqrt() as i128;
-            [nearest_f32(high, 32767, 0), nearest_f32(low, 32767, 0), nearest_f32(third, 1, -24)]
+            let left = ((1 << 30) - high * high - low * low).max(0);
+            // 2^28 (1 - x^2 - y^2) is left / 4; the root of its floor.
+            let third = ((left / 4) as u128).isqrt() as i128;
+            [nearest_f32(high, 32768, 0), nearest_f32(low, 32768, 0), nearest_f32(third, 1, -14)]
         }
     }
 }
 
-/// TSH-5: 2n(n.e)/(n.n) - e, the quotient first.
+/// TSH-5: 2 (n.e) n - (n.n) e.
 fn reflect(n: [f32; 3], e: [f32; 3]) -> [f32; 3] {
     let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let scale = 2.0 * dot(n, e) / dot(n, n);
-    [0, 1, 2].map(|c| scale * n[c] - e[c])
+    let (twice, square) = (2.0 * dot(n, e), dot(n, n));
+    [0, 1, 2].map(|c| {
+        let (along, eye) = (twice * n[c], square * e[c]);
+        along - eye
+    })
 }

@@ -75,7 +75,7 @@ fn examples_of_dot_products() {
 
     let tsh3 = example(
         "TSH-3",
-        "A, R, G, B = 76, 204, 0, 0: x = 19660, unsigned 19660/65535; hemisphere 19660/32767, 0, and 13421849 / 2^24.",
+        "A, R, G, B = 76, 204, 0, 0: x = 19660, unsigned 19660/65535; hemisphere 19660/32768, 0, and 13107 / 2^14.",
     );
     let word = 76 << 24 | 204 << 16;
     let vector = |mapping| {
@@ -84,8 +84,8 @@ fn examples_of_dot_products() {
     };
     tsh3.gives("x", 256 * 76 + 204, 19_660);
     tsh3.gives("unsigned", vector(DotMapping::Hilo1), [19_660.0 / 65_535.0, 0.0, 1.0]);
-    let third = 13_421_849.0 / (1 << 24) as f32;
-    tsh3.gives("hemisphere", vector(DotMapping::HiloHemisphere), [19_660.0 / 32_767.0, 0.0, third]);
+    let third = 13_107.0 / (1 << 14) as f32;
+    tsh3.gives("hemisphere", vector(DotMapping::HiloHemisphere), [19_660.0 / 32_768.0, 0.0, third]);
 
     let tsh4 = example(
         "TSH-4",
@@ -102,7 +102,7 @@ fn examples_of_dot_products() {
 
 #[test]
 fn examples_of_reflections() {
-    let tsh5 = example("TSH-5", "n = (0, 0, 2), e = (0.25, -0.5, 1): n.e = 2, n.n = 4, k = 1, r = (-0.25, 0.5, 1).");
+    let tsh5 = example("TSH-5", "n = (0, 0, 2), e = (0.25, -0.5, 1): n.e = 2, n.n = 4, k = 4, r = (-1, 2, 4).");
     let stages = [
         SAMPLE,
         ShaderOperation::DotProduct,
@@ -114,9 +114,9 @@ fn examples_of_reflections() {
     let pixel = shaded(0x00ff_0000, &stages, second, [[0.0; 4], [0.0; 4], [0.0; 4], z], Policies::DEFAULT);
     tsh5.gives("n", [1, 2, 3].map(|n| float(&pixel, &format!("unit{n}.dot"))), [0.0, 0.0, 2.0]);
     let parts = ["toward", "square", "scale"].map(|name| float(&pixel, &format!("unit3.{name}")));
-    tsh5.gives("n.e, n.n, k", parts, [2.0, 4.0, 1.0]);
+    tsh5.gives("n.e, n.n, k", parts, [2.0, 4.0, 4.0]);
     let vector = ["x", "y", "z"].map(|axis| float(&pixel, &format!("unit3.reflection.{axis}")));
-    tsh5.gives("r", vector, [-0.25, 0.5, 1.0]);
+    tsh5.gives("r", vector, [-1.0, 2.0, 4.0]);
 }
 
 #[test]

@@ -4,6 +4,7 @@ use crate::probes::{Answers, single};
 use crate::sheet::{OVER, Sheet, bind, cell, input, opaque};
 use crate::table::Row;
 use ninebit::state::*;
+use ninebit::vertex::fog::passed;
 
 fn frame(sheet: &mut Sheet) -> usize {
     sheet.target(SurfaceFormat::A8R8G8B8, [0, 0, 0, 255])
@@ -120,6 +121,18 @@ pub fn final_ef(rows: &[Row]) -> Answers {
             combiner.constants[n] = [r, g, b, 255];
             combiner.inputs[4 + n] = input(register);
         }
+        draw
+    }))
+}
+
+/// fog-curve: the fog of a coordinate, by FOG-1 to FOG-4.
+pub fn fog_curve(rows: &[Row]) -> Answers {
+    single(each(rows, |row, draw| {
+        let [p0, p1, d] = ["p0", "p1", "d"].map(|column| row.number(column));
+        let function = FogFunction { mode: row.named("mode"), p0, p1, p2: 0.0, per_vertex: false };
+        let passed = passed(&function, Profile::Nv2a, d);
+        let mut draw = fogged(draw, passed, row.bytes("b_input"), row.bytes("c_input"));
+        draw.fog.function = Some(function);
         draw
     }))
 }

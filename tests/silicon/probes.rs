@@ -15,7 +15,7 @@ pub fn single(pixels: Vec<[u8; 4]>) -> Answers {
 /// A file of probes and how the model answers them, at most [`sheet::WIDTH`] rows at a time.
 type Kind = (&'static str, fn(&[Row]) -> Answers);
 
-const KINDS: [Kind; 22] = [
+const KINDS: [Kind; 23] = [
     ("blend-stack-a", blend_probes::stack_a),
     ("blend-stack-b", blend_probes::stack_b),
     ("blend-stack-c", blend_probes::stack_c),
@@ -35,6 +35,7 @@ const KINDS: [Kind; 22] = [
     ("final-ef", combiner_probes::final_ef),
     ("fog-factor", combiner_probes::fog_factor),
     ("fog-lerp", combiner_probes::fog_lerp),
+    ("fog-curve", combiner_probes::fog_curve),
     ("vertex-color", combiner_probes::vertex_color),
     ("texel-times-diffuse", combiner_probes::texel_times_diffuse),
     ("unbound-texture", combiner_probes::unbound),
@@ -98,5 +99,5 @@ fn every_probe() {
         println!("{message}");
     }
     assert!(wrong.is_empty(), "{} of {} probes differ, the first ones above", wrong.len(), totals[0]);
-    assert_eq!(totals[0], 26_425);
+    assert_eq!(totals[0], 28_653);
 }

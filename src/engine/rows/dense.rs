@@ -12,7 +12,6 @@ use super::quotient::{self, IOTA};
 use super::triangle::{Piece, Setup, Varying, whole_steps};
 use super::{BLOCK, Rows};
 use crate::engine::pixel::TriangleContext;
-use crate::number::convert::factor_byte;
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
@@ -94,6 +93,7 @@ fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
         vertex.position = [x, y, z, w];
         vertex.fog = match kind {
             7 | 8 => r.below(33) as f32 / 8.0,
+            5 | 6 => 1.0 + r.unit(),
             _ => 4.0 * r.unit() - 0.25,
         };
         vertex.diffuse = VertexColor::Bytes([0; 4].map(|_| r.next() as u8));
@@ -119,7 +119,7 @@ fn fog(r: &mut Random) -> Option<FogFunction> {
         1 => [1.0 + 2.0 * r.unit(), -r.unit()],
         _ => [3.0 * r.unit() - 0.5, 2.0 * r.unit() - 1.0],
     };
-    Some(FogFunction { mode: r.of(FogMode::ALL), p0, p1 })
+    Some(FogFunction { mode: r.of(FogMode::ALL), p0, p1, p2: 0.0, per_vertex: r.below(4) == 0 })
 }
 
 /// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, levels, and the fog
@@ -261,7 +261,7 @@ fn compare<const FMA: bool, const ROW: bool>(
         let weights = sample.weights().map(|w| w.value as u16);
         let depth = sample.depth(context.z, context.draw.depth_full);
         assert_eq!(i64::from(varying.depth[lane]), depth, "({i}, {j}) of {:?}", context.vertices());
-        let fog = i16::from(factor_byte(context.fog.as_ref().unwrap().at(&sample).value));
+        let fog = i16::from(context.fog.as_ref().unwrap().at(&sample).byte);
         let slot = usize::from(compiled.fog.unwrap());
         assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices());
         assert_eq!(varying.narrow.each_ref().map(|w| w[lane]), weights, "({i}, {j}) of {:?}", context.vertices());

@@ -1,4 +1,4 @@
-//! NUM-6 and INT-5 on rows.
+//! NUM-6, FOG-2 and FOG-4 on rows.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::kernels::LANES;
@@ -7,9 +7,9 @@ use super::quotient::{IOTA_REAL, Line, Positions, estimate_two, nearest, positio
 use super::triangle::{Bounds, Piece, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::number::convert::factor_byte;
-use crate::raster::fog::FogPlane;
+use crate::raster::fog::{CENTRE, FACTOR_BITS, FogPlane, TABLE_END, exponential};
 use crate::raster::interpolate::Sample;
-use crate::state::{FogFunction, FogMode};
+use crate::state::FogMode;
 
 /// What a triangle's pixels have in the fog register's alpha.
 #[derive(Clone, Copy, Debug)]
@@ -22,66 +22,84 @@ pub(super) enum Fog {
     Function(Curve),
 }
 
-/// A fog function of a coordinate over D.
+/// A fog function of d' or e over D.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Curve {
     coordinate: Plane,
-    /// What makes it the argument: d p1 of linear functions, the exponent 16 d p1, or the root of 1/32 of the exponent.
+    /// What makes it 4096ths: of p1 d', or of e.
     scale: f64,
-    mode: FogMode,
-    /// p0 and the constant of the function.
-    start: f64,
+    kind: Kind,
 }
 
-/// How far arguments are off, relative to themselves: a coordinate keeps 24 bits, toward zero, and the exponent of Exp2 is a square.
+/// What becomes of the 4096ths.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    /// They are added to this number of 4096ths and limited; where there is a sign, their magnitude is, with it (FOG-2).
+    Linear { start: f64, sign: Option<f64> },
+    /// They are looked up (FOG-4).
+    Table(&'static Bytes),
+}
+
+/// Bytes of FOG-4 from [`FIRST`] on.
+type Bytes = [u8; (2 * TABLE_END + 1) as usize];
+
+/// The least q that is looked up: all below it have this one's byte, as all above the table's last have that one's.
+const FIRST: i64 = -TABLE_END;
+
+static EXP: Bytes = bytes(FogMode::Exp);
+static EXP_ABS: Bytes = bytes(FogMode::ExpAbs);
+static EXP2: Bytes = bytes(FogMode::Exp2);
+
+const fn bytes(mode: FogMode) -> Bytes {
+    let mut bytes = [0; (2 * TABLE_END + 1) as usize];
+    let mut n = 0;
+    while n < bytes.len() {
+        bytes[n] = exponential(mode, FIRST + n as i64);
+        n += 1;
+    }
+    bytes
+}
+
+/// How far linear arguments are off, relative to themselves: a coordinate keeps 24 bits, toward zero.
 const TRUNCATED: f64 = 1.0 / (1 << 22) as f64;
 
-/// What an estimate of an argument may be off by besides.
-const COARSEST: f64 = 1.0 / 1024.0;
+/// What an estimate of 4096ths may be off by besides.
+const COARSEST: f64 = 4.0;
 
-/// More than [`power_of_two`] is off by, and what the rule floors away, relative to a power.
-const POWER: f64 = 1.0 / (1 << 26) as f64;
-
-/// More than what is floored away of a power, and roundings of double precision.
-const FLOORED: f64 = 1.0 / (1_u64 << 31) as f64;
+/// More than roundings of double precision, relative to a sum's terms.
+const ROUNDED: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Fog {
     pub(super) fn new(context: &TriangleContext<'_>) -> Option<Fog> {
         let triangle = &context.triangle;
         let plane = |g: [i64; 3]| Plane::new(triangle, &inverse(triangle), g);
-        match context.fog.as_ref()? {
-            FogPlane::Factor(g) => Some(Fog::Factor(plane(*g))),
-            FogPlane::Infinite(value) => Some(Fog::Same(i16::from(factor_byte(*value)))),
-            FogPlane::Coordinate(function, attribute) => {
-                let [a, b, c] = context.vertices().fog();
-                if a == b && b == c {
-                    // Any sample that the triangle covers.
-                    let inside = Sample::new(triangle, [1; 3]);
-                    let value = FogPlane::Coordinate(*function, *attribute).at(&inside).value;
-                    return Some(Fog::Same(i16::from(factor_byte(value))));
-                }
-                let (g, exponent) = attribute.numbers();
-                Some(Fog::Function(Curve::new(function, plane(g), exponent)))
+        let fog = context.fog.as_ref()?;
+        let (attribute, scale, kind) = match fog {
+            FogPlane::Factor(g) => return Some(Fog::Factor(plane(*g))),
+            FogPlane::NotFinite(byte) => return Some(Fog::Same(i16::from(*byte))),
+            FogPlane::Linear(line, attribute) => {
+                let start = 4096.0 * (f64::from(line.p0) - 1.0);
+                let sign = line.absolute.then(|| f64::from(line.p1).signum());
+                (attribute, f64::from(line.p1), Kind::Linear { start, sign })
             }
-        }
-    }
-}
-
-impl Curve {
-    fn new(function: &FogFunction, coordinate: Plane, exponent: i32) -> Curve {
-        let (times, offset) = match function.mode {
-            FogMode::Linear | FogMode::LinearAbs => (1.0, -1.0),
-            FogMode::Exp | FogMode::ExpAbs => (16.0, -1.5),
-            FogMode::Exp2 | FogMode::Exp2Abs => (1.0, -1.5),
+            FogPlane::Exponential(mode, attribute) => {
+                let table = match mode {
+                    FogMode::Exp => &EXP,
+                    FogMode::ExpAbs => &EXP_ABS,
+                    _ => &EXP2,
+                };
+                (attribute, 1.0, Kind::Table(table))
+            }
         };
-        // A power of two of a single-precision number and less: far from the ends of double precision.
-        let unit = f64::from_bits(((exponent + 1023).max(0) as u64) << 52);
-        Curve {
-            coordinate,
-            scale: f64::from(function.p1) * times * unit,
-            mode: function.mode,
-            start: f64::from(function.p0) + offset,
+        let [a, b, c] = context.vertices().fog();
+        if a == b && b == c {
+            // Any sample that the triangle covers.
+            return Some(Fog::Same(i16::from(fog.at(&Sample::new(triangle, [1; 3])).byte)));
         }
+        let (g, exponent) = attribute.numbers();
+        // A power of two of a single-precision number and less: far from the ends of double precision.
+        let unit = f64::from_bits(((exponent + FACTOR_BITS + 1023).max(0) as u64) << 52);
+        Some(Fog::Function(Curve { coordinate: plane(g), scale: scale * unit, kind }))
     }
 }
 
@@ -125,17 +143,29 @@ impl Setup<'_> {
                 if !proves {
                     return self.defined_factors(piece, |_| true, out);
                 }
-                let lines = (line, denominator);
-                let absolute = matches!(curve.mode, FogMode::LinearAbs | FogMode::ExpAbs | FogMode::Exp2Abs);
-                let (at, ends) = (piece.at, (curve.start, off, absolute));
-                let close = match curve.mode {
-                    FogMode::Linear | FogMode::LinearAbs => factors::<0, FMA, ROW>(at, lines, ends, values, spare),
-                    FogMode::Exp | FogMode::ExpAbs => factors::<1, FMA, ROW>(at, lines, ends, values, spare),
-                    FogMode::Exp2 | FogMode::Exp2Abs => factors::<2, FMA, ROW>(at, lines, ends, values, spare),
+                let (at, lines) = (piece.at, (line, denominator));
+                let close = match curve.kind {
+                    Kind::Linear { start, sign } => {
+                        let close = linear::<FMA, ROW>(at, lines, (start, off, sign), values, spare);
+                        for (out, value) in out.iter_mut().zip(&*values) {
+                            *out = *value as i16;
+                        }
+                        close
+                    }
+                    Kind::Table(table) => {
+                        let close = steps::<FMA, ROW>(at, lines, off, values, spare);
+                        let byte = |index: i32| table.get(index as usize).copied().unwrap_or(0);
+                        for (out, value) in out.iter_mut().zip(&*values) {
+                            *out = i16::from(byte(*value));
+                        }
+                        if close {
+                            for (value, other) in values.iter_mut().zip(&mut *spare) {
+                                (*value, *other) = (i32::from(byte(*value)), i32::from(byte(*other)));
+                            }
+                        }
+                        close
+                    }
                 };
-                for (out, value) in out.iter_mut().zip(&*values) {
-                    *out = *value as i16;
-                }
                 if close {
                     self.defined_factors(piece, |n| values[n] != spare[n], out);
                 }
@@ -148,20 +178,19 @@ impl Setup<'_> {
     fn defined_factors(&self, piece: Piece<'_>, wanted: impl Fn(usize) -> bool, out: &mut [i16]) {
         let Some(fog) = &self.context.fog else { return };
         for n in (0..piece.count).filter(|n| wanted(*n)) {
-            out[n] = i16::from(factor_byte(fog.at(&self.sample(piece, n)).value));
+            out[n] = i16::from(fog.at(&self.sample(piece, n)).byte);
         }
     }
 }
 
-/// INT-5 as bytes of the least and of the largest factor that a lane can have. Says whether some differ.
+/// FOG-2 as bytes of the least and of the largest factor that a lane can have. Says whether some differ.
 ///
-/// `FUNCTION`: 0 linear, 1 exponential, 2 exponential of a square. `lines` make up the argument, which is off by `off` and what its 24 bits
-/// lose.
+/// `lines` make up p1 d', which is off by `off` and what its 24 bits lose.
 #[inline(always)]
-fn factors<const FUNCTION: u32, const FMA: bool, const ROW: bool>(
+fn linear<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
     lines: (Line, Line),
-    (start, off, absolute): (f64, f64, bool),
+    (start, off, sign): (f64, f64, Option<f64>),
     least: &mut [i32],
     most: &mut [i32],
 ) -> bool {
@@ -169,27 +198,14 @@ fn factors<const FUNCTION: u32, const FMA: bool, const ROW: bool>(
     let lanes = least.len();
     let last = f64::from(at.last);
     let (most, xs, ys, iota) = (&mut most[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
-    let rounding = FLOORED * (2.0 + start.abs());
+    let rounding = ROUNDED * (4096.0 + start.abs());
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let argument = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
-        let (factor, error) = if FUNCTION == 0 {
-            (start + argument, argument.abs() * TRUNCATED + off)
-        } else {
-            let (exponent, off, relative) = if FUNCTION == 1 {
-                (argument, off, TRUNCATED)
-            } else {
-                // Arguments beyond 2 have exponents beyond the limit.
-                (argument * argument * -32.0, 256.0 * off, 2.0 * TRUNCATED)
-            };
-            let exponent = if exponent > -64.0 { exponent } else { -64.0 };
-            let exponent = if exponent < 16.0 { exponent } else { 16.0 };
-            let power = power_of_two(exponent);
-            (start + power, power * (exponent.abs() * relative + off + POWER))
-        };
-        let factor = if absolute { factor.abs() } else { factor };
-        let error = error + rounding;
-        let (low, high) = (limited((factor - error) * 4096.0), limited((factor + error) * 4096.0));
+        let size = argument.abs();
+        let argument = sign.map_or(argument, |sign| size * sign);
+        let (factor, error) = (start + argument, size * TRUNCATED + off + rounding);
+        let (low, high) = (limited(factor - error), limited(factor + error));
         let (low, high) = (factor_byte(i64::from(low)), factor_byte(i64::from(high)));
         (least[n], most[n]) = (i32::from(low), i32::from(high));
         close |= low ^ high;
@@ -204,23 +220,34 @@ fn limited(v: f64) -> i32 {
     nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
 }
 
-/// 2^x of -64..=16, off by less than 2^-27 of itself.
+/// FOG-4: indices into the table of the least and of the largest q that a lane can have. Says whether some differ.
+///
+/// `lines` make up e in 4096ths, which is off by `off`. A tie may be one step lower (INT-4t): it is among what differs, for `off` is not 0.
 #[inline(always)]
-fn power_of_two(x: f64) -> f64 {
-    /// ln(2)^n / n!.
-    const SERIES: [f64; 8] = {
-        let mut series = [1.0; 8];
-        let mut n = 1;
-        while n < 8 {
-            series[n] = series[n - 1] * std::f64::consts::LN_2 / n as f64;
-            n += 1;
-        }
-        series
-    };
-    let whole = super::quotient::whole(x);
-    let f = x - whole;
-    let [a, b, c, d, e, g, h, i] = SERIES;
-    let series = a + f * (b + f * (c + f * (d + f * (e + f * (g + f * (h + f * i))))));
-    // Exponents of doubles, added up: the low bits of what `nearest` is made of.
-    f64::from_bits(series.to_bits().wrapping_add((nearest(x) as i64 as u64) << 52))
+fn steps<const FMA: bool, const ROW: bool>(
+    at: Positions<'_>,
+    lines: (Line, Line),
+    off: f64,
+    least: &mut [i32],
+    most: &mut [i32],
+) -> bool {
+    let mut close = 0;
+    let lanes = least.len();
+    let last = f64::from(at.last);
+    let (most, xs, ys, iota) = (&mut most[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    // The index of q is q - FIRST; the floor is the nearest number to what lies half a step below.
+    let ends = (-(CENTRE + FIRST) as f64 - 0.5, (2 * TABLE_END) as f64);
+    let error = off + ROUNDED * 8192.0;
+    for n in 0..lanes {
+        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
+        let index = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y) + ends.0;
+        let within = |v: f64| {
+            let v = if v > 0.0 { v } else { 0.0 };
+            nearest(if v < ends.1 { v } else { ends.1 })
+        };
+        let (low, high) = (within(index - error), within(index + error));
+        (least[n], most[n]) = (low, high);
+        close |= low ^ high;
+    }
+    close != 0
 }

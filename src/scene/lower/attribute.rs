@@ -161,6 +161,7 @@ pub(super) fn vertices(mesh: &Mesh, outputs: &Outputs) -> Vertices {
             diffuse: color(&outputs.diffuse),
             specular: color(&outputs.specular),
             fog: 1.0,
+            fog_coordinate: None,
             texture_coordinates: [0, 1, 2, 3].map(|set| evaluate(mesh, index, &outputs.coordinates[set])),
         }
     };

@@ -13,17 +13,16 @@ pub(super) struct FogFields {
     pub(super) function: Option<FogFunction>,
     /// Of the function's coordinate.
     pub(super) source: FogSource,
-    /// Where the function is evaluated.
-    pub(super) evaluation: FogEvaluation,
+    /// Where its coefficients are applied.
+    evaluation: FogEvaluation,
     /// Where the function stands in the text.
     pub(super) place: Range<usize>,
 }
 
 impl FogFields {
-    /// The state of the pixel pipe: evaluated at the vertices, the function is behind them (INT-5n).
+    /// The state of the pixel pipe.
     pub(super) fn state(&self) -> Fog {
-        let function = self.function.filter(|_| self.evaluation == FogEvaluation::PerPixel);
-        Fog { enabled: self.enabled, color: self.color, function }
+        Fog { enabled: self.enabled, color: self.color, function: self.function }
     }
 }
 
@@ -68,7 +67,7 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
         let place = reader.span(raw);
         fog.evaluation = reader.name(raw).unwrap_or(chip);
         if fog.evaluation == FogEvaluation::PerPixel && reader.profile == Profile::Nv10 {
-            reader.push(target::only_nv2a("NB0324", place, "a fog function of each pixel", "INT-5n"));
+            reader.push(target::only_nv2a("NB0324", place, "linear fog of each pixel", "INT-5n"));
         }
     }
     if let Some(mode) = reader.name(raw) {
@@ -88,7 +87,7 @@ fn function<'a>(
     evaluation: FogEvaluation,
     place: &Range<usize>,
 ) -> Option<FogFunction> {
-    let straight = matches!(mode, FogMode::Linear | FogMode::LinearAbs);
+    let straight = mode.is_linear();
     let numbers = [(&fields.start, "start"), (&fields.end, "end"), (&fields.density, "density")];
     let (fitting, other) = if straight { ("`start` and `end`", &numbers[2..]) } else { ("`density`", &numbers[..2]) };
     for (field, name) in other {
@@ -97,7 +96,7 @@ fn function<'a>(
             reader.push(
                 Diagnostic::error("NB0223", reader.span(raw), message)
                     .label("does not go with this mode")
-                    .help(format!("{} takes {fitting}, or `parameters: (p0, p1)`", mode.name())),
+                    .help(format!("{} takes {fitting}, or `parameters: (p0, p1, p2)`", mode.name())),
             );
             return None;
         }
@@ -111,8 +110,22 @@ fn function<'a>(
             );
             return None;
         }
-        let [p0, p1, ..] = reader.numbers(raw, "the parameters of fog", 2, 2, [0.0; 4])?;
-        return Some(FogFunction { mode, p0, p1 });
+        let [p0, p1, p2, _] = reader.numbers(raw, "the parameters of fog", 2, 3, [0.0; 4])?;
+        let per_vertex = evaluation == FogEvaluation::PerVertex;
+        if p2 != 0.0 && straight && !per_vertex {
+            reader.push(
+                Diagnostic::error(
+                    "NB0223",
+                    reader.span(raw),
+                    format!("{} fog of each pixel has no third parameter", mode.name()),
+                )
+                .label("p2 multiplies the square of the coordinate")
+                .rule("FOG-2")
+                .help("write two parameters, take an exponential mode, or `evaluation: PerVertex`"),
+            );
+            return None;
+        }
+        return Some(FogFunction { mode, p0, p1, p2, per_vertex });
     }
     let mut number = |field: &Option<Raw<'a, f32>>, default: f32| match field {
         Some(raw) => reader.finite(raw),
@@ -122,7 +135,7 @@ fn function<'a>(
         let (start, end) = (number(&fields.start, 0.0), number(&fields.end, 1.0));
         linear(mode, start?, end?, evaluation)
     } else {
-        Some(exponential(mode, number(&fields.density, 1.0)?))
+        Some(exponential(mode, number(&fields.density, 1.0)?, evaluation))
     };
     if function.is_some() {
         return function;
@@ -130,7 +143,7 @@ fn function<'a>(
     reader.push(
         Diagnostic::error("NB0207", place.clone(), "the parameters of this fog are not finite")
             .label("start and end too close together, or too far away")
-            .rule("INT-5")
+            .rule("FOG-2")
             .help("write `start` and `end` the same for a wall of fog, or further apart"),
     );
     None

@@ -10,7 +10,7 @@ use super::vertex::VertexData;
 use super::*;
 use crate::scene::mesh::Mesh;
 use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
-use crate::vertex::fog::{FogEvaluation, FogSource, vertex_factor};
+use crate::vertex::fog::{self as vertex_fog, FogSource};
 use crate::vertex::texgen::CoordinateSet;
 use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 
@@ -72,6 +72,20 @@ pub(super) fn vertex_side(
     viewer: Viewer,
     draw: &Range<usize>,
 ) -> bool {
+    let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone() };
+    if fog.function.is_none()
+        && geometry.program.as_ref().is_some_and(|program| program.writes_fog)
+        && let Some(index) = geometry.vertices.iter().position(|vertex| vertex.fog.is_nan())
+    {
+        // Infinite factors are limited; with a mode FOG-4 and FOG-5 say what a NaN gives.
+        reader.push(
+            Diagnostic::error("NB0207", spans.vertex(index), format!("oFog of vertex {index} is not a number"))
+                .label("what the vertex program makes of it")
+                .rule("VTX-3")
+                .help("look for 0 times infinity, rsq of 0, and differences of infinities"),
+        );
+        return false;
+    }
     if sets.is_none() && fog.function.is_none() {
         return true;
     }
@@ -81,14 +95,13 @@ pub(super) fn vertex_side(
         reader.push(finding);
         return false;
     }
-    let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone() };
     if let (Some(_), FogSource::Vertex, Some(_), None) =
         (&fog.function, fog.source, &geometry.triangles, &geometry.program)
     {
         reader.push(
             Diagnostic::error("NB0222", fog.place.clone(), "the vertices of a mesh give no fog coordinates")
                 .label("needs them from the vertices")
-                .rule("INT-5")
+                .rule("FOG-2")
                 .help("add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices"),
         );
         return false;
@@ -102,20 +115,17 @@ pub(super) fn vertex_side(
             vertex.texture_coordinates = [0, 1, 2, 3].map(|set| sets[set].at(&eye, &given, reader.profile));
         }
         if let Some(function) = &fog.function {
-            vertex.fog = crate::vertex::fog::coordinate(fog.source, &eye, vertex.position);
-            if fog.evaluation == FogEvaluation::PerVertex && vertex.fog.is_finite() {
-                vertex.fog = vertex_factor(function, vertex.fog);
-            }
+            // It may be anything: FOG-4 and FOG-5 say what becomes of what is not finite.
+            let coordinate = vertex_fog::coordinate(fog.source, &eye, vertex.position);
+            vertex.fog = vertex_fog::passed(function, reader.profile, coordinate);
+            vertex.fog_coordinate = Some(coordinate);
         }
-        let what = if !vertex.fog.is_finite() {
-            "the fog coordinate"
-        } else if !vertex.texture_coordinates.iter().flatten().all(|c| c.is_finite()) {
-            "a texture coordinate"
-        } else {
+        if vertex.texture_coordinates.iter().flatten().all(|c| c.is_finite()) {
             return Some(vertex);
-        };
+        }
+        let message = format!("a texture coordinate of vertex {index} is not finite");
         reader.push(
-            Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
+            Diagnostic::error("NB0207", spans.vertex(index), message)
                 .label("beyond all numbers")
                 .rule("TSH-11")
                 .help("use smaller numbers in the matrices, in the planes or in the position"),

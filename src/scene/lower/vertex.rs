@@ -83,7 +83,8 @@ fn vertex<'a>(
     }
     let mut extra = Extra::default();
     if let Some(raw) = &fields.fog_coordinate {
-        extra.fog_coordinate = reader.finite(raw).unwrap_or(0.0);
+        // Not only finite ones: FOG-4 and FOG-5 say what the others give.
+        extra.fog_coordinate = reader.read(raw).unwrap_or(0.0);
     }
     if let Some(raw) = &fields.normal
         && let Some([x, y, z, _]) = reader.numbers(raw, "a normal", 3, 3, [0.0; 4])

@@ -188,7 +188,7 @@ impl Registers {
         }
     }
 
-    /// An output that cannot be used. Infinite colours can: they are limited.
+    /// An output that cannot be used. Infinite colours can: they are limited. Of oFog fog decides.
     fn not_finite(&self, outputs: &Outputs) -> Option<String> {
         if !outputs.position.iter().all(|value| value.is_finite()) {
             return Some("oPos".to_owned());
@@ -196,8 +196,7 @@ impl Registers {
         let color = (0..2).find(|n| self.colors[*n] && outputs.colors[*n].iter().any(|value| value.is_nan()));
         let set =
             (0..4).find(|n| self.coordinates[*n] && !outputs.coordinates[*n].iter().all(|value| value.is_finite()));
-        let fog = self.fog && !outputs.fog[0].is_finite();
-        color.map(|n| format!("oD{n}")).or(set.map(|n| format!("oT{n}"))).or(fog.then(|| "oFog".to_owned()))
+        color.map(|n| format!("oD{n}")).or(set.map(|n| format!("oT{n}")))
     }
 
     /// The vertex as the rasteriser takes it; what the program does not write is as in a vertex that does not give it.
@@ -212,6 +211,7 @@ impl Registers {
             diffuse: color(0, absent.diffuse),
             specular: color(1, absent.specular),
             fog: if self.fog { limited(outputs.fog[0]) } else { absent.fog },
+            fog_coordinate: None,
             texture_coordinates: outputs.coordinates,
         }
     }

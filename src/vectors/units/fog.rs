@@ -1,13 +1,25 @@
-//! The fog factor.
+//! Fog: the light unit's words, the table of the exponentials, and the factor of a coordinate.
 
 use super::named;
-use crate::number::convert::{factor_byte, split};
-use crate::raster::fog;
+use crate::number::light;
+use crate::raster::fog::{FogPlane, FogStep, exponential};
+use crate::raster::interpolate::Sample;
+use crate::raster::setup::Triangle;
 use crate::state::{FogFunction, FogMode, Profile};
 use crate::vectors::column::{Column, Kind};
 use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::vertex::fog::passed;
 
-/// The factor of a pixel's fog coordinate, and its byte.
+/// The modes that look up a table, in the order of the column.
+const CURVES: [FogMode; 4] = [FogMode::Exp, FogMode::Exp2, FogMode::ExpAbs, FogMode::Exp2Abs];
+
+/// A float of a magnitude from 2^-7 to 2^9 with the sign and the fraction of these bits.
+fn moderate(bits: i64) -> i64 {
+    let exponent = 120 + (bits as u32 >> 23 & 15);
+    i64::from(bits as u32 & 0x807f_ffff | exponent << 23)
+}
+
+/// The factor where all vertices have one fog coordinate: what they pass, and the byte.
 #[derive(Debug)]
 pub(super) struct FogFactor;
 
@@ -17,42 +29,150 @@ impl Unit for FogFactor {
     }
 
     fn about(&self) -> &'static str {
-        "the fog factor of a coordinate by a mode's function of two parameters, in 4096ths, and FOG.a"
+        "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a"
     }
 
     fn rules(&self) -> &'static [&'static str] {
-        &["INT-5", "NUM-6"]
-    }
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
+        &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"]
     }
 
     fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::choice::<FogMode>("cfg.mode")];
-        columns.extend(["in.p0", "in.p1", "in.coordinate"].map(|name| Column::float(name, true, 8)));
+        let mut columns = vec![Column::choice::<FogMode>("cfg.mode"), Column::flag("cfg.per_vertex")];
+        columns.extend(["in.p0", "in.p1", "in.p2"].map(|name| Column::float(name, true, 8)));
+        columns.push(Column::word("in.coordinate", 32));
         columns
     }
 
     fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.factor", Kind::Unsigned(13)), Column::result("out.byte", Kind::Unsigned(8))]
+        vec![
+            Column::result("mid.passed", Kind::Hex(32)),
+            Column::result("mid.steps", Kind::Signed(20)),
+            Column::result("out.byte", Kind::Unsigned(8)),
+        ]
     }
 
     fn fit(&self, inputs: &mut [i64]) {
-        // Parameters as a start and an end or a density give them: p0 near 1.5, p1 small and mostly negative.
-        if inputs[3] & 3 != 0 {
-            let near = (inputs[1] & 0x003f_ffff) as u32;
-            inputs[1] = i64::from(0x3f80_0000 | near);
-            let exponent = 127 - 2 - (inputs[2] & 7) as u32;
-            inputs[2] = i64::from(0x8000_0000 | exponent << 23 | (inputs[2] as u32 & 0x007f_ffff));
+        // Parameters as a start and an end or a density give them: p0 near 1.5, p1 small and mostly negative, mostly without p2.
+        if inputs[5] & 3 != 0 {
+            inputs[5] = moderate(inputs[5]);
+            let near = (inputs[2] & 0x003f_ffff) as u32;
+            inputs[2] = i64::from(0x3f80_0000 | near);
+            let exponent = 127 - 2 - (inputs[3] & 7) as u32;
+            inputs[3] = i64::from(0x8000_0000 | exponent << 23 | (inputs[3] as u32 & 0x007f_ffff));
+            inputs[4] = if inputs[5] & 12 != 0 { 0 } else { i64::from((inputs[3] as u32).wrapping_sub(3 << 23)) };
+        }
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        // What nv10 lacks: coefficients at pixels, and LinearAbs.
+        profile == Profile::Nv2a || (inputs[1] != 0 && named::<FogMode>(inputs[0]) != FogMode::LinearAbs)
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let float = |n: usize| f32::from_bits(inputs[n] as u32);
+        let per_vertex = inputs[1] != 0;
+        let function = FogFunction { mode: named(inputs[0]), p0: float(2), p1: float(3), p2: float(4), per_vertex };
+        let value = passed(&function, conditions.profile, float(5));
+        let Some(triangle) =
+            Triangle::new([[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]], true, Profile::Nv2a)
+        else {
+            return;
+        };
+        let found = FogPlane::new(&triangle, Some(function), [value; 3]).at(&Sample::new(&triangle, [1; 3]));
+        results[0] = value.to_bits().into();
+        results[1] = match found.from {
+            FogStep::Factor(v) | FogStep::Linear(v, _) => v,
+            FogStep::Exponential(q) => q.value.clamp(-(1 << 19), (1 << 19) - 1),
+            FogStep::NotFinite => 0,
+        };
+        results[2] = found.byte.into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// The table of the exponential modes.
+#[derive(Debug)]
+pub(super) struct FogTable;
+
+impl Unit for FogTable {
+    fn name(&self) -> &'static str {
+        "fog-table"
+    }
+
+    fn about(&self) -> &'static str {
+        "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["FOG-4"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![
+            Column::names("cfg.mode", &["Exp", "Exp2", "ExpAbs", "Exp2Abs"]),
+            Column::signed("in.steps", 13, -4096, 4095),
+        ]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.byte", Kind::Unsigned(8))]
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = exponential(CURVES[inputs[0] as usize & 3], inputs[1]).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// The words of the light unit: conversion, product and sum.
+#[derive(Debug)]
+pub(super) struct LightUnit;
+
+impl Unit for LightUnit {
+    fn name(&self) -> &'static str {
+        "light-unit"
+    }
+
+    fn about(&self) -> &'static str {
+        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["FOG-1", "FOG-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        ["in.a", "in.b", "in.c", "in.d"].map(|name| Column::word(name, 32)).to_vec()
+    }
+
+    fn results(&self) -> Vec<Column> {
+        ["mid.a", "mid.b", "mid.c", "mid.d", "out.product", "out.sum"]
+            .map(|name| Column::result(name, Kind::Hex(32)))
+            .to_vec()
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        // Mostly of sizes that reach each other.
+        if inputs[3] & 7 != 0 {
+            for input in inputs.iter_mut() {
+                *input = moderate(*input);
+            }
         }
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let float = |n: usize| f32::from_bits(inputs[n] as u32);
-        let function = FogFunction { mode: named(inputs[0]), p0: float(1), p1: float(2) };
-        let factor = fog::evaluate(&function, split(float(3)));
-        (results[0], results[1]) = (factor.value, factor_byte(factor.value).into());
+        let words: [u32; 4] = std::array::from_fn(|n| light::word(inputs[n] as u32));
+        let product = light::product(words[0], words[1]);
+        let sum = light::sum([product, words[2], words[3]]);
+        for (result, word) in results.iter_mut().zip(words.into_iter().chain([product, sum])) {
+            *result = word.into();
+        }
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {

@@ -1,0 +1,154 @@
+//! Words of the light unit: single-precision numbers of 14 significant bits, with products and sums that truncate (FOG-1, FOG-3).
+//!
+//! A word is the bit pattern of a binary32 number whose lowest ten bits are 0. Denormals do not occur, and a NaN is [`NAN`].
+
+/// The word of a NaN.
+pub const NAN: u32 = 0x7fff_fc00;
+
+/// The word of infinity.
+pub const INFINITY: u32 = 0x7f80_0000;
+
+/// The word of the largest finite number.
+pub const LARGEST: u32 = 0x7f7f_fc00;
+
+/// Bits of a word that stay 0.
+const LOW: u32 = 0x3ff;
+
+/// Significant bits after the first one.
+const FRACTION_BITS: u32 = 13;
+
+/// Bits below the last of the largest term that a sum keeps of its terms.
+const GUARD_BITS: u32 = 5;
+
+/// FOG-1: a binary32 pattern as a word, to nearest unless eight ones follow each other in bits 10 to 17. Denormals are 0.
+pub fn word(pattern: u32) -> u32 {
+    match pattern >> 23 & 255 {
+        0 => 0,
+        255 if pattern & 0x7f_ffff != 0 => NAN,
+        // The carry ends in the eight bits.
+        _ if pattern >> 10 & 255 != 255 => (pattern + 0x200) & !LOW,
+        _ => pattern & !LOW,
+    }
+}
+
+/// FOG-3: the product of two words, truncated. What is too small is 0, what is too large the largest number.
+pub fn product(a: u32, b: u32) -> u32 {
+    if is_nan(a) || is_nan(b) {
+        return NAN;
+    }
+    if is_zero(a) || is_zero(b) {
+        return 0;
+    }
+    if is_infinite(a) || is_infinite(b) {
+        return INFINITY;
+    }
+    let sign = (a ^ b) & 1 << 31;
+    finite(sign, mantissa(a) * mantissa(b), exponent(a) + exponent(b) - 127 - FRACTION_BITS as i32)
+}
+
+/// FOG-3: the sum of three words. Each is cut five bits below the last of the largest, the sum is exact and then truncated.
+pub fn sum(terms: [u32; 3]) -> u32 {
+    if terms.iter().any(|term| is_nan(*term)) {
+        return NAN;
+    }
+    if terms.iter().any(|term| is_infinite(*term)) {
+        return INFINITY;
+    }
+    let terms = terms.map(|term| if is_zero(term) { 0 } else { term });
+    let largest = terms.iter().map(|term| exponent(*term)).fold(0, i32::max);
+    let mut sum = 0_i32;
+    for term in terms.into_iter().filter(|term| *term != 0) {
+        let down = (largest - exponent(term)).min(31);
+        let magnitude = (mantissa(term) << GUARD_BITS >> down) as i32;
+        sum += if term >> 31 == 1 { -magnitude } else { magnitude };
+    }
+    let sign = u32::from(sum < 0) << 31;
+    finite(sign, sum.unsigned_abs(), largest - GUARD_BITS as i32)
+}
+
+/// A magnitude, whose last bit is worth what that of a word with this exponent field is, truncated to a word.
+fn finite(sign: u32, magnitude: u32, exponent: i32) -> u32 {
+    if magnitude == 0 {
+        return 0;
+    }
+    let up = FRACTION_BITS as i32 - magnitude.ilog2() as i32;
+    let mantissa = if up >= 0 { magnitude << up } else { magnitude >> -up };
+    match exponent - up {
+        ..=0 => 0,
+        255.. => sign | LARGEST,
+        field => sign | (field as u32) << 23 | (mantissa & ((1 << FRACTION_BITS) - 1)) << 10,
+    }
+}
+
+fn exponent(word: u32) -> i32 {
+    (word >> 23 & 255) as i32
+}
+
+/// 14 bits.
+fn mantissa(word: u32) -> u32 {
+    word >> 10 & ((1 << FRACTION_BITS) - 1) | 1 << FRACTION_BITS
+}
+
+fn is_zero(word: u32) -> bool {
+    exponent(word) == 0
+}
+
+fn is_infinite(word: u32) -> bool {
+    exponent(word) == 255 && word & 0x7f_ffff == 0
+}
+
+fn is_nan(word: u32) -> bool {
+    exponent(word) == 255 && word & 0x7f_ffff != 0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn conversions_as_captured() {
+        assert_eq!(word(0x3fb5_1eb5), 0x3fb5_2000);
+        assert_eq!(word(0x3fbf_fffc), 0x3fbf_fc00);
+        assert_eq!(word(0xbb13_bb3c), 0xbb13_bc00);
+        assert_eq!([word(1), word(0x807f_ffff), word(0x7f80_0000), word(0xff80_0000)], [0, 0, INFINITY, 0xff80_0000]);
+        assert_eq!([word(0x7f80_0001), word(0xffff_ffff)], [NAN; 2]);
+        assert_eq!(word(0x7f7f_ffff), LARGEST);
+    }
+
+    /// No word is further than one unit of its last place from its number, and words are their own.
+    #[test]
+    fn words_are_near() {
+        for low in 0..1 << 18 {
+            let pattern = 0x3f80_0000 | low;
+            let near = word(pattern);
+            assert_eq!((near & LOW, word(near)), (0, near));
+            let off = i64::from(near) - i64::from(pattern);
+            let cut = low >> 10 & 255 == 255;
+            assert!(if cut { (-0x3ff..=0).contains(&off) } else { (-0x1ff..=0x200).contains(&off) }, "{pattern:#x}");
+        }
+    }
+
+    #[test]
+    fn vertices_as_captured() {
+        // c0 = 1.5 and c1 = -0.0022542 at d = 56 and 3.
+        let (c0, c1) = (word(0x3fc0_0000), word(0xbb13_bb3c));
+        let first = product(c1, word(56.0_f32.to_bits()));
+        assert_eq!((first, sum([c0, first, 0])), (0xbe01_4400, 0x3faf_d400));
+        let second = product(c1, word(3.0_f32.to_bits()));
+        assert_eq!((second, f32::from_bits(sum([c0, second, 0]))), (0xbbdd_9800, 12232.0 / 8192.0));
+    }
+
+    #[test]
+    fn ends_of_the_range() {
+        let one = 0x3f80_0000;
+        assert_eq!(product(LARGEST, LARGEST | 1 << 31), LARGEST | 1 << 31);
+        assert_eq!(product(0x0080_0000, 0x3f00_0000), 0);
+        assert_eq!(product(0x0080_0000, one), 0x0080_0000);
+        assert_eq!((product(0, INFINITY), product(0, NAN), product(one | 1 << 31, INFINITY)), (0, NAN, INFINITY));
+        assert_eq!(sum([LARGEST, LARGEST, 0]), LARGEST);
+        assert_eq!(sum([0xff80_0000, one, 0]), INFINITY);
+        assert_eq!((sum([INFINITY, NAN, 0]), sum([0, 0x8000_0000, 0])), (NAN, 0));
+        assert_eq!(sum([0x0080_0400, 0x8080_0000, 0]), 0);
+        assert_eq!(sum([one, one | 1 << 31, 0]), 0);
+    }
+}
