@@ -125,15 +125,17 @@ impl Triangle {
         })
     }
 
-    /// The three linear functions of s, t and q, of which only ratios are used: nine numbers P_k x_k of one exponent, 28 bits.
+    /// The three linear functions of s, t and q, of which only ratios are used: nine numbers P_k x_k of one exponent, 28 bits, cut toward zero:
+    /// opposite ones stay opposite (TEX-15).
     pub fn direction(&self, x: [[f32; 3]; 3]) -> [[i64; 3]; 3] {
-        let products: [(i64, i32); 9] = std::array::from_fn(|n| {
+        let magnitudes: [(i64, i32); 9] = std::array::from_fn(|n| {
             let (axis, k) = (n / 3, n % 3);
             let (m, e) = split(x[axis][k]);
-            (m * self.p[k], e)
+            (m.abs() * self.p[k], e)
         });
-        let (g, _) = align(products, PERSPECTIVE_BITS);
-        std::array::from_fn(|axis| std::array::from_fn(|k| g[3 * axis + k]))
+        let (g, _) = align(magnitudes, PERSPECTIVE_BITS);
+        let signed = |axis: usize, k: usize| if x[axis][k] < 0.0 { -g[3 * axis + k] } else { g[3 * axis + k] };
+        std::array::from_fn(|axis| std::array::from_fn(|k| signed(axis, k)))
     }
 }
 
@@ -201,6 +203,14 @@ mod tests {
         // Right, then down: clockwise on a screen whose y points down.
         assert!(!triangle([[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]]).expect("area").counter_clockwise);
         assert!(triangle([[0.0, 0.0], [9.0, 9.0], [9.0, 0.0]]).expect("area").counter_clockwise);
+    }
+
+    #[test]
+    fn opposite_directions_are_opposite() {
+        let t = Triangle::new([[0.0, 0.0, 0.0, 1.3], [9.0, 0.0, 0.0, 3.7], [0.0, 9.0, 0.0, 2.1]], true, Profile::Nv2a);
+        let x = [[0.1_f32, -0.003, 7.7], [-1.9, 0.0, 0.37], [1.0, 1.7, -0.3]];
+        let (there, back) = (t.expect("area").direction(x), t.expect("area").direction(x.map(|row| row.map(|c| -c))));
+        assert_eq!(there, back.map(|row| row.map(|g| -g)));
     }
 
     #[test]

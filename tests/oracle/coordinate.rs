@@ -74,15 +74,14 @@ impl Setup {
         self.vertices.map(|v| v.texture_coordinates[set][n])
     }
 
-    /// Nine products of one exponent, 28 bits.
+    /// Nine products of one exponent, 28 bits, cut toward zero (TEX-15).
     fn three(&self, set: usize, which: [usize; 3]) -> [[i128; 3]; 3] {
-        let nine: [i128; 9] = align(
-            std::array::from_fn(|n| {
-                let (m, e) = split(self.component(set, which[n / 3])[n % 3]);
-                (self.p[n % 3] * m, e)
-            }),
-            28,
-        );
+        let parts: [(i128, i32); 9] = std::array::from_fn(|n| {
+            let (m, e) = split(self.component(set, which[n / 3])[n % 3]);
+            (self.p[n % 3] * m, e)
+        });
+        let sizes = align(parts.map(|(m, e)| (m.abs(), e)), 28);
+        let nine: [i128; 9] = std::array::from_fn(|n| parts[n].0.signum() * sizes[n]);
         [0, 3, 6].map(|a| [nine[a], nine[a + 1], nine[a + 2]])
     }
 
