@@ -330,6 +330,8 @@ fn services_and_browsers_read_the_reports() {
 
     let html = fs::read_to_string(bench.path("h.html")).unwrap();
     assert_eq!(html.matches("src=\"data:image/png;base64,").count(), 2, "panels of one, the picture of the other");
+    let columns = "minmax(0, 24fr) minmax(0, 8fr) minmax(0, 24fr) minmax(0, 8fr) minmax(0, 24fr)";
+    assert!(html.contains(columns), "each title is as wide as its panel");
     assert_eq!(html.matches("src=").count() + html.matches("<link").count() + html.matches("<script").count(), 2);
     assert!(html.contains("three &lt;&amp;&quot;&gt;") && html.contains("CMB-8=each draws what is expected"));
 }

@@ -114,3 +114,25 @@ fn what_is_streamed_is_what_is_kept() {
     let empty: Value = serde_json::from_str(&bench.run("trace piled.ron --pixel 3,0 --format json").text()).unwrap();
     assert_eq!(empty["draws"], Value::Array(Vec::new()));
 }
+
+#[test]
+fn long_names_and_formulas_do_not_move_the_numbers() {
+    use ninebit::trace::{Step, plain};
+    let long = "a.name.that.is.wider.than.its.column";
+    let operands = (0..30).map(|n| plain(format!("operand{n}"), n)).collect();
+    let steps = [
+        Step::given("block", "CMB-1", "short", 12),
+        Step::given("block", "CMB-1", long, 345).by("given", Vec::new()),
+        Step::given("block", "CMB-1", "sum", 6789).by("operation", operands),
+    ];
+    let text = ninebit::report::steps_text(&steps);
+    let ends: Vec<usize> =
+        ["12", "345", "6789"].iter().map(|number| line_with(&text, &format!(" {number} ")).1 + number.len()).collect();
+    assert!(ends.iter().all(|end| *end == ends[0]), "{text}");
+    assert!(text.lines().any(|line| line.trim() == long), "{text}");
+}
+
+/// The line in which a text stands, the last one, and its column.
+fn line_with<'t>(text: &'t str, part: &str) -> (&'t str, usize) {
+    text.lines().rev().find_map(|line| Some((line, line.rfind(part)?))).unwrap_or_else(|| panic!("{part}: {text}"))
+}

@@ -48,6 +48,7 @@ addEventListener("load", () => {
         changed: document.querySelectorAll("tr.other").length,
         sections: document.querySelectorAll("section").length,
         overflow: document.documentElement.scrollWidth > innerWidth,
+        titles: [...document.querySelectorAll(".titles span")].every(span => span.scrollWidth <= span.clientWidth + 1),
         messages,
     };
     const pre = document.createElement("pre");
@@ -77,7 +78,7 @@ open(f"{out}/answers.json", "w", encoding="utf-8").write(json.dumps(answers, ind
 print(json.dumps(answers))
 expected = {
     "pictures": [[3 * 640 + 16, 480, True], [640, 480, True]],
-    "loaded": [], "overflow": False, "messages": [], "sections": 3,
+    "loaded": [], "overflow": False, "titles": True, "messages": [], "sections": 3,
 }
 wrong = {key: answers[key] for key, value in expected.items() if answers[key] != value}
 assert not wrong, wrong
