@@ -1,6 +1,7 @@
 #!/bin/sh
 # Times the workloads by Mesa's llvmpipe and by ninebit in turn, and prints medians of the rounds and their ratio.
 #   benches/peers/compare.sh [ROUNDS [ISA [THREADS]]]
+# W13 has no peer: in place of one it is timed under the default policies, and as ours under another.
 # One thread stays on one processor, the last that the script may use: both are timed there.
 # Installs Mesa, EGL, libpng and a C compiler from Debian's packages where they are missing (as root).
 set -eu
@@ -36,21 +37,27 @@ while [ "$round" -lt "$rounds" ]; do
     $pin "$work/llvmpipe" "$scenes" 60 2>/dev/null | tee "$work/peer.txt" | grep -v '^#' | while read -r name pixels median least; do
         echo "$name peer $pixels $median $least" >>"$work/all"
     done
-    for n in 1 2 3 4 5 6; do
+    for n in 1 2 3 4 5 6 7 8 9 10 11 12 13 policy; do
+        # W13 under a policy takes the place of a peer: none has its stages.
+        who=ours file=$n policy=
+        case $n in
+        13) who=peer ;; # under the default policies
+        policy) file=13 policy="--policy CMB-4=127.5" ;;
+        esac
         # shellcheck disable=SC2086
-        $pin "$ninebit" bench "$scenes/w$n.ron" --threads "$threads" ${isa:+--isa "$isa"} --json |
-            awk -v name="w$n" '
+        $pin "$ninebit" bench "$scenes/w$file.ron" --threads "$threads" ${isa:+--isa "$isa"} $policy --json |
+            awk -v name="w$file" -v who="$who" '
                 /"shaded_pixels"/ { gsub(/[^0-9]/, ""); pixels = $0 }
                 /"ns_per_shaded_pixel"/ { inside = 1 }
                 inside && /"least"/ { gsub(/[^0-9.]/, ""); least = $0 }
                 inside && /"median"/ { gsub(/[^0-9.]/, ""); median = $0; inside = 0 }
-                END { print name, "ours", pixels, median, least }' >>"$work/all"
+                END { print name, who, pixels, median, least }' >>"$work/all"
     done
 done
 grep '^#' "$work/peer.txt"
 printf '%d rounds, %s thread(s), isa %s; ns a shaded pixel\n' "$rounds" "$threads" "${isa:-widest}"
 printf '%-4s %10s %10s %10s %7s %18s\n' '' pixels llvmpipe ninebit ratio 'ratio of the least'
-for n in 1 2 3 4 5 6; do
+for n in 1 2 3 4 5 6 7 8 9 10 11 12 13; do
     for who in peer ours; do
         awk -v name="w$n" -v who="$who" '$1 == name && $2 == who { print $4 }' "$work/all" | sort -n |
             awk '{ all[NR] = $1 } END { print all[int((NR + 1) / 2)] }' >"$work/$who"

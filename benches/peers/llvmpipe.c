@@ -18,7 +18,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { WIDTH = 640, HEIGHT = 480, CELL = 10, CELLS = 5000, TEXTURES = 9 };
+enum { WIDTH = 640, HEIGHT = 480, CELL = 10, CELLS = 5000, TEXTURES = 12, WORKLOADS = 12 };
 
 static void fail(const char *what)
 {
@@ -119,11 +119,11 @@ static void send_mesh(void)
 
 /* ---- Textures ---- */
 
-enum { NORMAL, COLOR, HALVES, CUBE = HALVES + 6 };
+enum { NORMAL, COLOR, HALVES, CUBE = HALVES + 6, LEVELS, BLOCKS, NARROW };
 static GLuint textures[TEXTURES];
 static const char *const SIDES[6] = { "positive-x", "negative-x", "positive-y", "negative-y", "positive-z", "negative-z" };
 
-static void load(const char *folder, const char *name, GLenum target, int gray)
+static void load_as(const char *folder, const char *name, GLenum target, GLint format, int gray)
 {
     char path[4096];
     snprintf(path, sizeof path, "%s/%s.png", folder, name);
@@ -133,9 +133,27 @@ static void load(const char *folder, const char *name, GLenum target, int gray)
     void *pixels = malloc(PNG_IMAGE_SIZE(image));
     if (!pixels || !png_image_finish_read(&image, NULL, pixels, 0, NULL)) fail(path);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage2D(target, 0, gray ? GL_LUMINANCE8 : GL_RGBA8, image.width, image.height, 0,
+    glTexImage2D(target, 0, format, image.width, image.height, 0,
                  gray ? GL_LUMINANCE : GL_RGBA, GL_UNSIGNED_BYTE, pixels);
     free(pixels);
+}
+
+static void load(const char *folder, const char *name, GLenum target, int gray)
+{
+    load_as(folder, name, target, gray ? GL_LUMINANCE8 : GL_RGBA8, gray);
+}
+
+/* An image of DXT1 blocks after the 128 bytes of a DDS header. */
+static void load_blocks(const char *folder, const char *name)
+{
+    enum { SIDE = 256, HEADER = 128, SIZE = SIDE * SIDE / 2 };
+    static unsigned char bytes[HEADER + SIZE];
+    char path[4096];
+    snprintf(path, sizeof path, "%s/%s.dds", folder, name);
+    FILE *file = fopen(path, "rb");
+    if (!file || fread(bytes, 1, sizeof bytes, file) != sizeof bytes) fail(path);
+    fclose(file);
+    glCompressedTexImage2D(GL_TEXTURE_2D, 0, GL_COMPRESSED_RGB_S3TC_DXT1_EXT, SIDE, SIDE, 0, SIZE, bytes + HEADER);
 }
 
 static void parameters(GLenum target, GLint wrap, GLint filter)
@@ -163,13 +181,110 @@ static void load_textures(const char *folder)
         load(folder, name, GL_TEXTURE_CUBE_MAP_POSITIVE_X + face, 0);
     }
     parameters(GL_TEXTURE_CUBE_MAP, GL_CLAMP_TO_EDGE, GL_LINEAR);
+    glBindTexture(GL_TEXTURE_2D, textures[LEVELS]);
+    load(folder, "color", GL_TEXTURE_2D, 0);
+    glGenerateMipmap(GL_TEXTURE_2D);
+    parameters(GL_TEXTURE_2D, GL_REPEAT, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
+    glBindTexture(GL_TEXTURE_2D, textures[BLOCKS]);
+    load_blocks(folder, "color");
+    parameters(GL_TEXTURE_2D, GL_REPEAT, GL_LINEAR);
+    glBindTexture(GL_TEXTURE_2D, textures[NARROW]);
+    load_as(folder, "color", GL_TEXTURE_2D, GL_RGB565, 0);
+    parameters(GL_TEXTURE_2D, GL_REPEAT, GL_LINEAR);
+}
+
+/* ---- What fixed functions do not suffice for ---- */
+
+static const char *const VERTEX =
+    "#version 120\n"
+    "varying vec4 a, b, c, d;\n"
+    "varying float fog;\n"
+    "void main() {\n"
+    "    gl_Position = gl_Vertex;\n"
+    "    gl_FrontColor = gl_Color;\n"
+    "    a = gl_MultiTexCoord0; b = gl_MultiTexCoord1; c = gl_MultiTexCoord2; d = gl_MultiTexCoord3;\n"
+    "    fog = gl_Vertex.w;\n"
+    "}\n";
+
+#define FRAGMENT "#version 120\nvarying vec4 a, b, c, d; varying float fog; uniform sampler2D t0, t1, t2, t3; uniform samplerCube c3;\n"
+
+/* By workload, from W7 on. */
+static const char *const FRAGMENTS[] = {
+    /* The byte of a signed channel is a 128th of two's complement. */
+    FRAGMENT "void main() {\n"
+             "    vec3 n = texture2D(t0, a.xy).rgb;\n"
+             "    vec2 moved = a.xy + 0.35 * vec2(n.b * 2.0 - 1.0, n.g * 2.0 - 1.0);\n"
+             "    gl_FragColor = texture2D(t1, moved) * clamp(n.r * 1.1 + 0.05, 0.0, 1.0);\n"
+             "}\n",
+    FRAGMENT "void main() {\n"
+             "    vec3 n = texture2D(t0, a.xy).rgb * 2.0 - 1.0, e = vec3(b.w, c.w, d.w);\n"
+             "    vec3 m = vec3(dot(b.xyz, n), dot(c.xyz, n), dot(d.xyz, n));\n"
+             "    gl_FragColor = textureCube(c3, 2.0 * dot(m, e) / dot(m, m) * m - e);\n"
+             "}\n",
+    FRAGMENT "void main() { gl_FragColor = texture2D(t0, a.xy) * gl_Color; }\n",
+    FRAGMENT "void main() {\n"
+             "    float l = clamp(dot(texture2D(t0, a.xy).rgb * 2.0 - 1.0, gl_Color.rgb * 2.0 - 1.0), 0.0, 1.0);\n"
+             "    vec4 sum = clamp(texture2D(t2, a.xy) * l + texture2D(t1, a.xy), 0.0, 1.0);\n"
+             "    gl_FragColor = sum * texture2D(t3, a.xy);\n"
+             "}\n",
+    FRAGMENT "void main() {\n"
+             "    float l = clamp(dot(texture2D(t0, a.xy).rgb * 2.0 - 1.0, gl_Color.rgb * 2.0 - 1.0), 0.0, 1.0);\n"
+             "    float x = 0.6 * fog, factor = clamp(exp(-x * x), 0.0, 1.0);\n"
+             "    vec3 color = texture2D(t1, a.xy).rgb * l;\n"
+             "    gl_FragColor = vec4(mix(vec3(0.588, 0.627, 0.706), color, factor), 1.0);\n"
+             "}\n",
+    FRAGMENT "void main() { gl_FragColor = vec4(texture2D(t0, a.xy).rgb * texture2D(t1, a.xy).rgb, 0.5); }\n",
+};
+
+static GLuint compiled(GLenum kind, const char *text)
+{
+    GLuint shader = glCreateShader(kind);
+    GLint done;
+    glShaderSource(shader, 1, &text, NULL);
+    glCompileShader(shader);
+    glGetShaderiv(shader, GL_COMPILE_STATUS, &done);
+    if (!done) fail(text);
+    return shader;
+}
+
+static void use_program(const char *fragment)
+{
+    const char *const samplers[] = { "t0", "t1", "t2", "t3" };
+    GLuint program = glCreateProgram();
+    GLint done;
+    glAttachShader(program, compiled(GL_VERTEX_SHADER, VERTEX));
+    glAttachShader(program, compiled(GL_FRAGMENT_SHADER, fragment));
+    glLinkProgram(program);
+    glGetProgramiv(program, GL_LINK_STATUS, &done);
+    if (!done) fail("a program does not link");
+    glUseProgram(program);
+    for (int n = 0; n < 4; n++) glUniform1i(glGetUniformLocation(program, samplers[n]), n);
+    glUniform1i(glGetUniformLocation(program, "c3"), 3);
+}
+
+/* A surface of its own, with depths. */
+static void use_surface(GLenum format)
+{
+    GLuint frame, buffers[2];
+    glGenFramebuffers(1, &frame);
+    glBindFramebuffer(GL_FRAMEBUFFER, frame);
+    glGenRenderbuffers(2, buffers);
+    glBindRenderbuffer(GL_RENDERBUFFER, buffers[0]);
+    glRenderbufferStorage(GL_RENDERBUFFER, format, WIDTH, HEIGHT);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_RENDERBUFFER, buffers[0]);
+    glBindRenderbuffer(GL_RENDERBUFFER, buffers[1]);
+    glRenderbufferStorage(GL_RENDERBUFFER, GL_DEPTH24_STENCIL8, WIDTH, HEIGHT);
+    glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_STENCIL_ATTACHMENT, GL_RENDERBUFFER, buffers[1]);
+    if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE) fail("no surface");
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
 }
 
 /* ---- The quad: w = 1 along the lower edge, 2 along the upper, so that everything on it is in perspective. ---- */
 
 enum { PLAIN = -2, LIGHT = -1 /* 0 to 5: half a component of the light */ };
 
-static void quad(int color, int cube)
+static void quad(int color, int cube, double density)
 {
     const double corners[6][2] = { { -1, -1 }, { 1, -1 }, { -1, 1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
     glBegin(GL_TRIANGLES);
@@ -183,11 +298,30 @@ static void quad(int color, int cube)
             double half = fmax(0, color % 2 ? -component[color / 2] : component[color / 2]);
             glColor4d(half, half, half, 1);
         }
-        double s = (x + 1) * w, t = 0.75 * (y + 1) * w;
+        double s = density * (x + 1) * w, t = density * 0.75 * (y + 1) * w;
         glMultiTexCoord2d(GL_TEXTURE0, s, t);
         if (cube) glMultiTexCoord3d(GL_TEXTURE1, v.x, v.y, v.z);
         else glMultiTexCoord2d(GL_TEXTURE1, s, t);
         glVertex4d(x * w, y * w, 0, w);
+    }
+    glEnd();
+}
+
+/* The same, with the rows of a matrix and an eye vector in sets 1 to 3. */
+static void shaded_quad(double density)
+{
+    const double corners[6][2] = { { -1, -1 }, { 1, -1 }, { -1, 1 }, { 1, -1 }, { 1, 1 }, { -1, 1 } };
+    glBegin(GL_TRIANGLES);
+    for (int n = 0; n < 6; n++) {
+        double x = corners[n][0], y = corners[n][1], w = y > 0 ? 2 : 1;
+        Vector v = light_at(x * w, y * w);
+        double m = length(v);
+        glColor4ub(biased(v.x / m), biased(v.y / m), biased(v.z / m), 255);
+        glMultiTexCoord2d(GL_TEXTURE0, density * (x + 1) * w, density * 0.75 * (y + 1) * w);
+        glMultiTexCoord4d(GL_TEXTURE1, 1, 0, 0, x * w);
+        glMultiTexCoord4d(GL_TEXTURE2, 0, 1, 0, y * w);
+        glMultiTexCoord4d(GL_TEXTURE3, 0, 0, 1, 2);
+        glVertex4d(x * w, y * w, 0.25 * y * w, w);
     }
     glEnd();
 }
@@ -210,9 +344,48 @@ static void unit(int n, GLenum target, GLuint texture, GLenum combine, GLenum wi
     glTexEnvi(GL_TEXTURE_ENV, GL_SRC0_ALPHA, GL_PREVIOUS);
 }
 
+static void bind(int n, GLenum target, GLuint texture)
+{
+    glActiveTexture(GL_TEXTURE0 + n);
+    glBindTexture(target, texture);
+}
+
+/* Workloads whose fragments are programs. */
+static void set_up_program(int workload)
+{
+    glDisableClientState(GL_VERTEX_ARRAY);
+    glDisableClientState(GL_TEXTURE_COORD_ARRAY);
+    glDisableClientState(GL_COLOR_ARRAY);
+    glBindBuffer(GL_ARRAY_BUFFER, 0);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, 0);
+    bind(0, GL_TEXTURE_2D, textures[workload == 9 ? LEVELS : workload == 12 ? BLOCKS : NORMAL]);
+    if (workload != 9 && workload != 12) parameters(GL_TEXTURE_2D, GL_REPEAT, GL_LINEAR);
+    bind(1, GL_TEXTURE_2D, textures[workload == 12 ? NARROW : COLOR]);
+    parameters(GL_TEXTURE_2D, GL_REPEAT, GL_LINEAR);
+    bind(2, GL_TEXTURE_2D, textures[HALVES]);
+    bind(3, GL_TEXTURE_2D, textures[HALVES + 2]);
+    bind(3, GL_TEXTURE_CUBE_MAP, textures[CUBE]);
+    use_program(FRAGMENTS[workload - 7]);
+    if (workload == 11) {
+        use_surface(GL_RGBA8);
+        glEnable(GL_DEPTH_TEST);
+        glDepthFunc(GL_LEQUAL);
+    }
+    if (workload == 12) {
+        use_surface(GL_RGB565);
+        glDisable(GL_DEPTH_TEST);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA);
+    }
+}
+
 static void set_up(int workload)
 {
     GLuint normal = textures[NORMAL], color = textures[COLOR];
+    if (workload >= 7) {
+        set_up_program(workload);
+        return;
+    }
     unit(1, 0, 0, 0, 0);
     glDisable(GL_BLEND);
     switch (workload) {
@@ -259,15 +432,23 @@ static void draw(int workload)
             /* Equal signs add, unequal ones subtract. */
             glBlendEquation(pass < 6 ? GL_FUNC_ADD : GL_FUNC_REVERSE_SUBTRACT);
             glBindTexture(GL_TEXTURE_2D, textures[HALVES + pass % 6]);
-            quad(pass < 6 ? pass : (pass % 6) ^ 1, 0);
+            quad(pass < 6 ? pass : (pass % 6) ^ 1, 0, 1);
         }
         glBlendEquation(GL_FUNC_ADD);
         break;
     case 6:
         glDrawElements(GL_TRIANGLES, CELLS * 6, GL_UNSIGNED_INT, 0);
         break;
+    case 7:
+    case 8:
+    case 9:
+    case 10:
+    case 11:
+    case 12:
+        shaded_quad(workload == 9 ? 4 : 1);
+        break;
     default:
-        quad(workload == 3 || workload == 5 ? PLAIN : LIGHT, workload == 3);
+        quad(workload == 3 || workload == 5 ? PLAIN : LIGHT, workload == 3, 1);
         break;
     }
     glFinish();
@@ -335,6 +516,6 @@ int main(int count, char **arguments)
     glDisable(GL_DITHER);
     glViewport(0, 0, WIDTH, HEIGHT);
     load_textures(arguments[1]);
-    for (int workload = 1; workload <= 6; workload++) measure(workload, frames);
+    for (int workload = 1; workload <= WORKLOADS; workload++) measure(workload, frames);
     return 0;
 }

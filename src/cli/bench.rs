@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use clap::Args;
-use ninebit::engine::Renderer;
+use ninebit::engine::{Reason, Renderer};
 use ninebit::output::write_stdout;
 use ninebit::read::page;
 use ninebit::state::Named;
@@ -51,8 +51,18 @@ struct Measured {
     frame_microseconds: Spread,
     /// The same for a shaded pixel: a pixel counts once for each draw that shades it.
     ns_per_shaded_pixel: Spread,
+    /// Of the fast engine: the share of the pixels of which the definition computed something, by the reason.
+    defined_share: Vec<Defined>,
     /// The most memory that the process held resident while the scene was measured, where the system tells.
     peak_memory_bytes: Option<u64>,
+}
+
+/// What the fast engine left to the definition.
+#[derive(Debug, Serialize)]
+struct Defined {
+    reason: &'static str,
+    /// Of all shaded pixels; above 1 where several things of a pixel were computed so.
+    share: f64,
 }
 
 /// How some times are spread.
@@ -132,6 +142,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             .collect();
         times.sort_by(f64::total_cmp);
         let frame_microseconds = Spread::of(&times);
+        let share = |(reason, count): &(Reason, u64)| Defined {
+            reason: reason.name(),
+            share: *count as f64 / (shaded_pixels.max(1) as f64),
+        };
         document.scenes.push(Measured {
             scene: path.display().to_string(),
             engine: renderer.engine().name(),
@@ -141,6 +155,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             prepare_microseconds,
             frame_microseconds,
             ns_per_shaded_pixel: frame_microseconds.times(1e3 / (shaded_pixels.max(1) as f64)),
+            defined_share: statistics.defined_pixels.iter().map(share).collect(),
             peak_memory_bytes: peak_memory(),
         });
     }
@@ -184,6 +199,9 @@ fn text(document: &Document) -> String {
             spread,
             measured.scene
         );
+        for Defined { reason, share } in &measured.defined_share {
+            let _ = writeln!(text, "{:>66}  pixel by pixel: {:.3} %, {reason}", "", 100.0 * share);
+        }
     }
     text
 }

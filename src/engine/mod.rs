@@ -14,13 +14,13 @@ mod tracing;
 pub(crate) mod walk;
 
 pub use counting::{DrawCounts, count, fragments};
-pub use rows::Isa;
+pub use rows::{Isa, Reason};
 pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
 
 use crate::frame::{Frames, Surface};
 use crate::plan::Plan;
 use crate::rop::surface;
-use crate::state::{Target, Texture, TextureImage, named};
+use crate::state::{Named, Target, Texture, TextureImage, named};
 use crate::texture::unit::Image;
 use crate::trace::Silent;
 use bins::Bins;
@@ -63,6 +63,9 @@ impl Default for RenderOptions {
 pub struct Statistics {
     /// Covered pixels of each draw, counted once for each triangle that covers them.
     pub shaded_pixels: Vec<u64>,
+    /// Of the fast engine: pixels of which the definition computed something, by the reason, and none of any other. A pixel counts once for
+    /// each thing of its that was computed so.
+    pub defined_pixels: Vec<(Reason, u64)>,
 }
 
 /// Least rows of a band, unless asked for: the unit of work that threads share.
@@ -162,8 +165,11 @@ impl<'a> Renderer<'a> {
     }
 
     fn draw_all(&self, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Statistics {
-        let shaded_pixels = self.groups().flat_map(|draws| self.draw_group(draws, frames, band_done)).collect();
-        Statistics { shaded_pixels }
+        let defined = [const { AtomicU64::new(0) }; Reason::ALL.len()];
+        let shaded = self.groups().flat_map(|draws| self.draw_group(draws, frames, band_done, &defined));
+        let shaded_pixels = shaded.collect();
+        let defined = Reason::ALL.iter().copied().zip(defined.map(AtomicU64::into_inner));
+        Statistics { shaded_pixels, defined_pixels: defined.filter(|(_, count)| *count > 0).collect() }
     }
 
     /// Neighbouring draws on one target: they are drawn band by band, all of them on one before any on the next, so that the band stays in
@@ -202,7 +208,13 @@ impl<'a> Renderer<'a> {
     }
 
     /// Runs some draws on their target; covered pixels of each.
-    fn draw_group(&self, draws: Range<usize>, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Vec<u64> {
+    fn draw_group(
+        &self,
+        draws: Range<usize>,
+        frames: &mut Frames,
+        band_done: &(dyn Fn() + Sync),
+        defined: &[AtomicU64],
+    ) -> Vec<u64> {
         let plan = self.plan;
         let compiled: Vec<_> = draws
             .clone()
@@ -229,6 +241,9 @@ impl<'a> Renderer<'a> {
                 };
                 shaded.fetch_add(pixels, Ordering::Relaxed);
                 band_done();
+            }
+            for (all, own) in defined.iter().zip(std::mem::take(&mut block.defined)) {
+                all.fetch_add(own, Ordering::Relaxed);
             }
         };
         draw_bands(plan, plan.draws[draws.start].target, height, frames, pool, &run);

@@ -359,7 +359,8 @@ impl<'a> TriangleContext<'a> {
                 registers.load(register, value);
             }
         }
-        for planned in &self.draw.units {
+        let units = if self.draw.shader.is_none() { &self.draw.units[..] } else { &[] };
+        for planned in units {
             let Some(place) = self.place(planned, sample, pixel) else { continue };
             let image = &textures[planned.state.texture];
             let value = unit::sample::<L, O>(planned, image, &place, observer);
@@ -385,7 +386,16 @@ impl<'a> TriangleContext<'a> {
         if self.draw.perspective { self.vertices().position(3) } else { [1.0; 3] }
     }
 
-    /// Where a unit samples; `None` where the texture shader runs it.
+    /// The coordinates of a unit, before anything moves them. `None`: it has none of its own.
+    #[inline]
+    pub(super) fn coordinates_of(&self, unit: usize) -> Option<&Coordinates> {
+        match &self.shader {
+            None => self.coordinates[unit].as_ref(),
+            Some(shader) => shader.coordinates(unit),
+        }
+    }
+
+    /// Where a unit samples at its own coordinates.
     #[inline]
     pub(super) fn place<'s>(
         &'s self,
@@ -393,7 +403,7 @@ impl<'a> TriangleContext<'a> {
         sample: &'s Sample<'s>,
         pixel: (i64, i64),
     ) -> Option<Interpolated<'s>> {
-        let coordinates = self.coordinates[unit.index].as_ref()?;
+        let coordinates = self.coordinates_of(unit.index)?;
         Some(Interpolated { unit, coordinates, at: sample, pixel, vertices: self.vertices(), w: self.w() })
     }
 

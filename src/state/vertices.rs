@@ -98,6 +98,13 @@ impl Vertices {
             || (0..self.count).all(|index| self.coordinates(index, one) == self.coordinates(index, other))
     }
 
+    /// A component of a coordinate set, s, t, r, q, if it is the same at every vertex.
+    pub fn same_coordinate(&self, set: usize, component: usize) -> Option<f32> {
+        let mut all = (0..self.count).map(|index| self.coordinates(index, set)[component]);
+        let first = all.next()?;
+        all.all(|other| other == first).then_some(first)
+    }
+
     /// Diffuse of vertex `index`, which must be one of these.
     pub fn diffuse(&self, index: usize) -> VertexColor {
         debug_assert!(index < self.count);

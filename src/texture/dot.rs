@@ -56,21 +56,25 @@ pub fn remap(mapping: DotMapping, bytes: [u8; 4]) -> Vector<f32> {
 }
 
 /// TSH-4: the three products of a dot product.
+#[inline(always)]
 pub fn products<N: Number>(a: Vector<N>, b: Vector<N>) -> Vector<N> {
     [a[0] * b[0], a[1] * b[1], a[2] * b[2]]
 }
 
 /// TSH-4: their sum, the first two first.
+#[inline(always)]
 pub fn sum<N: Number>([x, y, z]: Vector<N>) -> N {
     (x + y) + z
 }
 
 /// TSH-4: the dot product.
+#[inline(always)]
 pub fn dot<N: Number>(a: Vector<N>, b: Vector<N>) -> N {
     sum(products(a, b))
 }
 
 /// TSH-7: blue and green times what they move a coordinate by; each operation is rounded.
+#[inline(always)]
 pub fn moved<N: Number>(entries: [N; 2], blue_green: [N; 2]) -> N {
     entries[0] * blue_green[0] + entries[1] * blue_green[1]
 }
@@ -95,10 +99,12 @@ pub struct Reflection<N> {
 }
 
 /// TSH-5: the direction of the eye vector reflected about a normal of any length, without a division; the zero vector for that of none.
+#[inline(always)]
 pub fn reflect<N: Number>(normal: Vector<N>, eye: Vector<N>) -> Reflection<N> {
     let (toward, square) = (dot(normal, eye), dot(normal, normal));
     let scale = N::TWO * toward;
-    let vector = std::array::from_fn(|n| scale * normal[n] - square * eye[n]);
+    let component = |n: usize| scale * normal[n] - square * eye[n];
+    let vector = [component(0), component(1), component(2)];
     Reflection { toward, square, scale, vector }
 }
 

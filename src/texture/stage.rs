@@ -56,6 +56,14 @@ pub(super) enum StageSetup {
 pub struct ShaderSetup(pub(super) [StageSetup; TEXTURE_UNITS]);
 
 impl ShaderSetup {
+    /// Where a stage samples, before anything moves it.
+    pub fn coordinates(&self, index: usize) -> Option<&Coordinates> {
+        match &self.0[index] {
+            StageSetup::Places(coordinates) => Some(coordinates),
+            StageSetup::Nothing | StageSetup::Numbers(_) => None,
+        }
+    }
+
     /// Sets up every stage that runs.
     pub fn new(
         shader: &PlannedShader,

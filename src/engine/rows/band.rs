@@ -6,8 +6,9 @@ use super::kernels::{self, LANES, Row};
 use super::levels::Reads;
 use super::patch::{Patch, SIDE, boxes, is_box, is_small};
 use super::quotient::{IOTA, Positions};
+use super::shader::Workshop;
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
-use super::{BLOCK, Compiled, small, store};
+use super::{BLOCK, Compiled, Reasons, shader, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
 use crate::plan::{Plan, PlannedDraw};
@@ -17,23 +18,24 @@ use crate::texture::unit::Image;
 
 /// Some lanes of a block that lie side by side on the surface.
 #[derive(Clone, Copy, Debug)]
-struct Run {
+pub(super) struct Run {
     /// First lane.
-    lane: usize,
+    pub(super) lane: usize,
     /// Index of the first pixel in the band.
-    at: usize,
-    count: usize,
+    pub(super) at: usize,
+    pub(super) count: usize,
 }
 
 /// What a thread works in, draw after draw.
 #[derive(Debug)]
 pub(crate) struct Block {
-    rows: Vec<Row>,
-    varying: Varying,
-    work: Workspace,
+    pub(super) rows: Vec<Row>,
+    pub(super) varying: Varying,
+    pub(super) work: Workspace,
+    pub(super) workshop: Workshop,
     patch: Patch,
     planes: Vec<Planes>,
-    runs: Vec<Run>,
+    pub(super) runs: Vec<Run>,
     /// Lanes in use.
     used: usize,
     /// A bit for each pixel of the band: the block has a lane for it. Only while what the surface holds is read.
@@ -42,6 +44,8 @@ pub(crate) struct Block {
     stored: [u32; LANES],
     depth: [u32; BLOCK],
     alive: [bool; BLOCK],
+    /// Pixels that the definition computed something of.
+    pub(crate) defined: Reasons,
 }
 
 impl Default for Block {
@@ -50,6 +54,7 @@ impl Default for Block {
             rows: Vec::new(),
             varying: Varying::default(),
             work: Workspace::default(),
+            workshop: Workshop::default(),
             patch: Patch::default(),
             planes: Vec::new(),
             runs: Vec::with_capacity(BLOCK),
@@ -59,6 +64,7 @@ impl Default for Block {
             stored: [0; LANES],
             depth: [0; BLOCK],
             alive: [true; BLOCK],
+            defined: Reasons::default(),
         }
     }
 }
@@ -98,6 +104,9 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
     if compiled.samplers.iter().any(|sampler| sampler.mixes) {
         block.varying.reads.resize(compiled.samplers.len(), Reads::default());
     }
+    if let Some(shader) = &compiled.shader {
+        block.workshop.begin(shader);
+    }
     if compiled.reads_surface {
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
@@ -132,7 +141,7 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
                     while i < end {
                         let wanted = ((end - i) as usize).min(BLOCK);
                         if block.used == BLOCK || (compiled.reads_surface && block.is_taken(band, (i, j), wanted)) {
-                            T::flush(job, block, band);
+                            finish::<T>(job, block, band);
                         }
                         let count = wanted.min(BLOCK - block.used);
                         let lanes = whole_steps(count);
@@ -140,17 +149,29 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
                         let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
                         let piece = Piece { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
                         T::row(&setup, piece, job, block);
+                        if compiled.shader.is_some() {
+                            T::row_attributes(&setup, piece, job, block);
+                        }
                         block.append(band, (i, j), count, compiled.reads_surface);
                         shaded += count as u64;
                         i += count as i64;
                     }
                 }
-                block.planes = setup.given_back();
+                block.planes = setup.given_back(&mut block.defined);
             }
         }
     }
-    T::flush(job, block, band);
+    finish::<T>(job, block, band);
     shaded
+}
+
+/// Computes and stores a block.
+#[inline(always)]
+fn finish<T: Text>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+    if job.compiled.shader.is_some() && block.used > 0 {
+        T::shade(job, block, band);
+    }
+    T::flush(job, block, band);
 }
 
 /// Draws the pixels that the patch has, one at least; how many they are.
@@ -159,7 +180,7 @@ fn draw_patch<T: Text>(job: Job<'_>, context: &mut TriangleContext<'_>, band: &m
     let compiled = job.compiled;
     let count = block.patch.count;
     if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
-        T::flush(job, block, band);
+        finish::<T>(job, block, band);
     }
     if !(compiled.plain && T::plain(context, compiled, block)) {
         context.complete();
@@ -241,10 +262,13 @@ pub(super) fn plain<const FMA: bool>(
 /// The same for any draw.
 #[inline(always)]
 pub(super) fn patch<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
-    let Block { varying, rows, patch, used, planes, .. } = block;
+    let Block { varying, rows, patch, used, planes, workshop, defined, .. } = block;
     let setup = Setup::new(context, job.compiled, std::mem::take(planes));
     setup.interpolate::<FMA, false>(piece(patch, *used), job.compiled, job.textures, varying, rows);
-    *planes = setup.given_back();
+    if let Some(shader) = &job.compiled.shader {
+        setup.attributes::<FMA, false>(piece(patch, *used), shader, workshop);
+    }
+    *planes = setup.given_back(defined);
 }
 
 /// The pixels of a patch.
@@ -260,6 +284,20 @@ pub(super) fn piece(patch: &Patch, lane: usize) -> Piece<'_> {
 pub(super) fn row<const FMA: bool>(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
     let Block { varying, rows, .. } = block;
     setup.interpolate::<FMA, true>(piece, job.compiled, job.textures, varying, rows);
+}
+
+/// What the vertices give a texture shader along a piece of a row.
+#[inline(always)]
+pub(super) fn row_attributes<const FMA: bool>(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
+    if let Some(shader) = &job.compiled.shader {
+        setup.attributes::<FMA, true>(piece, shader, &mut block.workshop);
+    }
+}
+
+/// The stages of a texture shader.
+#[inline(always)]
+pub(super) fn shade<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
+    shader::run(job, block, band);
 }
 
 impl Block {
@@ -338,7 +376,7 @@ fn copy<const MASKS: bool>(from: &[u32], to: &mut [u32], count: usize) {
     }
 }
 
-/// Computes and stores a block.
+/// Computes and stores a block whose stages have run.
 #[inline(always)]
 pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     let Job { draw, compiled, .. } = job;
@@ -351,7 +389,8 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     };
     // The sampler whose coordinates' entries are found already, and the pitch of its table: axes are the same where coordinates are.
     let mut found = None;
-    for (n, sampler) in compiled.samplers.iter().enumerate() {
+    let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
+    for (n, sampler) in samplers.iter().enumerate() {
         let Some(table) = &sampler.table else { continue };
         let faces = sampler.cube.then_some(&varying.faces[n]);
         let wanted = compiled.textures[sampler.unit];

@@ -122,9 +122,15 @@ fn fog(r: &mut Random) -> Option<FogFunction> {
     Some(FogFunction { mode: r.of(FogMode::ALL), p0, p1, p2: 0.0, per_vertex: r.below(4) == 0 })
 }
 
-/// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, levels, and the fog
-/// factor, and test depth.
-fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<FogFunction>) -> Scene {
+/// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, the latter two perhaps
+/// with levels, levels of another, and the fog factor, and test depth.
+fn scene(
+    vertices: Vec<Vertex>,
+    filter: Filter,
+    depth: DepthFormat,
+    fog: Option<FogFunction>,
+    [cube, projected]: [bool; 2],
+) -> Scene {
     let texture = |kind, side: u32, faces: u32, levels: u32| Texture {
         name: String::new(),
         kind,
@@ -141,12 +147,14 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
         }),
     };
     let unit = |texture| Some(TextureUnit { min_filter: filter, mag_filter: filter, ..TextureUnit::new(texture) });
-    let mixed = unit(2).map(|unit| TextureUnit {
-        min_filter: Filter::Linear,
-        mip_filter: if filter == Filter::Linear { MipFilter::Linear } else { MipFilter::Nearest },
-        lod_bias: 400,
-        ..unit
-    });
+    let mixed = |texture| {
+        unit(texture).map(|unit| TextureUnit {
+            min_filter: Filter::Linear,
+            mip_filter: if filter == Filter::Linear { MipFilter::Linear } else { MipFilter::Nearest },
+            lod_bias: 400,
+            ..unit
+        })
+    };
     let input = |register| CombinerInput { register, component: Component::Rgb, mapping: InputMapping::SignedIdentity };
     let mut rgb = Portion::idle(Component::Rgb);
     rgb.inputs = [Register::Texture0, Register::PrimaryColor, Register::Texture1, Register::Texture2].map(input);
@@ -170,7 +178,12 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
         front_face: FrontFace::CounterClockwise,
         scissor: None,
         fog: Fog { enabled: true, color: [0; 3], function: fog },
-        textures: [unit(0), unit(1), unit(0), mixed],
+        textures: [
+            unit(0),
+            if cube { mixed(1) } else { unit(1) },
+            if projected { mixed(2) } else { unit(0) },
+            mixed(2),
+        ],
         texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, true)),
         vertex_program: None,
         combiners: Combiners {
@@ -205,7 +218,7 @@ fn scene(vertices: Vec<Vertex>, filter: Filter, depth: DepthFormat, fog: Option<
         targets: vec![target],
         textures: vec![
             texture(TextureKind::TwoDimensional, 64, 1, 1),
-            texture(TextureKind::Cube, 16, 6, 1),
+            texture(TextureKind::Cube, 16, 6, 5),
             texture(TextureKind::TwoDimensional, 64, 1, 7),
         ],
         palettes: vec![],
@@ -251,7 +264,7 @@ fn compare<const FMA: bool, const ROW: bool>(
     rows: &mut [Row],
 ) {
     // What an earlier piece left must not pass for this one's.
-    varying.reads[3].weights.fill(-1);
+    varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
     setup.interpolate::<FMA, ROW>(piece, compiled, &[], varying, rows);
     let (context, mut wanted) = (&setup.context, Reads::default());
     for n in 0..piece.count {
@@ -302,8 +315,11 @@ fn rows_interpolate_what_the_definition_does() {
         let fog = fog(&mut random);
         // Small ones at last, so many that their textures pay.
         let small = pixels >= wanted;
+        let mixes = [0; 2].map(|_| random.below(2) == 0);
         let vertices = (0..if small { 1024 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
-        let Ok(plan) = Plan::compile(&scene(vertices, filter, depth, fog), &PlanOptions::default()) else { continue };
+        let Ok(plan) = Plan::compile(&scene(vertices, filter, depth, fog, mixes), &PlanOptions::default()) else {
+            continue;
+        };
         let rows_of_plan = Rows::compile(&plan);
         let compiled = rows_of_plan.draw(&plan, 0, &[]);
         assert_eq!(compiled.samplers.len(), 4);

@@ -44,7 +44,7 @@ pub(super) fn positive(mut g: [[i64; 3]; 3], sides: [u32; 2]) -> Option<([[i64; 
 /// A direction across a piece, or s, t and q.
 pub(super) struct Looking {
     /// x, y, z.
-    lines: [Line; 3],
+    pub(super) lines: [Line; 3],
     /// What each can be off by.
     error: f64,
 }
@@ -52,17 +52,39 @@ pub(super) struct Looking {
 impl Looking {
     #[inline(always)]
     pub(super) fn new(planes: &[Plane; 3], e: &[f64; 3], bounds: &Bounds) -> Looking {
+        Looking::around(planes, e, bounds.columns, bounds.rows)
+    }
+
+    /// That of so many columns and rows.
+    #[inline(always)]
+    pub(super) fn around(planes: &[Plane; 3], e: &[f64; 3], columns: f64, rows: f64) -> Looking {
         let lines = [planes[0].line(e), planes[1].line(e), planes[2].line(e)];
-        let terms = [
-            planes[0].terms(e, bounds.columns, bounds.rows),
-            planes[1].terms(e, bounds.columns, bounds.rows),
-            planes[2].terms(e, bounds.columns, bounds.rows),
-        ];
+        let terms =
+            [planes[0].terms(e, columns, rows), planes[1].terms(e, columns, rows), planes[2].terms(e, columns, rows)];
         Looking { lines, error: (terms[0] + terms[1] + terms[2]) * SLACK }
     }
 
+    /// More than a quotient of two of these times `scale` is off by, and more than its magnitude. `widest` is the reciprocal of the least divisor.
     #[inline(always)]
-    fn component(&self, of: Signed) -> Line {
+    pub(super) fn off(&self, widest: f64, scale: f64) -> (f64, f64) {
+        let range = scale * (1.0 + self.error / SLACK * widest);
+        (8.0 * self.error * widest * range, range)
+    }
+
+    /// Whether all directions look at a face, of which `least` tells what a linear function is not below.
+    #[inline(always)]
+    pub(super) fn stays(&self, face: Face, least: impl Fn(Line) -> f64) -> bool {
+        let [s, t, m] = face.components();
+        let (s, t, m) = (self.component(s), self.component(t), self.component(m));
+        let more = 4.0 * self.error;
+        (least(m.plus(s)) > more)
+            & (least(m.less(1.0, s)) > more)
+            & (least(m.plus(t)) > more)
+            & (least(m.less(1.0, t)) > more)
+    }
+
+    #[inline(always)]
+    pub(super) fn component(&self, of: Signed) -> Line {
         let line = self.lines[of.axis];
         if of.negative { line.times(-1.0) } else { line }
     }

@@ -112,13 +112,16 @@ pub(super) fn sample_levels(
     rows: &mut [Row],
 ) {
     let Texels::Levels(texels) = &table.texels else { return };
-    let Workspace { upper, lower, next, .. } = work;
+    let Workspace { entries, upper, lower, next, .. } = work;
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     let block = |of: &Numbers<i32>| -> [i32; BLOCK] { *of.first_chunk().unwrap_or(&[0; BLOCK]) };
     for which in (0..1 + usize::from(both)).rev() {
-        let entries = reads.entries[which].first_chunk().unwrap_or(&[0; BLOCK]);
+        let Some(found) = reads.entries[which].first_chunk::<BLOCK>() else { return };
+        for n in 0..BLOCK {
+            entries[n] = found[n] as u32;
+        }
         let (u, v) = (block(&reads.coordinates[which][0]), block(&reads.coordinates[which][1]));
         fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
         filter::<4>(upper, lower, &u, &v, red, green, blue, alpha);

@@ -1,6 +1,7 @@
 //! NUM-6, FOG-2 and FOG-4 on rows.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, estimate_two, nearest, position, settle};
@@ -178,6 +179,7 @@ impl Setup<'_> {
     fn defined_factors(&self, piece: Piece<'_>, wanted: impl Fn(usize) -> bool, out: &mut [i16]) {
         let Some(fog) = &self.context.fog else { return };
         for n in (0..piece.count).filter(|n| wanted(*n)) {
+            self.tell(Reason::Fog, 1);
             out[n] = i16::from(fog.at(&self.sample(piece, n)).byte);
         }
     }

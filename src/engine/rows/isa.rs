@@ -116,6 +116,10 @@ text! {
         fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::row`].
         fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block);
+        /// [`band::row_attributes`].
+        fn row_attributes(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block);
+        /// [`band::shade`].
+        fn shade(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }
 }
 

@@ -1,32 +1,42 @@
 //! TEX-9 to TEX-11 on rows: the lod of each pixel, and where it is read on which levels.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::Sampler;
-use super::fetch::Numbers;
+use super::direction::Looking;
+use super::fetch::{Numbers, entry};
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quotient::{Line, Positions, SLACK, Scaled, estimate_two, settle};
-use super::table::Table;
-use super::triangle::{Bounds, Piece, Planes, Setup};
+use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
+use super::table::{Placed, Table};
+use super::triangle::{Bounds, Piece, Planes, Setup, whole_steps};
+use super::{BLOCK, Reason, Sampler};
 use crate::state::Filter;
+use crate::texture::cube::Face;
 use crate::texture::lod;
-use crate::texture::place::Place;
+use crate::texture::place::{Coordinates, Place};
 use crate::texture::unit::PlannedUnit;
+use std::ops::Range;
 
 /// What the lanes of a block read of a texture whose levels count.
 #[derive(Clone, Debug)]
 pub(super) struct Reads {
     /// Entries of the table: of the nearer level, and of the next one.
-    pub(super) entries: [Numbers<u32>; 2],
+    pub(super) entries: [Numbers<i32>; 2],
     /// u and v there, of which the fraction of a texel counts.
     pub(super) coordinates: [[Numbers<i32>; 2]; 2],
     /// Weight of the next level, 0..=255.
     pub(super) weights: Numbers<i32>,
+    /// Lods of quads.
+    pub(super) known: Known,
 }
 
 impl Default for Reads {
     fn default() -> Self {
-        Reads { entries: [[0; LANES]; 2], coordinates: [[[0; LANES]; 2]; 2], weights: [0; LANES] }
+        Reads {
+            entries: [[0; LANES]; 2],
+            coordinates: [[[0; LANES]; 2]; 2],
+            weights: [0; LANES],
+            known: Known::default(),
+        }
     }
 }
 
@@ -34,38 +44,77 @@ impl Default for Reads {
 #[derive(Clone, Debug)]
 pub(super) struct Quads {
     /// Where the upper left pixels of the quads lie, from the piece's first.
-    at: [Numbers<i32>; 2],
-    /// u and v of the three pixels of the quad.
-    coordinates: [[Numbers<i32>; 2]; 3],
-    spare: Numbers<i32>,
+    origins: [Numbers<f64>; 2],
+    /// u and v of the three pixels of each quad, 1/65536 texel, whole numbers.
+    coordinates: [[Numbers<f64>; 2]; 3],
+    /// Of quads: negative, as the bits of doubles, where nothing is known.
+    unknown: Numbers<u64>,
+    /// u and v of the lanes on level 0, 1/256 texel, with their fractions.
+    at: [Numbers<f64>; 2],
     lods: Numbers<i32>,
-    /// 1: nothing is known of the lane.
-    open: Numbers<i32>,
     levels: [Numbers<i32>; 2],
+    /// What is read of one level.
+    read: [Numbers<i32>; 3],
+    /// Negative, as the bits of doubles: the lane's coordinate on one level is not proved.
+    close: [Numbers<u64>; 2],
+    /// The lane is the definition's.
+    open: Numbers<bool>,
 }
 
 impl Default for Quads {
     fn default() -> Self {
-        let zeros = [0; LANES];
         Quads {
-            at: [zeros; 2],
-            coordinates: [[zeros; 2]; 3],
-            spare: zeros,
-            lods: zeros,
-            open: zeros,
-            levels: [zeros; 2],
+            origins: [[0.0; LANES]; 2],
+            coordinates: [[[0.0; LANES]; 2]; 3],
+            unknown: [0; LANES],
+            at: [[0.0; LANES]; 2],
+            lods: [0; LANES],
+            levels: [[0; LANES]; 2],
+            read: [[0; LANES]; 3],
+            close: [[0; LANES]; 2],
+            open: [false; LANES],
         }
     }
 }
 
-/// Coordinates of a quad that are further apart than this have their lod from the definition, 1/65536 texel.
-const FARTHEST: i32 = 1 << 26;
+/// Lods of quads that lie side by side, for the rows that share them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Known {
+    /// Number of the triangle, and row.
+    of: Option<(usize, i64)>,
+    /// The quads' columns.
+    columns: Range<i64>,
+    /// The lod of each, from the first column on.
+    lods: Vec<i32>,
+}
 
-/// Coordinates, 1/256 texel, of which 256 times as much and what quads add to it is a number of 32 bits.
-const MOST: f64 = (1 << 22) as f64;
+/// Coordinates of a quad that are further apart than this have their lod from the definition, 1/65536 texel.
+const FARTHEST: f64 = (1 << 26) as f64;
+
+/// Coordinates, 1/256 texel, whose multiples are far from the ends of what doubles hold exactly.
+const MOST: f64 = (1_u64 << 36) as f64;
+
+/// What an estimate of a coordinate may be off by, its own steps.
+const COARSEST: f64 = 0.125;
 
 /// Mantissas closer to 2 than this are too close to call: seven squarings multiply roundings by 128.
 const CLOSE: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// Coordinates of level 0 around a piece: two quotients.
+struct Ground<'p> {
+    along: Line,
+    down: Line,
+    denominator: Line,
+    /// More than an estimate is off by, 1/256 texel.
+    off: f64,
+    /// More than what the floors of a smaller level's numerators make (INT-4).
+    floors: f64,
+    face: Face,
+    /// All of it lies behind the viewer, where no lod is known.
+    behind: bool,
+    /// Where exact remainders decide what is not proved.
+    planes: Option<&'p [Plane; 2]>,
+}
 
 impl Setup<'_> {
     /// Everything that a unit whose levels count reads in a piece.
@@ -83,41 +132,252 @@ impl Setup<'_> {
     ) {
         let Some(table) = &sampler.table else { return };
         let unit = &self.context.draw.units[sampler.index];
-        let known = match planes {
-            Planes::Plane(planes) => {
-                self.quads::<FMA, ROW>(piece, planes, e, (real, denominator), bounds, quads).then_some(planes)
-            }
-            _ => None,
-        };
-        let Some(planes) = known else {
+        let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, (real, denominator), bounds) else {
             for n in 0..piece.count {
                 self.defined_reads(piece, n, sampler, table, reads);
             }
             return;
         };
         let lanes = piece.at.x.len();
-        let close = lods(&quads.coordinates, lanes, &mut quads.lods, &mut quads.open);
+        if ground.behind {
+            quads.lods[..lanes].fill(lod::LEAST);
+        } else {
+            self.lods::<FMA, ROW>(piece, (unit, &ground), e, quads, &mut reads.known);
+        }
+        let (at, denominator) = (piece.at, ground.denominator);
+        let [at_u, at_v] = &mut quads.at;
+        quotients::<FMA, ROW>(at, [ground.along, ground.down, denominator], &mut at_u[..lanes], &mut at_v[..lanes]);
+        quads.open[..lanes].fill(false);
         let [low, high] = choose(unit, lanes, &mut quads.lods, &mut quads.levels, &mut reads.weights[piece.lanes()]);
         for level in low..=high {
-            let planes = self.planes_of(unit, planes, level as usize);
-            let ([u, v, entries], whole) = (&mut quads.coordinates, &mut quads.spare);
-            let (u, v) = (&mut u[0][..lanes], &mut v[0][..lanes]);
-            self.on_planes::<FMA, ROW>(piece, &planes, 0, e, (real, denominator), bounds, u, v, whole);
-            let entries = &mut entries[0][..lanes];
+            let shifts = unit.plane_shifts(&unit.levels[level as usize]);
+            let Quads { at, lods, levels, read, close, open, .. } = &mut *quads;
+            for axis in 0..2 {
+                let scale = f64::from_bits(u64::from(1023 - shifts[axis]) << 52);
+                let off = ground.off * scale + if shifts[axis] > 0 { ground.floors } else { 0.0 };
+                on_level(&at[axis][..lanes], scale, off, &mut read[axis], &mut close[axis]);
+            }
+            let mut any = 0;
             for n in 0..lanes {
-                let filter = if quads.lods[n] <= 0 { unit.state.mag_filter } else { unit.state.min_filter };
-                let (entry, at) = table.place(level as usize, [u[n], v[n]], filter == Filter::Linear);
-                (entries[n], u[n], v[n]) = (entry as i32, at[0], at[1]);
+                any |= close[0][n] | close[1][n];
             }
+            for n in (0..piece.count).filter(|n| any >> 63 != 0 && (close[0][*n] | close[1][*n]) >> 63 != 0) {
+                if levels[0][n] != level && levels[1][n] != level {
+                    continue;
+                }
+                let Some(planes) = ground.planes else {
+                    open[n] = true;
+                    continue;
+                };
+                let planes = self.planes_of(unit, planes, level as usize);
+                for axis in 0..2 {
+                    read[axis][n] = self.settled(piece, n, &planes[axis], e, read[axis][n]);
+                }
+            }
+            let [u, v, entries] = read;
+            let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
+            let placed = table.placed(level as usize, ground.face as u32);
+            let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
+            places(&placed, filters, &lods[..lanes], u, v, entries);
             for which in 0..2 {
-                put(level, &quads.levels[which][..lanes], [entries, u, v], piece.lane, which, reads);
+                let levels = &levels[which][..lanes];
+                let [to_u, to_v] = &mut reads.coordinates[which];
+                put(level, levels, entries, &mut reads.entries[which][piece.lanes()]);
+                put(level, levels, u, &mut to_u[piece.lanes()]);
+                put(level, levels, v, &mut to_v[piece.lanes()]);
             }
         }
-        if close {
-            for n in (0..piece.count).filter(|n| quads.open[*n] != 0) {
-                self.defined_reads(piece, n, sampler, table, reads);
-            }
+        for n in (0..piece.count).filter(|n| quads.open[*n]) {
+            self.defined_reads(piece, n, sampler, table, reads);
         }
+    }
+
+    /// The floor that an estimate less than one off stands for, by INT-4 and INT-4t.
+    fn settled(&self, piece: Piece<'_>, n: usize, plane: &Plane, e: &[i64; 3], value: i32) -> i32 {
+        let (x, y) = (i64::from(piece.at.x[n].min(piece.at.last)), i64::from(piece.at.y[n]));
+        let (floor, exact) = floor(plane.exact(e).at(x, y), self.denominator.exact(e).at(x, y), i64::from(value));
+        let lowered = exact && plane.lowers(&self.context.triangle) && self.sample(piece, n).truncation(&plane.g) > 0;
+        floor as i32 - i32::from(lowered)
+    }
+
+    /// The coordinates of level 0 around a piece. `None`: nothing would be proved.
+    #[inline(always)]
+    fn ground<'p, const FMA: bool, const ROW: bool>(
+        &self,
+        sampler: &Sampler,
+        planes: &'p Planes,
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+    ) -> Option<Ground<'p>> {
+        // Pixels of a quad lie up to one outside of the piece.
+        let (columns, rows) = (bounds.columns + 1.0, bounds.rows + 1.0);
+        // None of them lies further to the left of a row's first pixel, or above a piece's.
+        let left = if ROW { 1.0 } else { columns };
+        let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
+        let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
+        let lowest = least(denominator);
+        let (ground, range) = match planes {
+            Planes::Plane(planes) => {
+                let widest = 1.0 / lowest;
+                let ratio = self.denominator.terms(real, columns, rows) * widest;
+                // What lies outside of the triangle may be larger than at the vertices.
+                let most = |plane: &Plane| plane.terms(real, columns, rows) * widest + 2.0 * plane.reach * ratio;
+                let (one, other) = (most(&planes[0]), most(&planes[1]));
+                let range = (if one > other { one } else { other }) * (1.0 + ratio);
+                let p = &self.context.triangle.p;
+                let ground = Ground {
+                    along: planes[0].line(real),
+                    down: planes[1].line(real),
+                    denominator,
+                    off: range * SLACK,
+                    floors: 1.25 / p[0].min(p[1]).min(p[2]) as f64,
+                    face: Face::PositiveX,
+                    behind: false,
+                    planes: Some(planes),
+                };
+                (ground, range)
+            }
+            Planes::Ratio(planes, _) => {
+                let looking = Looking::around(planes, real, columns, rows);
+                let [s, t, q] = looking.lines;
+                let sides = sampler.sides.map(|side| 256.0 * f64::from(side));
+                let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
+                let (off, range) = looking.off(1.0 / least(q), most);
+                let lines = [s.times(sides[0]), t.times(sides[1])];
+                let [along, down] = lines;
+                // Signs have been changed where q is negative.
+                let behind = match self.context.coordinates_of(sampler.unit) {
+                    Some(Coordinates::Ratio(g)) => g[2][0] < 0,
+                    _ => false,
+                };
+                let face = Face::PositiveX;
+                (Ground { along, down, denominator: q, off, floors: 0.0, face, behind, planes: None }, range)
+            }
+            Planes::Direction(planes, face) => {
+                let looking = Looking::around(planes, real, columns, rows);
+                let face = match face {
+                    Some(face) => *face,
+                    None if ROW => looking.face::<FMA>(bounds.columns)?,
+                    None => return None,
+                };
+                let [s, t, m] = face.components();
+                let m = looking.component(m);
+                // The first pixel of a quad may look at another face.
+                if !looking.stays(face, least) {
+                    return None;
+                }
+                let size = 128.0 * f64::from(sampler.sides[0]);
+                let (off, range) = looking.off(1.0 / least(m), size);
+                let lines = [looking.component(s), looking.component(t)].map(|line| line.plus(m).times(size));
+                let [along, down] = lines;
+                let behind = false;
+                (Ground { along, down, denominator: m, off, floors: 0.0, face, behind, planes: None }, range)
+            }
+            Planes::Other | Planes::Shared => return None,
+        };
+        // Also refuses what is no number.
+        let proves = lowest > 0.0
+            && least(ground.denominator) > 0.0
+            && range < MOST
+            && ground.off < COARSEST / 256.0
+            && ground.floors < COARSEST;
+        proves.then_some(ground)
+    }
+
+    /// TEX-11, TEX-10: the lod of each lane's quad.
+    #[inline(always)]
+    fn lods<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        (unit, ground): (&PlannedUnit, &Ground<'_>),
+        e: &[i64; 3],
+        quads: &mut Quads,
+        known: &mut Known,
+    ) {
+        let (i, j) = piece.first;
+        let lanes = piece.at.x.len();
+        let above = (j & !1) - j;
+        if !ROW {
+            let [xs, ys] = &mut quads.origins;
+            for n in 0..lanes {
+                let (x, y) = (i64::from(piece.at.x[n]), i64::from(piece.at.y[n]));
+                (xs[n], ys[n]) = ((((i + x) & !1) - i) as f64, (((j + y) & !1) - j) as f64);
+            }
+            known.lods.resize(known.lods.len().max(LANES), 0);
+            known.of = None;
+            self.lods_of::<FMA>(piece, (unit, ground), e, piece.count, quads, &mut known.lods);
+            quads.lods[..lanes].copy_from_slice(&known.lods[..lanes]);
+            return;
+        }
+        let wanted = (i >> 1)..((i + piece.count as i64 - 1) >> 1) + 1;
+        let row = Some((self.context.number, j >> 1));
+        let follows = wanted.start >= known.columns.start && wanted.start <= known.columns.end;
+        if known.of != row || !follows {
+            (known.of, known.columns) = (row, wanted.start..wanted.start);
+        }
+        while known.columns.end < wanted.end {
+            let next = known.columns.end;
+            let count = ((wanted.end - next) as usize).min(BLOCK);
+            let [xs, ys] = &mut quads.origins;
+            for k in 0..whole_steps(count) {
+                (xs[k], ys[k]) = ((2 * (next + k.min(count - 1) as i64) - i) as f64, above as f64);
+            }
+            let first = (next - known.columns.start) as usize;
+            known.lods.resize(known.lods.len().max(first + LANES), 0);
+            self.lods_of::<FMA>(piece, (unit, ground), e, count, quads, &mut known.lods[first..]);
+            known.columns.end += count as i64;
+        }
+        let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
+        let (last, lods) = ((piece.count - 1 + odd) >> 1, &known.lods[first..]);
+        for n in 0..lanes {
+            quads.lods[n] = lods[((n + odd) >> 1).min(last)];
+        }
+    }
+
+    /// The lods of some quads, whose first pixels are [known](Quads::origins).
+    #[inline(always)]
+    fn lods_of<const FMA: bool>(
+        &self,
+        piece: Piece<'_>,
+        (unit, ground): (&PlannedUnit, &Ground<'_>),
+        e: &[i64; 3],
+        count: usize,
+        quads: &mut Quads,
+        lods: &mut [i32],
+    ) {
+        const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
+        let rounded = whole_steps(count);
+        let Quads { origins: [xs, ys], coordinates, unknown, .. } = &mut *quads;
+        let (xs, ys, unknown) = (&xs[..rounded], &ys[..rounded], &mut unknown[..rounded]);
+        unknown.fill(0);
+        for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
+            corners::<FMA>(ground, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
+        }
+        if let Some(planes) = ground.planes {
+            for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
+                for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
+                    let (x, y) = (xs[n] as i64 + x, ys[n] as i64 + y);
+                    let bottom = self.denominator.exact(e).at(x, y);
+                    for (plane, at) in planes.iter().zip(at) {
+                        at[n] = floor(plane.exact(e).times(256).at(x, y), bottom, at[n] as i64).0 as f64;
+                    }
+                }
+            }
+            unknown.fill(0);
+        }
+        log_ratios(coordinates, rounded, lods, unknown);
+        for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
+            let pixel = (piece.first.0 + xs[n] as i64, piece.first.1 + ys[n] as i64);
+            lods[n] = self.defined_lod(piece, unit, pixel);
+        }
+    }
+
+    /// The lod of a quad of which estimates do not tell it.
+    #[inline(never)]
+    fn defined_lod(&self, piece: Piece<'_>, unit: &PlannedUnit, pixel: (i64, i64)) -> i32 {
+        self.tell(Reason::Levels, 1);
+        let sample = self.sample(piece, 0);
+        lod::log2_ratio(self.context.place(unit, &sample, pixel).and_then(|place| place.quad()))
     }
 
     /// The planes of a level.
@@ -133,68 +393,6 @@ impl Setup<'_> {
         ]
     }
 
-    /// TEX-11: u and v at the three pixels of each quad, 1/65536 texel of level 0. `false`: nothing would be proved.
-    #[inline(always)]
-    fn quads<const FMA: bool, const ROW: bool>(
-        &self,
-        piece: Piece<'_>,
-        planes: &[Plane; 2],
-        e: &[i64; 3],
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
-        quads: &mut Quads,
-    ) -> bool {
-        // Pixels of a quad lie up to one outside of the piece.
-        let (columns, rows) = (bounds.columns + 1.0, bounds.rows + 1.0);
-        let terms = self.denominator.terms(real, columns, rows);
-        // None of them lies further to the left of a row's first pixel, or above a piece's.
-        let left = if ROW { 1.0 } else { columns };
-        let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
-        let least = denominator.c - falls(denominator.x, left, columns) - falls(denominator.y, 1.0, rows);
-        let widest = 1.0 / least;
-        let ratio = terms * widest;
-        let fits = |plane: &Plane| plane.reach < MOST;
-        let proves = least > 0.0 && ratio < 65536.0 && fits(&planes[0]) && fits(&planes[1]);
-        if !proves {
-            return false;
-        }
-        // What is left may be outside of the triangle, and larger there than at the vertices.
-        let margin = |plane: &Plane| {
-            let left = plane.terms(real, columns, rows) * widest + 2.0 * plane.reach * ratio;
-            256.0 * left * (1.0 + ratio) * SLACK
-        };
-        let (extent, reciprocals) = ((columns, rows), (1.0 / denominator.c, widest));
-        let scaled = |plane: &Plane| {
-            let line = plane.line(real).times(256.0);
-            Scaled::new::<false>(line, denominator, extent, reciprocals, margin(plane), 0)
-        };
-        let (Some(along), Some(down)) = (scaled(&planes[0]), scaled(&planes[1])) else { return false };
-        let lanes = piece.at.x.len();
-        let Quads { at: [columns, rows], coordinates, spare, .. } = quads;
-        let (columns, rows, whole) = (&mut columns[..lanes], &mut rows[..lanes], &mut spare[..lanes]);
-        let odd = (piece.first.0 as i32, piece.first.1 as i32);
-        for n in 0..lanes {
-            let (x, y) = (piece.at.x[n].min(piece.at.last), piece.at.y[n]);
-            (columns[n], rows[n]) = (x - ((odd.0 + x) & 1), y - ((odd.1 + y) & 1));
-        }
-        for (pixel, [u, v]) in coordinates.iter_mut().enumerate() {
-            match pixel {
-                0 => {}
-                1 => columns.iter_mut().for_each(|x| *x += 1),
-                _ => columns.iter_mut().zip(&mut *rows).for_each(|(x, y)| (*x, *y) = (*x - 1, *y + 1)),
-            }
-            let at = Positions { x: columns, y: rows, last: i32::MAX };
-            let (u, v) = (&mut u[..lanes], &mut v[..lanes]);
-            let close = estimate_two::<FMA, false>(at, denominator, &[along, down], u, v);
-            for (plane, close, values) in [(&planes[0], close[0], u), (&planes[1], close[1], v)] {
-                if close {
-                    settle::<false>(at, plane.exact(e).times(256), self.denominator.exact(e), None, values, whole);
-                }
-            }
-        }
-        true
-    }
-
     /// What a lane reads, by the definition.
     #[inline(never)]
     pub(super) fn defined_reads(
@@ -206,6 +404,7 @@ impl Setup<'_> {
         reads: &mut Reads,
     ) {
         let unit = &self.context.draw.units[sampler.index];
+        self.tell(Reason::Levels, 1);
         let (sample, lane) = (self.sample(piece, n), piece.lane + n);
         let Some(place) = self.context.place(unit, &sample, piece.pixel(n)) else { return };
         let lod = lod::biased(unit, lod::log2_ratio(place.quad()));
@@ -213,43 +412,104 @@ impl Setup<'_> {
         let filter = if lod <= 0 { unit.state.mag_filter } else { unit.state.min_filter };
         for (k, level) in [level as usize, next as usize].into_iter().enumerate() {
             let at = place.on(&unit.levels[level]).map(|c| c.value as i32);
-            let (entry, [u, v]) = table.place(level, at, filter == Filter::Linear);
-            reads.entries[k][lane] = entry + table.face * place.face() as u32;
-            (reads.coordinates[k][0][lane], reads.coordinates[k][1][lane]) = (u, v);
+            let ([u, v], mut entries) = (at, [0]);
+            let (mut u, mut v) = ([u], [v]);
+            let placed = table.placed(level, place.face() as u32);
+            places(&placed, [Taken::by(filter); 2], &[lod], &mut u, &mut v, &mut entries);
+            reads.entries[k][lane] = entries[0];
+            (reads.coordinates[k][0][lane], reads.coordinates[k][1][lane]) = (u[0], v[0]);
         }
         reads.weights[lane] = weight;
     }
 }
 
-/// TEX-11, TEX-10 of the three pixels of quads. Says whether some lane is open.
+/// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.
 #[inline(always)]
-fn lods(at: &[[Numbers<i32>; 2]; 3], lanes: usize, lods: &mut Numbers<i32>, open: &mut Numbers<i32>) -> bool {
-    let [[u, v], [right_u, right_v], [lower_u, lower_v]] = at;
-    let (lods, open) = (&mut lods[..lanes], &mut open[..lanes]);
-    let mut any = 0;
+fn corners<const FMA: bool>(
+    ground: &Ground<'_>,
+    [xs, ys]: [&[f64]; 2],
+    [right, below]: [f64; 2],
+    u: &mut [f64],
+    v: &mut [f64],
+    unknown: &mut [u64],
+) {
+    let lanes = u.len();
+    let (v, unknown, xs, ys) = (&mut v[..lanes], &mut unknown[..lanes], &xs[..lanes], &ys[..lanes]);
+    let (along, down, denominator) = (ground.along.times(256.0), ground.down.times(256.0), ground.denominator);
+    let off = 256.0 * ground.off;
     for n in 0..lanes {
-        let moved = [right_u[n] - u[n], right_v[n] - v[n], lower_u[n] - u[n], lower_v[n] - v[n]];
-        let far = |d: i32| i32::from(d.wrapping_add(FARTHEST) as u32 >= 2 * FARTHEST as u32);
-        let mut unknown = far(moved[0]) | far(moved[1]) | far(moved[2]) | far(moved[3]);
-        let [a, b, c, d] = [f64::from(moved[0]), f64::from(moved[1]), f64::from(moved[2]), f64::from(moved[3])];
+        let (x, y) = (xs[n] + right, ys[n] + below);
+        let r = 1.0 / denominator.at::<FMA, false>(x, y);
+        let (p, q) = (along.at::<FMA, false>(x, y) * r, down.at::<FMA, false>(x, y) * r);
+        let (near_p, near_q) = (whole(p), whole(q));
+        unknown[n] |= ((p - near_p).abs() - off).to_bits() | ((q - near_q).abs() - off).to_bits();
+        u[n] = if near_p > p { near_p - 1.0 } else { near_p };
+        v[n] = if near_q > q { near_q - 1.0 } else { near_q };
+    }
+}
+
+/// TEX-11, TEX-10 of the three pixels of quads, and as sign bits which are not known.
+#[inline(always)]
+fn log_ratios(at: &[[Numbers<f64>; 2]; 3], lanes: usize, lods: &mut [i32], unknown: &mut [u64]) {
+    let [[u, v], [right_u, right_v], [lower_u, lower_v]] = at;
+    let (lods, unknown) = (&mut lods[..lanes], &mut unknown[..lanes]);
+    for n in 0..lanes {
+        let (a, b, c, d) = (right_u[n] - u[n], right_v[n] - v[n], lower_u[n] - u[n], lower_v[n] - v[n]);
+        let far = |d: f64| (FARTHEST - d.abs()).to_bits();
+        let mut open = far(a) | far(b) | far(c) | far(d);
         // Whole numbers below 2^53.
         let (right, lower) = (a * a + b * b, c * c + d * d);
         let largest = if right > lower { right } else { lower };
         let bits = largest.to_bits();
         let mut mantissa = f64::from_bits(bits & ((1 << 52) - 1) | 1.0_f64.to_bits());
-        let mut log = (bits >> 52) as i32 - 1023;
+        let mut log = (bits >> 52) as i64 - 1023;
         for _ in 0..7 {
             let square = mantissa * mantissa;
-            unknown |= i32::from((square - 2.0).abs() < CLOSE);
+            open |= ((square - 2.0).abs() - CLOSE).to_bits();
             let large = square >= 2.0;
             mantissa = if large { square * 0.5 } else { square };
-            log = 2 * log + i32::from(large);
+            log = 2 * log + i64::from(large);
         }
-        lods[n] = if largest > 0.0 { log - 128 * 32 } else { lod::LEAST };
-        open[n] = unknown;
-        any |= unknown;
+        lods[n] = if largest > 0.0 { log as i32 - 128 * 32 } else { lod::LEAST };
+        unknown[n] |= open;
     }
-    any != 0
+}
+
+/// Two quotients with their fractions.
+#[inline(always)]
+pub(super) fn quotients<const FMA: bool, const ROW: bool>(
+    at: Positions<'_>,
+    [along, down, denominator]: [Line; 3],
+    u: &mut [f64],
+    v: &mut [f64],
+) {
+    let lanes = u.len();
+    let last = f64::from(at.last);
+    let (v, xs, ys, iota) = (&mut v[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    for n in 0..lanes {
+        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
+        let r = 1.0 / denominator.at::<FMA, ROW>(x, y);
+        (u[n], v[n]) = (along.at::<FMA, ROW>(x, y) * r, down.at::<FMA, ROW>(x, y) * r);
+    }
+}
+
+/// Floors of coordinates on a level, and as sign bits which are not proved.
+#[inline(always)]
+fn on_level(at: &[f64], scale: f64, off: f64, out: &mut Numbers<i32>, close: &mut Numbers<u64>) {
+    let (out, close) = (&mut out[..at.len()], &mut close[..at.len()]);
+    for n in 0..at.len() {
+        let t = at[n] * scale - 0.5;
+        out[n] = nearest(t);
+        close[n] = (0.5 - off - (t - whole(t)).abs()).to_bits();
+    }
+}
+
+/// The floor of a quotient of numbers modulo 2^64, given one that is off by one at most, and whether nothing remains.
+#[inline(always)]
+fn floor(top: i64, bottom: i64, value: i64) -> (i64, bool) {
+    let rest = top.wrapping_sub(value.wrapping_mul(bottom));
+    let by = i64::from(rest >= bottom) - i64::from(rest < 0);
+    (value + by, rest == by * bottom)
 }
 
 /// TEX-9: levels and weight of each lane; `lods` become biased. The least level that is read, and the largest.
@@ -273,16 +533,46 @@ fn choose(
     [low, high]
 }
 
-/// What is read of a level, by the lanes that read it.
+/// What a filter takes of a coordinate: what is subtracted, and the bits that are kept.
+#[derive(Clone, Copy)]
+struct Taken {
+    less: i32,
+    kept: i32,
+}
+
+impl Taken {
+    fn by(filter: Filter) -> Taken {
+        match filter {
+            Filter::Linear => Taken { less: 128, kept: -1 },
+            // Without a fraction, so that nothing is mixed.
+            Filter::Nearest => Taken { less: 0, kept: !255 },
+        }
+    }
+}
+
+/// Where coordinates lie on a level, by the filter for magnification or for minification: the entry of the texel, or of the upper left one of
+/// the footprint. Coordinates become what the weights come from.
 #[inline(always)]
-fn put(level: i32, levels: &[i32], [from, from_u, from_v]: [&[i32]; 3], first: usize, which: usize, reads: &mut Reads) {
-    let entries = &mut reads.entries[which][first..][..levels.len()];
-    let [u, v] = &mut reads.coordinates[which];
-    let (u, v) = (&mut u[first..][..levels.len()], &mut v[first..][..levels.len()]);
+fn places(placed: &Placed, [mag, min]: [Taken; 2], lods: &[i32], u: &mut [i32], v: &mut [i32], entries: &mut [i32]) {
+    let Placed { axes: [columns, rows], first, pitch } = *placed;
+    let lanes = lods.len();
+    let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
+    for n in 0..lanes {
+        let less = if lods[n] <= 0 { mag.less } else { min.less };
+        let kept = if lods[n] <= 0 { mag.kept } else { min.kept };
+        u[n] = (u[n].wrapping_sub(less) & kept).max(columns.low).min(columns.high);
+        v[n] = (v[n].wrapping_sub(less) & kept).max(rows.low).min(rows.high);
+        entries[n] = entry(&rows, v[n]) * pitch + entry(&columns, u[n]) + first;
+    }
+}
+
+/// What is read of a level, for the lanes that read it.
+#[inline(always)]
+fn put(level: i32, levels: &[i32], from: &[i32], to: &mut [i32]) {
+    let (from, to) = (&from[..levels.len()], &mut to[..levels.len()]);
     for n in 0..levels.len() {
-        let reads = levels[n] == level;
-        entries[n] = if reads { from[n] as u32 } else { entries[n] };
-        u[n] = if reads { from_u[n] } else { u[n] };
-        v[n] = if reads { from_v[n] } else { v[n] };
+        // Both are read, whichever is taken: compilers choose an address otherwise, one lane at a time.
+        let mask = -i32::from(levels[n] == level);
+        to[n] = (from[n] & mask) | (to[n] & !mask);
     }
 }

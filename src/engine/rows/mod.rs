@@ -8,6 +8,7 @@
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `steady.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `levels.rs` | textures laid out for rows; address, fetch, filter; lods and levels |
+//! | `shader.rs`, `dot.rs` | texture shaders, stage by stage; the dot unit in single precision |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
 //! | `patch.rs`, `band.rs` | triangles to pieces to blocks |
 //! | `isa.rs` | the same text for several instruction sets |
@@ -21,6 +22,7 @@ mod build;
 mod dense;
 mod depth;
 mod direction;
+mod dot;
 mod fetch;
 mod fog;
 mod graph;
@@ -30,6 +32,7 @@ mod levels;
 mod patch;
 mod planes;
 mod quotient;
+mod shader;
 mod small;
 mod steady;
 mod store;
@@ -44,12 +47,33 @@ use crate::frame::Surface;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Assembled;
 use crate::rop::surface;
-use crate::state::{Filter, TEXTURE_UNITS, TextureImage, TextureKind};
+use crate::state::{Filter, Named, TEXTURE_UNITS, TextureImage, TextureKind, named};
 use crate::texture::unit::Image;
 use graph::{Input, Node, Value};
 use std::borrow::Cow;
 use std::sync::Arc;
 use table::{Key, Table};
+
+named! {
+    /// Why the definition computed something of a pixel in the fast engine.
+    pub enum Reason {
+        /// Rows lack what its draw's textures ask for, or decoding them would not pay.
+        Textures = "textures that rows do not sample",
+        /// Something in its texture shader was a tie, or too close to one.
+        Shader = "texture shader not proved",
+        /// A level or a place on one was.
+        Levels = "levels not proved",
+        /// A coordinate of a cube map or divided by q was, or a plane's quotients were too coarse.
+        Coordinates = "coordinates not proved",
+        /// Weights of colours were too coarse.
+        Weights = "weights not proved",
+        /// A fog factor was.
+        Fog = "fog not proved",
+    }
+}
+
+/// Pixels of each [`Reason`].
+pub(crate) type Reasons = [u64; Reason::ALL.len()];
 
 /// Pixels of a block.
 pub(crate) const BLOCK: usize = 256;
@@ -80,6 +104,8 @@ pub(crate) struct Sampler {
     signed: [bool; 4],
     /// The lod counts.
     mixes: bool,
+    /// A stage of the texture shader makes its coordinates.
+    depends: bool,
     /// An earlier sampler whose coordinates are this one's.
     shares: Option<usize>,
     /// `None`: of an image that is drawn by this scene, made anew for each draw.
@@ -112,6 +138,8 @@ pub(crate) struct Compiled {
     /// Channels of the primary and the secondary colour that are read: all bits of their bytes.
     read: [u32; 2],
     samplers: Vec<Sampler>,
+    /// The texture shader, if rows run it.
+    shader: Option<Arc<shader::Shader>>,
     /// Nothing varies but colours, depth and coordinates of textures on planes, of one level.
     plain: bool,
     /// Texture units are the definition's, pixel by pixel.
@@ -182,9 +210,10 @@ fn pixels(draw: &PlannedDraw) -> u64 {
 }
 
 fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Compiled {
-    let samplers = if draw.shader.is_some() { None } else { samplers(plan, draw, tables) };
-    let built = build::build(draw, plan.policies, samplers.as_deref());
-    let samples_pixels = samplers.is_none();
+    let samplers = samplers(plan, draw, tables);
+    // What stages of a shader read of one another is not known of the texels alone.
+    let built = build::build(draw, plan.policies, samplers.as_deref().filter(|_| draw.shader.is_none()));
+    let mut samples_pixels = samplers.is_none();
     let samplers = samplers.unwrap_or_default();
     let mut compiled = Compiled {
         operations: Vec::new(),
@@ -198,6 +227,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         alpha: 0,
         read: [0; 2],
         samplers,
+        shader: None,
         plain: false,
         samples_pixels,
         reads_surface: false,
@@ -205,8 +235,30 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         merges: false,
     };
     emit(&built, draw, &mut compiled);
+    if let Some(planned) = &draw.shader {
+        for (slots, stage) in compiled.textures.iter_mut().zip(&planned.stages) {
+            for (slot, value) in slots.iter_mut().zip(shader::initial(stage)) {
+                let Some(value) = value else { continue };
+                match slot {
+                    Some(row) => compiled.rows[usize::from(*row)] = value,
+                    None => {
+                        *slot = Some(compiled.rows.len() as u16);
+                        compiled.rows.push(value);
+                    }
+                }
+            }
+        }
+    }
     let textures = compiled.textures;
     compiled.samplers.retain(|sampler| textures[sampler.unit].iter().any(Option::is_some));
+    if draw.shader.is_some() && !samples_pixels {
+        let shader = shader::Shader::new(draw, &compiled.samplers, plan.policies.dependent_scale);
+        samples_pixels = shader.is_none();
+        if samples_pixels {
+            compiled.samplers.clear();
+        }
+        compiled.shader = shader.map(Arc::new);
+    }
     for n in 1..compiled.samplers.len() {
         let (earlier, later) = compiled.samplers.split_at_mut(n);
         later[0].shares = earlier.iter().position(|other| share(draw, other, &later[0]));
@@ -220,7 +272,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
     let planes = compiled.samplers.iter().all(|sampler| !(sampler.mixes || sampler.cube));
-    compiled.plain = planes && compiled.fog.is_none() && !compiled.samples_pixels;
+    compiled.plain = planes && compiled.shader.is_none() && compiled.fog.is_none() && !compiled.samples_pixels;
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled
@@ -230,7 +282,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
 fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     let [a, b] = [one, other].map(|sampler| &draw.units[sampler.index]);
     let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
-    !(one.mixes || other.mixes || one.cube || other.cube)
+    !(one.mixes || other.mixes || one.cube || other.cube || one.depends || other.depends)
         && one.filters == other.filters
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
         // Coordinates are limited where they stand.
@@ -244,7 +296,8 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
     let mut samplers = Vec::with_capacity(draw.units.len());
     for (index, unit) in draw.units.iter().enumerate() {
         let axes = table::axes(unit)?;
-        let key = Key::of(unit);
+        let folds = draw.shader.is_none();
+        let key = Key::of(unit, folds);
         let texture = &plan.textures[unit.state.texture];
         let known = tables.iter().find(|(other, _)| *other == key).map(|(_, table)| Arc::clone(table));
         let size = table::size(unit, &axes);
@@ -256,7 +309,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             (_, Some(table)) => Some(table),
             (TextureImage::Texels(texels), None) => {
                 let image = Image { words: &texels.words, memory: None };
-                let table = Arc::new(Table::new(unit, &axes, &image, true));
+                let table = Arc::new(Table::new(unit, &axes, &image, folds));
                 tables.push((key, Arc::clone(&table)));
                 Some(table)
             }
@@ -271,6 +324,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             sides: unit.scale(&unit.levels[0]),
             signed: unit.state.signed,
             mixes: unit.needs_lod(),
+            depends: draw.shader.is_some() && shader::is_dependent(&unit.stage.operation),
             shares: None,
             table,
         });

@@ -217,6 +217,12 @@ pub(super) fn nearest(q: f64) -> i32 {
     (q + MAGIC).to_bits() as i32
 }
 
+/// The nearest whole number, in single precision.
+#[inline(always)]
+pub(super) fn nearest_32(q: f32) -> i32 {
+    ((q + MAGIC_32).to_bits() as i32).wrapping_sub(MAGIC_32.to_bits() as i32)
+}
+
 /// Floors of two quotients. Says of which of them some lane is not proved.
 #[inline(always)]
 pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
@@ -424,6 +430,12 @@ impl Exact {
     #[inline(always)]
     pub(super) fn times(self, by: i64) -> Exact {
         Exact { c: self.c.wrapping_mul(by), x: self.x.wrapping_mul(by), y: self.y.wrapping_mul(by) }
+    }
+
+    /// Its value so many columns and rows further.
+    #[inline(always)]
+    pub(super) fn at(self, x: i64, y: i64) -> i64 {
+        self.c.wrapping_add(self.x.wrapping_mul(x)).wrapping_add(self.y.wrapping_mul(y))
     }
 
     /// Divided by a power of two that divides it, modulo 2^32.

@@ -1,6 +1,5 @@
 //! Textures laid out for rows: texels decoded once, every address mode reduced to limits and a mask.
 
-use super::fetch::entry;
 use crate::number::Lane;
 use crate::state::{AddressMode, BORDER_TEXELS, CUBE_FACES, Filter, Level, Named, TextureKind};
 use crate::texture::cube::Face;
@@ -120,10 +119,12 @@ pub(super) struct Table {
 
 /// Where a level lies in a table.
 #[derive(Clone, Copy, Debug)]
-struct Placed {
-    axes: [Axis; 2],
-    /// Its first entry in each face.
-    first: u32,
+pub(super) struct Placed {
+    pub(super) axes: [Axis; 2],
+    /// Its first entry.
+    pub(super) first: i32,
+    /// Entries of a row.
+    pub(super) pitch: i32,
 }
 
 /// What of a unit a table depends on.
@@ -136,12 +137,14 @@ pub(super) struct Key {
     linear: bool,
     /// How many levels, if the lod counts: as many as any lod of the unit can reach.
     levels: Option<usize>,
+    /// Channels that are constant or equal are left out.
+    folds: bool,
     border_color: [u8; 4],
     signed: [bool; 4],
 }
 
 impl Key {
-    pub(super) fn of(unit: &PlannedUnit) -> Key {
+    pub(super) fn of(unit: &PlannedUnit, folds: bool) -> Key {
         let state = &unit.state;
         Key {
             texture: state.texture,
@@ -149,6 +152,7 @@ impl Key {
             modes: unit.modes(),
             linear: linear(unit),
             levels: unit.needs_lod().then_some(unit.levels.len()),
+            folds,
             border_color: state.border_color,
             signed: state.signed,
         }
@@ -206,7 +210,7 @@ impl Table {
             for (level, axes) in unit.levels.iter().zip(levels) {
                 let [columns, rows] = axes;
                 if *face == faces[0] && mixes {
-                    placed.push(Placed { axes: *axes, first: (all.len() - start) as u32 });
+                    placed.push(Placed { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
                 }
                 let slice = Slice { unit, level, face: *face };
                 for y in 0..rows.count + beyond {
@@ -243,15 +247,10 @@ impl Table {
         Table { axes, pitch: pitch as i32, face: face as u32, texels, channels, levels: placed }
     }
 
-    /// Where a coordinate lies on a level, 1/256 texel: the entry of its texel, or of the upper left one of its footprint, and what the weights
-    /// come from, which are 0 for a single texel.
-    #[inline(always)]
-    pub(super) fn place(&self, level: usize, [u, v]: [i32; 2], linear: bool) -> (u32, [i32; 2]) {
-        let Placed { axes: [columns, rows], first } = self.levels[level];
-        let on = |axis: &Axis, c: i32| (if linear { c - 128 } else { c & !255 }).max(axis.low).min(axis.high);
-        let (u, v) = (on(&columns, u), on(&rows, v));
-        let at = entry(&rows, v) * self.pitch + entry(&columns, u);
-        (first + at as u32, [u, v])
+    /// Where a level of a face lies.
+    pub(super) fn placed(&self, level: usize, face: u32) -> Placed {
+        let placed = self.levels[level];
+        Placed { first: placed.first + (face * self.face) as i32, ..placed }
     }
 }
 

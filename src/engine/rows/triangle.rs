@@ -11,17 +11,22 @@ use super::planes::{Plane, inverse};
 use super::quotient::{
     FEW, Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
 };
+use super::shader::Attributes;
 use super::steady::SteadyRow;
-use super::{Compiled, Sampler};
+use super::{Compiled, Reason, Reasons, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::{self, Sample};
 use crate::raster::setup::Triangle;
-use crate::state::{Register, TEXTURE_UNITS};
+use crate::state::{Named, Register, TEXTURE_UNITS};
 use crate::texture::cube::Face;
 use crate::texture::place::{Coordinates, Place};
 use crate::texture::unit::Image;
 use crate::trace::Silent;
+use std::cell::Cell;
+
+/// How many reasons there are.
+const REASONS: usize = Reason::ALL.len();
 
 /// A unit's linear functions.
 #[derive(Debug)]
@@ -34,7 +39,7 @@ pub(super) enum Planes {
     Ratio([Plane; 3], f64),
     /// Anything else: the definition, pixel by pixel.
     Other,
-    /// None: an earlier sampler's coordinates are used.
+    /// None: an earlier sampler's coordinates are used, or those that a stage of the texture shader makes.
     Shared,
 }
 
@@ -50,6 +55,10 @@ pub(super) struct Setup<'a> {
     pub(super) bits: u32,
     /// The reciprocal of a D that none is smaller than.
     widest: f64,
+    /// Pixels that the definition computed something of.
+    pub(super) defined: [Cell<u64>; REASONS],
+    /// Of the texture shader.
+    pub(super) attributes: Option<Box<Attributes>>,
 }
 
 /// What the pieces of a block leave in their lanes.
@@ -143,9 +152,9 @@ impl<'a> Setup<'a> {
         let inverse = inverse(triangle);
         samplers.clear();
         for sampler in &compiled.samplers {
-            let coordinates = &context.coordinates[sampler.unit];
+            let coordinates = context.coordinates_of(sampler.unit);
             samplers.push(match coordinates {
-                _ if sampler.shares.is_some() => Planes::Shared,
+                _ if sampler.shares.is_some() || sampler.depends => Planes::Shared,
                 Some(Coordinates::Plane(g)) => {
                     Planes::Plane([Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])])
                 }
@@ -164,15 +173,26 @@ impl<'a> Setup<'a> {
             denominator: Plane::new(triangle, &inverse, p),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
+            defined: [const { Cell::new(0) }; REASONS],
+            attributes: compiled.shader.as_ref().map(|shader| Box::new(Attributes::new(context, shader))),
             fog: compiled.fog.and_then(|_| Fog::new(context)).map(Box::new),
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
         }
     }
 
-    /// What [`new`](Self::new) was given.
-    pub(super) fn given_back(self) -> Vec<Planes> {
+    /// What [`new`](Self::new) was given; adds what the definition computed.
+    pub(super) fn given_back(self, reasons: &mut Reasons) -> Vec<Planes> {
+        for (all, own) in reasons.iter_mut().zip(&self.defined) {
+            *all += own.get();
+        }
         self.samplers
+    }
+
+    /// The definition computes something of some pixels.
+    pub(super) fn tell(&self, reason: Reason, pixels: usize) {
+        let count = &self.defined[reason as usize];
+        count.set(count.get() + pixels as u64);
     }
 
     /// Everything that varies, for a piece. `ROW`: its pixels are on one row, one beside the other.
@@ -277,6 +297,7 @@ impl<'a> Setup<'a> {
                 let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, w0, w2);
                 close[0] | close[1]
             } else {
+                self.tell(Reason::Weights, piece.count);
                 for n in 0..piece.count {
                     let [first, third] = self.sample(piece, n).weights();
                     (w0[n], w2[n]) = (first.value as i32, third.value as i32);
@@ -300,7 +321,12 @@ impl<'a> Setup<'a> {
 
     /// The denominators of a piece, as far as is known, and how far its pixels are apart.
     #[inline(always)]
-    fn bounds<const FMA: bool, const ROW: bool>(&self, piece: Piece<'_>, e: &[f64; 3], denominator: Line) -> Bounds {
+    pub(super) fn bounds<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        e: &[f64; 3],
+        denominator: Line,
+    ) -> Bounds {
         let reciprocal = 1.0 / denominator.c;
         if ROW {
             let end = denominator.at::<FMA, true>(f64::from(piece.at.last), 0.0);
@@ -390,6 +416,7 @@ impl<'a> Setup<'a> {
                 self.settle_coordinates::<ROW>(piece, bias, planes, close, e, u, v, whole);
             }
         } else {
+            self.tell(Reason::Coordinates, piece.count);
             for k in 0..piece.count {
                 let sample = self.sample(piece, k);
                 (u[k], v[k]) =
@@ -472,6 +499,7 @@ impl<'a> Setup<'a> {
         numbers: &mut [Numbers<i32>; 2],
         faces: &mut Numbers<u32>,
     ) {
+        self.tell(Reason::Coordinates, 1);
         let unit = &self.context.draw.units[sampler.index];
         let sample = self.sample(piece, n);
         let Some(place) = self.context.place(unit, &sample, piece.pixel(n)) else { return };
@@ -492,6 +520,7 @@ impl<'a> Setup<'a> {
     ) {
         const UNITS: [Register; TEXTURE_UNITS] =
             [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+        self.tell(Reason::Textures, piece.count);
         for n in 0..piece.count {
             let (sample, lane) = (self.sample(piece, n), piece.lane + n);
             let mut registers = Registers::<i32>::new();

@@ -1,0 +1,232 @@
+//! TSH-4, TSH-5 and TSH-7 on rows: the dot unit in the single precision of the machine. Every operation is rounded on its own, in the order in
+//! which [`crate::texture::dot`] writes it; Rust fuses nothing by itself, so each lane has the bits of the definition.
+#![allow(clippy::float_arithmetic, reason = "the chip's dot unit is a float unit (TSH-4)")]
+
+use super::BLOCK;
+use super::kernels::LANES;
+use super::quotient::{nearest, nearest_32, whole};
+use crate::state::DotMapping;
+use crate::texture::cube::Face;
+use crate::texture::dot;
+
+/// A float for each pixel of a block.
+pub(super) type Floats = [f32; BLOCK];
+
+/// TSH-1 and TSH-2: a mapping whose numerators are a linear function of the byte.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Remap {
+    signed: bool,
+    times: i16,
+    plus: i16,
+    whole: i16,
+}
+
+impl Remap {
+    /// `None`: the mapping is another one.
+    pub(super) fn new(mapping: DotMapping) -> Option<Remap> {
+        let of = |byte: u8| dot::fractions(mapping, [byte; 4]);
+        let (plus, whole) = of(0)[0];
+        let times = of(1)[0].0 - plus;
+        let [times, plus, whole] = [times, plus, whole].map(|n| i16::try_from(n).ok());
+        let remap = Remap { signed: of(128)[0].0 < of(127)[0].0, times: times?, plus: plus?, whole: whole? };
+        let fits = |byte: u8| of(byte) == [(i32::from(remap.numerator(i16::from(byte))), i32::from(remap.whole)); 3];
+        (0..=255).all(fits).then_some(remap)
+    }
+
+    #[inline(always)]
+    fn numerator(self, byte: i16) -> i16 {
+        let byte = if self.signed { i16::from(byte as i8) } else { byte & 255 };
+        byte.wrapping_mul(self.times).wrapping_add(self.plus)
+    }
+
+    /// The fractions of registers, which may hold twice the byte.
+    #[inline(always)]
+    pub(super) fn run(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
+        let whole = f32::from(self.whole);
+        for n in 0..BLOCK {
+            out[n] = f32::from(self.numerator(register[n] >> u32::from(doubled))) / whole;
+        }
+    }
+}
+
+/// TSH-4 of numbers and a remapped colour.
+#[inline(always)]
+pub(super) fn products([s, t, r]: [&Floats; 3], [x, y, z]: &[Floats; 3], out: &mut Floats) {
+    for n in 0..BLOCK {
+        out[n] = dot::dot([s[n], t[n], r[n]], [x[n], y[n], z[n]]);
+    }
+}
+
+/// TSH-5.
+#[inline(always)]
+pub(super) fn reflect([x, y, z]: [&Floats; 3], [a, b, c]: [&Floats; 3], out: &mut [Floats; 3]) {
+    let [out_x, out_y, out_z] = out;
+    for n in 0..BLOCK {
+        let [reflected_x, reflected_y, reflected_z] = dot::reflect([x[n], y[n], z[n]], [a[n], b[n], c[n]]).vector;
+        (out_x[n], out_y[n], out_z[n]) = (reflected_x, reflected_y, reflected_z);
+    }
+}
+
+/// What the dot unit may move coordinates by, images times 128: more is the definition's.
+const FARTHEST: f32 = (1 << 23) as f32;
+
+/// TSH-7: what blue and green, whose registers may hold twice the byte, move a coordinate by. What is too large, or no number, is 0 and left open.
+#[inline(always)]
+pub(super) fn moved(
+    entries: [f32; 2],
+    (blue, blue_doubled): (&[i16; BLOCK], bool),
+    (green, green_doubled): (&[i16; BLOCK], bool),
+    out: &mut Floats,
+    open: &mut [i32; LANES],
+) {
+    let (down_blue, down_green) = (u32::from(blue_doubled), u32::from(green_doubled));
+    for n in 0..BLOCK {
+        let (b, g) = ((blue[n] >> down_blue) as i8, (green[n] >> down_green) as i8);
+        let f = dot::moved(entries, [f32::from(b), f32::from(g)]);
+        let known = f.abs() < FARTHEST;
+        out[n] = if known { f } else { 0.0 };
+        open[n] |= i32::from(!known);
+    }
+}
+
+/// Coordinates of two numbers on an image, floors in 1/256 texel less `bias`, limited. NaN is 0.
+#[inline(always)]
+pub(super) fn coordinate(f: &Floats, side: u32, limit: i32, bias: i32, out: &mut [i32; BLOCK]) {
+    let (scale, limit) = (256.0 * f64::from(side), f64::from(limit));
+    for n in 0..BLOCK {
+        // Exact: 24 bits by at most 12.
+        let t = f64::from(f[n]) * scale;
+        let t = if t > -limit { t } else { -limit };
+        let t = if t < limit { t } else { limit };
+        let t = if f[n].is_nan() { 0.0 } else { t };
+        out[n] = floor(t) - bias;
+    }
+}
+
+/// The floor of a number far below 2^31.
+#[inline(always)]
+fn floor(t: f64) -> i32 {
+    nearest(t) - i32::from(whole(t) > t)
+}
+
+/// TEX-12 and TEX-13 of vectors: the face, and u and v on it, floors in 1/256 texel less `bias`.
+///
+/// With the major component m, K = 128 `size` and n the whole number nearest to K (s + m) / m, however roughly that is computed, the floor is
+/// n or n - 1: n if s K is not below (n - K) m. Both products have at most 44 bits, so the comparison is exact.
+#[inline(always)]
+pub(super) fn on_faces(
+    [x, y, z]: &[Floats; 3],
+    size: u32,
+    bias: i32,
+    u: &mut [i32; BLOCK],
+    v: &mut [i32; BLOCK],
+    faces: &mut [u32; BLOCK],
+) {
+    let k = 128.0 * f64::from(size);
+    let (mut along, mut down, mut majors) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
+    for n in 0..BLOCK {
+        let (x, y, z) = (x[n], y[n], z[n]);
+        let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
+        let finite = (ax <= f32::MAX) & (ay <= f32::MAX) & (az <= f32::MAX);
+        // X over Y over Z, as `Face::of` has it; one choice at a time: nested ones would become branches.
+        let on_x = (ax >= ay) & (ax >= az);
+        let on_y = ay >= az;
+        let major = if on_y { y } else { z };
+        let major = if on_x { x } else { major };
+        let negative = major < 0.0;
+        let other = if on_x { -z } else { x };
+        let turned = if negative { -other } else { other };
+        let upright = if negative { -z } else { z };
+        let s = if on_y { x } else { turned };
+        let s = if on_x { turned } else { s };
+        let t = if on_y { upright } else { -y };
+        let t = if on_x { -y } else { t };
+        // The face's number, as a float among floats.
+        let axis = if on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
+        let axis = if on_x { Face::PositiveX as u32 as f32 } else { axis };
+        let face = if negative { axis + 1.0 } else { axis };
+        faces[n] = nearest_32(if finite { face } else { 0.0 }) as u32;
+        along[n] = if finite { s } else { 0.0 };
+        down[n] = if finite { t } else { 0.0 };
+        majors[n] = if finite { major.abs() } else { 0.0 };
+    }
+    for n in 0..BLOCK {
+        let (s, t, m) = (f64::from(along[n]), f64::from(down[n]), f64::from(majors[n]));
+        // The zero vector lies at 0.
+        let center = if m > 0.0 { k } else { 0.0 };
+        let r = center / (if m > 0.0 { m } else { 1.0 });
+        let (near_u, near_v) = (whole(s * r), whole(t * r));
+        let below_u = if s * k < near_u * m { 1.0 } else { 0.0 };
+        let below_v = if t * k < near_v * m { 1.0 } else { 0.0 };
+        u[n] = nearest(near_u + center - below_u) - bias;
+        v[n] = nearest(near_v + center - below_v) - bias;
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+    use crate::raster::interpolate::COORDINATE_LIMIT;
+    use crate::state::Named;
+    use crate::texture::shader;
+
+    /// Every byte of every mapping of bytes, plain and doubled.
+    #[test]
+    fn bytes_become_the_fractions_of_the_definition() {
+        for mapping in DotMapping::ALL {
+            let Some(remap) = Remap::new(*mapping) else {
+                assert!(matches!(mapping, DotMapping::Hilo1 | DotMapping::HiloHemisphere));
+                continue;
+            };
+            let mut out = [0.0; BLOCK];
+            remap.run(&std::array::from_fn(|n| n as i16), false, &mut out);
+            for byte in 0..=255_u8 {
+                assert_eq!(out[usize::from(byte)], dot::remap(*mapping, [byte; 4])[0], "{mapping:?} {byte}");
+            }
+            remap.run(&std::array::from_fn(|n| 2 * i16::from(n as u8 as i8)), true, &mut out);
+            for byte in 0..=255_u8 {
+                assert_eq!(out[usize::from(byte)], dot::remap(*mapping, [byte; 4])[1], "{mapping:?} {byte}");
+            }
+        }
+    }
+
+    /// Random floats of all sizes, some of them equal, round, infinite or no numbers.
+    fn floats(state: &mut u64) -> Floats {
+        std::array::from_fn(|_| {
+            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let bits = (*state >> 32) as u32;
+            match (*state >> 24) % 16 {
+                0 => f32::from_bits(bits),
+                1 => (bits % 5) as f32 - 2.0,
+                2 => [0.0, -0.0, f32::INFINITY, f32::NAN, 1e-40, -1e-40, 1e30, -1e30][bits as usize % 8],
+                3 => (bits as i32 >> 20) as f32 / 64.0,
+                _ => (bits as i32) as f32 / (1_u32 << 30) as f32,
+            }
+        })
+    }
+
+    /// Faces and places on them, and coordinates of two numbers, against the definition.
+    #[test]
+    fn places_are_those_of_the_definition() {
+        let mut state = 7;
+        for round in 0..2_000 {
+            let vector = [floats(&mut state), floats(&mut state), floats(&mut state)];
+            let (size, bias) = (1_u32 << (round % 13), [0, 128][round % 2]);
+            let (mut u, mut v, mut faces) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
+            on_faces(&vector, size, bias, &mut u, &mut v, &mut faces);
+            let mut plain = [0; BLOCK];
+            coordinate(&vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
+            for n in 0..BLOCK {
+                let direction = shader::direction([vector[0][n], vector[1][n], vector[2][n]]);
+                let face = Face::of(direction, direction.map(i64::abs), 0);
+                let [s, t, m] =
+                    face.components().map(|c| if c.negative { -direction[c.axis] } else { direction[c.axis] });
+                let at = [s, t].map(|s| shader::face_coordinate(s, m, size, 8) as i32 - bias);
+                let context = [vector[0][n], vector[1][n], vector[2][n]];
+                assert_eq!((faces[n], [u[n], v[n]]), (face as u32, at), "{context:?} on {size}");
+                assert_eq!(i64::from(plain[n] + bias), shader::coordinate(vector[0][n], size), "{context:?} on {size}");
+            }
+        }
+    }
+}
