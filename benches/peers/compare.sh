@@ -45,7 +45,7 @@ while [ "$round" -lt "$rounds" ]; do
         policy) file=13 policy="--policy CMB-4=127.5" ;;
         esac
         # shellcheck disable=SC2086
-        $pin "$ninebit" bench "$scenes/w$file.ron" --threads "$threads" ${isa:+--isa "$isa"} $policy --json |
+        $pin "$ninebit" bench "$scenes/w$file.ron" --threads "$threads" ${isa:+--isa "$isa"} $policy --format json |
             awk -v name="w$file" -v who="$who" '
                 /"shaded_pixels"/ { gsub(/[^0-9]/, ""); pixels = $0 }
                 /"ns_per_shaded_pixel"/ { inside = 1 }

@@ -3,6 +3,7 @@
 use super::text::integer;
 use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use crate::plan::Plan;
+use crate::shown;
 use crate::state::{Named, POLICIES, Policies, Policy, StageOrigin};
 use crate::trace::{Operand, SINGLE, Step};
 use serde_json::{Value, json};
@@ -23,7 +24,7 @@ pub fn trace_json(plan: &Plan, trace: &PixelTrace) -> String {
 /// # Errors
 /// Those of `out`.
 pub fn write_trace_json(out: &mut dyn io::Write, plan: &Plan, tracer: &Tracer<'_>) -> io::Result<()> {
-    let pretty = |value: &Value| serde_json::to_string_pretty(value).unwrap_or_default();
+    let pretty = |value: &Value| shown::json(&serde_json::to_string_pretty(value).unwrap_or_default()).into_owned();
     let cleared = tracer.cleared();
     let head = pretty(&json!({ "cleared": cleared }));
     write!(out, "{},\n  \"draws\": [", head.trim_end_matches("\n}"))?;

@@ -2,6 +2,7 @@
 
 use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use crate::plan::Plan;
+use crate::shown;
 use crate::state::{Named, POLICIES, Policies};
 use crate::texture::cube::Face;
 use crate::trace::{Operand, SINGLE, Step};
@@ -54,7 +55,7 @@ fn write_head(
     left_out: u64,
 ) -> std::fmt::Result {
     let [r, g, b, a] = cleared;
-    writeln!(out, "pixel {x},{y} of target `{target}`, profile {}", plan.profile.name())?;
+    writeln!(out, "pixel {x},{y} of target `{}`, profile {}", shown::name(target), plan.profile.name())?;
     write!(out, "{}", policies_text(&plan.policies))?;
     writeln!(out, "cleared to R {r} G {g} B {b} A {a}")?;
     match left_out {
@@ -93,7 +94,7 @@ pub fn steps_text(steps: &[Step]) -> String {
 }
 
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
-    writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, draw.name, draw.triangle)?;
+    writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, shown::name(&draw.name), draw.triangle)?;
     write_steps(out, &draw.steps, |block| draw.origin(block))?;
     let [r, g, b, a] = draw.shown;
     let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
@@ -117,7 +118,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
         if step.block != block {
             block = &step.block;
             match origin(block) {
-                Some(origin) => writeln!(out, "  {block}: {origin}")?,
+                Some(origin) => writeln!(out, "  {block}: {}", shown::name(origin))?,
                 None => writeln!(out, "  {block}")?,
             }
         }
