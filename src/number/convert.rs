@@ -1,7 +1,5 @@
 //! Entry of floats: a single-precision number is taken apart into integers once, and no float arithmetic follows.
 
-use std::ops::{Shr, Sub};
-
 /// f = mantissa * 2^exponent, exactly. `f` is finite.
 #[inline(always)]
 pub fn split(f: f32) -> (i64, i32) {
@@ -74,13 +72,13 @@ pub fn vertex_color(c: f32) -> u8 {
 #[inline]
 pub fn factor_byte(v: i64) -> u8 {
     debug_assert!((0..=4096).contains(&v));
-    (factor(v) & 255) as u8
+    factor(v as i32) as u8
 }
 
-/// NUM-6 likewise, in numbers of any width.
+/// The same in 32 bits.
 #[inline(always)]
-pub fn factor<T: Copy + Sub<Output = T> + Shr<u32, Output = T>>(v: T) -> T {
-    (v - (v >> 8)) >> 4
+pub fn factor(v: i32) -> i32 {
+    ((v - (v >> 8)) >> 4) & 255
 }
 
 /// NUM-0: a constant given as a float: floor(255 c + 1/2) after clamping to 0..1, computed exactly. NaN counts as 0.

@@ -438,7 +438,7 @@ impl<L: Lane> State<L> {
 }
 
 /// Whether the register holds twice the two's complement byte of a channel (TEX-18).
-fn holds_double(unit: &PlannedUnit, channel: usize) -> bool {
+pub(crate) fn holds_double(unit: &PlannedUnit, channel: usize) -> bool {
     match (unit.format, channel) {
         (TextureFormat::R16B16 | TextureFormat::Y16, 3) => unit.signed_lane(0),
         (TextureFormat::R16B16 | TextureFormat::Y16, 1) => unit.signed_lane(1),

@@ -105,7 +105,7 @@ fn color(draw: &PlannedDraw, of: fn(&Corner) -> [u8; 4], input: fn(usize) -> Inp
 
 /// What a unit yields: channels that its format or its texels make equal are one value, constant ones a constant.
 fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 4] {
-    let signed = unit.state.signed;
+    let signed = sampler.signed;
     let range = |channel: usize| if signed[channel] { (-256, 254) } else { (0, 255) };
     if let Some(table) = &sampler.table {
         return [0, 1, 2, 3].map(|channel: usize| match table.channels[channel] {
@@ -117,7 +117,7 @@ fn texture(unit: &PlannedUnit, sampler: &Sampler, graph: &mut Graph) -> [Value; 
     let stays_inside = unit.kind == TextureKind::Cube
         || unit.border
         || [unit.state.address_s, unit.state.address_t].iter().all(|mode| *mode != AddressMode::ClampToBorder);
-    let plain = signed == [false; 4] && stays_inside;
+    let plain = signed == [false; 4] && stays_inside && !unit.is_wide();
     [0, 1, 2, 3].map(|channel: usize| {
         let from = if plain { source(unit.format, channel) } else { Source::Channel(channel) };
         match from {

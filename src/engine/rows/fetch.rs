@@ -43,6 +43,9 @@ pub(super) fn locate(
 ) {
     let (Some(u), Some(v)) = (u.first_chunk_mut::<BLOCK>(), v.first_chunk_mut::<BLOCK>()) else { return };
     let entries = &mut work.entries;
+    let [columns, rows] = &table.axes;
+    columns.reduce(u);
+    rows.reduce(v);
     match faces.and_then(|faces| faces.first_chunk::<BLOCK>()) {
         Some(faces) => address::<true>(table, u, v, |n| faces[n] * table.face, entries),
         None if table.axes.iter().all(Axis::repeats) => address::<false>(table, u, v, |_| 0, entries),
@@ -78,6 +81,12 @@ pub(super) fn sample(
         }
         // `sample_levels`.
         Texels::Levels(_) => {}
+        Texels::Wide(texels, linear) => {
+            fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
+            filter_wide::<16>(upper, lower, (u, v), (*linear, signed[3]), alpha, red);
+            filter_wide::<0>(upper, lower, (u, v), (*linear, signed[1]), green, blue);
+            return;
+        }
         Texels::One(channel, texels) => {
             fetch(texels, entries, found);
             let out = match channel {
@@ -270,6 +279,27 @@ fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &m
     }
 }
 
+/// TEX-6 of a half, which begins at bit `SHIFT`, and TEX-1, TEX-18 of its bytes.
+#[inline(always)]
+fn filter_wide<const SHIFT: u32>(
+    upper: &[[u32; 2]; BLOCK],
+    lower: &[[u32; 2]; BLOCK],
+    (u, v): (&[i32; BLOCK], &[i32; BLOCK]),
+    (linear, signed): (bool, bool),
+    high: &mut [i16; BLOCK],
+    low: &mut [i16; BLOCK],
+) {
+    let half = |texel: u32| (texel >> SHIFT & 0xffff) as i32;
+    for n in 0..BLOCK {
+        let ([a, b], [c, d]) = (upper[n], lower[n]);
+        let (along, down) = if linear { (weight(u[n]) as i32, weight(v[n]) as i32) } else { (0, 0) };
+        let value = bilinear([half(a), half(b), half(c), half(d)], along, down, |v| v);
+        low[n] = (value & 255) as i16;
+        let byte = (value >> 8) as i16;
+        high[n] = if signed { 2 * (byte - 128) } else { byte };
+    }
+}
+
 /// R and B of a texel, of one shifted by 8, G and A; likewise the left and the right texels of a footprint.
 #[inline(always)]
 fn first(texel: u32) -> Two {
@@ -318,7 +348,7 @@ mod tests {
     /// An entry and its weight are TEX-5's and TEX-6's.
     #[test]
     fn entries_by_the_rules() {
-        let axis = Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: 63, count: 64 };
+        let axis = Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: 63, count: 64, period: None };
         for u in -40_000..40_000_i32 {
             let (texel, weight) = linear(i64::from(u));
             let (at, w) = (entry(&axis, u - 128), super::weight(u - 128));

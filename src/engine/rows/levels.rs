@@ -149,6 +149,12 @@ impl Setup<'_> {
         quotients::<FMA, ROW>(at, [ground.along, ground.down, denominator], &mut at_u[..lanes], &mut at_v[..lanes]);
         quads.open[..lanes].fill(false);
         let [low, high] = choose(unit, lanes, &mut quads.lods, &mut quads.levels, &mut reads.weights[piece.lanes()]);
+        for which in 0..2 {
+            reads.entries[which][piece.lanes()].fill(0);
+            reads.coordinates[which][0][piece.lanes()].fill(0);
+            reads.coordinates[which][1][piece.lanes()].fill(0);
+        }
+        let mut opens = false;
         for level in low..=high {
             let shifts = unit.plane_shifts(&unit.levels[level as usize]);
             let Quads { at, lods, levels, read, close, open, .. } = &mut *quads;
@@ -166,7 +172,7 @@ impl Setup<'_> {
                     continue;
                 }
                 let Some(planes) = ground.planes else {
-                    open[n] = true;
+                    (open[n], opens) = (true, true);
                     continue;
                 };
                 let planes = self.planes_of(unit, planes, level as usize);
@@ -187,7 +193,7 @@ impl Setup<'_> {
                 put(level, levels, v, &mut to_v[piece.lanes()]);
             }
         }
-        for n in (0..piece.count).filter(|n| quads.open[*n]) {
+        for n in (0..piece.count).filter(|n| opens && quads.open[*n]) {
             self.defined_reads(piece, n, sampler, table, reads);
         }
     }
@@ -557,22 +563,29 @@ fn places(placed: &Placed, [mag, min]: [Taken; 2], lods: &[i32], u: &mut [i32], 
     let Placed { axes: [columns, rows], first, pitch } = *placed;
     let lanes = lods.len();
     let (u, v, entries) = (&mut u[..lanes], &mut v[..lanes], &mut entries[..lanes]);
+    let periodic = columns.period.is_some() || rows.period.is_some();
     for n in 0..lanes {
         let less = if lods[n] <= 0 { mag.less } else { min.less };
         let kept = if lods[n] <= 0 { mag.kept } else { min.kept };
         u[n] = (u[n].wrapping_sub(less) & kept).max(columns.low).min(columns.high);
         v[n] = (v[n].wrapping_sub(less) & kept).max(rows.low).min(rows.high);
-        entries[n] = entry(&rows, v[n]) * pitch + entry(&columns, u[n]) + first;
+        entries[n] = entry(&rows, v[n]).wrapping_mul(pitch).wrapping_add(entry(&columns, u[n])).wrapping_add(first);
+    }
+    if periodic {
+        columns.reduce(u);
+        rows.reduce(v);
+        for n in 0..lanes {
+            entries[n] = entry(&rows, v[n]) * pitch + entry(&columns, u[n]) + first;
+        }
     }
 }
 
-/// What is read of a level, for the lanes that read it.
+/// What is read of a level, for the lanes that read it; they hold 0 before. Each lane reads one level, so that adding is choosing: compilers make
+/// masked stores of a choice, which are slow.
 #[inline(always)]
 fn put(level: i32, levels: &[i32], from: &[i32], to: &mut [i32]) {
     let (from, to) = (&from[..levels.len()], &mut to[..levels.len()]);
     for n in 0..levels.len() {
-        // Both are read, whichever is taken: compilers choose an address otherwise, one lane at a time.
-        let mask = -i32::from(levels[n] == level);
-        to[n] = (from[n] & mask) | (to[n] & !mask);
+        to[n] += if levels[n] == level { from[n] } else { 0 };
     }
 }

@@ -322,7 +322,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             filters: unit.state.mag_filter == Filter::Linear,
             cube: unit.kind == TextureKind::Cube,
             sides: unit.scale(&unit.levels[0]),
-            signed: unit.state.signed,
+            signed: [0, 1, 2, 3].map(|n| crate::texture::chain::holds_double(unit, n)),
             mixes: unit.needs_lod(),
             depends: draw.shader.is_some() && shader::is_dependent(&unit.stage.operation),
             shares: None,

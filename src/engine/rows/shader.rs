@@ -501,7 +501,7 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                 for n in 0..4 {
                     let Some(number) = workshop.number(stage.numbers[n]) else { continue };
                     for (alive, number) in alive.iter_mut().zip(number) {
-                        *alive &= (*number < 0.0) != !drops_not_negative[n];
+                        *alive &= (*number < 0.0) == drops_not_negative[n];
                     }
                 }
             }

@@ -15,33 +15,53 @@ pub(super) struct Axis {
     pub(super) high: i32,
     /// The texel of the first entry.
     pub(super) first: i32,
-    /// Entries repeat after so many, a power of two less one; -1 where they do not.
+    /// Entries repeat after so many, a power of two less one; -1 where they do not, or after another number.
     pub(super) mask: i32,
+    /// What is subtracted from coordinates as often as it goes into them, 1/256 texel: where entries repeat after a number that is no power of two.
+    pub(super) period: Option<i32>,
     /// Number of entries.
     pub(super) count: i32,
 }
 
 impl Axis {
-    /// TEX-7 of `n` texels. `None`: a period that is no power of two.
-    fn new(mode: AddressMode, n: u32, border_texels: bool) -> Option<Axis> {
+    /// TEX-7 of `n` texels.
+    fn new(mode: AddressMode, n: u32, border_texels: bool) -> Axis {
         let n = n as i32;
-        let limited =
-            |first: i32, last: i32| Axis { low: first << 8, high: last << 8, first, mask: -1, count: last - first + 1 };
-        let periodic = |count: i32| Axis { low: i32::MIN, high: i32::MAX, first: 0, mask: count - 1, count };
+        let limited = |first: i32, last: i32| Axis {
+            low: first << 8,
+            high: last << 8,
+            first,
+            mask: -1,
+            count: last - first + 1,
+            period: None,
+        };
+        let periodic = |count: i32| {
+            let even = count.count_ones() == 1;
+            let (mask, period) = if even { (count - 1, None) } else { (-1, Some(count << 8)) };
+            Axis { low: i32::MIN, high: i32::MAX, first: 0, mask, count, period }
+        };
         let beyond = BORDER_TEXELS as i32;
         match mode {
-            AddressMode::Wrap if n.count_ones() == 1 => Some(periodic(n)),
-            AddressMode::Mirror if n.count_ones() == 1 => Some(periodic(2 * n)),
-            AddressMode::Wrap | AddressMode::Mirror => None,
-            AddressMode::ClampToEdge | AddressMode::Clamp => Some(limited(0, n - 1)),
-            AddressMode::ClampToBorder if border_texels => Some(limited(-beyond, n - 1 + beyond)),
-            AddressMode::ClampToBorder => Some(limited(-1, n)),
+            AddressMode::Wrap => periodic(n),
+            AddressMode::Mirror => periodic(2 * n),
+            AddressMode::ClampToEdge | AddressMode::Clamp => limited(0, n - 1),
+            AddressMode::ClampToBorder if border_texels => limited(-beyond, n - 1 + beyond),
+            AddressMode::ClampToBorder => limited(-1, n),
         }
     }
 
     /// Whether coordinates need no limits.
     pub(super) fn repeats(&self) -> bool {
         self.mask >= 0
+    }
+
+    /// Takes the period off coordinates as often as it goes into them.
+    #[inline(always)]
+    pub(super) fn reduce(&self, coordinates: &mut [i32]) {
+        let Some(period) = self.period else { return };
+        for c in coordinates {
+            *c = c.rem_euclid(period);
+        }
     }
 }
 
@@ -56,6 +76,8 @@ pub(super) enum Texels {
     One(usize, Vec<u32>),
     /// Footprints of every level, all with the rows of the widest.
     Levels(Vec<u32>),
+    /// Footprints of halves, the high one in the high bits; signed ones with 32,768 added. Filtered, or the texel alone.
+    Wide(Vec<u32>, bool),
 }
 
 /// What a channel of a table holds.
@@ -161,19 +183,19 @@ impl Key {
 
 /// Whether footprints are read, if only of some levels.
 fn linear(unit: &PlannedUnit) -> bool {
-    unit.needs_lod() || unit.state.mag_filter == Filter::Linear
+    unit.needs_lod() || unit.is_wide() || unit.state.mag_filter == Filter::Linear
 }
 
-/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: it is filtered at 16 bits, or has
-/// a side that does not repeat evenly.
+/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: it is filtered at 16 bits, and the
+/// lod counts.
 pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
-    if unit.is_wide() {
+    if unit.is_wide() && unit.needs_lod() {
         return None;
     }
     let count = if unit.needs_lod() { unit.levels.len() } else { 1 };
     let [s, t] = unit.modes();
-    let of = |level: &Level| Some([Axis::new(s, level.width, unit.border)?, Axis::new(t, level.height, unit.border)?]);
-    unit.levels.iter().take(count).map(of).collect()
+    let of = |level: &Level| [Axis::new(s, level.width, unit.border), Axis::new(t, level.height, unit.border)];
+    Some(unit.levels.iter().take(count).map(of).collect())
 }
 
 /// Texels that a table of these axes decodes.
@@ -187,9 +209,11 @@ impl Table {
     /// How much it holds.
     pub(super) fn entries(&self) -> u64 {
         match &self.texels {
-            Texels::Single(all) | Texels::Footprints(all) | Texels::One(_, all) | Texels::Levels(all) => {
-                all.len() as u64
-            }
+            Texels::Single(all)
+            | Texels::Footprints(all)
+            | Texels::One(_, all)
+            | Texels::Levels(all)
+            | Texels::Wide(all, _) => all.len() as u64,
         }
     }
 
@@ -197,7 +221,8 @@ impl Table {
     pub(super) fn new(unit: &PlannedUnit, levels: &[[Axis; 2]], image: &Image<'_, i32>, folds: bool) -> Table {
         let faces: &[Face] = if unit.kind == TextureKind::Cube { Face::ALL } else { &[Face::PositiveX] };
         // There is a level 0.
-        let axes = levels.first().copied().unwrap_or([Axis { low: 0, high: 0, first: 0, mask: 0, count: 0 }; 2]);
+        let none = Axis { low: 0, high: 0, first: 0, mask: 0, count: 0, period: None };
+        let axes = levels.first().copied().unwrap_or([none; 2]);
         let [columns, rows] = axes;
         let mixes = unit.needs_lod();
         let linear = linear(unit);
@@ -222,6 +247,7 @@ impl Table {
         }
         let mut facts = Facts::new(all.first().copied().unwrap_or(0));
         all.iter().for_each(|texel| facts.see(*texel));
+        let folds = folds && !unit.is_wide();
         let channels = if folds { facts.channels(unit.state.signed) } else { [0, 1, 2, 3].map(Channel::Of) };
         let mut distinct = (0..4).filter(|n| channels[*n] == Channel::Of(*n));
         let (one, more) = (distinct.next().unwrap_or(0), distinct.next().is_some());
@@ -229,6 +255,9 @@ impl Table {
         let (texels, pitch, face) = if mixes {
             let face = all.len() / faces.len();
             (Texels::Levels(all), wide, face)
+        } else if unit.is_wide() {
+            let linear = unit.state.mag_filter == Filter::Linear;
+            (Texels::Wide(all, linear), wide, wide * high)
         } else if !linear {
             (Texels::Single(all), columns.count as usize, count)
         } else if more {
@@ -254,10 +283,17 @@ impl Table {
     }
 }
 
-/// A texel's bytes, which may lie outside; signed ones with 128 added.
+/// A texel's bytes, which may lie outside, signed ones with 128 added; or its halves, signed ones with 32,768.
 fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, x: i32, y: i32) -> u32 {
     let texel = slice.texel(image.words, i64::from(x), i64::from(y));
     let channels = lanes::<i32, Silent>(slice.unit, image, &texel, &mut Silent);
+    if slice.unit.is_wide() {
+        let half = |lane: usize| {
+            let bias = if slice.unit.signed_lane(lane) { 32_768 } else { 0 };
+            (channels[lane].decision() + bias) as u32 & 0xffff
+        };
+        return half(0) << 16 | half(1);
+    }
     u32::from_le_bytes(std::array::from_fn(|n| {
         let bias = if slice.unit.state.signed[n] { 128 } else { 0 };
         (channels[n].decision() + bias) as u8
@@ -274,12 +310,11 @@ mod tests {
     fn entries_are_what_the_modes_say() {
         for mode in AddressMode::ALL {
             for (n, border) in [(1, false), (4, false), (16, false), (6, false), (8, true), (5, true)] {
-                let Some(axis) = Axis::new(*mode, n, border) else {
-                    assert!(matches!(mode, AddressMode::Wrap | AddressMode::Mirror) && n.count_ones() != 1);
-                    continue;
-                };
+                let axis = Axis::new(*mode, n, border);
                 for f in -20_000..20_000_i32 {
-                    let limited = f.clamp(axis.low, axis.high);
+                    let mut limited = [f.clamp(axis.low, axis.high)];
+                    axis.reduce(&mut limited);
+                    let [limited] = limited;
                     let entry = ((limited >> 8) - axis.first) & axis.mask;
                     assert!((0..axis.count).contains(&entry), "{mode:?} {n} {f}");
                     let at = |i: i32| address(*mode, i64::from(i), n, border);
