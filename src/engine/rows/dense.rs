@@ -10,7 +10,7 @@ use super::levels::Reads;
 use super::patch::{Patch, boxes, is_small};
 use super::quotient::{self, IOTA};
 use super::triangle::{Piece, Setup, Varying, whole_steps};
-use super::{BLOCK, Rows};
+use super::{BLOCK, Reasons, Rows};
 use crate::engine::pixel::TriangleContext;
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
@@ -377,7 +377,7 @@ fn rows_interpolate_what_the_definition_does() {
                     }
                 }
             }
-            planes = setup.given_back();
+            planes = setup.given_back(&mut Reasons::default());
         }
     }
     assert!(fours > patches / 2);
