@@ -8,6 +8,7 @@ mod texture;
 
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
+use ninebit::vertex::fog::passed;
 use proptest::prelude::*;
 use proptest::strategy::{NewTree, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -213,11 +214,21 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         let count = vertices.len();
         vertices[index as usize % count].fog = coordinate;
     }
-    // Most e of exponential fog lie where its tables do.
-    if fog.function.is_some_and(|f| !f.mode.is_linear() && f.p1 < 0.1) {
-        for vertex in &mut vertices {
-            vertex.fog = 1.0 + vertex.fog / 8.0;
+    match fog.function {
+        // As the vertex side makes it of a coordinate.
+        Some(function) if c.once_in(2) => {
+            for vertex in &mut vertices {
+                vertex.fog_coordinate = Some(vertex.fog);
+                vertex.fog = passed(&function, profile, vertex.fog);
+            }
         }
+        // Most e of exponential fog lie where its tables do.
+        Some(function) if !function.mode.is_linear() && function.p1 < 0.1 => {
+            for vertex in &mut vertices {
+                vertex.fog = 1.0 + vertex.fog / 8.0;
+            }
+        }
+        _ => {}
     }
     let mut indices: Vec<u32> = (0..vertices.len() as u32).collect();
     if c.once_in(8) {
@@ -284,7 +295,7 @@ fn fog(c: &mut Choices<'_>, profile: Profile) -> (Fog, Option<(u32, f32)>) {
             0 => c.between(-1.0, 1.0),
             _ => c.pick(&[-0.125, -1.0, 0.25, 0.0, -0.090_168_44, 1e-9]),
         },
-        p2: 0.0,
+        p2: c.pick(&[0.0, 0.0, 0.0, 0.015_625, -0.01]),
         per_vertex: profile == Profile::Nv10 || c.once_in(4),
     });
     let beyond = (function.is_some() && c.once_in(16))
