@@ -57,6 +57,7 @@ mod replay;
 mod results;
 mod scene_format;
 mod scene_hostile;
+mod scene_in_code;
 mod techniques;
 mod texture_properties;
 mod textures;

@@ -2,6 +2,7 @@
 
 use crate::engine::{DrawTrace, PixelTrace};
 use crate::plan::Plan;
+use crate::raster::project::ClipPlane;
 use crate::state::{Named, POLICIES, Policies, Policy, StageOrigin};
 use crate::trace::{Operand, Step};
 use serde_json::{Value, json};
@@ -44,7 +45,7 @@ pub fn steps_value(steps: &[Step]) -> Value {
 }
 
 fn draw(draw: &DrawTrace) -> Value {
-    json!({
+    let mut value = json!({
         "draw": draw.draw,
         "name": draw.name,
         "triangle": draw.triangle,
@@ -52,7 +53,12 @@ fn draw(draw: &DrawTrace) -> Value {
         "shown": draw.shown,
         "program_origin": origins(&draw.program_origin),
         "steps": steps_value(&draw.steps),
-    })
+    });
+    if let Some(piece) = &draw.piece {
+        let planes: Vec<&str> = ClipPlane::of(piece.planes).map(|plane| plane.name()).collect();
+        value["clipped"] = json!({ "triangle": piece.of, "planes": planes });
+    }
+    value
 }
 
 /// What each general stage was written as.
