@@ -89,6 +89,12 @@ fn random_scenes_agree() {
 }
 
 #[test]
+fn wider_random_scenes_agree() {
+    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
+    run(setting("NINEBIT_ORACLE_WIDE_SCENES", 1000), &(random_scene::wide::scene(), policies).boxed());
+}
+
+#[test]
 fn random_scenes_draw_something_of_everything() {
     let strategy = random_scene::scene();
     let mut runner = runner(400);

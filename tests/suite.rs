@@ -38,6 +38,7 @@ mod cli_chart;
 mod cli_compare;
 mod cli_measure;
 mod cli_texture;
+mod clipping;
 mod combiner_language;
 mod compare;
 mod compressed;

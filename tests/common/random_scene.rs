@@ -5,6 +5,8 @@
 
 #[path = "random_texture.rs"]
 mod texture;
+#[path = "random_wide.rs"]
+pub mod wide;
 
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::project::ClipPlane;
