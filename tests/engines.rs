@@ -1,7 +1,7 @@
 //! The fast engine against the definition: the same words and depths in every scene of the repository and in random ones, whatever the
 //! instruction set, the threads and the policies.
 //!
-//! The normal run draws the first 2,000 of a sequence of random scenes. `NINEBIT_ENGINE_SCENES` says how many instead, `NINEBIT_ENGINE_SHARD=k/n`
+//! The normal run draws the first 2,000 of two sequences of random scenes, plain ones and wider ones. `NINEBIT_ENGINE_SCENES` says how many instead, `NINEBIT_ENGINE_SHARD=k/n`
 //! draws every n-th of them, beginning with the k-th (from 0), `NINEBIT_ENGINE_MATRIX` says how many of the first are drawn by every
 //! instruction set with 1, 2, 3 and 8 threads and bands of all sizes, and `NINEBIT_ENGINE_SEED` chooses another sequence.
 use crate::settings::number;
@@ -78,14 +78,14 @@ fn every_way() -> Vec<RenderOptions> {
     ways
 }
 
-/// A scene of the sequence, as something that can be made simpler.
-fn tree(seed: u32, number: u32) -> impl ValueTree<Value = Scene> {
+/// A scene of a sequence, as something that can be made simpler.
+fn tree<S: Strategy<Value = Scene>>(sequence: &S, seed: u32, number: u32) -> S::Tree {
     let mut bytes = [0; 32];
     bytes[..4].copy_from_slice(&seed.to_le_bytes());
     bytes[4..8].copy_from_slice(&number.to_le_bytes());
     let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &bytes);
     let mut runner = TestRunner::new_with_rng(Config { failure_persistence: None, ..Config::default() }, rng);
-    random_scene::scene().new_tree(&mut runner).unwrap()
+    sequence.new_tree(&mut runner).unwrap()
 }
 
 /// Policies for a scene of the sequence: each rule's by chance, or one rule's alone.
@@ -110,11 +110,10 @@ fn digest(frames: &Frames) -> u64 {
     u64::from_be_bytes(hash.finalize()[..8].try_into().unwrap())
 }
 
-/// Sums of digests do not depend on how the scenes are shared out among shards.
-#[test]
-fn engines_agree_on_random_scenes() {
-    let (scenes, matrix) = (number("NINEBIT_ENGINE_SCENES", 2_000), number("NINEBIT_ENGINE_MATRIX", 12));
-    let seed = number("NINEBIT_ENGINE_SEED", 5);
+/// Draws the scenes of a sequence by both engines, under the default policies and under others. Sums of digests do not depend on how the scenes
+/// are shared out among shards.
+fn agree(sequence: &impl Strategy<Value = Scene>, matrix: u32) {
+    let (scenes, seed) = (number("NINEBIT_ENGINE_SCENES", 2_000), number("NINEBIT_ENGINE_SEED", 5));
     let shard = std::env::var("NINEBIT_ENGINE_SHARD").unwrap_or_else(|_| "0/1".to_owned());
     let (first, step) = shard.split_once('/').expect("NINEBIT_ENGINE_SHARD is k/n");
     let (first, step) = (first.parse::<u32>().unwrap(), step.parse::<usize>().unwrap());
@@ -122,26 +121,46 @@ fn engines_agree_on_random_scenes() {
     let best = [fast(Isa::best(), 1)];
     let check = |number: u32, scene: &Scene| {
         let ways = if number < matrix { &every_way[..] } else { &best };
-        let plan = |prune| Plan::compile(scene, &PlanOptions { prune, ..PlanOptions::default() }).unwrap();
-        if number < matrix {
-            compare(&plan(false), &best)?;
-        }
         let policies = policies(seed, number);
-        compare(&Plan { policies, ..plan(true) }, ways).map_err(|why| format!("{policies:?}: {why}"))?;
-        compare(&plan(true), ways)
+        // A panic is a difference, too: it can be made simpler.
+        let compared = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            let plan = |prune| Plan::compile(scene, &PlanOptions { prune, ..PlanOptions::default() }).unwrap();
+            if number < matrix {
+                compare(&plan(false), &best)?;
+            }
+            compare(&Plan { policies, ..plan(true) }, ways).map_err(|why| format!("{policies:?}: {why}"))?;
+            compare(&plan(true), ways)
+        }));
+        compared.unwrap_or_else(|panic| {
+            let text = panic.downcast_ref::<String>().cloned();
+            Err(text.unwrap_or_else(|| "a panic".to_owned()))
+        })
     };
     let (mut count, mut sum) = (0_u32, 0_u64);
     for number in (first..scenes).step_by(step) {
-        let mut tree = tree(seed, number);
+        let mut tree = tree(sequence, seed, number);
         match check(number, &tree.current()) {
             Ok(frames) => (count, sum) = (count + 1, sum.wrapping_add(digest(&frames))),
             Err(reason) => {
                 simplify(&mut tree, |scene| check(number, scene).is_err());
-                panic!("scene {number}: {reason}\nat its simplest: {:#?}", tree.current());
+                let simplest = tree.current();
+                let told = check(number, &simplest).err();
+                panic!("scene {number}: {reason}\nat its simplest: {told:?} {simplest:#?}");
             }
         }
     }
     println!("{count} scenes, digest {sum:016x}");
+}
+
+#[test]
+fn engines_agree_on_random_scenes() {
+    agree(&random_scene::scene(), number("NINEBIT_ENGINE_MATRIX", 12));
+}
+
+/// Scenes that share what they have, with extreme numbers, programs of every language, and vertices behind the viewer.
+#[test]
+fn engines_agree_on_wider_random_scenes() {
+    agree(&random_scene::wide::scene(), number("NINEBIT_ENGINE_MATRIX", 12));
 }
 
 /// Leaves the simplest value that still fails.

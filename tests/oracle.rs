@@ -4,7 +4,7 @@
 #[path = "oracle/model.rs"]
 mod model;
 use crate::random_scene;
-use crate::settings::number;
+use crate::settings;
 
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
@@ -28,7 +28,7 @@ fn runner(cases: u32) -> TestRunner {
         failure_persistence: None,
         ..Config::default()
     };
-    let seed: u8 = number("NINEBIT_ORACLE_SEED", 9);
+    let seed: u8 = settings::number("NINEBIT_ORACLE_SEED", 9);
     TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]))
 }
 
@@ -83,7 +83,13 @@ fn policies() -> impl Strategy<Value = Policies> {
 #[test]
 fn random_scenes_agree() {
     let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
-    run(number("NINEBIT_ORACLE_SCENES", 2000), &(random_scene::scene(), policies).boxed());
+    run(settings::number("NINEBIT_ORACLE_SCENES", 2000), &(random_scene::scene(), policies).boxed());
+}
+
+#[test]
+fn wider_random_scenes_agree() {
+    let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
+    run(settings::number("NINEBIT_ORACLE_WIDE_SCENES", 1000), &(random_scene::wide::scene(), policies).boxed());
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use ninebit::random::Random;
 use ninebit::vectors::pack;
-use ninebit::vectors::random::Random;
 use sha2::{Digest, Sha256};
 
 use super::mutate::mutated;

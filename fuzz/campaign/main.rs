@@ -33,7 +33,7 @@ use std::time::{Duration, Instant};
 use cases::{Case, Corpus};
 use ninebit::engine::fragments;
 use ninebit::limits::Limits;
-use ninebit::vectors::random::Random;
+use ninebit::random::Random;
 
 /// Runs in the test suite.
 const RUNS: u64 = 300;

@@ -1,6 +1,6 @@
 //! Changes of bytes and of texts, all by one seed.
 
-use ninebit::vectors::random::Random;
+use ninebit::random::Random;
 
 /// Numbers at which sizes, integers and floats end.
 const NUMBERS: [&str; 40] = [

@@ -56,7 +56,7 @@ fn met(assembly: &Assembly, number: usize, height: usize, bands: usize) -> Range
 mod tests {
     use super::*;
     use crate::random::Random;
-    use crate::raster::assemble::Corner;
+    use crate::raster::assemble::{Clipping, Corner};
     use crate::raster::triangles::Triangles;
     use crate::state::{ProvokingVertex, Topology, Vertices};
     use std::sync::Arc;
@@ -71,7 +71,7 @@ mod tests {
             .collect();
         let indices: Arc<[u32]> = (0..600).collect();
         let triangles = Triangles::split(&indices, Topology::Triangles, ProvokingVertex::First);
-        let assembly = Assembly { vertices: Vertices::default(), corners, triangles };
+        let assembly = Assembly { vertices: Vertices::default(), corners, triangles, clipping: Clipping::default() };
         for (height, bands) in [(16, 8), (6, 21), (200, 1)] {
             let bins = Bins::new(&assembly, height, bands);
             for band in 0..bands {

@@ -6,6 +6,7 @@ use super::pixel::{Fragment, TriangleContext};
 use super::{cleared, cleared_colors, draw_defined, images};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
+use crate::raster::assemble::Piece;
 use crate::rop::surface;
 use crate::state::{StageOrigin, Target, TextureImage};
 use crate::texture::unit::Image;
@@ -41,6 +42,8 @@ pub struct DrawTrace {
     pub name: String,
     /// Number of the triangle in the draw.
     pub triangle: usize,
+    /// What it is a piece of, if it was cut off another (RAS-6).
+    pub piece: Option<Piece>,
     /// Whether it was stored, or dropped by a test.
     pub stored: bool,
     /// R, G, B, A as a picture shows them, after this fragment.
@@ -249,6 +252,7 @@ impl<'a> Tracer<'a> {
                     draw: index,
                     name: planned.name.clone(),
                     triangle: context.number,
+                    piece: planned.assembly.clipping.piece(context.number).copied(),
                     stored,
                     shown: surface::show(planned.surface, pixel.word),
                     steps: recorder.steps,

@@ -16,6 +16,7 @@ use crate::engine;
 use crate::plan::{Plan, PlannedDraw};
 use crate::program::text::print;
 use crate::program::text::words::register;
+use crate::report::planes;
 use crate::rop::surface;
 use crate::state::{
     Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, StageOrigin, TEXTURE_UNITS,
@@ -38,6 +39,8 @@ pub struct DrawExplanation {
     pub program_origin: Vec<StageOrigin>,
     /// What it computes, in order: what the plan has kept.
     pub equations: Vec<String>,
+    /// What has been cut off its triangles; `None`: nothing.
+    pub clipping: Option<String>,
     /// What nothing can see, and why.
     pub dropped: Vec<String>,
     /// What it will cost.
@@ -55,10 +58,25 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
             program: print(&draw.combiners),
             program_origin: draw.program_origin.clone(),
             equations: equations(scene, plan, planned),
+            clipping: clipping(planned),
             dropped: dropped(scene, draw, planned),
             cost: Cost::of(planned, &plan.policies, engine::fragments(plan, planned)),
         })
         .collect()
+}
+
+/// What RAS-6 has done to a draw's triangles.
+fn clipping(planned: &PlannedDraw) -> Option<String> {
+    let clipping = &planned.assembly.clipping;
+    if clipping.planes == 0 {
+        return None;
+    }
+    let (left, pieces, cut) = (planned.assembly.triangles.len(), clipping.pieces.len(), clipping.cut);
+    let given = left - pieces + cut + clipping.removed;
+    let (planes, removed) = (planes(clipping.planes), clipping.removed);
+    Some(format!(
+        "{given} triangles: {removed} removed and {cut} cut into {pieces} pieces ({planes}); {left} are drawn"
+    ))
 }
 
 fn channels(mask: u8) -> String {

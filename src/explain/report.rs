@@ -33,6 +33,9 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
                 writeln!(out, "    {}", shown::lines(line))?;
             }
         }
+        if let Some(clipping) = &draw.clipping {
+            writeln!(out, "  clipping (RAS-6): {clipping}")?;
+        }
         writeln!(out, "  program:")?;
         for line in draw.program.lines() {
             writeln!(out, "    {}", shown::lines(line))?;
@@ -105,6 +108,9 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
                 "name": draw.name, "target": draw.target, "program": draw.program, "equations": draw.equations, "left_out": draw.dropped,
                 "cost": cost(&draw.cost),
             });
+            if let Some(clipping) = &draw.clipping {
+                value["clipping"] = json!(clipping);
+            }
             if !draw.program_origin.is_empty() {
                 value["program_origin"] = crate::report::origins(&draw.program_origin);
             }

@@ -4,23 +4,26 @@
 //! [`PlanOptions::prune`] (the default) outputs, channels, units and reads that nothing can see are left out; the bytes are the same
 //! without.
 
+mod check;
 mod fold;
 mod liveness;
 
 use crate::combiner::final_combiner::PlannedFinal;
 use crate::combiner::general::PlannedStage;
+use crate::limits::Limits;
 use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::surface;
 use crate::state::named;
 use crate::state::{
     AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies,
-    Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, SurfaceFormat, TEXTURE_UNITS,
-    Target, Texture, TextureImage, TextureKind, TextureUnit,
+    Positions, Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, SurfaceFormat,
+    TEXTURE_UNITS, Target, Texture, TextureImage, TextureKind, TextureUnit,
 };
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
 use liveness::{Computed, Liveness};
+use std::fmt;
 
 /// How a plan is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -37,20 +40,37 @@ impl Default for PlanOptions {
     }
 }
 
-/// Why a checked scene cannot be planned.
+/// Why a scene cannot be planned.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlanError {
-    /// Index of the draw.
-    pub draw: usize,
+    /// Index of the draw, if one is to blame.
+    pub draw: Option<usize>,
     /// Index of the vertex, if one is to blame.
     pub vertex: Option<usize>,
-    /// Rule that sets the limit.
-    pub rule: &'static str,
+    /// Rule that sets the limit, if one does.
+    pub rule: Option<&'static str>,
     /// What is wrong.
     pub message: String,
     /// What to do.
     pub help: String,
 }
+
+impl fmt::Display for PlanError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.draw, self.vertex) {
+            (Some(draw), Some(vertex)) => write!(f, "draw {draw}, vertex {vertex}: ")?,
+            (Some(draw), None) => write!(f, "draw {draw}: ")?,
+            (None, _) => {}
+        }
+        f.write_str(&self.message)?;
+        if let Some(rule) = self.rule {
+            write!(f, " ({rule})")?;
+        }
+        if self.help.is_empty() { Ok(()) } else { write!(f, "; {}", self.help) }
+    }
+}
+
+impl std::error::Error for PlanError {}
 
 /// A scene ready to be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,12 +194,23 @@ impl Plan {
         planned.units.iter().any(|unit| is_target(unit.state.texture))
     }
 
-    /// Plans a checked scene.
+    /// Plans a scene, whoever made it, within the default [`Limits`].
     ///
     /// # Errors
-    /// Every vertex (eight at most a draw) outside the limits of RAS-0.
+    /// What is not as [`Scene`] says it has to be, or else every vertex (eight at most a draw) outside the limits of RAS-0.
     pub fn compile(scene: &Scene, options: &PlanOptions) -> Result<Plan, Vec<PlanError>> {
-        let mut errors = Vec::new();
+        Plan::compile_within(scene, options, &Limits::default())
+    }
+
+    /// Plans a scene within limits.
+    ///
+    /// # Errors
+    /// As [`compile`](Plan::compile).
+    pub fn compile_within(scene: &Scene, options: &PlanOptions, limits: &Limits) -> Result<Plan, Vec<PlanError>> {
+        let mut errors = check::check(scene, limits);
+        if !errors.is_empty() {
+            return Err(errors);
+        }
         let mut draws = Vec::with_capacity(scene.draws.len());
         let black: Vec<u8> = scene.textures.iter().map(fold::black_channels).collect();
         for (index, draw) in scene.draws.iter().enumerate() {
@@ -188,16 +219,24 @@ impl Plan {
                 Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, &black, options)),
                 Err(positions) => errors.extend(positions.into_iter().map(|p| {
                     PlanError {
-                        draw: index,
+                        draw: Some(index),
                         vertex: Some(p.vertex),
-                        rule: "RAS-0",
+                        rule: Some("RAS-0"),
                         message: format!(
                             "window position x = {}, y = {}, w = {} lies outside the rasteriser's domain",
                             p.window[0], p.window[1], p.window[3]
                         ),
-                        help: "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20; \
-                           a vertex far outside the view can be cut off by splitting its triangle"
-                            .to_string(),
+                        help: match draw.positions {
+                            Positions::Window => {
+                                "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20; \
+                                 a vertex far outside the view can be cut off by splitting its triangle"
+                            }
+                            Positions::Clip(_) => {
+                                "keep w at most 2^20; what lies behind the viewer or far outside the view is cut off, \
+                                 as long as its numbers are not so large that none is left in 32 bits"
+                            }
+                        }
+                        .to_string(),
                     }
                 })),
             }
@@ -239,25 +278,32 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
             // TSH-7 has no use for q.
             let plane = set[3] == 1.0 || moves(stage);
             let far = |n: usize, side: u32| plane && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;
-            let (outside, what) = match texture {
-                _ if set.iter().any(|c| !c.is_finite()) => (true, "is not a finite number".to_string()),
-                Some((Texture { kind: TextureKind::TwoDimensional, name, .. }, (width, height))) => (
-                    far(0, width) || far(1, height),
-                    format!(
-                        "is more than 65536 texels of the {width} x {height} texture `{name}` away from its origin"
-                    ),
-                ),
-                Some((Texture { kind: TextureKind::Rectangle, name, .. }, _)) => {
-                    (far(0, 1) || far(1, 1), format!("is more than 65536 texels away from the origin of `{name}`"))
+            let finite = set.iter().all(|c| c.is_finite());
+            let outside = match texture {
+                _ if !finite => true,
+                Some((Texture { kind: TextureKind::TwoDimensional, .. }, (width, height))) => {
+                    far(0, width) || far(1, height)
                 }
-                _ => (false, String::new()),
+                Some((Texture { kind: TextureKind::Rectangle, .. }, _)) => far(0, 1) || far(1, 1),
+                _ => false,
             };
             if outside && found < MOST_ERRORS {
                 found += 1;
+                let what = match texture {
+                    Some((Texture { kind: TextureKind::TwoDimensional, name, .. }, (width, height))) if finite => {
+                        format!(
+                            "is more than 65536 texels of the {width} x {height} texture `{name}` away from its origin"
+                        )
+                    }
+                    Some((Texture { name, .. }, _)) if finite => {
+                        format!("is more than 65536 texels away from the origin of `{name}`")
+                    }
+                    _ => "is not a finite number".to_string(),
+                };
                 errors.push(PlanError {
-                    draw: index,
+                    draw: Some(index),
                     vertex: Some(vertex),
-                    rule: "RAS-0",
+                    rule: Some("RAS-0"),
                     message: format!("texture coordinate ({}, {}) {what}", set[0], set[1]),
                     help: "shift the coordinates by whole repeats, or split the geometry".to_string(),
                 });

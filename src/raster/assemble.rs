@@ -1,7 +1,7 @@
-//! The vertices of a draw to window coordinates: RAS-0's clip and limits.
+//! The vertices of a draw to window coordinates: what is cut off (RAS-6), and the limits of RAS-0.
 
 pub use super::triangles::{Assembled, Triangles};
-use super::{GUARD, LARGEST_W, SMALLEST_W, project};
+use super::{LARGEST_W, SMALLEST_W, project};
 use crate::number::convert::{snap, vertex_color};
 use crate::state::{Draw, Positions, TriangleVertices, Vertex, VertexColor, Vertices, Viewport};
 
@@ -28,6 +28,40 @@ pub struct Assembly {
     pub corners: Vec<Corner>,
     /// Triangles in order.
     pub triangles: Triangles,
+    /// What of them has been cut off.
+    pub clipping: Clipping,
+}
+
+/// What clipping has done to the triangles of a draw (RAS-6).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Clipping {
+    /// Planes that something was cut off at: [bits](project::ClipPlane::bit).
+    pub planes: u8,
+    /// Triangles of which nothing is left.
+    pub removed: usize,
+    /// Triangles that were cut.
+    pub cut: usize,
+    /// What they became, in the order of their numbers.
+    pub pieces: Vec<Piece>,
+}
+
+impl Clipping {
+    /// What triangle `number` is a piece of, if it is one.
+    pub fn piece(&self, number: usize) -> Option<&Piece> {
+        let at = self.pieces.binary_search_by_key(&number, |piece| piece.number).ok()?;
+        self.pieces.get(at)
+    }
+}
+
+/// A triangle that was cut off another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Piece {
+    /// Its number.
+    pub number: usize,
+    /// The number of the other, before anything was clipped.
+    pub of: usize,
+    /// The planes that cut the other: [bits](project::ClipPlane::bit).
+    pub planes: u8,
 }
 
 impl Assembly {
@@ -56,29 +90,58 @@ const MOST_ERRORS: usize = 8;
 /// Forms the triangles of a draw.
 ///
 /// # Errors
-/// The vertices (eight at most) that a triangle uses and whose window position or w lies outside RAS-0.
+/// The vertices (eight at most) that a triangle uses and whose window position or w lies outside RAS-0, whatever was cut off.
 pub fn assemble(draw: &Draw) -> Result<Assembly, Vec<PositionError>> {
     let mut vertices = draw.vertices.clone();
-    let mut triangles = Triangles::split(&draw.indices, draw.topology, draw.provoking_vertex);
-    if let Positions::Clip(viewport) = &draw.positions {
-        clip_and_project(&mut vertices, &mut triangles, viewport);
+    let triangles = Triangles::split(&draw.indices, draw.topology, draw.provoking_vertex);
+    let Positions::Clip(viewport) = &draw.positions else {
+        return finish(vertices, triangles, Clipping::default(), &[]);
+    };
+    if (0..vertices.len()).all(|v| project::beyond(vertices.position(v), viewport) == 0) {
+        let mut window = vertices.clone();
+        window.map_positions(|position| project::window(position, viewport));
+        // What leaves the guard band is cut.
+        if let Ok(assembly) = finish(window, triangles.clone(), Clipping::default(), &[]) {
+            return Ok(assembly);
+        }
     }
+    let (triangles, clipping, blamed) = clip(&mut vertices, &triangles, viewport);
+    let inside = |position: [f32; 4]| position[3] >= SMALLEST_W;
+    vertices.map_positions(|position| if inside(position) { project::window(position, viewport) } else { position });
+    finish(vertices, triangles, clipping, &blamed)
+}
+
+/// Vertices in window coordinates and their triangles, held against RAS-0. The last vertices were made by clipping: `blamed` are those of the
+/// draw that had them made.
+fn finish(
+    vertices: Vertices,
+    triangles: Triangles,
+    clipping: Clipping,
+    blamed: &[usize],
+) -> Result<Assembly, Vec<PositionError>> {
     let mut used = vec![false; vertices.len()];
     for triangle in triangles.iter() {
         for v in triangle.vertices {
             used[v as usize] = true;
         }
     }
-    let errors: Vec<PositionError> = (0..vertices.len())
-        .filter(|v| used[*v] && !in_range(vertices.position(*v)))
-        .take(MOST_ERRORS)
-        .map(|v| PositionError { vertex: v.min(draw.vertices.len() - 1), window: vertices.position(v) })
-        .collect();
+    let given = vertices.len() - blamed.len();
+    let outside = (0..vertices.len()).filter(|v| used[*v] && !in_range(vertices.position(*v)));
+    let mut errors: Vec<PositionError> = Vec::new();
+    for v in outside {
+        let vertex = if v < given { v } else { blamed[v - given] };
+        if errors.iter().all(|error| error.vertex != vertex) {
+            errors.push(PositionError { vertex, window: vertices.position(v) });
+        }
+        if errors.len() == MOST_ERRORS {
+            break;
+        }
+    }
     if !errors.is_empty() {
         return Err(errors);
     }
     let corners = used.iter().enumerate().map(|(v, used)| corner(&vertices, v, *used)).collect();
-    Ok(Assembly { vertices, corners, triangles })
+    Ok(Assembly { vertices, corners, triangles, clipping })
 }
 
 fn corner(vertices: &Vertices, index: usize, used: bool) -> Corner {
@@ -101,39 +164,49 @@ fn color_bytes(color: VertexColor) -> [u8; 4] {
 
 /// RAS-0 for a window position.
 fn in_range(p: [f32; 4]) -> bool {
-    p.iter().all(|n| n.is_finite())
-        && p[..2].iter().all(|n| n.abs() <= 4096.0 && snap(*n).abs() < GUARD)
-        && (SMALLEST_W..=LARGEST_W).contains(&p[3])
+    p.iter().all(|n| n.is_finite()) && project::in_band(p) && (SMALLEST_W..=LARGEST_W).contains(&p[3])
 }
 
-/// Projects what lies in front of w = 2^-20 and replaces triangles that cross it by their pieces, split as a polygon.
-fn clip_and_project(vertices: &mut Vertices, triangles: &mut Triangles, viewport: &Viewport) {
-    let inside = |position: [f32; 4]| position[3] >= SMALLEST_W;
-    if !(0..vertices.len()).all(|v| inside(vertices.position(v))) {
-        clip(vertices, triangles);
-    }
-    vertices.map_positions(|position| if inside(position) { project::window(position, viewport) } else { position });
-}
+/// So many new vertices are taken apart at a time.
+const CHUNK: usize = 4096;
 
-/// Drops triangles behind w = 2^-20; their pieces take the place of those that cross it.
-fn clip(vertices: &mut Vertices, triangles: &mut Triangles) {
-    let mut pieces: Vec<Vertex> = Vec::new();
+/// Cuts triangles at the planes of RAS-6. Their pieces take their place; new vertices are appended, and of each is told which vertex of
+/// its triangle lies outside.
+fn clip(vertices: &mut Vertices, triangles: &Triangles, viewport: &Viewport) -> (Triangles, Clipping, Vec<usize>) {
+    let lies_inside = |v: usize| {
+        let position = vertices.position(v);
+        project::beyond(position, viewport) == 0 && project::in_band(project::window(position, viewport))
+    };
+    let inside: Vec<bool> = (0..vertices.len()).map(lies_inside).collect();
+    let (mut clipping, mut blamed) = (Clipping::default(), Vec::new());
+    let mut new: Vec<Vertex> = Vec::with_capacity(CHUNK);
     let mut kept = Vec::with_capacity(triangles.len());
-    for triangle in triangles.iter() {
-        let given = vertices.triangle(triangle.vertices);
-        let inside = given.position(3).map(|w| w >= SMALLEST_W);
-        if inside == [true; 3] {
+    for (of, triangle) in triangles.iter().enumerate() {
+        let Some(outside) = triangle.vertices.into_iter().find(|v| !inside[*v as usize]) else {
             kept.push(triangle);
-        } else if inside != [false; 3] {
-            let polygon = project::clip(&given.all());
-            let start = (vertices.len() + pieces.len()) as u32;
-            kept.extend(
-                (1..polygon.len() as u32 - 1)
-                    .map(|i| Assembled { vertices: [start, start + i, start + i + 1], provoking: triangle.provoking }),
-            );
-            pieces.extend(polygon);
+            continue;
+        };
+        let (polygon, planes) = project::clip(&vertices.triangle(triangle.vertices).all(), viewport);
+        clipping.planes |= planes;
+        if planes == 0 {
+            // Not a number: it is refused.
+            kept.push(triangle);
+        } else if polygon.is_empty() {
+            clipping.removed += 1;
+        } else {
+            clipping.cut += 1;
+            let start = (vertices.len() + new.len()) as u32;
+            for i in 1..polygon.len() as u32 - 1 {
+                clipping.pieces.push(Piece { number: kept.len(), of, planes });
+                kept.push(Assembled { vertices: [start, start + i, start + i + 1], provoking: triangle.provoking });
+            }
+            blamed.resize(blamed.len() + polygon.len(), outside as usize);
+            new.extend(polygon);
+            if new.len() >= CHUNK {
+                vertices.extend(new.drain(..));
+            }
         }
     }
-    *triangles = kept.into_iter().collect();
-    vertices.extend(pieces);
+    vertices.extend(new);
+    (kept.into_iter().collect(), clipping, blamed)
 }

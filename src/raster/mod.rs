@@ -1,6 +1,6 @@
 //! Rasteriser: triangles from vertices, coverage, and what is interpolated across them.
 //!
-//! [`triangles`], [`assemble`] and [`project`] turn a draw's vertices into triangles in window coordinates, once, when the plan is made.
+//! [`triangles`], [`assemble`] and [`project`] clip and turn a draw's vertices into triangles in window coordinates, once, when the plan is made.
 //! [`setup`] takes a triangle's floats apart; from there on everything is integer arithmetic with one answer:
 //! [`interpolate`] holds the definition of weights, coordinates, fog and depth, [`attribute`] that of numbers which are used as numbers.
 
@@ -17,6 +17,8 @@ pub mod triangles;
 pub const GUARD: i64 = 1 << 16;
 /// RAS-0: largest texel coordinate, in texels.
 pub const TEXEL_LIMIT: i64 = 1 << 16;
+/// RAS-6: the guard band reaches so many pixels from the origin: the last place that RAS-1 keeps below [`GUARD`].
+pub const BAND: f32 = 4095.9375;
 /// RAS-0: smallest w; clip-space triangles are clipped here.
 pub const SMALLEST_W: f32 = 1.0 / 1_048_576.0;
 /// RAS-0: largest w.

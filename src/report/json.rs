@@ -3,6 +3,7 @@
 use super::text::integer;
 use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use crate::plan::Plan;
+use crate::raster::project::ClipPlane;
 use crate::shown;
 use crate::state::{Named, POLICIES, Policies, Policy, StageOrigin};
 use crate::trace::{Operand, SINGLE, Step};
@@ -85,7 +86,7 @@ pub fn steps_value(steps: &[Step]) -> Value {
 }
 
 fn draw(draw: &DrawTrace) -> Value {
-    json!({
+    let mut value = json!({
         "draw": draw.draw,
         "name": draw.name,
         "triangle": draw.triangle,
@@ -93,7 +94,12 @@ fn draw(draw: &DrawTrace) -> Value {
         "shown": draw.shown,
         "program_origin": origins(&draw.program_origin),
         "steps": steps_value(&draw.steps),
-    })
+    });
+    if let Some(piece) = &draw.piece {
+        let planes: Vec<&str> = ClipPlane::of(piece.planes).map(|plane| plane.name()).collect();
+        value["clipped"] = json!({ "triangle": piece.of, "planes": planes });
+    }
+    value
 }
 
 /// What each general stage was written as.

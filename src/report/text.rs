@@ -2,6 +2,7 @@
 
 use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use crate::plan::Plan;
+use crate::raster::project::ClipPlane;
 use crate::shown;
 use crate::state::{Named, POLICIES, Policies};
 use crate::texture::cube::Face;
@@ -94,11 +95,20 @@ pub fn steps_text(steps: &[Step]) -> String {
 }
 
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
-    writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, shown::name(&draw.name), draw.triangle)?;
+    write!(out, "\ndraw {} `{}`, triangle {}", draw.draw, shown::name(&draw.name), draw.triangle)?;
+    match &draw.piece {
+        Some(piece) => writeln!(out, ", cut off triangle {} (RAS-6: {})", piece.of, planes(piece.planes))?,
+        None => writeln!(out)?,
+    }
     write_steps(out, &draw.steps, |block| draw.origin(block))?;
     let [r, g, b, a] = draw.shown;
     let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
     writeln!(out, "  {outcome}: R {r} G {g} B {b} A {a}")
+}
+
+/// The names of planes, as a list.
+pub(crate) fn planes(set: u8) -> String {
+    ClipPlane::of(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
 }
 
 fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Option<&'o str>) -> std::fmt::Result {

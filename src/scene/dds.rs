@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::image::{ImageError, ImageLimits};
 use super::texels;
-use crate::state::{CUBE_FACES, TextureFormat};
+use crate::state::{CUBE_FACES, Level, TextureFormat};
 
 mod pixel_format;
 
@@ -95,7 +95,7 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, Im
     if cube && width != height {
         return Err(damaged(format!("faces of a cube map are square, and it is {width} x {height}")));
     }
-    let most = most_levels(width, height);
+    let most = Level::most(width, height);
     if levels > most {
         return Err(damaged(format!("it claims {levels} levels, and {width} x {height} texels have {most} at most")));
     }
@@ -120,11 +120,6 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, Im
         Rows::Padded => texels::from_bytes(&without_padding(&header, texels), format),
     };
     Ok(Dds { cube, format, width, height, levels, words, palette })
-}
-
-/// The most levels that a texture of these sides has: down to 1 x 1.
-pub fn most_levels(width: u32, height: u32) -> u32 {
-    width.max(height).max(1).ilog2() + 1
 }
 
 /// Reads the header, and refuses what the model lacks.

@@ -310,7 +310,7 @@ source! {
         v14: Attribute,
         v15: Attribute,
     }
-    struct Viewport { x: f32, y: f32, width: f32, height: f32, near: f32, far: f32 }
+    struct Viewport { x: f32, y: f32, width: f32, height: f32, near: f32, far: f32, depth_clamp: bool }
     struct Grid { columns: u32, rows: u32, size: Numbers, repeat: Numbers }
     struct Sphere { slices: u32, stacks: u32, radius: f32, repeat: Numbers }
     struct Torus { slices: u32, sides: u32, radius: f32, tube: f32, repeat: Numbers }

@@ -28,8 +28,8 @@ pub use policy::{
     Policies, Policy, PolicyError, RegisterFloor, SumRounding,
 };
 pub use primitive::{
-    Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology, Vertex,
-    VertexColor, VertexProgram, Viewport,
+    ClipDepth, Cull, Fog, FogFunction, FogMode, FrontFace, Positions, ProvokingVertex, Rectangle, ShadeModel, Topology,
+    Vertex, VertexColor, VertexProgram, Viewport,
 };
 pub use rop::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthBuffer, DepthFormat, DepthTest, SurfaceFormat,
@@ -70,10 +70,11 @@ impl Profile {
     }
 }
 
-/// A checked scene: render targets, textures, and draws in order.
+/// A scene: render targets, textures, and draws in order.
 ///
-/// Every index is in range and every combination is legal for the profile; positions within the limits of RAS-0 are
-/// established by [`Plan::compile`](crate::plan::Plan::compile).
+/// Every index is in range, every size within the [limits](crate::limits::Limits) and every combination legal for the profile; positions
+/// are within the limits of RAS-0. [`Plan::compile`](crate::plan::Plan::compile) refuses a scene of which that is not so, wherever
+/// it comes from. Columns of [`Vertices`] cannot be of different lengths.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
     /// The chip.

@@ -58,12 +58,22 @@ named! {
     }
 }
 
+named! {
+    /// Depths of clip space before the division by w.
+    pub enum ClipDepth {
+        /// -w to w, as of OpenGL's projections.
+        MinusOneToOne,
+        /// 0 to w, as of Direct3D's.
+        ZeroToOne,
+    }
+}
+
 /// How [`Vertex::position`] is to be read.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Positions {
     /// Window x, y in pixels (origin top left, y down), depth 0..1, and w.
     Window,
-    /// Clip-space x, y, z, w: divided by w and mapped by the viewport in f32 (RAS-0), clipped at w = 2^-20.
+    /// Clip-space x, y, z, w: clipped (RAS-6), divided by w and mapped by the viewport in f32 (RAS-0).
     Clip(Viewport),
 }
 
@@ -83,6 +93,10 @@ pub struct Viewport {
     pub near: f32,
     /// Depth of ndc.z = 1.
     pub far: f32,
+    /// Where the near plane lies (RAS-6). The mapping is the one above in any case.
+    pub clip_depth: ClipDepth,
+    /// Nothing is clipped at the near and the far plane: depths of vertices are limited to 0..1 instead (RAS-6).
+    pub depth_clamp: bool,
 }
 
 /// A vertex colour as it was given.

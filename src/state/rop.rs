@@ -150,7 +150,26 @@ named! {
     }
 }
 
+impl BlendEquation {
+    /// Whether only nv2a has it.
+    pub fn is_nv2a_only(self) -> bool {
+        matches!(self, BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract)
+    }
+}
+
 impl SurfaceFormat {
+    /// Whether only nv2a has it.
+    pub fn is_nv2a_only(self) -> bool {
+        matches!(
+            self,
+            SurfaceFormat::X1R5G5B5Z
+                | SurfaceFormat::X1R5G5B5O
+                | SurfaceFormat::X1A7R8G8B8Z
+                | SurfaceFormat::X1A7R8G8B8O
+                | SurfaceFormat::G8B8
+        )
+    }
+
     /// Bytes of one pixel.
     pub fn bytes(self) -> u32 {
         match self {

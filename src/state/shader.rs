@@ -3,7 +3,7 @@
 //! On nv10, and on nv2a without a texture shader, every bound unit is [`ShaderOperation::Sample`] and every unbound one
 //! [`ShaderOperation::None`].
 
-use super::named;
+use super::{Named, TEXTURE_UNITS, TextureKind, named};
 
 named! {
     /// How a byte of a fetched colour becomes a number for a dot product (TSH-1 to TSH-3).
@@ -108,6 +108,18 @@ impl ShaderOperation {
         )
     }
 
+    /// The kinds of texture that it samples; of one that samples nothing they say nothing.
+    pub fn kinds(&self) -> &'static [TextureKind] {
+        match self {
+            ShaderOperation::BumpEnvironment { .. }
+            | ShaderOperation::DependentAlphaRed
+            | ShaderOperation::DependentGreenBlue
+            | ShaderOperation::DotProduct2D => &[TextureKind::TwoDimensional, TextureKind::Rectangle],
+            ShaderOperation::Sample => TextureKind::ALL,
+            _ => &[TextureKind::Cube],
+        }
+    }
+
     /// Whether it takes a dot product.
     pub fn is_dot(&self) -> bool {
         matches!(
@@ -144,5 +156,44 @@ impl ShaderStage {
             previous: index.saturating_sub(1),
             mapping: DotMapping::ZeroToOne,
         }
+    }
+
+    /// TSH-10: why the operation of stage `index` may not stand where it does: where it belongs. `None`: it may.
+    pub fn misplaced(stages: &[ShaderStage; TEXTURE_UNITS], index: usize) -> Option<&'static str> {
+        use ShaderOperation as Op;
+        let at = |n: usize| stages.get(n).map_or(Op::None, |stage| stage.operation);
+        let before = |back: usize| index.checked_sub(back).map_or(Op::None, at);
+        let pad = |operation| matches!(operation, Op::DotProduct);
+        let two_pads = pad(before(2)) && pad(before(1));
+        match at(index) {
+            Op::None | Op::Sample | Op::PassThrough | Op::CullFragment { .. } => None,
+            Op::BumpEnvironment { .. } => (index == 0
+                || index == 1 && matches!(before(1), Op::None | Op::CullFragment { .. }))
+            .then_some("it moves coordinates by the colour of an earlier unit: put it after a stage that has one, at stage 1, 2 or 3"),
+            Op::DependentAlphaRed | Op::DependentGreenBlue => {
+                (index == 0).then_some("it reads the colour of an earlier unit: put it at stage 1, 2 or 3")
+            }
+            Op::DotProduct => (index == 0 || index == 3)
+                .then_some("it reads an earlier unit and leaves its result to the next stage: put it at stage 1 or 2"),
+            Op::DotProduct2D => {
+                (!pad(before(1))).then_some("put `DotProduct` at the stage before it, which makes it stage 2 or 3")
+            }
+            Op::DotProductCube => (!two_pads).then_some("put `DotProduct` at stages 1 and 2, and this at stage 3"),
+            Op::DotReflectDiffuse => {
+                let next = matches!(at(index + 1), Op::DotReflectSpecular | Op::DotReflectConstantEye { .. });
+                (!pad(before(1)) || index == 3 || !next)
+                    .then_some("put `DotProduct` at stage 1, this at stage 2, and `DotReflectSpecular` or `DotReflectConstantEye` at stage 3")
+            }
+            Op::DotReflectSpecular | Op::DotReflectConstantEye { .. } => {
+                let second = matches!(before(1), Op::DotProduct | Op::DotReflectDiffuse);
+                (!pad(before(2)) || !second)
+                    .then_some("put `DotProduct` at stage 1, `DotProduct` or `DotReflectDiffuse` at stage 2, and this at stage 3")
+            }
+        }
+    }
+
+    /// TSH-10: whether stage `index` reads unit 2 although its dot product is needed at stage 2 already.
+    pub fn reads_too_late(stages: &[ShaderStage; TEXTURE_UNITS], index: usize) -> bool {
+        index == 3 && matches!(stages[2].operation, ShaderOperation::DotReflectDiffuse) && stages[3].previous == 2
     }
 }

@@ -1,6 +1,6 @@
 //! Texture images and the units that sample them.
 
-use super::named;
+use super::{Profile, named};
 use std::sync::Arc;
 
 /// Number of texture units in the state. NV10 has the first two.
@@ -21,6 +21,32 @@ named! {
         Cube,
         /// Two coordinates in texels; any sides, one level (the chip's linear layouts).
         Rectangle,
+    }
+}
+
+impl TextureKind {
+    /// The longest side that the chip takes.
+    pub fn largest_side(self, format: TextureFormat, profile: Profile) -> u32 {
+        let large = matches!(
+            format,
+            TextureFormat::A8R8G8B8
+                | TextureFormat::X8R8G8B8
+                | TextureFormat::P8
+                | TextureFormat::Dxt3
+                | TextureFormat::Dxt5
+        );
+        match (profile, self) {
+            (Profile::Nv2a, _) => 4096,
+            (Profile::Nv10, TextureKind::TwoDimensional) => 2048,
+            (Profile::Nv10, TextureKind::Rectangle) => 2047,
+            (Profile::Nv10, TextureKind::Cube) => {
+                if large {
+                    512
+                } else {
+                    1024
+                }
+            }
+        }
     }
 }
 
@@ -118,6 +144,17 @@ impl TextureFormat {
                 | TextureFormat::R16B16
                 | TextureFormat::Y16
         )
+    }
+
+    /// Whether the chip has a linear layout of it, which rectangle textures need.
+    pub fn is_linear(self, profile: Profile) -> bool {
+        match profile {
+            Profile::Nv2a => self != TextureFormat::P8 && !self.is_compressed(),
+            Profile::Nv10 => matches!(
+                self,
+                TextureFormat::A1R5G5B5 | TextureFormat::R5G6B5 | TextureFormat::A8R8G8B8 | TextureFormat::I8
+            ),
+        }
     }
 
     /// Words that a level of so many texels takes: one a texel, whatever its size; two (DXT1) or four a block.
@@ -220,6 +257,11 @@ pub struct Level {
 }
 
 impl Level {
+    /// How many levels a texture of these sides can have: down to 1 x 1.
+    pub fn most(width: u32, height: u32) -> u32 {
+        width.max(height).max(1).ilog2() + 1
+    }
+
     /// All levels of one face, level 0 first, and the words of one face.
     pub fn chain(format: TextureFormat, width: u32, height: u32, levels: u32, border: bool) -> (Vec<Level>, usize) {
         let beyond = if border { 2 * BORDER_TEXELS } else { 0 };
@@ -243,6 +285,11 @@ pub struct Palette {
     pub name: String,
     /// 32, 64, 128 or 256 words, A8R8G8B8.
     pub entries: Arc<[u32]>,
+}
+
+impl Palette {
+    /// How many entries there can be; nv10 has the longest only.
+    pub const LENGTHS: [usize; 4] = [32, 64, 128, 256];
 }
 
 /// A texture unit's state.

@@ -5,8 +5,11 @@
 
 #[path = "random_texture.rs"]
 mod texture;
+#[path = "random_wide.rs"]
+pub mod wide;
 
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::raster::project::ClipPlane;
 use ninebit::state::*;
 use ninebit::vertex::fog::passed;
 use proptest::prelude::*;
@@ -25,13 +28,19 @@ const VERTEX: usize = 48;
 const STAGE: usize = 64;
 const UNITS: usize = 160;
 
-/// Valid scenes within the limits of RAS-0.
+/// Valid scenes whose vertices lie in the domain of RAS-0: nothing is cut at the guard band.
 pub fn scene() -> impl Strategy<Value = Scene> {
-    Tape.prop_map(|tape| build(&tape)).prop_filter("RAS-0", |s| Plan::compile(s, &PlanOptions::default()).is_ok())
+    const SIDES: u8 = ClipPlane::Left.bit() | ClipPlane::Right.bit() | ClipPlane::Top.bit() | ClipPlane::Bottom.bit();
+    let fits = |scene: &Scene| {
+        let plan = Plan::compile(scene, &PlanOptions::default());
+        plan.is_ok_and(|plan| plan.draws.iter().all(|draw| draw.assembly.clipping.planes & SIDES == 0))
+    };
+    Tape(SHARED + 4 * DRAW).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits)
 }
 
+/// A tape of so many words.
 #[derive(Debug)]
-struct Tape;
+struct Tape(usize);
 
 #[derive(Debug)]
 struct TapeTree {
@@ -46,7 +55,7 @@ impl Strategy for Tape {
     type Value = Vec<u32>;
 
     fn new_tree(&self, runner: &mut TestRunner) -> NewTree<Self> {
-        let tape: Vec<u32> = (0..SHARED + 4 * DRAW).map(|_| runner.rng().next_u32()).collect();
+        let tape: Vec<u32> = (0..self.0).map(|_| runner.rng().next_u32()).collect();
         Ok(TapeTree { stretch: DRAW, tape, at: 0, blanked: None })
     }
 }
@@ -445,10 +454,11 @@ fn w(c: &mut Choices<'_>, style: u32) -> f32 {
 
 fn port(c: &mut Choices<'_>, [width, height]: [f32; 2]) -> Viewport {
     let (near, far) = c.pick(&[(0.0, 1.0), (1.0, 0.0), (0.25, 0.75)]);
+    let (clip_depth, depth_clamp) = (ClipDepth::MinusOneToOne, true);
     match c.below(3) {
-        0 => Viewport { x: 0.0, y: 0.0, width, height, near, far },
-        1 => Viewport { x: 0.531_25, y: 0.531_25, width, height, near, far },
-        _ => Viewport { x: -2.0, y: 3.0, width: 32.0, height: 16.0, near, far },
+        0 => Viewport { x: 0.0, y: 0.0, width, height, near, far, clip_depth, depth_clamp },
+        1 => Viewport { x: 0.531_25, y: 0.531_25, width, height, near, far, clip_depth, depth_clamp },
+        _ => Viewport { x: -2.0, y: 3.0, width: 32.0, height: 16.0, near, far, clip_depth, depth_clamp },
     }
 }
 

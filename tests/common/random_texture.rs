@@ -204,7 +204,7 @@ fn repair(stages: &mut [ShaderStage; TEXTURE_UNITS], bound: &[Option<TextureUnit
     }
 }
 
-fn unit(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize]) -> TextureUnit {
+pub(super) fn unit(c: &mut Choices<'_>, given: &Given<'_>, usable: &[usize]) -> TextureUnit {
     let nv2a = given.profile == Profile::Nv2a;
     let texture = c.pick(usable);
     let modes: &[AddressMode] = match (given.profile, given.textures[texture].kind) {

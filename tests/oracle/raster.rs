@@ -2,10 +2,11 @@
 
 use super::real::{align, color_byte, floor_div, shift, split};
 use ninebit::state::{
-    Cull, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel, Topology, Vertex, VertexColor, Viewport,
+    ClipDepth, Cull, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel, Topology, Vertex, VertexColor,
+    Viewport,
 };
 
-/// RAS-0: vertices nearer than this are clipped away.
+/// RAS-6: vertices nearer than this are clipped away.
 const NEAREST_W: f32 = 1.0 / 1_048_576.0;
 
 /// RAS-4 and RAS-5: triples of positions in the index list, and the position of the provoking vertex.
@@ -70,11 +71,43 @@ fn mix_color(a: VertexColor, b: VertexColor, t: f32) -> VertexColor {
     VertexColor::Floats(std::array::from_fn(|k| mix(p[k], q[k], t)))
 }
 
-/// RAS-0: the point where the edge from the inside vertex `a` to the outside vertex `b` meets the nearest w.
-fn crossing(a: &Vertex, b: &Vertex) -> Vertex {
-    let t = (a.position[3] - NEAREST_W) / (a.position[3] - b.position[3]);
+/// RAS-6: how far the guard band reaches from the window's origin.
+const BAND: f32 = 4095.9375;
+
+/// RAS-6: the signed distance of a position from plane 0 to 6: near, far, w, left, right, top, bottom.
+fn distance(plane: usize, [x, y, z, w]: [f32; 4], port: &Viewport) -> f32 {
+    let (h, g) = (port.width / 2.0, port.height / 2.0);
+    let (c, d) = (port.x + h, port.y + g);
+    match plane {
+        0 if port.clip_depth == ClipDepth::ZeroToOne => z,
+        0 => w + z,
+        1 => w - z,
+        2 => w - NEAREST_W,
+        3 => x * h + w * (BAND + c),
+        4 => w * (BAND - c) - x * h,
+        5 => w * (BAND + d) - y * g,
+        _ => y * g + w * (BAND - d),
+    }
+}
+
+/// RAS-7: the vertex where the edge from the inside vertex `a` to the outside vertex `b` meets a plane.
+fn crossing(plane: usize, a: &Vertex, b: &Vertex, port: &Viewport) -> Vertex {
+    let (before, behind) = (distance(plane, a.position, port), distance(plane, b.position, port));
+    let t = if plane == 2 { before / (a.position[3] - b.position[3]) } else { before / (before - behind) };
     let mut position: [f32; 4] = std::array::from_fn(|k| mix(a.position[k], b.position[k], t));
-    position[3] = NEAREST_W;
+    let (h, g) = (port.width / 2.0, port.height / 2.0);
+    let (c, d) = (port.x + h, port.y + g);
+    let w = position[3];
+    match plane {
+        0 if port.clip_depth == ClipDepth::ZeroToOne => position[2] = 0.0,
+        0 => position[2] = -w,
+        1 => position[2] = w,
+        2 => position[3] = NEAREST_W,
+        3 => position[0] = -(w * (BAND + c)) / h,
+        4 => position[0] = (w * (BAND - c)) / h,
+        5 => position[1] = (w * (BAND + d)) / g,
+        _ => position[1] = -(w * (BAND - d)) / g,
+    }
     Vertex {
         position,
         diffuse: mix_color(a.diffuse, b.diffuse, t),
@@ -87,21 +120,37 @@ fn crossing(a: &Vertex, b: &Vertex) -> Vertex {
     }
 }
 
-/// RAS-0: the polygon that remains in front of the nearest w.
-fn clip_near(triangle: [Vertex; 3]) -> Vec<Vertex> {
-    let inside = triangle.map(|v| v.position[3] >= NEAREST_W);
-    let mut polygon = Vec::new();
-    for k in 0..3 {
-        let next = (k + 1) % 3;
-        let (from, to) = (&triangle[k], &triangle[next]);
-        match (inside[k], inside[next]) {
-            (true, true) => polygon.push(*from),
-            (true, false) => {
-                polygon.push(*from);
-                polygon.push(crossing(from, to));
-            }
-            (false, true) => polygon.push(crossing(to, from)),
-            (false, false) => {}
+/// RAS-6: what of a polygon lies on the inner side of a plane.
+fn half(plane: usize, polygon: &[Vertex], port: &Viewport) -> Vec<Vertex> {
+    let outside: Vec<bool> = polygon.iter().map(|v| distance(plane, v.position, port) < 0.0).collect();
+    let mut kept = Vec::new();
+    for this in 0..polygon.len() {
+        let next = (this + 1) % polygon.len();
+        if !outside[this] {
+            kept.push(polygon[this]);
+        }
+        if outside[this] != outside[next] {
+            let (inner, outer) = if outside[next] { (this, next) } else { (next, this) };
+            kept.push(crossing(plane, &polygon[inner], &polygon[outer], port));
+        }
+    }
+    kept
+}
+
+/// RAS-6: what is left of a triangle, in clip space.
+fn clipped(triangle: [Vertex; 3], port: &Viewport) -> Vec<Vertex> {
+    let mut polygon = triangle.to_vec();
+    for plane in if port.depth_clamp { 2..3 } else { 0..3 } {
+        polygon = half(plane, &polygon, port);
+    }
+    let reaches_out = |v: &Vertex| {
+        let [x, y, ..] = to_window(*v, port).position;
+        // RAS-1 cuts toward zero: 65535 sixteenths are the last.
+        x.abs() >= 4096.0 || y.abs() >= 4096.0
+    };
+    if polygon.iter().any(reaches_out) {
+        for plane in 3..7 {
+            polygon = half(plane, &polygon, port);
         }
     }
     polygon
@@ -133,7 +182,7 @@ pub fn triangles(draw: &Draw) -> Vec<[Vertex; 3]> {
         match &draw.positions {
             Positions::Window => out.push(triangle),
             Positions::Clip(port) => {
-                let polygon: Vec<Vertex> = clip_near(triangle).into_iter().map(|v| to_window(v, port)).collect();
+                let polygon: Vec<Vertex> = clipped(triangle, port).into_iter().map(|v| to_window(v, port)).collect();
                 for i in 1..polygon.len().saturating_sub(1) {
                     out.push([polygon[0], polygon[i], polygon[i + 1]]);
                 }

@@ -103,7 +103,7 @@ fn refused(scene: &Scene) {
             }
         });
         let planned = Plan::compile(&scene, &PlanOptions::default());
-        planned.err().into_iter().flatten().map(|error| error.rule).collect()
+        planned.err().into_iter().flatten().filter_map(|error| error.rule).collect()
     };
     assert!(rules(65536.0, 1.0).is_empty());
     for texels in [65537, 1 << 17, 1 << 18, 1 << 19, 1 << 20] {

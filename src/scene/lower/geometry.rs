@@ -9,7 +9,7 @@ use super::target::Targets;
 use super::vertex::VertexData;
 use super::*;
 use crate::scene::mesh::Mesh;
-use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
+use crate::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use crate::vertex::fog::{self as vertex_fog, FogSource};
 use crate::vertex::texgen::CoordinateSet;
 use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
@@ -300,7 +300,17 @@ pub(super) fn viewport<'a>(
     target: usize,
 ) -> Viewport {
     let (width, height) = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
-    let mut viewport = Viewport { x: 0.0, y: 0.0, width: width as f32, height: height as f32, near: 0.0, far: 1.0 };
+    let (width, height) = (width as f32, height as f32);
+    let mut viewport = Viewport {
+        x: 0.0,
+        y: 0.0,
+        width,
+        height,
+        near: 0.0,
+        far: 1.0,
+        clip_depth: ClipDepth::MinusOneToOne,
+        depth_clamp: false,
+    };
     let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return viewport };
     for (field, slot, positive) in [
         (&fields.x, &mut viewport.x, false),
@@ -320,6 +330,7 @@ pub(super) fn viewport<'a>(
         }
         *slot = value;
     }
+    viewport.depth_clamp = reader.or(&fields.depth_clamp, false);
     for (field, value) in [(&fields.near, viewport.near), (&fields.far, viewport.far)] {
         if let Some(raw) = field
             && !(0.0..=1.0).contains(&value)

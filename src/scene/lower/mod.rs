@@ -188,20 +188,22 @@ fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Range
 
 /// Plans the scene: only the plan sees positions and coordinates outside the rasteriser's domain.
 fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> Option<Plan> {
-    let errors = match Plan::compile(scene, &PlanOptions::default()) {
+    let errors = match Plan::compile_within(scene, &PlanOptions::default(), reader.limits) {
         Ok(plan) => return Some(plan),
         Err(errors) => errors,
     };
     for error in errors {
-        let span = spans.get(error.draw).map(|draw| match error.vertex {
+        let span = error.draw.and_then(|draw| spans.get(draw)).map(|draw| match error.vertex {
             Some(vertex) => draw.vertex(vertex),
             None => draw.draw.clone(),
         });
-        let label = match (error.vertex, scene.draws.get(error.draw)) {
+        let label = match (error.vertex, error.draw.and_then(|draw| scene.draws.get(draw))) {
             (Some(vertex), Some(draw)) => format!("vertex {vertex} of `{}`", shorten(&draw.name)),
             _ => "this draw".to_owned(),
         };
-        reader.push(Diagnostic::error("NB0322", span, error.message).label(label).rule(error.rule).help(error.help));
+        let mut finding = Diagnostic::error("NB0322", span, error.message).label(label).help(error.help);
+        finding.rule = error.rule;
+        reader.push(finding);
     }
     None
 }

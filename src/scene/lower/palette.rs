@@ -85,7 +85,7 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
         }
     }
     let place = reader.span(raw);
-    if ![32, 64, 128, 256].contains(&words.len()) {
+    if !Palette::LENGTHS.contains(&words.len()) {
         let message = format!("a palette cannot have {} entries", words.len());
         reader.push(Diagnostic::error("NB0233", place, message).label("another number").rule("TEX-1").help(HELP));
         return None;

@@ -3,7 +3,6 @@
 use super::api_program::{ApiProgram, Around};
 use super::names::Names;
 use super::program_text::ProgramText;
-use super::shader::kinds;
 use super::texture::Textures;
 use super::unit::Units;
 use super::*;
@@ -182,7 +181,7 @@ fn objection(units: &Units, textures: &Textures, index: usize, using: &UnitUse, 
         return Some(error.help(format!("give the draw `textures: [...]` with an entry for unit {index}")));
     };
     let texture = textures.list.get(unit.texture)?;
-    let fits = kinds(&using.operation);
+    let fits = using.operation.kinds();
     (!fits.contains(&texture.kind)).then(|| {
         let names: Vec<&str> = fits.iter().map(|kind| kind.name()).collect();
         let message = format!("this does not sample a texture of kind {}, which unit {index} has", texture.kind.name());

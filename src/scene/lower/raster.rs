@@ -4,17 +4,16 @@ use super::names::Names;
 use super::target::Targets;
 use super::*;
 use crate::number::convert::constant;
+use crate::rop::surface;
 use crate::scene::raw::{Numbers, Tuple};
-use crate::state::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle, SurfaceFormat,
-};
+use crate::state::{AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle};
 
 /// Reads a blend function.
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
     let fields = reader.read(&raw.as_other::<source::Blend<'a>>())?;
     let equation = reader.name_or(&fields.equation, BlendEquation::Add);
     if let Some(raw) = &fields.equation
-        && matches!(equation, BlendEquation::SignedAdd | BlendEquation::SignedReverseSubtract)
+        && equation.is_nv2a_only()
         && reader.profile == Profile::Nv10
     {
         reader.push(target::only_nv2a("NB0315", reader.span(raw), "this blend equation", "ROP-3"));
@@ -56,7 +55,7 @@ pub(super) fn operations<'a>(
     }
     if let Some(raw) = &fields.blend {
         draw.blend = names.blend(reader, raw);
-        if matches!(target.format, SurfaceFormat::B8 | SurfaceFormat::G8B8) {
+        if !surface::blends(target.format) {
             let message = format!("surface format {:?} cannot be blended", target.format);
             reader.push(
                 Diagnostic::error("NB0316", reader.span(raw), message)

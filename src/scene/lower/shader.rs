@@ -3,7 +3,7 @@
 use super::texture::Textures;
 use super::unit::Units;
 use super::*;
-use crate::state::{DotMapping, Named, ShaderOperation, ShaderStage, TEXTURE_UNITS, TextureKind};
+use crate::state::{DotMapping, Named, ShaderOperation, ShaderStage, TEXTURE_UNITS};
 
 /// Operations as they are written; the last three are refused by name.
 const OPERATIONS: &[&str] = &[
@@ -212,37 +212,8 @@ fn previous(reader: &mut Reader<'_>, shader: &mut [ShaderStage; TEXTURE_UNITS], 
 
 /// TSH-10: which operation may follow which. Says whether this one may stand where it does.
 fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: usize, places: &Places) -> bool {
-    use ShaderOperation as Op;
-    let at = |n: usize| shader.get(n).map_or(Op::None, |stage| stage.operation);
-    let before = |back: usize| index.checked_sub(back).map_or(Op::None, at);
-    let pad = |operation| matches!(operation, Op::DotProduct);
-    let two_pads = pad(before(2)) && pad(before(1));
     let operation = shader[index].operation;
-    let wanted = match operation {
-        Op::None | Op::Sample | Op::PassThrough | Op::CullFragment { .. } => None,
-        Op::BumpEnvironment { .. } => (index == 0
-            || index == 1 && matches!(before(1), Op::None | Op::CullFragment { .. }))
-        .then_some("it moves coordinates by the colour of an earlier unit: put it after a stage that has one, at stage 1, 2 or 3"),
-        Op::DependentAlphaRed | Op::DependentGreenBlue => {
-            (index == 0).then_some("it reads the colour of an earlier unit: put it at stage 1, 2 or 3")
-        }
-        Op::DotProduct => (index == 0 || index == 3)
-            .then_some("it reads an earlier unit and leaves its result to the next stage: put it at stage 1 or 2"),
-        Op::DotProduct2D => {
-            (!pad(before(1))).then_some("put `DotProduct` at the stage before it, which makes it stage 2 or 3")
-        }
-        Op::DotProductCube => (!two_pads).then_some("put `DotProduct` at stages 1 and 2, and this at stage 3"),
-        Op::DotReflectDiffuse => {
-            let next = matches!(at(index + 1), Op::DotReflectSpecular | Op::DotReflectConstantEye { .. });
-            (!pad(before(1)) || index == 3 || !next)
-                .then_some("put `DotProduct` at stage 1, this at stage 2, and `DotReflectSpecular` or `DotReflectConstantEye` at stage 3")
-        }
-        Op::DotReflectSpecular | Op::DotReflectConstantEye { .. } => {
-            let second = matches!(before(1), Op::DotProduct | Op::DotReflectDiffuse);
-            (!pad(before(2)) || !second)
-                .then_some("put `DotProduct` at stage 1, `DotProduct` or `DotReflectDiffuse` at stage 2, and this at stage 3")
-        }
-    };
+    let wanted = ShaderStage::misplaced(shader, index);
     if let Some(help) = wanted {
         let message = format!("{} cannot stand at stage {index} here", operation.name());
         reader.push(
@@ -251,8 +222,7 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
                 .rule("TSH-10")
                 .help(help),
         );
-    } else if index == 3 && matches!(before(1), Op::DotReflectDiffuse) && shader[3].previous == 2 {
-        // The third dot product is needed at stage 2 already.
+    } else if ShaderStage::reads_too_late(shader, index) {
         let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
         let place = places.previous.clone().unwrap_or_else(|| places.stage.clone());
         reader.push(
@@ -265,18 +235,6 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
     wanted.is_none()
 }
 
-/// The kinds of texture that an operation samples.
-pub(super) fn kinds(operation: &ShaderOperation) -> &'static [TextureKind] {
-    use ShaderOperation as Op;
-    match operation {
-        Op::BumpEnvironment { .. } | Op::DependentAlphaRed | Op::DependentGreenBlue | Op::DotProduct2D => {
-            &[TextureKind::TwoDimensional, TextureKind::Rectangle]
-        }
-        Op::Sample => TextureKind::ALL,
-        _ => &[TextureKind::Cube],
-    }
-}
-
 /// Whether the texture that a stage samples is there, and of a kind that fits.
 fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: usize, places: &Places) {
     let operation = units.shader[index].operation;
@@ -284,7 +242,7 @@ fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: u
         return;
     }
     let name = operation.name();
-    let fits = kinds(&operation);
+    let fits = operation.kinds();
     let Some(unit) = units.bound[index] else {
         if units.places[index].is_empty() {
             reader.push(

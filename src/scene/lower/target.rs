@@ -145,15 +145,7 @@ fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Targe
     if let Some(raw) = &fields.format
         && let Some(format) = reader.name(raw)
     {
-        let nv2a = matches!(
-            format,
-            SurfaceFormat::X1R5G5B5Z
-                | SurfaceFormat::X1R5G5B5O
-                | SurfaceFormat::X1A7R8G8B8Z
-                | SurfaceFormat::X1A7R8G8B8O
-                | SurfaceFormat::G8B8
-        );
-        if nv2a && reader.profile == Profile::Nv10 {
+        if format.is_nv2a_only() && reader.profile == Profile::Nv10 {
             let place = reader.span(raw);
             reader.push(only_nv2a("NB0314", place, "this surface format", "ROP-5"));
         }

@@ -60,28 +60,12 @@ pub(super) fn sides(
 
 /// The largest side of a kind of texture, and what messages call it.
 fn largest(reader: &Reader<'_>, kind: TextureKind, format: TextureFormat) -> (u32, &'static str) {
-    let any = largest_side(reader);
-    let nv10 = reader.profile == Profile::Nv10;
-    match kind {
-        TextureKind::TwoDimensional => (any, "a texture"),
-        TextureKind::Rectangle => (if nv10 { any.min(2047) } else { any }, "a rectangle texture"),
-        TextureKind::Cube => {
-            let large = matches!(
-                format,
-                TextureFormat::A8R8G8B8
-                    | TextureFormat::X8R8G8B8
-                    | TextureFormat::P8
-                    | TextureFormat::Dxt3
-                    | TextureFormat::Dxt5
-            );
-            let chip = match (nv10, large) {
-                (true, true) => 512,
-                (true, false) => 1024,
-                (false, _) => any,
-            };
-            (any.min(chip), "a face of a cube map")
-        }
-    }
+    let what = match kind {
+        TextureKind::TwoDimensional => "a texture",
+        TextureKind::Rectangle => "a rectangle texture",
+        TextureKind::Cube => "a face of a cube map",
+    };
+    (reader.limits.texture_side.min(kind.largest_side(format, reader.profile)), what)
 }
 
 /// The finding that a side is too long.
@@ -108,17 +92,15 @@ fn rectangle(
     place: Range<usize>,
 ) -> Option<()> {
     let nv10 = reader.profile == Profile::Nv10;
-    let known =
-        matches!(format, TextureFormat::A1R5G5B5 | TextureFormat::R5G6B5 | TextureFormat::A8R8G8B8 | TextureFormat::I8);
     let refuse = |message: String, help: &str| {
         Diagnostic::error("NB0330", place.clone(), message)
             .label("not as a rectangle")
             .rule("TEX-7")
             .help(help.to_owned())
     };
-    let finding = if format == TextureFormat::P8 || format.is_compressed() {
+    let finding = if !format.is_linear(Profile::Nv2a) {
         refuse(format!("a rectangle texture cannot be {}", format.name()), "use another format, or another kind")
-    } else if nv10 && !known {
+    } else if !format.is_linear(reader.profile) {
         let message = format!("a rectangle texture cannot be {} on Nv10", format.name());
         refuse(message, "use A8R8G8B8, R5G6B5, A1R5G5B5 or I8, or write `profile: Nv2a`")
     } else if nv10 && width % 2 == 1 {

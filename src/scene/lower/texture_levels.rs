@@ -2,9 +2,8 @@
 
 use super::texture_source::{Given, Request, Sources};
 use super::*;
-use crate::scene::dds::most_levels;
 use crate::scene::texels;
-use crate::state::{BORDER_TEXELS, Named, TextureKind};
+use crate::state::{BORDER_TEXELS, Level, Named, TextureKind};
 
 /// `levels` of a texture.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -46,7 +45,7 @@ pub(super) fn number(
     [width, height]: [u32; 2],
     place: Range<usize>,
 ) -> Option<u32> {
-    let most = most_levels(width, height);
+    let most = Level::most(width, height);
     match wanted {
         Wanted::Own => Some(1),
         Wanted::All => Some(most),
@@ -59,7 +58,7 @@ pub(super) fn number(
 }
 
 fn too_many(number: u32, width: u32, height: u32, place: Range<usize>) -> Diagnostic {
-    let most = most_levels(width, height);
+    let most = Level::most(width, height);
     let has = if most == 1 { "1 level".to_owned() } else { format!("{most} levels") };
     Diagnostic::error("NB0230", place, format!("a texture of {width} x {height} cannot have {number} levels"))
         .label(format!("{has} at most"))
@@ -144,7 +143,7 @@ pub(super) fn listed<'a>(
         return None;
     }
     let number = list.len() as u32 + 1;
-    if number > most_levels(inside[0], inside[1]) {
+    if number > Level::most(inside[0], inside[1]) {
         let place = reader.span(raw);
         reader.push(too_many(number, inside[0], inside[1], place));
         return None;

@@ -11,7 +11,7 @@ use super::target::Targets;
 use super::vertex::VertexData;
 use super::*;
 use crate::program::vertex_shader::{self, Written, print};
-use crate::state::{Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
+use crate::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use crate::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
 use inputs::{Given, Input};
 
@@ -71,6 +71,7 @@ fn clip_depth<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) 
 /// A viewport that maps depth 0 of normalised coordinates to `near`: it begins as far before that as it ends behind it.
 fn depth_from_zero(viewport: &mut Viewport) {
     viewport.near = 2.0 * viewport.near - viewport.far;
+    viewport.clip_depth = ClipDepth::ZeroToOne;
 }
 
 fn program<'a>(

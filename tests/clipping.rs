@@ -1,0 +1,156 @@
+//! RAS-6 and RAS-7 in whole scenes: what is cut off is missing, what is left is where it was, and what was cut is told of.
+use super::bench::Bench;
+use super::random_scene;
+use ninebit::engine::{RenderOptions, render, trace};
+use ninebit::frame::Frames;
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::raster::project::ClipPlane;
+use ninebit::scene;
+use ninebit::state::Positions;
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::TestRunner;
+use std::path::Path;
+
+/// A scene of one draw, white on black, 64 x 64.
+fn text(vertices: &str) -> String {
+    format!(
+        "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 64, height: 64)], draws: [(name: \"it\", vertices: {vertices}, \
+         topology: Quads)])"
+    )
+}
+
+fn plan(text: &str) -> Plan {
+    scene::parse(text, Path::new("."), &Limits::default()).unwrap_or_else(|e| panic!("{e:?}")).plan
+}
+
+fn drawn(plan: &Plan) -> Frames {
+    render(plan, &RenderOptions::default())
+}
+
+/// How many pixels are white.
+fn white(plan: &Plan) -> usize {
+    drawn(plan).surfaces[0].words.iter().filter(|word| **word == 0xffff_ffff).count()
+}
+
+const VIEW: &str = "Frustum(left: -1, right: 1, bottom: -1, top: 1, near: 1, far: 10)";
+
+fn floor(matrix: &str, from: f32, to: f32) -> String {
+    text(&format!(
+        "Matrix(matrix: {matrix}, vertices: [(position: (-1000, -1, {from})), (position: (1000, -1, {from})), (position: (1000, -1, {to})), \
+         (position: (-1000, -1, {to}))])"
+    ))
+}
+
+#[test]
+fn a_floor_that_passes_the_viewer_reaches_from_near_to_far() {
+    // At z = -10 the floor is seen at y = -0.1, row 35.2: the rows below are its own, down to the last at z = -1.
+    let whole = plan(&floor(VIEW, 50.0, -500.0));
+    assert_eq!(white(&whole), 64 * (64 - 35));
+    let planes: Vec<ClipPlane> = ClipPlane::of(whole.draws[0].assembly.clipping.planes).collect();
+    assert_eq!(planes, [ClipPlane::Near, ClipPlane::Far, ClipPlane::Left, ClipPlane::Right]);
+    // What begins at the planes is the same picture.
+    assert_eq!(white(&plan(&floor(VIEW, -1.0, -10.0))), white(&whole));
+}
+
+#[test]
+fn what_lies_beyond_a_plane_is_not_drawn() {
+    let quad = |matrix: &str, z: f32| {
+        text(&format!(
+            "Matrix(matrix: {matrix}, vertices: [(position: (-9, -9, {z})), (position: (9, -9, {z})), (position: (9, 9, {z})), (position: \
+             (-9, 9, {z}))])"
+        ))
+    };
+    let ortho = "Orthographic(left: -1, right: 1, bottom: -1, top: 1, near: -2, far: 2)";
+    for (matrix, z, pixels) in [
+        (VIEW, -1.001, 4096),
+        (VIEW, -0.99, 0),
+        (VIEW, -9.99, 3325),
+        (VIEW, -10.01, 0),
+        (VIEW, 5.0, 0),
+        (ortho, 2.0, 4096),
+        (ortho, -2.0, 4096),
+        (ortho, 2.01, 0),
+        (ortho, -2.01, 0),
+    ] {
+        let plan = plan(&quad(matrix, z));
+        let got = white(&plan);
+        assert!(got.abs_diff(pixels) < 250 && (got == 0) == (pixels == 0), "{matrix} at {z}: {got}");
+        assert_eq!(plan.draws[0].assembly.clipping.removed, if pixels == 0 { 2 } else { 0 });
+    }
+    // Depths that are limited are drawn, as far as w is in front.
+    let clamped = quad(VIEW, -10.5).replace("vertices: [(", "viewport: (depth_clamp: true), vertices: [(");
+    assert!(white(&plan(&clamped)) > 3000);
+}
+
+#[test]
+fn flat_pieces_take_the_colour_of_their_triangle() {
+    // The provoking vertex, the last one, is red and lies behind the viewer.
+    let text = format!(
+        "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 64, height: 64)], draws: [(name: \"it\", shade_model: Flat, \
+         vertices: Matrix(matrix: {VIEW}, vertices: [(position: (-2, -1, -2), diffuse: (0, 255, 0)), (position: (2, -1, -2), diffuse: (0, 255, 0)), \
+         (position: (0, -1, 4), diffuse: (255, 0, 0))]))])"
+    );
+    let frames = drawn(&plan(&text));
+    let colours: std::collections::BTreeSet<u32> = frames.surfaces[0].words.iter().copied().collect();
+    assert_eq!(colours.into_iter().collect::<Vec<_>>(), [0xff00_0000, 0xffff_0000]);
+}
+
+#[test]
+fn traces_and_explanations_tell_what_was_cut() {
+    let bench = Bench::new();
+    bench.write("floor.ron", floor(VIEW, 50.0, -500.0)).write("far.ron", floor(VIEW, -2.0, -8.0).replace("1000", "2"));
+    let told = |arguments: &str| String::from_utf8(bench.run(arguments).data()).unwrap();
+    assert!(
+        told("trace floor.ron --pixel 32,60").contains(", cut off triangle 0 (RAS-6: near, far, left, right)"),
+        "{}",
+        told("trace floor.ron --pixel 32,60")
+    );
+    let document: serde_json::Value =
+        serde_json::from_str(&told("trace floor.ron --pixel 32,60 --format json")).unwrap();
+    assert_eq!(document["draws"][0]["clipped"]["triangle"], 0);
+    assert_eq!(document["draws"][0]["clipped"]["planes"][0], "near");
+    let explained = told("explain floor.ron");
+    assert!(explained.contains("clipping (RAS-6): 2 triangles: 0 removed and 2 cut into"), "{explained}");
+    let whole = told("trace far.ron --pixel 32,50 --format json");
+    assert!(whole.contains("\"triangle\"") && !whole.contains("clipped"), "{whole}");
+    assert!(!told("explain far.ron").contains("RAS-6"));
+}
+
+/// Random scenes with vertices around the viewer: pieces lie in the domain, keep their order, and every pixel of theirs can be traced.
+#[test]
+fn pieces_of_random_scenes_are_in_order() {
+    let strategy = random_scene::wide::scene();
+    let mut runner = TestRunner::deterministic();
+    let (mut pieces, mut planes) = (0, 0);
+    for _ in 0..600 {
+        let scene = strategy.new_tree(&mut runner).unwrap().current();
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        for (draw, planned) in scene.draws.iter().zip(&plan.draws) {
+            let clipping = &planned.assembly.clipping;
+            assert!(clipping.planes == 0 || matches!(draw.positions, Positions::Clip(_)));
+            assert!(clipping.pieces.windows(2).all(|pair| pair[0].number < pair[1].number && pair[0].of <= pair[1].of));
+            assert!(clipping.pieces.iter().all(|piece| piece.number < planned.assembly.triangles.len()));
+            assert!(clipping.cut <= clipping.pieces.len() && clipping.pieces.len() <= 8 * clipping.cut);
+            planes |= clipping.planes;
+            pieces += clipping.pieces.len();
+        }
+        trace(&plan, 0, (0, 0), None).unwrap();
+    }
+    assert!(pieces > 500 && planes == 0x7f, "{pieces} pieces, planes {planes:#x}");
+}
+
+#[test]
+fn the_corridor_is_cut_on_all_sides() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/clipping/corridor.ron");
+    let plan = scene::load(&path, &Limits::default()).unwrap().plan;
+    let planes = plan.draws.iter().fold(0, |set, draw| set | draw.assembly.clipping.planes);
+    for plane in [ClipPlane::Near, ClipPlane::Far] {
+        assert!(planes & plane.bit() != 0, "{plane:?}");
+    }
+    assert!(planes & !(ClipPlane::Near.bit() | ClipPlane::Far.bit() | ClipPlane::W.bit()) != 0, "no guard band");
+    // The viewer stands inside: every pixel is drawn, but for those that show the far end.
+    let clear = drawn(&Plan { draws: Vec::new(), ..plan.clone() }).surfaces[0].words[0];
+    let open = drawn(&plan).surfaces[0].words.iter().filter(|word| **word == clear).count();
+    assert!(open < 480 * 360 / 50, "{open}");
+}

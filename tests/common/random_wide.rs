@@ -1,0 +1,246 @@
+//! Wider random scenes: a scene of the first kind, whose draws then share what they have, leave the plain ranges, take programs of every
+//! language and pass the viewer. A change that the chip does not allow is left out.
+
+#[path = "random_front_end.rs"]
+mod front_end;
+
+use super::{Choices, DRAW, Given, SHARED, Tape, build, texture};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::*;
+use proptest::prelude::*;
+
+/// Words of tape beyond those of the first kind: for each draw, and for the rest.
+const WIDER_DRAW: usize = 640;
+const WIDER: usize = 256 + 4 * WIDER_DRAW;
+/// Words of tape of a scene of the first kind.
+const FIRST: usize = SHARED + 4 * DRAW;
+
+/// Valid scenes, mostly unlike those that [`scene`](super::scene) gives.
+pub fn scene() -> impl Strategy<Value = Scene> {
+    Tape(FIRST + WIDER).prop_map(|tape| widened(&tape)).prop_filter("RAS-0", legal)
+}
+
+fn legal(scene: &Scene) -> bool {
+    Plan::compile(scene, &PlanOptions::default()).is_ok()
+}
+
+/// The scene of a tape.
+fn widened(tape: &[u32]) -> Scene {
+    let (first, rest) = tape.split_at(FIRST.min(tape.len()));
+    let mut scene = build(first);
+    let mut tape = Choices { tape: rest };
+    let mut shared = tape.part(256);
+    let mut c = shared.part(128);
+    for texture in 0..scene.textures.len() {
+        let c = &mut c.part(8);
+        attempt(&mut scene, |scene| texture_format(c, &mut scene.textures[texture]));
+    }
+    for target in 0..scene.targets.len() {
+        let c = &mut shared.part(8);
+        attempt(&mut scene, |scene| {
+            if c.once_in(3) {
+                scene.targets[target].format = c.any();
+            }
+        });
+    }
+    for index in 0..scene.draws.len() {
+        let mut c = tape.part(WIDER_DRAW);
+        for change in CHANGES {
+            let mut c = c.part(WIDER_DRAW / CHANGES.len());
+            attempt(&mut scene, |scene| change(&mut c, scene, index));
+        }
+    }
+    scene
+}
+
+/// Makes a change if what comes out is a legal scene, or if it was none before.
+fn attempt(scene: &mut Scene, change: impl FnOnce(&mut Scene)) {
+    let before = scene.clone();
+    change(scene);
+    if *scene != before && !legal(scene) && legal(&before) {
+        *scene = before;
+    }
+}
+
+type Change = fn(&mut Choices<'_>, &mut Scene, usize);
+
+/// What may happen to a draw, in order.
+const CHANGES: [Change; 8] =
+    [share_mesh, share_texture, front_end::change, share_program, view, extreme_w, extreme_coordinates, lods];
+
+/// Another reading of the same words.
+fn texture_format(c: &mut Choices<'_>, texture: &mut Texture) {
+    if c.once_in(2) {
+        let bytes = texture.format.bytes();
+        let fitting: Vec<TextureFormat> = TextureFormat::ALL
+            .iter()
+            .copied()
+            .filter(|f| f.bytes() == bytes && f.is_compressed() == texture.format.is_compressed())
+            .filter(|f| *f != TextureFormat::P8)
+            .collect();
+        if texture.format != TextureFormat::P8 {
+            texture.format = c.pick(&fitting);
+        }
+    }
+}
+
+/// The vertices of another draw, in other state.
+fn share_mesh(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    let from = c.below(scene.draws.len() as u32) as usize;
+    if !c.once_in(3) || from == index {
+        return;
+    }
+    let Draw { vertices, indices, topology, positions, .. } = scene.draws[from].clone();
+    let draw = &mut scene.draws[index];
+    (draw.vertices, draw.indices, draw.topology, draw.positions) = (vertices, indices, topology, positions);
+    (draw.shade_model, draw.provoking_vertex, draw.perspective) = (c.any(), c.any(), c.below(3) != 0);
+}
+
+/// One texture in all units, and in those of other draws, each unit in its own state.
+fn share_texture(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    if !c.once_in(2) {
+        return;
+    }
+    let one = c.below(scene.textures.len() as u32) as usize;
+    let given = Given {
+        profile: scene.profile,
+        targets: &scene.targets,
+        textures: &scene.textures,
+        palettes: scene.palettes.len(),
+    };
+    let same_filters = c.once_in(2);
+    let mut first: Option<TextureUnit> = None;
+    for draw in [index, (index + 1) % scene.draws.len()] {
+        for k in 0..scene.profile.texture_units() {
+            let mut c = c.part(16);
+            let mut unit = texture::unit(&mut c, &given, &[one]);
+            if let (Some(first), true) = (first, same_filters) {
+                // Only the levels tell the samplers apart.
+                unit = TextureUnit { mip_filter: unit.mip_filter, max_lod: unit.max_lod, ..first };
+                unit.min_lod = unit.min_lod.min(unit.max_lod);
+            }
+            first.get_or_insert(unit);
+            let draw = &mut scene.draws[draw];
+            let idle = draw.texture_shader[k].operation == ShaderOperation::None;
+            if draw.textures[k].is_some() || idle {
+                draw.textures[k] = Some(unit);
+            }
+            if idle {
+                draw.texture_shader[k].operation = ShaderOperation::Sample;
+            }
+        }
+    }
+}
+
+/// The program of another draw.
+fn share_program(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    let from = c.below(scene.draws.len() as u32) as usize;
+    if c.once_in(4) {
+        scene.draws[index].combiners = scene.draws[from].combiners.clone();
+        scene.draws[index].program_origin = scene.draws[from].program_origin.clone();
+    }
+}
+
+/// A perspective view of vertices around the viewer, some behind him, some far away.
+fn view(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    if c.below(3) != 2 {
+        return;
+    }
+    let target = &scene.targets[scene.draws[index].target];
+    let (width, height) = (target.width as f32, target.height as f32);
+    let (near, far) = (c.pick(&[0.1, 1.0, 0.001]), c.pick(&[10.0, 100.0, 4.0]));
+    let [a, b] = [-(far + near) / (far - near), -2.0 * far * near / (far - near)];
+    let reach = c.pick(&[1.0, 4.0, 30.0, 1000.0, 1e6]);
+    let floor = c.once_in(3);
+    let (clip_depth, depth_clamp) = (c.any(), c.once_in(5));
+    let (x, y) = if c.once_in(3) { (c.between(-40.0, 40.0), c.between(-40.0, 40.0)) } else { (0.0, 0.0) };
+    let port = Viewport {
+        x,
+        y,
+        width,
+        height,
+        near: c.pick(&[0.0, 1.0, 0.25]),
+        far: c.pick(&[1.0, 0.0, 0.75]),
+        clip_depth,
+        depth_clamp,
+    };
+    let draw = &mut scene.draws[index];
+    draw.positions = Positions::Clip(port);
+    draw.vertices.update(|n, vertex| {
+        let mut c = if n < 8 { c.part(4) } else { Choices { tape: &[] } };
+        let [px, py, ..] = vertex.position.map(|p| if p.is_finite() { p.clamp(-4096.0, 4096.0) } else { 0.0 });
+        let side = reach * (px / width - 0.5) + c.between(-0.1, 0.1);
+        let up = if floor { -1.0 } else { reach * (0.5 - py / height) + c.between(-0.1, 0.1) };
+        let ahead = c.pick(&[-4.0, -1.0, -2.0, 0.0, 2.0, -9.0, -300.0, -near]) + c.between(-0.5, 0.5);
+        vertex.position = [side, up, a * ahead + b, -ahead];
+    });
+}
+
+/// Powers of two and numbers beside them.
+fn extreme(c: &mut Choices<'_>, least: i32, most: i32) -> f32 {
+    let mut c = c.part(4);
+    let power = (least + c.below((most - least + 1) as u32) as i32) as f32;
+    let number = power.exp2() * if c.once_in(2) { c.between(1.0, 2.0) } else { 1.0 };
+    number.min((most as f32).exp2())
+}
+
+/// w from 2^-20 to 2^20, the same for all or each its own.
+fn extreme_w(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    let draw = &mut scene.draws[index];
+    if !c.once_in(3) || draw.positions != Positions::Window {
+        return;
+    }
+    let (least, most) = c.pick(&[(-20, 20), (-20, -10), (10, 20), (-4, 4), (0, 20), (-20, 0)]);
+    let same = c.once_in(4).then(|| extreme(c, least, most));
+    draw.vertices.update(|n, vertex| {
+        let mut c = if n < 12 { c.part(4) } else { Choices { tape: &[] } };
+        let w = same.unwrap_or_else(|| extreme(&mut c, least, most));
+        vertex.position[3] = w.clamp(1.0 / 1_048_576.0, 1_048_576.0);
+    });
+}
+
+/// q from 2^-20 to 2^20 of either sign, and coordinates up to 65536 texels.
+fn extreme_coordinates(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    if c.below(2) == 0 {
+        return;
+    }
+    let style = c.below(5);
+    let set = c.below(4) as usize;
+    let side = c.pick(&[1.0, 4.0, 16.0, 64.0]);
+    let (least, most) = c.pick(&[(-20, 20), (-20, -10), (10, 20), (-3, 3)]);
+    let same = extreme(c, least, most);
+    scene.draws[index].vertices.update(|n, vertex| {
+        let mut c = if n < 10 { c.part(6) } else { Choices { tape: &[] } };
+        let [s, t, r, q] = &mut vertex.texture_coordinates[set];
+        match style {
+            0 => {
+                let number = extreme(&mut c, least, most);
+                (*s, *t, *q) = (*s * number, *t * number, number);
+            }
+            1 => *q = extreme(&mut c, least, most) * if c.once_in(3) { -1.0 } else { 1.0 },
+            2 => (*s, *t, *q) = (*s * same, *t * same, same),
+            3 => {
+                let far = 65536.0 / side;
+                (*s, *t, *q) = (c.pick(&[far, -far, far - 1.0, 0.0]), c.pick(&[-far, far, 0.5, 0.0]), 1.0);
+            }
+            _ => {
+                let number = extreme(&mut c, least, most);
+                (*s, *t, *r) = (*s * number, *t * number, *r * number);
+            }
+        }
+    });
+}
+
+/// Levels and lods at the ends of their ranges.
+fn lods(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    for unit in scene.draws[index].textures.iter_mut().flatten() {
+        let mut c = c.part(8);
+        if !c.once_in(3) {
+            continue;
+        }
+        unit.mip_filter = c.any();
+        unit.lod_bias = c.pick(&[-4096, 4095, 0, 255, 256, 257, -1, -255]);
+        unit.max_lod = c.pick(&[4095, 0, 1, 255, 256, 257, 1024]);
+        unit.min_lod = c.pick(&[0, 0, 1, 255, 256, 512]).min(unit.max_lod);
+    }
+}
