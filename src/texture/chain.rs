@@ -298,7 +298,9 @@ impl<L: Lane> Chain<'_, L> {
             ShaderOperation::BumpEnvironment { matrix, luminance } => {
                 let color = self.color::<O>(previous, state);
                 if O::ON {
-                    let red: &[usize] = if luminance.is_some() { &[0, 1, 2] } else { &[1, 2] };
+                    // Luminance is of colours: where only alpha is read, red need not have been sampled.
+                    let lit = luminance.is_some() && self.shader.stages[index].live & 7 != 0;
+                    let red: &[usize] = if lit { &[0, 1, 2] } else { &[1, 2] };
                     report::previous(index, &color, red, observer);
                 }
                 let blue_green = [color.bytes[2], color.bytes[1]];
