@@ -118,7 +118,7 @@ fn what_is_streamed_is_what_is_kept() {
 #[test]
 fn long_names_and_formulas_do_not_move_the_numbers() {
     use ninebit::trace::{Step, plain};
-    let long = "a.name.that.is.wider.than.its.column";
+    let long = "a.name.that.is.wider.than.any.column.may.become";
     let operands = (0..30).map(|n| plain(format!("operand{n}"), n)).collect();
     let steps = [
         Step::given("block", "CMB-1", "short", 12),

@@ -114,10 +114,10 @@ pub(crate) fn planes(set: u8) -> String {
 fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Option<&'o str>) -> std::fmt::Result {
     let mut block = "";
     let lines: Vec<(String, String)> = steps.iter().map(|s| (s.name.clone(), expression(s))).collect();
-    // Long expressions do not push the columns of all others.
+    // A few that are long do not push the columns of all others.
     let width =
         |f: fn(&(String, String)) -> usize, most: usize| lines.iter().map(f).filter(|w| *w <= most).max().unwrap_or(0);
-    let (names, expressions) = (width(|l| l.0.chars().count(), 24), width(|l| l.1.chars().count(), 58));
+    let (names, expressions) = (width(|l| l.0.chars().count(), 40), width(|l| l.1.chars().count(), 58));
     let integers = steps.iter().map(|s| integer(s.value, s.per_one).len()).max().unwrap_or(0).max(7);
     writeln!(
         out,
