@@ -224,6 +224,46 @@ fn spoiled_results_are_refused() {
     assert_eq!(parse(&good, &path).unwrap().rows.len(), 1000);
 }
 
+/// The chip cannot show a unit's results, so none of its rows was asked: a table without observed columns and without rows.
+#[test]
+fn a_unit_that_a_card_cannot_show_was_not_asked() {
+    let asked = Asked::new();
+    let of_columns = |columns: &str, row: &str| {
+        changed(&asked.path("product"), |body| {
+            let head: String = body.lines().take(6).map(|line| format!("{line}\n")).collect();
+            format!("{head}{columns}\n{row}# unsupported 0\n")
+        });
+    };
+    of_columns("id\tstatus", "");
+    let comparison = asked.compare(&[]);
+    assert!(comparison.is_clean());
+    assert_eq!(
+        (comparison.units[1].unit, comparison.units[1].asked, comparison.units[1].not_asked),
+        ("product", 0, 1000)
+    );
+    let output = asked.run(&["compare", "pack", "results"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let output = asked.run(&["adopt", "pack", "results", "-o", "adopted", "--device", "geforce-256"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    assert!(!asked.folder.path().join("adopted/geforce-256/product.tsv").exists(), "nothing was asked of it");
+
+    // A row that shows nothing confirms nothing.
+    let id = asked.tables.iter().find(|table| table.contents.unit.name() == "product").unwrap().rows[0].id.clone();
+    for (columns, row) in [
+        ("id\tstatus", format!("{id}\tok\n")),
+        ("idstatus", String::new()),
+        ("id\t\tstatus", String::new()),
+        ("status\tid", String::new()),
+        ("id", String::new()),
+        ("", String::new()),
+    ] {
+        of_columns(columns, &row);
+        let output = asked.run(&["compare", "pack", "results"]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(output.status.code() == Some(3) && said.contains("NB1032"), "{columns:?} {row:?}: {said}");
+    }
+}
+
 /// What only the folder as a whole shows.
 #[test]
 fn results_of_something_else_are_refused() {

@@ -5,6 +5,7 @@
 //! UNIT.tsv        rows: id, observed columns, status
 //! ```
 //!
+//! A unit whose results the asked chip cannot show (on nv10 those of a whole stage, for example) has a table without observed columns and rows.
 //! A table begins with `# ninebit-results 1` and ends with `# end ROWS CRC`, the CRC-32 of everything before that line: one that was cut off, reordered or
 //! edited is refused. [`compare`](compare::compare) holds results to a pack; [`adopt`](adopt::adopt) records those of a real card.
 

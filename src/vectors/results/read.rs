@@ -85,22 +85,28 @@ fn checked<'t>(text: &'t str, path: &Path) -> Result<&'t str, VectorError> {
     Ok(body)
 }
 
-/// The columns between `id` and `status`.
+/// The columns between `id` and `status`: none of a unit whose results the asked chip cannot show.
 fn observed(names: &str, results: &[Column]) -> Option<Vec<Observed>> {
-    let names = names.strip_prefix("id\t")?.strip_suffix("\tstatus")?;
+    let mut names = names.split('\t');
+    if names.next() != Some("id") || names.next_back() != Some("status") {
+        return None;
+    }
     let column = |name: &str| {
         let (of, shift) = name.split_once(">>").unwrap_or((name, "0"));
         let column = results.iter().position(|column| column.name == of && of.starts_with("out."))?;
         let shift = shift.parse().ok().filter(|shift| *shift < 32)?;
         Some(Observed { name: name.to_owned(), column, shift })
     };
-    names.split('\t').map(column).collect()
+    names.map(column).collect()
 }
 
 /// A row out of its line.
 fn row(text: &str, line: usize, columns: &[Observed], results: &[Column]) -> Result<ResultRow, String> {
     let fields: Vec<&str> = text.split('\t').collect();
     let wanted = columns.len() + 2;
+    if columns.is_empty() {
+        return Err("a row where no column was observed".to_owned());
+    }
     if fields.len() != wanted {
         return Err(format!("{} fields where the columns are {wanted}", fields.len()));
     }

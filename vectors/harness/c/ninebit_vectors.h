@@ -7,6 +7,9 @@
  *     while (ninebit_next(&table)) { ... ninebit_number(&table, a) ... }
  *     if (table.error[0]) { ... }
  *
+ * Numbers are what the table says. A column of type h may hold halves (12.5), which C's integers do not: ninebit_halves gives any column's
+ * number times two. (Packed rows, UNIT.hex, hold halves in the same way: the bits of such a column count halves.)
+ *
  * A table is large (see the limits below): keep it static. Dedicated to the public domain (CC0 1.0).
  */
 #ifndef NINEBIT_VECTORS_H
@@ -139,13 +142,23 @@ static const char *ninebit_text(const ninebit_table *table, int column)
     return column >= 0 && column < table->columns ? table->fields[column] : "";
 }
 
-/* The number in a field of the current row. Halves are counted: 12.5 is 25. A word of 32 bits needs a long that holds it. */
-static long ninebit_number(const ninebit_table *table, int column)
+/* Twice the number in a field of the current row, whatever the column's type: 24 for 12, 25 for 12.5, -1 for -0.5. */
+static long ninebit_halves(const ninebit_table *table, int column)
+{
+    const char *text = ninebit_text(table, column);
+    char type = column >= 0 && column < table->columns ? table->types[column] : 0;
+    if (type == 'x') return 2 * (long)strtoul(text, NULL, 16);
+    return 2 * strtol(text, NULL, 10) + (strchr(text, '.') ? (text[0] == '-' ? -1 : 1) : 0);
+}
+
+/* The number in a field of the current row, as it is written there. A word of 32 bits needs a long that holds it. A number that is not
+ * whole, which only columns of type h have, is an error: it sets `error` and ends the reading. Ask such columns by ninebit_halves. */
+static long ninebit_number(ninebit_table *table, int column)
 {
     const char *text = ninebit_text(table, column);
     char type = column >= 0 && column < table->columns ? table->types[column] : 0;
     if (type == 'x') return (long)strtoul(text, NULL, 16);
-    if (type == 'h') return 2 * strtol(text, NULL, 10) + (strchr(text, '.') ? (text[0] == '-' ? -1 : 1) : 0);
+    if (strchr(text, '.')) return ninebit_fail(table, "not a whole number: ask for it by ninebit_halves");
     return strtol(text, NULL, 10);
 }
 

@@ -1,9 +1,10 @@
 // Holds general_stage to the rows of units/general-stage.hex, whose layout is units/general-stage.svh:
 //
 //     iverilog -g2005-sv -I pack/units -P testbench.ROWS=60000 -o stage.vvp testbench.v general_stage.v
-//     vvp stage.vvp +rows=pack/units/general-stage.hex
+//     vvp stage.vvp +units=pack/units
 //
-// ROWS is the number of lines of the file. -P testbench.ROUNDING=253 plants an error, and rows must fail.
+// ROWS is the number of lines of general-stage.hex. A row that fails is named by its id and its line in general-stage.tsv, whose rows
+// stand in the same order. -P testbench.ROUNDING=253 plants an error, and rows must fail.
 
 module testbench;
     `include "general-stage.svh"
@@ -13,9 +14,12 @@ module testbench;
 
     reg [ROW_BITS-1:0] rows [0:ROWS-1];
     reg [ROW_BITS-1:0] row;
-    reg [8*512-1:0] path;
+    reg [8*1024-1:0] units, path;
+    reg [8*1024-1:0] text;
+    reg [8*12-1:0] id;
+    reg [7:0] first;
     wire [26:0] ab, cd, third;
-    integer n, failed, unread;
+    integer n, failed, unread, table_file, line;
 
     general_stage #(.ROUNDING(ROUNDING)) stage (
         .mapping_a(row[CFG_MAPPING_A_HIGH:CFG_MAPPING_A_LOW]),
@@ -49,22 +53,47 @@ module testbench;
                 $signed(expected[26:18]), $signed(expected[17:9]), $signed(expected[8:0]));
     endtask
 
+    // Takes the next line of the table: its first character, and its first twelve, which are a row's id. Both are 0 at the end of the file.
+    task next_line;
+        integer count;
+        begin
+            line = line + 1;
+            count = $fgets(text, table_file);
+            first = count < 1 ? 0 : text >> 8 * (count - 1);
+            id = count < 12 ? 0 : text >> 8 * (count - 12);
+            // A line that is longer than the text comes in several parts.
+            while (count > 0 && text[7:0] != 10) count = $fgets(text, table_file);
+        end
+    endtask
+
     initial begin
         failed = 0;
         unread = 0;
-        if (!$value$plusargs("rows=%s", path)) begin
-            $display("name the rows: +rows=pack/units/general-stage.hex");
+        line = 0;
+        if (!$value$plusargs("units=%s", units)) begin
+            $display("name the folder of the tables: +units=pack/units");
             $finish_and_return(2);
         end
+        $sformat(path, "%0s/general-stage.tsv", units);
+        table_file = $fopen(path, "r");
+        if (table_file == 0) begin
+            $display("%0s cannot be opened", path);
+            $finish_and_return(2);
+        end
+        // Lines that begin with # come first, then the names of the columns.
+        next_line;
+        while (first == "#") next_line;
+        $sformat(path, "%0s/general-stage.hex", units);
         $readmemh(path, rows);
         for (n = 0; n < ROWS; n = n + 1) begin
             row = rows[n];
+            next_line;
             // A word that the file did not have is unknown in every bit.
-            if (^row === 1'bx) unread = unread + 1;
+            if (^row === 1'bx || first == 0) unread = unread + 1;
             #1;
             if ({ab, cd, third} !== {expected_ab, expected_cd, expected_third}) begin
                 if (failed < SHOWN) begin
-                    $display("row %0d (line %0d of the rows, %h) fails", n, n + 1, row);
+                    $display("general-stage: row %0s (line %0d of general-stage.tsv) fails", id, line);
                     show("ab", ab, expected_ab);
                     show("cd", cd, expected_cd);
                     show("third", third, expected_third);
