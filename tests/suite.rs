@@ -60,6 +60,7 @@ mod scene_hostile;
 mod techniques;
 mod texture_properties;
 mod textures;
+mod third_party_harness;
 mod third_party_pipeline;
 mod third_party_pixel_shader;
 mod third_party_registers;

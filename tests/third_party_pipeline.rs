@@ -11,11 +11,11 @@ mod coordinates;
 #[path = "third_party_pipeline/fog.rs"]
 mod fog;
 #[path = "third_party_pipeline/raster_operations.rs"]
-mod raster_operations;
+pub(crate) mod raster_operations;
 #[path = "third_party_pipeline/shading.rs"]
 mod shading;
 #[path = "third_party_pipeline/texture_units.rs"]
-mod texture_units;
+pub(crate) mod texture_units;
 use crate::third_party;
 
 use serde_json::Value;

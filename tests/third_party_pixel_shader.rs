@@ -1,62 +1,29 @@
 //! Cases of public test suites for pixel shaders, brought through the front end whole: a scene text for each, drawn, one pixel looked at within
 //! the suite's own tolerance.
 //!
-//! `NINEBIT_CASES=FILE` runs another file of the same form instead.
+//! See `common/third_party.rs` for how they are run.
 #![allow(
     clippy::unwrap_used,
     clippy::float_arithmetic,
     reason = "a test fails by panicking; colours of suites are floats"
 )]
 
-use ninebit::engine::{self, RenderOptions};
-use ninebit::limits::Limits;
-use ninebit::scene;
+use crate::third_party::{Kind, bytes, cleared, differs, displacement_map, floats, pixel, place_map, run};
+
 use serde_json::Value;
 use std::fmt::Write;
-use std::fs;
-use std::path::Path;
 
 #[test]
 fn every_case_of_pixel_shaders() {
-    let other = std::env::var("NINEBIT_CASES").ok();
-    let file = other.as_deref().unwrap_or("vectors/third-party/pixel-shader.json");
-    let document: Value = serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap();
-    let listed = fs::read_to_string("docs/known-differences.md").unwrap();
-    let (mut wrong, mut total, mut excepted) = (Vec::new(), 0, 0);
-    for case in document["cases"].as_array().unwrap() {
-        // A file may have other kinds of case as well.
-        if case["kind"].as_str().is_some_and(|kind| kind != "ps11") {
-            continue;
-        }
-        total += 1;
-        let id = case["id"].as_str().unwrap();
-        let problem = match scene_of(&case["inputs"]) {
-            Ok(text) => differs(case, &text).map(|problem| format!("{problem}\n{text}")),
-            Err(reason) => Some(reason),
-        };
-        match (problem, listed.contains(&format!("`{id}`"))) {
-            (None, false) => {}
-            (Some(_), true) => excepted += 1,
-            (None, true) => wrong.push(format!("{id} is listed as different and is not")),
-            (Some(problem), false) => wrong.push(format!("{id}: {problem}")),
-        }
-    }
-    assert!(wrong.is_empty(), "{} of {total} are wrong:\n{}", wrong.len(), wrong.join("\n"));
-    assert!(20 * excepted <= total, "{excepted} of {total} are excepted");
+    run(&Kind { file: "pixel-shader", name: "ps11" }, pixel_shader);
 }
 
-/// What is wrong with the pixel, if anything. Where a suite says what this family of chips gives, that is expected.
-fn differs(case: &Value, text: &str) -> Option<String> {
-    let loaded = match scene::parse(text, Path::new("case.ron"), &Limits::default()) {
-        Ok(loaded) => loaded,
-        Err(error) => return Some(error.render(false)),
-    };
-    let frames = engine::render(&loaded.plan, &RenderOptions::default());
-    let shown = frames.surfaces[0].rgba8()[0];
-    let tolerance = case["tolerance"].as_f64().unwrap();
-    let expected = ["nvidia", "alt_expected_nv20", "expected"].iter().find_map(|key| case[key].as_array()).unwrap();
-    let off = (0..4).any(|n| expected[n].as_f64().is_some_and(|value| (value - f64::from(shown[n])).abs() > tolerance));
-    off.then(|| format!("{shown:?}, not {expected:?} within {tolerance}"))
+/// What is wrong with the pixel, if anything. Pixel shaders are Nv2a's, whatever the case says.
+pub(crate) fn pixel_shader(case: &Value, _profile: &str) -> Option<String> {
+    match scene_of(&case["inputs"]) {
+        Ok(text) => differs(case, pixel(&text, (0, 0))).map(|problem| format!("{problem}\n{text}")),
+        Err(reason) => Some(reason),
+    }
 }
 
 fn numbers(value: &Value) -> String {
@@ -86,22 +53,24 @@ fn scene_of(inputs: &Value) -> Result<String, String> {
     }
     let color = |name: &str, default: &str| match &inputs[name] {
         Value::Null => default.to_owned(),
-        color => format!("Float{}", numbers(color)),
+        color => floats(color),
     };
     let (diffuse, specular) = (color("v0", "(255, 255, 255, 255)"), color("v1", "(0, 0, 0, 0)"));
     let sets: Vec<String> = (0..4)
-        .map(|set| match (&inputs[&format!("t{set}")], &inputs["t"]) {
-            (Value::Null, Value::Null) => format!("t{set}: (0, 0)"),
-            (Value::Null, all) => format!("t{set}: {}", numbers(all)),
-            (own, _) => format!("t{set}: {}", numbers(own)),
+        .map(|set| {
+            // Of one set, or of all under either name.
+            let own = [format!("t{set}"), "t".to_owned(), "uv".to_owned()];
+            let given = own.iter().map(|name| &inputs[name]).find(|value| !value.is_null());
+            format!("t{set}: {}", given.map_or("(0, 0)".to_owned(), numbers))
         })
         .collect();
     let corners = [(0, 0), (1, 0), (1, 1), (0, 1)]
         .map(|(x, y)| format!("(position: ({x}, {y}), diffuse: {diffuse}, specular: {specular}, {})", sets.join(", ")));
     let table = if table.is_empty() { String::new() } else { format!("textures: {{ {table} }},") };
     Ok(format!(
-        "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 1, height: 1, format: A8R8G8B8)], {table}\n\
+        "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 1, height: 1, format: A8R8G8B8{})], {table}\n\
          draws: [(topology: Quads, vertices: Window([{}]), textures: [{}],\nprogram: PixelShader({}{}text: r#\"{shader}\"#))])",
+        cleared(inputs),
         corners.join(", "),
         units.join(", "),
         constants(inputs),
@@ -159,11 +128,27 @@ fn constants(inputs: &Value) -> String {
     if entries.is_empty() { String::new() } else { format!("constants: {{ {} }}, ", entries.join(", ")) }
 }
 
-/// BUMPENVMAT00, 01, 10, 11 of texture stages.
+/// BUMPENVMAT00, 01, 10, 11 of texture stages, scale and offset of the luminance: each with the number of its unit, or without one for
+/// every unit that is bumped.
 fn bumps(inputs: &Value) -> String {
-    let matrix = |unit: usize| inputs.get(format!("bumpenvmat{unit}"));
+    let bumped = |unit: usize| {
+        let register = format!("t{unit}");
+        let program = inputs["program"].as_array().into_iter().flatten();
+        program.into_iter().any(|line| {
+            line["op"].as_str().is_some_and(|op| op.starts_with("texbem")) && line["dst"].as_str() == Some(&register)
+        })
+    };
+    let field = |unit: usize, names: [&str; 2]| {
+        let numbered = names.iter().find_map(|name| inputs.get(format!("{name}{unit}")));
+        numbered.or_else(|| names.iter().filter(|_| bumped(unit)).find_map(|name| inputs.get(*name)))
+    };
     let entries: Vec<String> = (0..4)
-        .filter_map(|unit| Some(format!("\"t{unit}\": (matrix: {}, luminance: (1, 0))", numbers(matrix(unit)?))))
+        .filter_map(|unit| {
+            let matrix = field(unit, ["bumpenvmat", "bump_matrix"])?;
+            let [scale, offset] = [(["bumpenvlscale", "lscale"], "1"), (["bumpenvloffset", "loffset"], "0")]
+                .map(|(names, default)| field(unit, names).map_or(default.to_owned(), Value::to_string));
+            Some(format!("\"t{unit}\": (matrix: {}, luminance: ({scale}, {offset}))", numbers(matrix)))
+        })
         .collect();
     if entries.is_empty() { String::new() } else { format!("bump: {{ {} }}, ", entries.join(", ")) }
 }
@@ -181,8 +166,27 @@ fn texture(inputs: &Value, unit: usize) -> Result<Option<(String, String)>, Stri
         return Ok(Some((texels(text.as_str().ok_or("a texture without texels")?)?, unsigned)));
     }
     let texture = &inputs[&format!("tex{unit}")];
-    let Some(format) = texture["format"].as_str() else { return Ok(None) };
-    let texel = texture["texel"].as_u64().unwrap();
+    let solid = |color: String| format!("source: Solid(width: 1, height: 1, color: {color})");
+    let exact = &inputs[&format!("tex{unit}_f")];
+    if exact.is_array() {
+        return Ok(Some((solid(floats(exact)), unsigned)));
+    }
+    match texture {
+        Value::Null => return Ok(None),
+        Value::Array(_) => return Ok(Some((solid(bytes(texture)), unsigned))),
+        Value::String(text) if text.contains("texbem") => {
+            let map = if text.contains("tex0") { displacement_map() } else { place_map() };
+            return Ok(Some((map, unsigned)));
+        }
+        Value::String(text) => return Ok(Some((texels(text)?, unsigned))),
+        _ => {}
+    }
+    if let Some(pair) = texture["V8U8"].as_array() {
+        let [u, v] = [0, 1].map(|n| pair[n].as_i64().unwrap() as u8);
+        return Ok(Some((solid(format!("(0, {v}, {u}, 255)")), unsigned)));
+    }
+    let format = texture["format"].as_str().ok_or_else(|| format!("tex{unit} is {texture}"))?;
+    let texel = texture["texel"].as_u64().ok_or_else(|| format!("tex{unit} has no texel"))?;
     let byte = |shift: u32| (texel >> shift) as u8;
     // Five bits with a sign as the API has them, negative ones over 16 and positive ones over 15. The chip's own format of such bits is
     // widened by replication, which no suite of an API knows.

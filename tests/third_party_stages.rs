@@ -9,7 +9,7 @@ use crate::third_party;
 use ninebit::program::texture_environment::{EnvironmentSource, Function, Mode};
 use ninebit::program::texture_stages::{ArgumentSource, Operation};
 use serde_json::Value;
-use third_party::{Kind, blend_factor, bytes, differs, floats, named, pixel, run};
+use third_party::{Kind, blend_factor, bytes, cleared, color, differs, floats, named, pixel, run};
 
 #[test]
 fn every_case_of_texture_stages() {
@@ -22,14 +22,27 @@ fn every_case_of_the_texture_environment() {
 }
 
 fn run_all(kind: &Kind, text_of: fn(&Value, &str) -> String) {
-    run(kind, |case, profile| {
-        let text = text_of(&case["inputs"], profile);
-        differs(case, pixel(&text, (0, 0))).map(|problem| format!("{problem}\n{text}"))
-    });
+    run(kind, |case, profile| problem(case, text_of(&case["inputs"], profile)));
 }
 
-/// One quad over one pixel.
-fn scene_text(profile: &str, textures: &[(usize, String)], diffuse: &str, specular: &str, rest: &str) -> String {
+fn problem(case: &Value, text: String) -> Option<String> {
+    differs(case, pixel(&text, (0, 0))).map(|problem| format!("{problem}\n{text}"))
+}
+
+/// What is wrong with a case of Direct3D texture stages.
+pub(crate) fn stages(case: &Value, profile: &str) -> Option<String> {
+    problem(case, stages_scene(&case["inputs"], profile))
+}
+
+/// One quad over one pixel of a target with these further fields.
+fn scene_text(
+    profile: &str,
+    target: &str,
+    textures: &[(usize, String)],
+    diffuse: &str,
+    specular: &str,
+    rest: &str,
+) -> String {
     let table: Vec<String> = textures.iter().map(|(unit, fields)| format!("\"t{unit}\": ({fields})")).collect();
     let most = textures.iter().map(|(unit, _)| unit + 1).max().unwrap_or(0);
     let units: Vec<String> = (0..most)
@@ -42,21 +55,25 @@ fn scene_text(profile: &str, textures: &[(usize, String)], diffuse: &str, specul
         })
         .collect();
     format!(
-        "(version: 1, profile: {profile}, targets: [(name: \"frame\", width: 1, height: 1, format: A8R8G8B8{})], \
-         textures: {{ {} }}, draws: [(topology: Quads, vertices: Window([{}]), textures: [{}], {})])",
-        rest.split_once("CLEAR").map_or(String::new(), |(_, color)| format!(", clear: (color: {color})")),
+        "(version: 1, profile: {profile}, targets: [(name: \"frame\", width: 1, height: 1, format: A8R8G8B8{target})], \
+         textures: {{ {} }}, draws: [(topology: Quads, vertices: Window([{}]), textures: [{}], {rest})])",
         table.join(", "),
         [(0, 0), (1, 0), (1, 1), (0, 1)]
             .map(|(x, y)| format!("(position: ({x}, {y}), diffuse: {diffuse}, specular: {specular})"))
             .join(", "),
         units.join(", "),
-        rest.split("CLEAR").next().unwrap(),
     )
 }
 
-fn blend(value: &Value, destination: &str) -> String {
-    let [source, target] = ["src", "dst"].map(|side| blend_factor(value[side].as_str().unwrap()));
-    format!("blend: (equation: Add, source: {source}, destination: {target}), CLEAR{destination}")
+/// The blend after the stages, and what the target holds before: a colour of the blend's own, or of the case's.
+fn blend(inputs: &Value, name: &str) -> (String, String) {
+    let blend = &inputs[name];
+    if !blend.is_object() {
+        return (String::new(), cleared(inputs));
+    }
+    let [source, destination] = ["src", "dst"].map(|side| blend_factor(blend[side].as_str().unwrap()));
+    let before = color(blend, "dest").map_or(cleared(inputs), |color| format!(", clear: (color: {color})"));
+    (format!("blend: (equation: Add, source: {source}, destination: {destination}), "), before)
 }
 
 /// A Direct3D case.
@@ -97,13 +114,14 @@ fn stages_scene(inputs: &Value, profile: &str) -> String {
     let factor = &inputs["tfactor"];
     let factor = if factor.is_array() { format!(", texture_factor: {}", bytes(factor)) } else { String::new() };
     let specular = inputs["specular_enable"] == true;
-    let mut rest =
-        format!("program: TextureStages(stages: [{}]{factor}, specular_enable: {specular}), ", stages.join(", "));
-    if inputs["blend"].is_object() {
-        rest.push_str(&blend(&inputs["blend"], &bytes(&inputs["blend"]["dest"])));
-    }
-    let color = |name: &str| if inputs[name].is_array() { bytes(&inputs[name]) } else { "(0, 0, 0, 0)".to_owned() };
-    scene_text(profile, &textures, &color("diffuse"), &color("specular"), &rest)
+    let (blend, target) = blend(inputs, "blend");
+    let rest = format!(
+        "program: TextureStages(stages: [{}]{factor}, specular_enable: {specular}), {blend}",
+        stages.join(", ")
+    );
+    let [diffuse, specular] =
+        ["diffuse", "specular"].map(|name| color(inputs, name).unwrap_or("(0, 0, 0, 0)".to_owned()));
+    scene_text(profile, &target, &textures, &diffuse, &specular, &rest)
 }
 
 /// `CURRENT|ALPHAREPLICATE`.
@@ -145,11 +163,9 @@ fn environment_scene(inputs: &Value, profile: &str) -> String {
         }
         units.push(format!("({})", fields.join(", ")));
     }
-    let mut rest = format!("program: TextureEnvironment(units: [{}]), ", units.join(", "));
-    if inputs["then_blend"].is_object() {
-        rest.push_str(&blend(&inputs["then_blend"], &floats(&inputs["then_blend"]["dest_f"])));
-    }
-    scene_text(profile, &textures, &floats(&inputs["primary_f"]), "(0, 0, 0, 0)", &rest)
+    let (blend, target) = blend(inputs, "then_blend");
+    let rest = format!("program: TextureEnvironment(units: [{}]), {blend}", units.join(", "));
+    scene_text(profile, &target, &textures, &floats(&inputs["primary_f"]), "(0, 0, 0, 0)", &rest)
 }
 
 /// A texture of one texel whose channels are those that the base format takes of the colour, and the base format if no texel format says it.

@@ -1,7 +1,8 @@
 //! Cases of public test suites: reading them, bringing each through the front end whole, and holding what comes out against the list
 //! of known differences.
 //!
-//! `NINEBIT_CASES=FILE` runs another file of the same form instead; of one that names kinds, those of the test.
+//! `NINEBIT_CASES=FILE` runs another file of the same form instead; of one that names kinds, those of the test. The form is told in
+//! `vectors/third-party/README.md`. A case that cannot be put as a scene fails, by name: it never ends the run.
 #![allow(
     dead_code,
     unreachable_pub,
@@ -16,6 +17,7 @@ use ninebit::scene::{self, Loaded};
 use ninebit::state::Named;
 use serde_json::Value;
 use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// A kind of cases: its file, and the name that other files have for it.
@@ -36,34 +38,60 @@ fn cases(kind: &Kind) -> (Vec<Value>, bool) {
     (cases, other.is_none())
 }
 
+/// What came of cases.
+#[derive(Debug, Default)]
+pub struct Outcome {
+    pub wrong: Vec<String>,
+    /// Cases that differ as the list of known differences says.
+    pub excepted: usize,
+    /// Cases that one of the chips can be asked.
+    pub applicable: usize,
+}
+
 /// Runs every case of a kind: `problem` says what is wrong with it, given the case and the profile it names.
 pub fn run(kind: &Kind, problem: impl Fn(&Value, &str) -> Option<String>) {
     let kept = fs::read_to_string("docs/known-differences.md").unwrap();
     let (cases, own) = cases(kind);
-    let (mut wrong, mut excepted, mut applicable) = (Vec::new(), 0, 0);
-    for case in &cases {
-        let id = case["id"].as_str().unwrap();
-        let listed = kept.contains(&format!("`{id}`"));
-        if case["profile"] == "none" {
-            // Neither chip has what it asks for: the list says so by the test's name and what is asked for.
-            let mode = case["inputs"]["mode"].as_str().unwrap();
-            if !kept.contains(&format!("`{mode}`")) {
-                wrong.push(format!("{id} is not applicable and not listed as such"));
-            }
-            continue;
-        }
-        applicable += 1;
-        let profile = if case["profile"] == "nv10" { "Nv10" } else { "Nv2a" };
-        match (problem(case, profile), listed) {
-            (None, false) => {}
-            (Some(_), true) => excepted += 1,
-            (None, true) => wrong.push(format!("{id} is listed as different and is not")),
-            (Some(problem), false) => wrong.push(format!("{id}: {problem}")),
-        }
-    }
+    let Outcome { wrong, excepted, applicable } = judge(&cases, &kept, problem);
     println!("{}: {} cases, {applicable} applicable, {excepted} listed as different", kind.file, cases.len());
     assert!(wrong.is_empty(), "{} of {} are wrong:\n{}", wrong.len(), cases.len(), wrong.join("\n"));
     assert!(!own || applicable > 0, "no cases");
+}
+
+/// Holds cases against a text that names the known differences.
+pub fn judge(cases: &[Value], kept: &str, problem: impl Fn(&Value, &str) -> Option<String>) -> Outcome {
+    let mut outcome = Outcome::default();
+    for case in cases {
+        let Some(id) = case["id"].as_str() else {
+            outcome.wrong.push(format!("a case without an id: {case}"));
+            continue;
+        };
+        if case["profile"] == "none" {
+            // Neither chip has what it asks for: the list says so by the test's name and what is asked for.
+            let mode = case["inputs"]["mode"].as_str().unwrap_or(id);
+            if !kept.contains(&format!("`{mode}`")) {
+                outcome.wrong.push(format!("{id} is not applicable and not listed as such"));
+            }
+            continue;
+        }
+        outcome.applicable += 1;
+        let profile = if case["profile"] == "nv10" { "Nv10" } else { "Nv2a" };
+        match (caught(|| problem(case, profile)), kept.contains(&format!("`{id}`"))) {
+            (None, false) => {}
+            (Some(_), true) => outcome.excepted += 1,
+            (None, true) => outcome.wrong.push(format!("{id} is listed as different and is not")),
+            (Some(problem), false) => outcome.wrong.push(format!("{id}: {problem}")),
+        }
+    }
+    outcome
+}
+
+/// A case that the harness cannot read is wrong; the others still run.
+fn caught(problem: impl Fn() -> Option<String>) -> Option<String> {
+    catch_unwind(AssertUnwindSafe(problem)).unwrap_or_else(|panic| {
+        let said = panic.downcast_ref::<String>().map(String::as_str).or_else(|| panic.downcast_ref::<&str>().copied());
+        Some(format!("cannot be put as a scene: {}", said.unwrap_or("no reason given")))
+    })
 }
 
 /// Reads a scene; a finding is a problem.
@@ -80,11 +108,26 @@ pub fn pixel(text: &str, (x, y): (u32, u32)) -> Result<[u8; 4], String> {
     Ok(frames.surfaces[0].rgba8()[(y * width + x) as usize])
 }
 
-/// What is wrong with a colour, by the case's expectation and tolerance. What the suite states for the vendor's chips counts first.
+/// What is wrong with a colour, by the case's expectation and tolerance. What the suite states for the vendor's chips counts first. An
+/// expectation may be the name of an input (`framebuffer`), or a list of colours, each of which is right.
 pub fn differs(case: &Value, shown: Result<[u8; 4], String>) -> Option<String> {
-    let expected = ["nvidia", "alt_expected_nv20", "expected"].iter().find_map(|field| case[*field].as_array());
-    let expected = expected.unwrap_or_else(|| panic!("{} expects nothing", case["id"]));
-    differs_from(expected, case["tolerance"].as_f64().unwrap(), shown)
+    let expected = ["nvidia", "alt_expected_nv20", "expected"].iter().map(|field| &case[*field]).find(|v| !v.is_null());
+    let expected = match expected {
+        Some(Value::String(input)) => &case["inputs"][input],
+        expected => expected.unwrap_or(&Value::Null),
+    };
+    let Some(colors) = expected.as_array().filter(|colors| !colors.is_empty()) else {
+        panic!("expects no colour: {expected}")
+    };
+    let tolerance = case["tolerance"].as_f64().unwrap_or_else(|| panic!("has no tolerance"));
+    if colors.iter().all(Value::is_array) {
+        let problems: Vec<String> = colors
+            .iter()
+            .map(|color| differs_from(color.as_array().unwrap(), tolerance, shown.clone()))
+            .collect::<Option<_>>()?;
+        return Some(problems.join("; "));
+    }
+    differs_from(colors, tolerance, shown)
 }
 
 /// The same with an expectation of the caller's: null is not looked at.
@@ -93,19 +136,68 @@ pub fn differs_from(expected: &[Value], tolerance: f64, shown: Result<[u8; 4], S
         Ok(shown) => shown,
         Err(problem) => return Some(problem),
     };
-    let off = (0..4).any(|n| expected[n].as_f64().is_some_and(|value| (value - f64::from(shown[n])).abs() > tolerance));
+    let channels = expected.iter().zip(shown);
+    let off = channels
+        .clone()
+        .any(|(value, shown)| value.as_f64().is_some_and(|value| (value - f64::from(shown)).abs() > tolerance));
     off.then(|| format!("{shown:?}, not {expected:?} within {tolerance}"))
 }
 
-/// A colour of bytes as a scene's: `(255, 128, 0)`.
+/// A colour of bytes as a scene's: `(255, 128, 0)`. A channel that the suite does not state is full, as the alpha is that a target without
+/// alpha yields.
 pub fn bytes(value: &Value) -> String {
-    let parts: Vec<String> = value.as_array().unwrap().iter().map(Value::to_string).collect();
-    format!("({})", parts.join(", "))
+    color_text(value, "255")
 }
 
 /// A colour of floats as a scene's.
 pub fn floats(value: &Value) -> String {
-    format!("Float{}", bytes(value))
+    format!("Float{}", color_text(value, "1"))
+}
+
+fn color_text(value: &Value, full: &str) -> String {
+    let channels = value.as_array().unwrap_or_else(|| panic!("not a colour: {value}"));
+    let parts: Vec<String> =
+        channels.iter().map(|channel| if channel.is_null() { full.to_owned() } else { channel.to_string() }).collect();
+    format!("({})", parts.join(", "))
+}
+
+/// A colour under its name, of bytes, or of floats under its name and `_f`.
+pub fn color(inputs: &Value, name: &str) -> Option<String> {
+    let exact = &inputs[format!("{name}_f")];
+    if exact.is_array() {
+        return Some(floats(exact));
+    }
+    (!inputs[name].is_null()).then(|| bytes(&inputs[name]))
+}
+
+/// What the target holds before the draw, by the names that suites have for it, as further fields of a target.
+pub fn cleared(inputs: &Value) -> String {
+    let names = ["framebuffer", "clear", "clear_color", "dst", "dest"];
+    let color = names.iter().find_map(|name| color(inputs, name));
+    color.map_or(String::new(), |color| format!(", clear: (color: {color})"))
+}
+
+/// A map of 128 x 128 texels.
+fn map_of(texel: impl Fn(i32, i32) -> String) -> String {
+    let row = |y| (0..128).map(|x| texel(x, y)).collect::<Vec<String>>().join(" ");
+    let rows: Vec<String> = (0..128).map(|y| format!("\"{}\"", row(y))).collect();
+    format!("source: Texels(width: 128, height: 128, rows: [{}])", rows.join(", "))
+}
+
+/// Wine's displacement map: it points away from the middle along the nearer axis. V8U8, V and U in the bytes of green and blue.
+pub fn displacement_map() -> String {
+    map_of(|x, y| {
+        let (v, u) = match (x - 64).abs() > (y - 64).abs() {
+            true => (if x < 64 { 0xc0 } else { 0x40 }, 0),
+            false => (0, if y < 64 { 0x40 } else { 0xc0 }),
+        };
+        format!("ff00{v:02x}{u:02x}")
+    })
+}
+
+/// Wine's map of places: red and green are twice column and row.
+pub fn place_map() -> String {
+    map_of(|x, y| format!("ff{:02x}{:02x}00", 2 * x, 2 * y))
 }
 
 /// Letters and digits alone, in lower case.

@@ -1,6 +1,6 @@
 //! Texture coordinates of Direct3D texture stages: which set, how it is transformed, and how a bump map moves it.
 
-use super::third_party::{Kind, bytes, differs, pixel, run};
+use super::third_party::{Kind, bytes, differs, displacement_map, pixel, place_map, run};
 use super::{number, numbers, quad, scene};
 use serde_json::Value;
 
@@ -139,25 +139,11 @@ fn bumped(textures: [&str; 2], units: [&str; 2], coordinates: &str, stage: &str)
     scene("Nv2a", "name: \"frame\", width: 1, height: 1", &head, &draw)
 }
 
-/// A displacement map of 128 x 128 texels that points away from the middle along the nearer axis, over a map of places.
+/// A place map that a displacement map moves.
 fn moved(inputs: &Value) -> String {
-    let map = |texel: &dyn Fn(i32, i32) -> String| {
-        let row = |y| (0..128).map(|x| texel(x, y)).collect::<Vec<String>>().join(" ");
-        let rows: Vec<String> = (0..128).map(|y| format!("\"{}\"", row(y))).collect();
-        format!("source: Texels(width: 128, height: 128, rows: [{}])", rows.join(", "))
-    };
-    // V8U8, V and U in the bytes of green and blue.
-    let displacement = map(&|x, y| {
-        let (v, u) = match (x - 64).abs() > (y - 64).abs() {
-            true => (if x < 64 { 0xc0 } else { 0x40 }, 0),
-            false => (0, if y < 64 { 0x40 } else { 0xc0 }),
-        };
-        format!("ff00{v:02x}{u:02x}")
-    });
-    let places = map(&|x, y| format!("ff{:02x}{:02x}00", 2 * x, 2 * y));
     let plain = "min_filter: Nearest, address: ClampToEdge";
     bumped(
-        [&displacement, &places],
+        [&displacement_map(), &place_map()],
         [&format!("{plain}, signed: (true, true, true, true)"), plain],
         &list(&numbers(&inputs["uv"])),
         &format!("color_op: BumpEnvMap, bump_matrix: {}", list(&numbers(&inputs["bumpenvmat"]))),

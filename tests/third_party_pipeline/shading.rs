@@ -1,7 +1,7 @@
 //! Flat and smooth colours of strips and lists of Direct3D, whose pixel centres lie on whole numbers.
 
 use super::scene;
-use super::third_party::{Kind, bytes, differs, pixel, run};
+use super::third_party::{Kind, bytes, cleared, differs, pixel, run};
 
 #[test]
 fn every_case_of_shading() {
@@ -27,7 +27,7 @@ fn every_case_of_shading() {
              scissor: (x: {x}, y: {y}, width: 1, height: 1)",
             vertices.join(", ")
         );
-        let target = format!("name: \"frame\", width: {width}, height: {height}");
+        let target = format!("name: \"frame\", width: {width}, height: {height}{}", cleared(inputs));
         differs(case, pixel(&scene(profile, &target, "", &draw), (x, y)))
     });
 }
