@@ -9,6 +9,7 @@ use multiversion::multiversion;
 use ninebit::combiner::general::{dot_product, output};
 use ninebit::combiner::mapping::{expand_normal, unsigned_identity};
 use ninebit::number::{Factor, Narrow, Paired, Register, Sum};
+use ninebit::random::Random;
 use ninebit::state::{Bias, RegisterFloor, Scale};
 use std::hint::black_box;
 
@@ -73,14 +74,9 @@ where
 }
 
 /// Bytes as a normal map and a light vector would give them.
-fn operand(seed: u32) -> Block {
-    let mut state = seed;
-    std::array::from_fn(|_| {
-        std::array::from_fn(|_| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 24) as i16
-        })
-    })
+fn operand(seed: u64) -> Block {
+    let mut random = Random::seeded(seed);
+    std::array::from_fn(|_| std::array::from_fn(|_| i16::from(random.bits() as u8)))
 }
 
 fn pixels<R: Copy>(block: &Block, lane: impl Fn(i16) -> R) -> [[R; 3]; PIXELS] {

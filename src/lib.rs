@@ -64,6 +64,7 @@ pub mod output;
 pub mod picture;
 pub mod plan;
 pub mod program;
+pub mod random;
 pub mod raster;
 pub mod read;
 pub mod replay;

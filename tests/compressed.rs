@@ -5,28 +5,16 @@
 //! texel gets which mix, and which is transparent, must be the same.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use ninebit::random::Random;
 use ninebit::state::TextureFormat;
 use ninebit::texture::compressed::decode;
 
-/// SplitMix64: the same blocks in every run.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
-    }
-}
-
 /// Lowest and highest of (ours - theirs) in each channel.
 fn differences(format: TextureFormat, dithered: bool, theirs: impl Fn(&[u8], &mut [u8])) -> [(i32, i32); 4] {
-    let mut random = Random(1);
+    let mut random = Random::seeded(1);
     let mut found = [(0, 0); 4];
     for _ in 0..200_000 {
-        let bytes: Vec<u8> = (0..format.bytes() / 8).flat_map(|_| random.next().to_le_bytes()).collect();
+        let bytes: Vec<u8> = (0..format.bytes() / 8).flat_map(|_| random.bits().to_le_bytes()).collect();
         let words: Vec<u32> = bytes.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
         let mut decoded = [0; 64];
         theirs(&bytes, &mut decoded);

@@ -6,6 +6,7 @@ use crate::recompute;
 
 use ninebit::engine::{self, RenderOptions, TraceError};
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::random::Random;
 use ninebit::report::{trace_json, trace_text};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -17,7 +18,7 @@ const PIXELS: usize = 200;
 #[test]
 fn stored_words_follow_from_the_trace_alone() {
     let mut runner = TestRunner::deterministic();
-    let (mut pixels, mut fragments, mut seed) = (0, 0, 1_u32);
+    let (mut pixels, mut fragments, mut random) = (0, 0, Random::seeded(1));
     while pixels < PIXELS {
         let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
         let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
@@ -25,8 +26,7 @@ fn stored_words_follow_from_the_trace_alone() {
         // A few pixels of each target, wherever the generator points.
         for (target, surface) in frames.surfaces.iter().enumerate() {
             for _ in 0..4 {
-                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                let (x, y) = ((seed >> 8) % surface.width, (seed >> 20) % surface.height);
+                let [x, y] = [surface.width, surface.height].map(|side| random.below(side.into()) as u32);
                 let trace = engine::trace(&plan, target, (x, y), None).unwrap();
                 let stored = surface.words[(y * surface.width + x) as usize];
                 assert_eq!(trace.word, stored, "{}", trace_text(&plan, &trace));

@@ -9,6 +9,7 @@ use crate::scene_files;
 use ninebit::engine;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::random::Random;
 use ninebit::report::trace_json;
 use ninebit::scene;
 use ninebit::state::{POLICIES, Policies};
@@ -150,11 +151,8 @@ fn traces_and_the_page_agree() {
     let page = Page::read();
     let mut seen = Seen::default();
     let mut runner = TestRunner::deterministic();
-    let mut state = 1_u32;
-    let mut random = move |below: u32| {
-        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (state >> 8) % below
-    };
+    let mut sequence = Random::seeded(1);
+    let mut random = move |below: u32| sequence.below(below.into()) as u32;
     for number in 0..SCENES {
         let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
         let mut policies = Policies::DEFAULT;

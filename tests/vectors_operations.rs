@@ -5,10 +5,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
+use ninebit::random::Random;
 use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, Profile, TextureFormat};
 use ninebit::texture::compressed;
 use ninebit::vectors::column::{Column, Kind};
-use ninebit::vectors::random::Random;
 use ninebit::vectors::sweep::Sweep;
 use ninebit::vectors::tree::Tree;
 use ninebit::vectors::unit::{Conditions, Unit};

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::LazyLock;
 
+use ninebit::random::Random;
 use ninebit::state::{Policies, Profile};
 use ninebit::vectors::part::Part;
-use ninebit::vectors::random::Random;
 use ninebit::vectors::sweep::Sweep;
 use ninebit::vectors::tree::{self, Tree};
 use ninebit::vectors::unit::{Conditions, Unit};

@@ -55,6 +55,7 @@ fn met(assembly: &Assembly, number: usize, height: usize, bands: usize) -> Range
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
     use crate::raster::assemble::Corner;
     use crate::raster::triangles::Triangles;
     use crate::state::{ProvokingVertex, Topology, Vertices};
@@ -63,11 +64,8 @@ mod tests {
     /// Every triangle is in the bins of exactly those bands that one of its rows lies in.
     #[test]
     fn bins_hold_what_meets_their_rows() {
-        let mut state = 7_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 16) as i32 % 4000 - 1000
-        };
+        let mut sequence = Random::seeded(7);
+        let mut random = || sequence.below(4000) as i32 - 1000;
         let corners: Vec<Corner> = (0..600)
             .map(|_| Corner { position: [random(), random() >> (random() & 3)], ..Corner::default() })
             .collect();

@@ -270,11 +270,8 @@ mod tests {
     #[test]
     fn powers_are_those_of_the_roots_of_two() {
         let roots = roots();
-        let mut seed = 1_u128;
-        let mut next = || {
-            seed = seed.wrapping_mul(0x2360_ed05_1fc6_5da4_4385_df64_9fcc_f645).wrapping_add(0x5851_f42d_4c95_7f2d);
-            seed ^ seed >> 64
-        };
+        let mut random = crate::random::Random::seeded(1);
+        let mut next = || u128::from(random.bits()) << 64 | u128::from(random.bits());
         for n in 0..4000 {
             let x = (next() as i128 >> 1) % (80 << 120) - (64 << 120);
             // Fewer bits, as d and p1 of few bits give.

@@ -3,9 +3,8 @@
 use std::collections::HashSet;
 
 use super::column::{Column, Domain};
-use super::random::Random;
 use super::unit::Unit;
-use crate::generate::hash::mix;
+use crate::random::{Random, mix};
 use crate::state::{Profile, named};
 
 named! {
@@ -100,14 +99,15 @@ pub fn visit(unit: &dyn Unit, profile: Profile, level: Level, seed: u64, each: i
     } else {
         sieve.draw(rows / 2, &mut row, Origin::Boundary, |row| {
             for (values, value) in boundaries.iter().zip(row) {
-                *value = random.pick(values);
+                *value = random.pick(values).unwrap_or_default();
             }
         });
     }
     sieve.draw(rows, &mut row, Origin::Random, |row| {
         // Where most columns are anything, one at a boundary tells more than none.
         for ((column, values), value) in columns.iter().zip(&boundaries).zip(row) {
-            *value = if random.once_in(4) { random.pick(values) } else { draw(column, &mut random) };
+            *value =
+                if random.once_in(4) { random.pick(values).unwrap_or_default() } else { draw(column, &mut random) };
         }
     });
 }

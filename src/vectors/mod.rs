@@ -11,7 +11,6 @@ pub mod handbook;
 pub mod lanes;
 pub mod pack;
 pub mod part;
-pub mod random;
 pub mod read;
 pub mod results;
 pub mod sweep;

@@ -246,7 +246,7 @@ impl<'s> Digesting<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vectors::random::Random;
+    use crate::random::Random;
     use crate::vectors::units;
 
     #[test]

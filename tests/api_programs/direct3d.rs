@@ -155,7 +155,7 @@ proptest! {
     /// A cascade gives what the API says, in real numbers; and integers within the bound of their rounding.
     #[test]
     fn cascades_are_what_the_api_says(seed in any::<u64>(), nv10 in any::<bool>()) {
-        let mut choices = Choices(seed);
+        let mut choices = Choices::new(seed);
         let profile = if nv10 { Profile::Nv10 } else { Profile::Nv2a };
         let context = context(&mut choices, profile);
         // Nv10 has room for two stages, Nv2a for all that the API has.
@@ -213,7 +213,7 @@ fn around(color: Operation, alpha: Operation) -> (Combiners, bool) {
 
 /// Whether some pixel shows more than three steps between two programs.
 pub(super) fn told_apart(a: &Combiners, b: &Combiners) -> bool {
-    let mut choices = Choices(7);
+    let mut choices = Choices::new(7);
     (0..256).any(|_| {
         let pixel = Pixel::of(&mut choices);
         let [a, b] = [a, b].map(|combiners| run::<i32>(combiners, Profile::Nv2a, &pixel));
@@ -286,7 +286,7 @@ fn a_dot_product_reaches_alpha_on_both_chips() {
     let nv10 = lower(&program, &context(Profile::Nv10)).unwrap().combiners;
     let nv2a = lower(&program, &context(Profile::Nv2a)).unwrap().combiners;
     assert!(!nv10.stages[0].rgb.ab_blue_to_alpha && nv2a.stages[0].rgb.ab_blue_to_alpha);
-    let mut choices = Choices(3);
+    let mut choices = Choices::new(3);
     for _ in 0..200 {
         let pixel = Pixel::of(&mut choices);
         assert_eq!(run::<i32>(&nv10, Profile::Nv10, &pixel), run::<i32>(&nv2a, Profile::Nv2a, &pixel));

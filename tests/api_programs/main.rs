@@ -14,16 +14,18 @@ mod pixel_shader;
 mod run;
 mod scenes;
 
-/// Numbers that look random and are the same everywhere (SplitMix64).
-struct Choices(u64);
+use ninebit::random::Random;
+
+/// Choices of a seed.
+struct Choices(Random);
 
 impl Choices {
+    fn new(seed: u64) -> Choices {
+        Choices(Random::seeded(seed))
+    }
+
     fn number(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ z >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ z >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ z >> 31
+        self.0.bits()
     }
 
     fn below(&mut self, most: usize) -> usize {

@@ -200,7 +200,7 @@ proptest! {
     /// An environment gives what the API says, in real numbers; and integers within the bound of their rounding.
     #[test]
     fn environments_are_what_the_api_says(seed in any::<u64>(), nv10 in any::<bool>()) {
-        let mut choices = Choices(seed);
+        let mut choices = Choices::new(seed);
         let profile = if nv10 { Profile::Nv10 } else { Profile::Nv2a };
         let units = profile.texture_units();
         let textures = std::array::from_fn(|unit| {

@@ -114,7 +114,7 @@ proptest! {
 
     #[test]
     fn what_is_written_is_read(seed in any::<u64>()) {
-        let program = stages(&mut Choices(seed), 8);
+        let program = stages(&mut Choices::new(seed), 8);
         for form in [Form::Calls, Form::Numbers, Form::Effect] {
             let text = text(&program, form);
             let read = parse(&text).map(bare);

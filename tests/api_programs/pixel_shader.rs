@@ -228,7 +228,7 @@ proptest! {
     /// A shader gives what the language says, in real numbers; and integers within the bound of their rounding.
     #[test]
     fn shaders_are_what_the_language_says(seed in any::<u64>(), nv10 in any::<bool>()) {
-        let mut choices = Choices(seed);
+        let mut choices = Choices::new(seed);
         let profile = if nv10 { Profile::Nv10 } else { Profile::Nv2a };
         let slots = 1 + choices.below(if nv10 { 2 } else { 8 });
         let program = shader(&mut choices, if nv10 { 2 } else { 4 }, slots);
@@ -284,7 +284,7 @@ proptest! {
     /// Texture instructions, pairs and constants come back from their text.
     #[test]
     fn what_is_printed_is_read(seed in any::<u64>()) {
-        let mut choices = Choices(seed);
+        let mut choices = Choices::new(seed);
         let mut program = shader(&mut choices, 4, 3);
         program.version = choices.of(&[Version::Ps11, Version::Ps12, Version::Ps13]);
         let row = |unit, signed_scale| Some(TextureSource { unit, signed_scale });
@@ -463,7 +463,7 @@ fn cnd_takes_its_second_source_above_one_half() {
         [stage.inputs[0].register, stage.inputs[2].register],
         [Register::SecondaryColor, Register::PrimaryColor]
     );
-    let mut pixel = Pixel::of(&mut Choices(5));
+    let mut pixel = Pixel::of(&mut Choices::new(5));
     for alpha in 0..=255 {
         pixel.textures[0][3] = alpha;
         let expected = if alpha >= 128 { pixel.diffuse } else { pixel.specular };
@@ -493,8 +493,11 @@ fn a_saturated_result_is_never_negative_to_a_reader() {
 #[test]
 fn a_color_cnd_behind_plus_takes_its_second_source() {
     let text = |pair: &str| format!("ps.1.1\ntex t0\ntex t1\nmov r0, v0\n{pair}");
-    let pixel =
-        Pixel { diffuse: [10, 20, 30, 40], textures: [[50; 4], [60; 4], [0; 4], [0; 4]], ..Pixel::of(&mut Choices(1)) };
+    let pixel = Pixel {
+        diffuse: [10, 20, 30, 40],
+        textures: [[50; 4], [60; 4], [0; 4], [0; 4]],
+        ..Pixel::of(&mut Choices::new(1))
+    };
     for (pair, red) in [
         ("mov r1.a, v0\n+ cnd r0.rgb, r0.a, t0, t1", 50),
         ("cnd r0.rgb, r0.a, t0, t1\n+ mov r1.a, v0", 60),

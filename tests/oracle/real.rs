@@ -157,9 +157,9 @@ mod tests {
 
     #[test]
     fn nearest_f32_agrees_with_division() {
-        let mut seed = 1_u64;
+        let mut random = ninebit::random::Random::seeded(1);
         for _ in 0..100_000 {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            let seed = random.bits();
             let (n, d) = ((seed >> 40) as i128 - (1 << 23), (seed >> 13 & 0xff_ffff) as i128 + 1);
             assert_eq!(nearest_f32(n, d, 0), n as f32 / d as f32);
         }

@@ -4,6 +4,7 @@ use super::chart::{Axis, BLUE, Line, RED, chart, ticks};
 use super::page::{Section, cells};
 use super::view::{draw, plan, scene};
 use ninebit::plan::{Plan, PlanOptions};
+use ninebit::random::Random;
 use ninebit::raster::ideal;
 use ninebit::raster::interpolate::{Sample, Settled};
 use ninebit::raster::setup::Triangle;
@@ -90,11 +91,8 @@ const EDGE: [[f32; 2]; 3] = [[60.3, 121.7], [4.2, 8.5], [119.6, 8.5]];
 
 /// The largest errors of many triangles with slanted edges.
 fn slanted(w: [f64; 3]) -> [Errors; 2] {
-    let mut random = 1_u32;
-    let mut next = || {
-        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-        (random >> 21) as f32 / 16.0
-    };
+    let mut random = Random::seeded(1);
+    let mut next = || random.below(2048) as f32 / 16.0;
     let mut worst = [Errors::default(); 2];
     for _ in 0..100 {
         let corners = std::array::from_fn(|_| [next(), next()]);

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use ninebit::output::{Destination, make_folder, write_stdout};
+use ninebit::random::Random;
 use ninebit::shard::Shard;
 use ninebit::state::{Named, Profile};
 use ninebit::threads::on_threads;
 use ninebit::vectors::error::VectorError;
 use ninebit::vectors::part::Part;
-use ninebit::vectors::random::Random;
 use ninebit::vectors::sweep::{MOST_ROWS, Sweep};
 use ninebit::vectors::tree::{self, Done, Of, Tree};
 use ninebit::vectors::{BEHAVIOUR, Unit};

@@ -21,23 +21,16 @@ use crate::texture::place::Place;
 const WIDTH: u32 = 640;
 const HEIGHT: u32 = 480;
 
-/// A sequence of numbers that is the same everywhere.
-struct Random(u64);
+/// The sequence of the tests.
+struct Random(crate::random::Random);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 ^= self.0 << 13;
-        self.0 ^= self.0 >> 7;
-        self.0 ^= self.0 << 17;
-        self.0
-    }
-
     fn below(&mut self, n: u64) -> u64 {
-        (self.next() >> 20) % n
+        self.0.below(n.into()) as u64
     }
 
     fn unit(&mut self) -> f32 {
-        (self.next() >> 40) as f32 / (1_u64 << 24) as f32
+        (self.0.bits() >> 40) as f32 / (1_u64 << 24) as f32
     }
 
     fn of<T: Copy>(&mut self, values: &[T]) -> T {
@@ -96,7 +89,7 @@ fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
             7 | 8 => r.below(33) as f32 / 8.0,
             _ => 4.0 * r.unit() - 0.25,
         };
-        vertex.diffuse = VertexColor::Bytes([0; 4].map(|_| r.next() as u8));
+        vertex.diffuse = VertexColor::Bytes([0; 4].map(|_| r.0.bits() as u8));
         vertex.texture_coordinates[0] = [st[0], st[1], 0.0, 1.0];
         let q = match kind {
             4 | 7 | 8 => r.of(&[1.0, 2.0, 4.0, -0.5]),
@@ -292,7 +285,7 @@ fn compare<const FMA: bool, const ROW: bool>(
 #[test]
 fn rows_interpolate_what_the_definition_does() {
     let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut random = Random(crate::random::Random::seeded(0x9e37_79b9_7f4a_7c15));
     let (mut pixels, mut patches, mut fours, mut round) = (0, 0, 0, 0_u64);
     let mut patch = Patch::default();
     while pixels < wanted || patches < 20_000 {

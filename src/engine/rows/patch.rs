@@ -137,16 +137,14 @@ fn limit<const ROWS: usize>(e: i32, a: i32, b: i32, low: &mut [i32; ROWS], high:
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
     use crate::state::Profile;
 
     /// The rows of all boxes of triangles of all sizes and shapes are what spans say.
     #[test]
     fn boxes_hold_the_spans() {
-        let mut state = 0x1234_5678_u64;
-        let mut random = |n: i64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> 33) as i64 % n
-        };
+        let mut sequence = Random::seeded(0x1234_5678);
+        let mut random = |n: i64| sequence.below(n as u128) as i64;
         let (mut patch, mut triangle, mut drawn) = (Patch::default(), Triangle::default(), 0);
         for round in 0..40_000 {
             // 1/16 pixel; every third is a sliver.

@@ -374,13 +374,8 @@ mod tests {
     /// Sequences of quotients against divisions, one by one: divisors of few and of many bits, ties in all of them.
     #[test]
     fn steps_are_floors() {
-        let mut state = 0x2545_f491_4f6c_dd1d_u64;
-        let mut random = |bits: u32| {
-            state ^= state << 13;
-            state ^= state >> 7;
-            state ^= state << 17;
-            (state >> (64 - bits)) as i64
-        };
+        let mut sequence = crate::random::Random::seeded(0x2545_f491_4f6c_dd1d);
+        let mut random = |bits: u32| (sequence.bits() >> (64 - bits)) as i64;
         let (mut exact, mut close) = (0, 0);
         for round in 0..60_000 {
             let bits = 2 + round % 52;
