@@ -12,7 +12,7 @@ use ninebit::scene::{self, ErrorKind};
 
 #[test]
 fn every_broken_scene_says_what_is_wrong() {
-    let bless = std::env::var_os("BLESS").is_some();
+    let bless = crate::settings::bless();
     let mut names: Vec<String> = fs::read_dir("tests/bad")
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())

@@ -4,6 +4,7 @@
 use crate::bench;
 
 use bench::Bench;
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -48,4 +49,30 @@ fn diff() {
 #[test]
 fn op() {
     commands_print_what_is_shown("docs/op.md");
+}
+
+/// The variables that tests and the program's own unit tests read are those that the page lists.
+#[test]
+fn variables_of_tests_are_listed() {
+    let page = fs::read_to_string("docs/testing.md").unwrap();
+    let listed =
+        page.lines().filter_map(|line| line.strip_prefix("| `")).filter_map(|line| line.split(['`', '=']).next());
+    let listed: BTreeSet<String> = listed.filter(|name| name.starts_with("NINEBIT_")).map(str::to_owned).collect();
+    let mut read = BTreeSet::new();
+    let mut folders = vec![Path::new("tests").to_path_buf(), Path::new("src").to_path_buf()];
+    while let Some(folder) = folders.pop() {
+        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let text = fs::read_to_string(path).unwrap();
+                let names = text.split("(\"NINEBIT_").skip(1).map(|rest| rest.split('"').next().unwrap());
+                let is_name =
+                    |name: &&str| !name.is_empty() && name.bytes().all(|b| b.is_ascii_uppercase() || b == b'_');
+                read.extend(names.filter(is_name).map(|name| format!("NINEBIT_{name}")));
+            }
+        }
+    }
+    assert!(read.len() >= 8, "{read:?}");
+    assert_eq!(listed, read);
 }

@@ -4,6 +4,7 @@
 //! The normal run draws the first 2,000 of a sequence of random scenes. `NINEBIT_ENGINE_SCENES` says how many instead, `NINEBIT_ENGINE_SHARD=k/n`
 //! draws every n-th of them, beginning with the k-th (from 0), `NINEBIT_ENGINE_MATRIX` says how many of the first are drawn by every
 //! instruction set with 1, 2, 3 and 8 threads and bands of all sizes, and `NINEBIT_ENGINE_SEED` chooses another sequence.
+use crate::settings::number;
 use crate::{random_scene, scene_files};
 
 use ninebit::engine::{Engine, Isa, RenderOptions, render};
@@ -64,11 +65,6 @@ fn engines_agree_on_every_scene_of_the_repository() {
     assert!(complaints.is_empty(), "{}", complaints.join("\n"));
 }
 
-/// A number from the environment.
-fn setting(name: &str, otherwise: u32) -> u32 {
-    std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(otherwise)
-}
-
 /// Everything that the engine can be told: instruction sets, threads, rows of a band.
 fn every_way() -> Vec<RenderOptions> {
     let mut ways = Vec::new();
@@ -106,8 +102,8 @@ fn digest(frames: &Frames) -> u64 {
 /// Sums of digests do not depend on how the scenes are shared out among shards.
 #[test]
 fn engines_agree_on_random_scenes() {
-    let (scenes, matrix) = (setting("NINEBIT_ENGINE_SCENES", 2_000), setting("NINEBIT_ENGINE_MATRIX", 12));
-    let seed = setting("NINEBIT_ENGINE_SEED", 5);
+    let (scenes, matrix) = (number("NINEBIT_ENGINE_SCENES", 2_000), number("NINEBIT_ENGINE_MATRIX", 12));
+    let seed = number("NINEBIT_ENGINE_SEED", 5);
     let shard = std::env::var("NINEBIT_ENGINE_SHARD").unwrap_or_else(|_| "0/1".to_owned());
     let (first, step) = shard.split_once('/').expect("NINEBIT_ENGINE_SHARD is k/n");
     let (first, step) = (first.parse::<u32>().unwrap(), step.parse::<usize>().unwrap());

@@ -4,6 +4,7 @@
 #[path = "oracle/model.rs"]
 mod model;
 use crate::random_scene;
+use crate::settings::number;
 
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
@@ -16,11 +17,6 @@ use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};
 
-/// A number from the environment.
-fn setting(name: &str, otherwise: u32) -> u32 {
-    std::env::var(name).ok().and_then(|n| n.parse().ok()).unwrap_or(otherwise)
-}
-
 /// A runner whose scenes are the same on every machine. NINEBIT_ORACLE_SEED gives others.
 fn runner(cases: u32) -> TestRunner {
     let config = Config {
@@ -30,7 +26,7 @@ fn runner(cases: u32) -> TestRunner {
         failure_persistence: None,
         ..Config::default()
     };
-    let seed = setting("NINEBIT_ORACLE_SEED", 9) as u8;
+    let seed: u8 = number("NINEBIT_ORACLE_SEED", 9);
     TestRunner::new_with_rng(config, TestRng::from_seed(RngAlgorithm::ChaCha, &[seed; 32]))
 }
 
@@ -85,7 +81,7 @@ fn policies() -> impl Strategy<Value = Policies> {
 #[test]
 fn random_scenes_agree() {
     let policies = prop_oneof![2 => Just(Policies::DEFAULT), 1 => policies()];
-    run(setting("NINEBIT_ORACLE_SCENES", 2000), &(random_scene::scene(), policies).boxed());
+    run(number("NINEBIT_ORACLE_SCENES", 2000), &(random_scene::scene(), policies).boxed());
 }
 
 #[test]

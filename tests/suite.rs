@@ -25,6 +25,8 @@ mod random_vertex_program;
 mod recompute;
 #[path = "common/scene_files.rs"]
 mod scene_files;
+#[path = "common/settings.rs"]
+mod settings;
 #[path = "common/third_party.rs"]
 mod third_party;
 

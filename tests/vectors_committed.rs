@@ -3,7 +3,6 @@
 
 use std::collections::BTreeSet;
 use std::path::Path;
-use std::process::Command;
 
 use ninebit::state::{Named, Policies, Profile};
 use ninebit::vectors::cases::{self, Level};
@@ -148,37 +147,4 @@ fn mutations_are_of_texts_that_occur_once() {
         let row = format!("| {rule} | `{}` | {what} | ", file.strip_prefix("src/").unwrap());
         assert!(page.contains(&row), "run vectors/mutation/run: docs/mutations.md has no {row}");
     }
-}
-
-/// A disk that is full in the middle of an export: the exit status says so, and no manifest makes a pack of what is there.
-#[test]
-#[cfg(unix)]
-fn a_full_disk_leaves_no_pack() {
-    let folder = tempfile::tempdir().unwrap();
-    let mount = Command::new("mount").args(["-t", "tmpfs", "-o", "size=256k", "tmpfs"]).arg(folder.path()).status();
-    if !mount.is_ok_and(|status| status.success()) {
-        eprintln!("skipped: this user cannot mount a tmpfs");
-        return;
-    }
-    let place = folder.path().join("pack");
-    let arguments = ["vectors", "export", "--unit", "general-stage", "--unit", "mux", "-o", place.to_str().unwrap()];
-    let output = Command::new(env!("CARGO_BIN_EXE_ninebit")).args(arguments).output().unwrap();
-    let left: Vec<String> = std::fs::read_dir(place.join("units"))
-        .into_iter()
-        .flatten()
-        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
-        .collect();
-    let manifest = place.join("MANIFEST.json").exists();
-    let leaf = folder.path().join("leaves");
-    let filler = std::fs::write(folder.path().join("filler"), vec![1; 1 << 20]);
-    let swept = Command::new(env!("CARGO_BIN_EXE_ninebit"))
-        .args(["vectors", "sweep", "--unit", "mux", "-o", leaf.to_str().unwrap()])
-        .output()
-        .unwrap();
-    let leaves = std::fs::read_dir(&leaf).map_or(0, Iterator::count);
-    assert!(Command::new("umount").arg(folder.path()).status().unwrap().success());
-    assert!(output.status.code() == Some(7) && !manifest, "{output:?}");
-    assert!(String::from_utf8_lossy(&output.stderr).contains("free some space"), "{output:?}");
-    assert!(left.iter().all(|name| name == "mux.tsv"), "{left:?}");
-    assert!(filler.is_err() && swept.status.code() == Some(7) && leaves == 0, "{swept:?}");
 }

@@ -84,7 +84,7 @@ impl Rendered {
         }
         let text = Expectation::text(name, capture, captured, ours);
         let path = Expectation::path(name);
-        if std::env::var_os("BLESS").is_some() {
+        if crate::settings::bless() {
             std::fs::write(&path, &text).unwrap();
         }
         assert!(std::fs::read_to_string(&path).unwrap() == text, "{} is not what the capture gives", path.display());
@@ -93,7 +93,7 @@ impl Rendered {
 
 /// The folder of captures, if there is one.
 fn captures() -> Option<PathBuf> {
-    std::env::var_os("NINEBIT_CAPTURES").map(|folder| Path::new(&folder).join("frames"))
+    crate::settings::captures().map(|folder| folder.join("frames"))
 }
 
 fn load(path: &Path) -> image::RgbaImage {

@@ -17,5 +17,7 @@ mod frames;
 mod picture;
 mod probes;
 mod raster_probes;
+#[path = "../common/settings.rs"]
+mod settings;
 mod sheet;
 mod table;

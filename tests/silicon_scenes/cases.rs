@@ -71,7 +71,7 @@ fn bump_signs(x: u32, y: u32, _: &Surface) -> bool {
 }
 
 /// All of them: the thirteen, and what else two of the frames show.
-pub const CASES: [Case; 15] = [
+pub static CASES: [Case; 15] = [
     Case {
         name: "t01-r5g6b5",
         capture: "Texture_format/TexFmt_R5G6B5.png",

@@ -1,7 +1,7 @@
 //! Captured frames of a real NV2A whose textures and geometry are known, drawn from the scenes of `vectors/scenes/silicon`.
 //!
 //! The captures are not part of the repository; a scene's expectation holds the digest of what is compared of one. Nor are some
-//! images that the captured programs load: scenes that need them are drawn where `NINEBIT_CAPTURES` names a folder that has
+//! images that the captured programs load: scenes that need them are ignored, unless `NINEBIT_CAPTURES` names a folder that has
 //! `frames/SUITE/NAME.png` and `assets/NAME`. Every scene is compared with its capture itself there.
 //!
 //! `BLESS=1` writes generated scenes and textures anew; with `NINEBIT_CAPTURES` also masks and expectations, from the captures.
@@ -18,9 +18,12 @@ mod geometry;
 #[path = "../common/scene_files.rs"]
 mod scene_files;
 mod scenes;
+#[path = "../common/settings.rs"]
+mod settings;
 mod textures;
 
 use cases::{CASES, Case};
+use libtest_mimic::{Arguments, Failed, Trial};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::expectation::{Expectation, masked_digest};
 use ninebit::frame::Surface;
@@ -30,6 +33,7 @@ use ninebit::plan::Plan;
 use ninebit::report::trace_text;
 use ninebit::scene;
 use ninebit::scene::image::{ImageLimits, load};
+use settings::{bless, captures};
 use std::path::{Path, PathBuf};
 use textures::Picture;
 
@@ -43,21 +47,6 @@ fn folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/silicon")
 }
 
-fn set(name: &str) -> bool {
-    std::env::var_os(name).is_some_and(|value| !value.is_empty() && value != "0")
-}
-
-/// Files are to be written anew.
-fn bless() -> bool {
-    assert!(!(set("BLESS") && set("CI")), "nothing is rewritten in continuous integration");
-    set("BLESS")
-}
-
-/// The folder of captures, if there is one.
-fn captures() -> Option<PathBuf> {
-    set("NINEBIT_CAPTURES").then(|| PathBuf::from(std::env::var_os("NINEBIT_CAPTURES").unwrap()))
-}
-
 /// A scene as it was drawn.
 struct Drawn {
     text: String,
@@ -65,14 +54,20 @@ struct Drawn {
     surface: Surface,
 }
 
-/// Draws a scene; `None` if it needs images that are not here.
-fn draw(case: &Case) -> Option<Drawn> {
+/// The file of a scene, and its text.
+fn written(case: &Case) -> (PathBuf, String) {
     let file = folder().join(case.name).with_extension("ron");
     let text = std::fs::read_to_string(&file).unwrap_or_else(|error| panic!("{}: {error}", file.display()));
+    (file, text)
+}
+
+/// Draws a scene.
+fn draw(case: &Case) -> Drawn {
+    let (file, text) = written(case);
     let place;
     let file = if !scene_files::captured(&text).is_empty() {
         place = tempfile::tempdir().unwrap();
-        let assets = captures()?.join("assets");
+        let assets = captures().expect("NINEBIT_CAPTURES names the folder of its images").join("assets");
         copy(&folder().join("textures"), &place.path().join("textures"));
         copy(&assets, &place.path().join(scene_files::CAPTURED));
         let copied = place.path().join("scene.ron");
@@ -84,7 +79,7 @@ fn draw(case: &Case) -> Option<Drawn> {
     let loaded = scene::load(&file, &Limits::default()).unwrap_or_else(|error| panic!("{}", error.render(false)));
     assert!(loaded.warnings.is_empty(), "{}: a warning", case.name);
     let surface = render(&loaded.plan, &RenderOptions::default()).surfaces.remove(0);
-    Some(Drawn { text, plan: loaded.plan, surface })
+    Drawn { text, plan: loaded.plan, surface }
 }
 
 fn copy(from: &Path, to: &Path) {
@@ -102,7 +97,6 @@ fn against_capture(case: &Case, drawn: &Drawn, captured: &[[u8; 4]], compared: &
     let ours = drawn.surface.rgba8();
     let different: Vec<usize> = (0..ours.len()).filter(|n| compared[*n] && ours[*n] != captured[*n]).collect();
     let total = compared.iter().filter(|compared| **compared).count();
-    println!("{:<28}{total:>8} pixels compared{:>8} differ", case.name, different.len());
     let width = drawn.surface.width as usize;
     let first = *different.first()?;
     let mut message = format!("{}: {} of {total} pixels differ\n", case.name, different.len());
@@ -114,11 +108,8 @@ fn against_capture(case: &Case, drawn: &Drawn, captured: &[[u8; 4]], compared: &
 }
 
 /// A case's scene against its expectation and, if it is there, its capture.
-fn check(case: &Case) -> Result<(), String> {
-    let Some(drawn) = draw(case) else {
-        println!("{:<28}not drawn: its images are not here; NINEBIT_CAPTURES names their folder", case.name);
-        return Ok(());
-    };
+fn check(case: &Case) -> Result<(), Failed> {
+    let drawn = draw(case);
     let path = folder().join(case.name).with_extension("expect.ron");
     let mut wrong = None;
     if let Some(captures) = captures() {
@@ -151,32 +142,46 @@ fn check(case: &Case) -> Result<(), String> {
         assert!(text == expectation.to_text(), "{} is not what the capture gives", path.display());
     }
     if let Some(message) = wrong {
-        return Err(message);
+        return Err(message.into());
     }
     let text = std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let expectation = Expectation::parse(&text).map_err(|error| error.to_string())?;
+    let expectation = Expectation::parse(&text)?;
     assert_eq!(expectation.capture.as_deref(), Some(case.capture), "{}", case.name);
     assert_eq!(expectation.pixels, Some(case.pixels), "{}", case.name);
     match expectation.compare(&drawn.surface, &folder()).map_err(|error| format!("{}: {error}", case.name))? {
         None => Ok(()),
-        Some(mismatch) => Err(format!("{}: {mismatch}; set NINEBIT_CAPTURES to see where", case.name)),
+        Some(mismatch) => Err(format!("{}: {mismatch}; set NINEBIT_CAPTURES to see where", case.name).into()),
     }
 }
 
-#[test]
-fn every_scene_shows_what_was_captured() {
-    if bless() {
+fn main() {
+    let arguments = Arguments::from_args();
+    if bless() && !arguments.list {
         write_generated();
     }
-    let only = std::env::var("NINEBIT_CASE").unwrap_or_default();
-    let wrong: Vec<String> =
-        CASES.iter().filter(|case| case.name.contains(&only)).filter_map(|case| check(case).err()).collect();
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let mut trials: Vec<Trial> = CASES.iter().map(trial).collect();
+    for (name, test) in [
+        ("generated_scenes_are_what_their_formulas_give", generated_scenes_are_what_their_formulas_give as fn()),
+        ("stored_textures_are_what_their_formulas_give", stored_textures_are_what_their_formulas_give),
+    ] {
+        trials.push(Trial::test(name, move || {
+            test();
+            Ok(())
+        }));
+    }
+    libtest_mimic::run(&arguments, trials).exit();
+}
+
+/// The test of a scene; ignored where its images are not here.
+fn trial(case: &'static Case) -> Trial {
+    let trial = Trial::test(format!("shows_what_was_captured::{}", case.name), move || check(case));
+    let complete = scene_files::captured(&written(case).1).is_empty() || captures().is_some();
+    if complete { trial } else { trial.with_ignored_flag(true).with_kind("its images are not here") }
 }
 
 /// Writes everything that formulas give.
 fn write_generated() {
-    for case in CASES {
+    for case in &CASES {
         if let Some(scene) = case.scene {
             write_file(&folder().join(case.name).with_extension("ron"), scene().as_bytes()).unwrap();
         }
@@ -196,16 +201,14 @@ fn pictures() -> impl Iterator<Item = (PathBuf, Picture)> {
     textures::pictures().into_iter().map(move |(name, picture)| (path(name), picture))
 }
 
-#[test]
 fn generated_scenes_are_what_their_formulas_give() {
-    for case in CASES {
+    for case in &CASES {
         let Some(scene) = case.scene else { continue };
         let path = folder().join(case.name).with_extension("ron");
         assert!(std::fs::read_to_string(&path).unwrap() == scene(), "{}: BLESS=1 writes it", path.display());
     }
 }
 
-#[test]
 fn stored_textures_are_what_their_formulas_give() {
     for (path, picture) in pictures() {
         let stored = load(&path, &ImageLimits::default()).unwrap_or_else(|error| panic!("{error}"));

@@ -104,7 +104,7 @@ static MADE: Once = Once::new();
 
 /// Writes the files, once, if they are to be written.
 pub fn bless() {
-    if super::page::blessing() {
+    if super::settings::bless() {
         MADE.call_once(|| {
             for (name, bytes) in files() {
                 std::fs::write(Path::new(FOLDER).join(name), bytes).unwrap();

@@ -9,6 +9,8 @@ mod blocks;
 mod chart;
 mod content;
 mod page;
+#[path = "../common/settings.rs"]
+mod settings;
 mod view;
 
 mod compressed;

@@ -5,7 +5,9 @@ use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::sync::{LazyLock, Mutex};
+use std::sync::Mutex;
+
+use super::settings::bless;
 
 const PAGE: &str = "docs/stability.md";
 const PICTURES: &str = "docs/pictures/stability";
@@ -27,16 +29,6 @@ pub fn cells<const N: usize>(cells: [&str; N]) -> Vec<String> {
     cells.map(str::to_string).to_vec()
 }
 
-/// Whether files are to be written.
-pub fn blessing() -> bool {
-    static SET: LazyLock<bool> = LazyLock::new(|| {
-        let set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty() && value != "0");
-        assert!(!(set("BLESS") && set("CI")), "nothing is rewritten in continuous integration");
-        set("BLESS")
-    });
-    *SET
-}
-
 /// A table in Markdown.
 fn table(rows: &[Vec<String>]) -> String {
     let line = |row: &[String]| format!("| {} |\n", row.join(" | "));
@@ -52,7 +44,7 @@ pub fn check(section: &Section) {
     }
     for (name, chart) in &section.charts {
         let path = Path::new(PICTURES).join(name);
-        if blessing() {
+        if bless() {
             fs::write(&path, chart).unwrap();
         }
         let stored = fs::read_to_string(&path).unwrap_or_default();
@@ -65,7 +57,7 @@ pub fn check(section: &Section) {
         let start = page.find(&open).unwrap_or_else(|| panic!("{PAGE} has no {open}")) + open.len();
         let end = start + page[start..].find(close).unwrap();
         let measured = table(rows);
-        if blessing() {
+        if bless() {
             page.replace_range(start..end, &measured);
             fs::write(PAGE, &page).unwrap();
         } else {
@@ -117,7 +109,7 @@ fn png(picture: &Picture) -> Vec<u8> {
 
 fn check_picture(name: &str, picture: &Picture) {
     let path = Path::new(PICTURES).join(name);
-    if blessing() {
+    if bless() {
         fs::create_dir_all(PICTURES).unwrap();
         fs::write(&path, png(picture)).unwrap();
     }

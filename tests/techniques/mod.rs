@@ -59,7 +59,7 @@ fn techniques_are_as_exact_as_they_were() {
     let lines: Vec<String> = files.par_iter().map(|file| figures(file)).collect();
     lines.iter().for_each(|line| writeln!(text, "{line}").unwrap());
     let pinned = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/techniques/figures.tsv");
-    if std::env::var_os("BLESS").is_some() {
+    if crate::settings::bless() {
         std::fs::write(&pinned, &text).unwrap();
     }
     let expected = std::fs::read_to_string(&pinned).unwrap_or_default();
