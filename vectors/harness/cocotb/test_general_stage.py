@@ -59,8 +59,8 @@ async def every_row(dut):
         ]
         if wrong:
             failed += 1
-            dut._log.error("%s: %s", show(row), ", ".join(wrong))
-            assert failed < SHOWN, f"{failed} of the first {rows} rows failed; the others were not applied"
+            dut._log.error("general-stage: %s: %s", show(row), ", ".join(wrong))
+            assert failed < SHOWN, f"general-stage: {failed} of the first {rows} rows failed; the others were not applied"
     assert rows > 0, "the table has no rows"
-    assert failed == 0, f"{failed} of {rows} rows failed"
+    assert failed == 0, f"general-stage: {failed} of {rows} rows failed"
     dut._log.info("0 of %d rows failed", rows)
