@@ -6,8 +6,9 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use multiversion::multiversion;
-use ninebit::combiner::general::{dot_product, output};
+use ninebit::combiner::general::dot_product;
 use ninebit::combiner::mapping::{expand_normal, unsigned_identity};
+use ninebit::combiner::output::finished;
 use ninebit::number::{Factor, Narrow, Paired, Register, Sum};
 use ninebit::state::{Bias, RegisterFloor, Scale};
 use std::hint::black_box;
@@ -22,7 +23,7 @@ where
 {
     let a = texture.map(expand_normal);
     let b = primary.map(expand_normal);
-    unsigned_identity(output(dot_product(a, b), Bias::None, Scale::One, RegisterFloor::Full, |_, v| v))
+    unsigned_identity(finished(dot_product(a, b).rounded(), Bias::None, Scale::One, RegisterFloor::Full))
 }
 
 type Block = [[i16; PIXELS]; 3];

@@ -47,6 +47,7 @@
 //! ```
 
 pub mod accuracy;
+pub mod algebra;
 pub mod chart;
 pub mod combiner;
 pub mod compare;

@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 /// Modules that use one another and the standard library, nothing else.
-const CORE: [&str; 7] = ["state", "number", "trace", "raster", "texture", "combiner", "rop"];
+const CORE: [&str; 8] = ["state", "number", "trace", "algebra", "raster", "texture", "combiner", "rop"];
 
 fn files(folder: &Path, found: &mut Vec<PathBuf>) {
     for entry in std::fs::read_dir(folder).unwrap() {
@@ -64,9 +64,21 @@ fn the_core_uses_itself_and_the_standard_library() {
     }
 }
 
+/// Numbers know nothing of observers, and the operations of the order nothing of who runs them.
+#[test]
+fn numbers_and_the_algebra_stand_below() {
+    for (module, below) in [("number", &["state", "number"][..]), ("algebra", &["state", "algebra", "trace"])] {
+        for (file, text) in sources(&format!("src/{module}")) {
+            for name in names_after(&text, "crate::") {
+                assert!(below.contains(&name), "{file} uses {name}");
+            }
+        }
+    }
+}
+
 #[test]
 fn only_the_combiners_read_policies() {
-    for module in CORE.into_iter().filter(|module| !["state", "combiner"].contains(module)) {
+    for module in CORE.into_iter().filter(|module| !["state", "algebra", "combiner"].contains(module)) {
         for (file, text) in sources(&format!("src/{module}")) {
             assert!(!text.contains("Policies"), "{file}");
         }

@@ -272,8 +272,9 @@ fn scenes_are_timed() {
     let spread = &scenes[0]["ns_per_shaded_pixel"];
     assert!(["median", "p10", "p90"].iter().all(|part| spread[part].as_f64() > Some(0.0)), "{spread}");
     assert!(scenes.iter().all(|scene| scene["engine"] == "scalar"));
-    let text = bench.run("bench scene.ron --frames 1 --policy CMB-7=each").text();
-    assert!(text.contains("scene.ron (drawn by the scalar engine, for its policies)"), "{text}");
+    let document: serde_json::Value =
+        serde_json::from_slice(&bench.run("bench scene.ron --frames 1 --policy CMB-7=each --json").data()).unwrap();
+    assert_eq!(document["scenes"][0]["engine"], "fast");
     bench.write("scene.expect.ron", "()");
     assert!(!bench.run("bench scene.expect.ron scene.ron --frames 1").text().contains("expect"));
     bench.run("bench scene.expect.ron").failed(2, "nothing to measure");

@@ -1,5 +1,5 @@
 //! The fast engine against the definition: the same words and depths in every scene of the repository and in random ones, whatever the
-//! instruction set and the threads.
+//! instruction set, the threads and the policies.
 //!
 //! The normal run draws the first 2,000 of a sequence of random scenes. `NINEBIT_ENGINE_SCENES` says how many instead, `NINEBIT_ENGINE_SHARD=k/n`
 //! draws every n-th of them, beginning with the k-th (from 0), `NINEBIT_ENGINE_MATRIX` says how many of the first are drawn by every
@@ -11,7 +11,7 @@ use ninebit::frame::Frames;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::scene;
-use ninebit::state::{Named, Scene};
+use ninebit::state::{Named, POLICIES, Policies, Scene};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use sha2::{Digest, Sha256};
@@ -92,6 +92,17 @@ fn tree(seed: u32, number: u32) -> impl ValueTree<Value = Scene> {
     random_scene::scene().new_tree(&mut runner).unwrap()
 }
 
+/// Policies for a scene of the sequence: each rule's by chance, or one rule's alone.
+fn policies(seed: u32, number: u32) -> Policies {
+    let bytes = Sha256::digest([seed.to_le_bytes(), number.to_le_bytes()].concat());
+    let alone = (number % 2 == 1).then_some(usize::from(bytes[31]) % POLICIES.len());
+    let mut policies = Policies::DEFAULT;
+    for (n, policy) in POLICIES.iter().enumerate().filter(|(n, _)| alone.is_none_or(|alone| alone == *n)) {
+        policies.choose(policy.rule, usize::from(bytes[n]) % policy.values.len());
+    }
+    policies
+}
+
 /// What a frame adds to the digest: the first 64 bits of the SHA-256 of its words and depths.
 fn digest(frames: &Frames) -> u64 {
     let mut hash = Sha256::new();
@@ -119,6 +130,8 @@ fn engines_agree_on_random_scenes() {
         if number < matrix {
             compare(&plan(false), &best)?;
         }
+        let policies = policies(seed, number);
+        compare(&Plan { policies, ..plan(true) }, ways).map_err(|why| format!("{policies:?}: {why}"))?;
         compare(&plan(true), ways)
     };
     let (mut count, mut sum) = (0_u32, 0_u64);

@@ -174,11 +174,9 @@ fn text(document: &Document) -> String {
         let pixel = measured.ns_per_shaded_pixel;
         let spread = format!("{:.3} ({:.3}, {:.3})", pixel.median, pixel.p10, pixel.p90);
         let peak = measured.peak_memory_bytes.map_or_else(|| "-".to_owned(), |n| format!("{:.1}", n as f64 / 1e6));
-        let by =
-            if measured.engine == document.engine { "" } else { " (drawn by the scalar engine, for its policies)" };
         let _ = writeln!(
             text,
-            "{:>10} {:>10.3} {:>10} {:>10.3} {:>22}  {}{by}",
+            "{:>10} {:>10.3} {:>10} {:>10.3} {:>22}  {}",
             measured.shaded_pixels,
             (measured.load_microseconds + measured.prepare_microseconds) / 1e3,
             peak,

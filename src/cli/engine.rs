@@ -13,8 +13,7 @@ pub(crate) struct EngineArguments {
     /// Threads; 0 takes all cores. The picture does not depend on it
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = threads)]
     pub(crate) threads: usize,
-    /// What draws: one pixel at a time by the definition, or blocks of pixels; under policies other than the default ones always the
-    /// definition. The picture does not depend on it
+    /// What draws: one pixel at a time by the definition, or blocks of pixels. The picture does not depend on it
     #[arg(long, value_name = "ENGINE", default_value = "fast", value_parser = PossibleValuesParser::new(Engine::NAMES))]
     engine: String,
     /// The instruction set of the fast engine [default: the widest that the machine has]

@@ -1,9 +1,13 @@
 //! FIN-1 to FIN-5: the final combiner.
 
+use super::direct::Direct;
+use super::general::{component_channel, load_constants};
 use super::registers::{self, Registers, channel_name};
-use crate::number::{Factor, Lane, Sum};
-use crate::state::{Component, FinalCombiner, FinalInput, FinalRegister, LerpRounding, Policies, Profile, Register};
-use crate::trace::{Observer, Operand, Rule, Step, Work, report};
+use crate::algebra::{Algebra, Site};
+use crate::number::Lane;
+use crate::state::{FinalCombiner, FinalInput, FinalRegister, LerpRounding, Policies, Profile, Register};
+use crate::trace::Silent;
+use crate::trace::{Observer, Operand, Rule, Step, report};
 
 /// The final combiner with what the plan found out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +26,16 @@ pub struct PlannedFinal {
     pub lerps: bool,
 }
 
+impl PlannedFinal {
+    /// The values that are needed; for a `report` also those that make no difference.
+    #[inline(always)]
+    fn sites(&self, report: bool) -> u64 {
+        let [sum, product, live] = [self.sum, self.product, self.live].map(u64::from);
+        let lerp = if self.lerps || report { live & 7 } else { 0 };
+        sum | product << 4 | live << 8 | lerp << 12
+    }
+}
+
 /// SPARE0 + SECONDARY above 1.0 enters the lerp and D: the sum can pass 2.0 (FIN-5).
 const TWO: i32 = 510;
 
@@ -29,39 +43,133 @@ const BLOCK: &str = "final combiner";
 
 /// FIN-1: max(0, x), or max(0, 255 - max(0, x)).
 #[inline(always)]
-pub fn input<L: Lane>(x: L, invert: bool) -> L {
-    if invert { (L::ONE - x.max0()).max0() } else { x.max0() }
+pub fn input<A: Algebra>(x: A::Register, invert: bool, a: &mut A) -> A::Register {
+    let x = a.max0(x);
+    if !invert {
+        return x;
+    }
+    let inverted = a.complement(x);
+    a.max0(inverted)
 }
 
-/// FIN-2: clamp(A B + (1 - A) C + D), the unclamped value first.
+/// FIN-2: A B + (1 - A) C, where A is at most 1.0.
 #[inline(always)]
-pub fn lerp_add<L: Lane, O: Observer>([a, b, c, d]: [L; 4], rounding: LerpRounding, observer: &mut O) -> L {
-    let ab = a.factor().product(b.factor());
-    let ac = (L::ONE - a).factor().product(c.factor());
-    observer.count(Work::Products, 2);
-    match rounding {
+pub fn lerp<A: Algebra>([x, b, c]: [A::Register; 3], a: &mut A) -> A::Register {
+    let one = a.byte(255);
+    let x = a.least(x, one);
+    let rest = a.complement(x);
+    let [x, rest, b, c] = [x, rest, b, c].map(|v| a.plain(v));
+    let (ab, ac) = (a.product(Rule::Fin2, x, b), a.product(Rule::Fin2, rest, c));
+    match a.policies().lerp_rounding {
         LerpRounding::Once => {
-            observer.count(Work::Roundings, 1);
-            observer.settle(Rule::Fin2, (ab + ac).rounded()) + d
+            let sum = a.add(Rule::Fin2, ab, ac);
+            a.rounded(sum)
         }
         LerpRounding::Twice => {
-            observer.count(Work::Roundings, 2);
-            observer.settle(Rule::Fin2, ab.rounded()) + observer.settle(Rule::Fin2, ac.rounded()) + d
+            let (ab, ac) = (a.rounded(ab), a.rounded(ac));
+            a.plus(ab, ac)
         }
     }
 }
 
 /// FIN-3: the colour sum.
 #[inline(always)]
-pub fn color_sum<L: Lane>(spare0: L, secondary: L, state: &FinalCombiner) -> L {
-    let sum = input(spare0, state.invert_spare0) + input(secondary, state.invert_secondary);
-    if state.color_sum_clamp { sum.least(L::ONE) } else { sum }
+pub fn color_sum<A: Algebra>(
+    spare0: A::Register,
+    secondary: A::Register,
+    state: &FinalCombiner,
+    a: &mut A,
+) -> A::Register {
+    let (spare0, secondary) = (input(spare0, state.invert_spare0, a), input(secondary, state.invert_secondary, a));
+    let sum = a.plus(spare0, secondary);
+    if !state.color_sum_clamp {
+        return sum;
+    }
+    let one = a.byte(255);
+    a.least(sum, one)
 }
 
 /// FIN-4: E F.
 #[inline(always)]
-pub fn product<R: crate::number::Register>(e: R, f: R) -> R {
-    e.factor().product(f.factor()).rounded()
+pub fn product<A: Algebra>(e: A::Register, f: A::Register, a: &mut A) -> A::Register {
+    let (e, f) = (a.plain(e), a.plain(f));
+    let product = a.product(Rule::Fin4, e, f);
+    a.rounded(product)
+}
+
+/// Everything that the final combiner computes.
+#[derive(Clone, Copy, Debug)]
+pub struct FinalValues<R> {
+    /// SPARE0 + SECONDARY and E times F, whose alpha is 0 (FIN-1).
+    specials: Specials<R>,
+    /// A to F, in R, G and B.
+    inputs: [[R; 3]; 6],
+    /// A B + (1 - A) C + D.
+    raw: [R; 3],
+    /// R, G, B, A bytes.
+    pub fragment: [R; 4],
+}
+
+/// The two registers that exist only here.
+#[derive(Clone, Copy, Debug)]
+struct Specials<R> {
+    sum: [R; 4],
+    product: [R; 4],
+}
+
+/// FIN-1 to FIN-4 on values of any kind; the constants are loaded.
+#[inline(always)]
+pub fn evaluate<A: Algebra>(
+    state: &FinalCombiner,
+    registers: &Registers<A::Register>,
+    a: &mut A,
+) -> FinalValues<A::Register> {
+    let zero = a.byte(0);
+    let mut specials = Specials { sum: [zero; 4], product: [zero; 4] };
+    let mut inputs = [[zero; 3]; 6];
+    let sum: [A::Register; 3] = a.registers(Site::color_sum(0), |a, c| {
+        color_sum(registers.read(Register::Spare0, c), registers.read(Register::SecondaryColor, c), state, a)
+    });
+    specials.sum[..3].copy_from_slice(&sum);
+    for n in [4, 5] {
+        let from = &state.inputs[n];
+        inputs[n] = a.registers(Site::final_product(0), |a, c| read(from, c, registers, &specials, a));
+    }
+    let product: [A::Register; 3] = a.registers(Site::final_product(0), |a, c| product(inputs[4][c], inputs[5][c], a));
+    specials.product[..3].copy_from_slice(&product);
+    for n in 0..4 {
+        let (from, site) = (&state.inputs[n], if n == 3 { Site::fragment(0) } else { Site::lerp(0) });
+        inputs[n] = a.registers(site, |a, c| read(from, c, registers, &specials, a));
+    }
+    let lerps: [A::Register; 3] =
+        a.registers(Site::lerp(0), |a, c| lerp([inputs[0][c], inputs[1][c], inputs[2][c]], a));
+    let raw = [0, 1, 2].map(|c: usize| a.plus(lerps[c], inputs[3][c]));
+    let rgb: [A::Register; 3] = a.registers(Site::fragment(0), |a, c| a.clamped(raw[c]));
+    let mut fragment = [rgb[0], rgb[1], rgb[2], zero];
+    fragment[3] = a.register(Site::fragment(3), |a| read(&state.g, 3, registers, &specials, a));
+    FinalValues { specials, inputs, raw, fragment }
+}
+
+/// What an input reads, before FIN-1.
+#[inline(always)]
+fn source<R: Copy>(from: &FinalInput, channel: usize, registers: &Registers<R>, specials: &Specials<R>) -> R {
+    let source = component_channel(from.component, channel);
+    match from.register {
+        FinalRegister::Spare0PlusSecondary => specials.sum[source],
+        FinalRegister::ETimesF => specials.product[source],
+        register => registers.read(general(register), source),
+    }
+}
+
+#[inline(always)]
+fn read<A: Algebra>(
+    from: &FinalInput,
+    channel: usize,
+    registers: &Registers<A::Register>,
+    specials: &Specials<A::Register>,
+    a: &mut A,
+) -> A::Register {
+    input(source(from, channel, registers, specials), from.invert, a)
 }
 
 /// Runs the final combiner: R, G, B, A bytes, those that nothing needs left at zero.
@@ -73,100 +181,70 @@ pub fn run<L: Lane, O: Observer>(
     registers: &mut Registers<L>,
     observer: &mut O,
 ) -> [L; 4] {
-    let state = &planned.state;
+    let mut direct = Direct::new(policies, observer).only(planned.sites(O::ON));
     if planned.reads_constants {
-        registers.load(Register::ConstantColor0, state.constants[0].map(L::byte));
-        registers.load(Register::ConstantColor1, state.constants[1].map(L::byte));
+        load_constants(planned.state.constants, registers, &mut direct);
     }
-    let mut specials = Specials { sum: [L::ZERO; 4], product: [L::ZERO; 4] };
-    for channel in (0..3).filter(|c| planned.sum >> c & 1 != 0) {
-        let operands = [registers.read(Register::Spare0, channel), registers.read(Register::SecondaryColor, channel)];
-        specials.sum[channel] = color_sum(operands[0], operands[1], state);
-        if O::ON {
-            report_sum(state, channel, operands, specials.sum[channel], observer);
-        }
-    }
-    for channel in (0..3).filter(|c| planned.product >> c & 1 != 0) {
-        let [e, f] = [4, 5].map(|n| read(&state.inputs[n], n, channel, registers, &specials, observer));
-        observer.count(Work::Products, 1);
-        observer.count(Work::Roundings, 1);
-        specials.product[channel] = observer.settle(Rule::Fin4, product(e, f));
-        if O::ON {
-            let suffix = channel_name(channel);
-            let inputs = vec![
-                report::register(format!("final.E.{suffix}"), e),
-                report::register(format!("final.F.{suffix}"), f),
-            ];
-            let name = format!("final.EF.{suffix}");
-            observer.step(
-                report::register_step(BLOCK, "FIN-4", name, specials.product[channel]).by("product_round_255", inputs),
-            );
-        }
-    }
-    let mut out = [L::ZERO; 4];
-    for channel in (0..3).filter(|c| planned.live >> c & 1 != 0) {
-        if !planned.lerps && !O::ON {
-            // 0 B + (1 - 0) 0 + D.
-            out[channel] = read(&state.inputs[3], 3, channel, registers, &specials, observer).clamped();
-            continue;
-        }
-        let [a, b, c, d] = [0, 1, 2, 3].map(|n| read(&state.inputs[n], n, channel, registers, &specials, observer));
-        let raw = lerp_add([a.least(L::ONE), b, c, d], policies.lerp_rounding, observer);
-        out[channel] = raw.clamped();
-        if O::ON {
-            report_rgb(channel, [a, b, c, d], raw, out[channel], profile, policies, observer);
-        }
-    }
-    if planned.live & 8 != 0 {
-        out[3] = read(&state.g, 6, 3, registers, &specials, observer);
-        if O::ON {
-            let inputs = vec![report::register("final.G.a", out[3])];
-            observer.step(report::register_step(BLOCK, "FIN-4", "fragment.a", out[3]).by("write", inputs));
-        }
-    }
-    out
-}
-
-/// The two registers that exist only here. Their alpha is 0 (FIN-1).
-struct Specials<L> {
-    sum: [L; 4],
-    product: [L; 4],
-}
-
-#[inline(always)]
-fn read<L: Lane, O: Observer>(
-    from: &FinalInput,
-    n: usize,
-    channel: usize,
-    registers: &Registers<L>,
-    specials: &Specials<L>,
-    observer: &mut O,
-) -> L {
-    let source = match from.component {
-        Component::Rgb => channel,
-        Component::Blue => 2,
-        Component::Alpha => 3,
-    };
-    let register = general(from.register);
-    let x = match from.register {
-        FinalRegister::Spare0PlusSecondary => specials.sum[source],
-        FinalRegister::ETimesF => specials.product[source],
-        _ => registers.read(register, source),
-    };
-    let value = input(x, from.invert);
+    let values = evaluate(&planned.state, registers, &mut direct);
     if O::ON {
+        report_all(planned, &values, profile, policies, registers, observer);
+    }
+    values.fragment
+}
+
+/// In the order of a trace.
+fn report_all<L: Lane, O: Observer>(
+    planned: &PlannedFinal,
+    values: &FinalValues<L>,
+    profile: Profile,
+    policies: &Policies,
+    registers: &Registers<L>,
+    observer: &mut O,
+) {
+    let state = &planned.state;
+    let report_input = |n: usize, channel: usize, value: L, observer: &mut O| {
+        let from = if n == 6 { &state.g } else { &state.inputs[n] };
+        let x = source(from, channel, registers, &values.specials);
+        let source = component_channel(from.component, channel);
         let operand = match from.register {
             FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF if source == 3 => "zero.a".to_string(),
             FinalRegister::Spare0PlusSecondary => format!("final.sum.{}", channel_name(source)),
             FinalRegister::ETimesF => format!("final.EF.{}", channel_name(source)),
-            _ => format!("{}.{}", registers::name(register), channel_name(source)),
+            register => format!("{}.{}", registers::name(general(register)), channel_name(source)),
         };
         let name = format!("final.{}.{}", ["A", "B", "C", "D", "E", "F", "G"][n], channel_name(channel));
         let operation = if from.invert { "final_invert" } else { "unsigned_identity" };
         let inputs = vec![report::register(operand, x)];
         observer.step(report::register_step(BLOCK, "FIN-1", name, value).by(operation, inputs));
+    };
+    for channel in (0..3).filter(|c| planned.sum >> c & 1 != 0) {
+        let operands = [registers.read(Register::Spare0, channel), registers.read(Register::SecondaryColor, channel)];
+        report_sum(state, channel, operands, values.specials.sum[channel], observer);
     }
-    value
+    for channel in (0..3).filter(|c| planned.product >> c & 1 != 0) {
+        let [e, f] = [4, 5].map(|n| values.inputs[n][channel]);
+        report_input(4, channel, e, observer);
+        report_input(5, channel, f, observer);
+        let suffix = channel_name(channel);
+        let inputs =
+            vec![report::register(format!("final.E.{suffix}"), e), report::register(format!("final.F.{suffix}"), f)];
+        let name = format!("final.EF.{suffix}");
+        let product = values.specials.product[channel];
+        observer.step(report::register_step(BLOCK, "FIN-4", name, product).by("product_round_255", inputs));
+    }
+    for channel in (0..3).filter(|c| planned.live >> c & 1 != 0) {
+        let inputs = [0, 1, 2, 3].map(|n| values.inputs[n][channel]);
+        for (n, value) in inputs.into_iter().enumerate() {
+            report_input(n, channel, value, observer);
+        }
+        report_rgb(channel, inputs, values.raw[channel], values.fragment[channel], profile, policies, observer);
+    }
+    if planned.live & 8 != 0 {
+        let alpha = values.fragment[3];
+        report_input(6, 3, alpha, observer);
+        let inputs = vec![report::register("final.G.a", alpha)];
+        observer.step(report::register_step(BLOCK, "FIN-4", "fragment.a", alpha).by("write", inputs));
+    }
 }
 
 /// The general register behind a final one; ZERO for the two special ones.
@@ -192,7 +270,7 @@ fn report_sum<L: Lane, O: Observer>(state: &FinalCombiner, channel: usize, opera
     let mut terms = Vec::new();
     let sources = [("spare0", state.invert_spare0), ("secondary", state.invert_secondary)];
     for ((register, invert), x) in sources.into_iter().zip(operands) {
-        let value = input(x, invert);
+        let value = input(x, invert, &mut Direct::plain(&mut Silent));
         let name = format!("final.sum.{register}.{suffix}");
         let operation = if invert { "final_invert" } else { "unsigned_identity" };
         let operand = report::register(format!("{register}.{suffix}"), x);

@@ -1,16 +1,17 @@
 //! CMB-1, CMB-6 to CMB-11: one general combiner stage.
 //!
-//! [`dot_product`] and [`output`] are the rules that blocks of pixels share; [`run`] is a whole stage with every policy.
+//! [`evaluate`] and [`write()`] are the rules, in the operations of an [`Algebra`]; [`run`] is them on numbers, with reports.
 
-use super::mapping;
+use super::direct::Direct;
+use super::output::takes_cd;
 use super::registers::Registers;
-use super::report::StageReport;
-use crate::number::{Factor, Lane, Sum};
+use super::report;
+use crate::algebra::{Algebra, Site};
+use crate::number::{Factor, Lane};
 use crate::state::{
-    Bias, CombinerInput, Component, DotRounding, MuxNegative, MuxSelect, OutputRounding, Policies, Portion, Register,
-    RegisterFloor, Scale, SumRounding,
+    CombinerInput, Component, DotRounding, MuxSelect, OutputRounding, Policies, Portion, Register, SumRounding,
 };
-use crate::trace::{Decision, Observer, Rule, Work};
+use crate::trace::{Decision, Observer, Rule};
 
 /// CMB-8: the sum of three full-width products, not yet rounded.
 #[inline(always)]
@@ -18,95 +19,229 @@ pub fn dot_product<F: Factor>(a: [F; 3], b: [F; 3]) -> F::Sum {
     a[0].product(b[0]) + a[1].product(b[1]) + a[2].product(b[2])
 }
 
-/// CMB-9: rounded, biased, scaled, saturated. `settle` is told what each rule yields and returns what goes on.
+/// CMB-8: the dot product of two vectors of factors at full width.
 #[inline(always)]
-pub fn output<S: Sum>(
-    raw: S,
-    bias: Bias,
-    scale: Scale,
-    floor: RegisterFloor,
-    mut settle: impl FnMut(OutputStep, S::Register) -> S::Register,
-) -> S::Register
-where
-    S::Register: crate::number::Register,
-{
-    let v = settle(OutputStep::Rounded, raw.rounded());
-    finished(v, bias, scale, floor, settle)
-}
-
-/// What [`output`] does after the rounding.
-#[inline(always)]
-pub fn finished<R: crate::number::Register>(
-    v: R,
-    bias: Bias,
-    scale: Scale,
-    floor: RegisterFloor,
-    mut settle: impl FnMut(OutputStep, R) -> R,
-) -> R {
-    let v = settle(OutputStep::Scaled, scaled(biased(v, bias), scale));
-    settle(OutputStep::Saturated, v.saturated(floor))
-}
-
-/// What [`output`] has done to a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum OutputStep {
-    /// NUM-2.
-    Rounded,
-    /// CMB-9.
-    Scaled,
-    /// NUM-3.
-    Saturated,
-}
-
-#[inline(always)]
-pub(super) fn biased<R: crate::number::Register>(v: R, bias: Bias) -> R {
-    match bias {
-        Bias::None => v,
-        Bias::NegativeHalf => v - R::HALF,
+pub fn dot<A: Algebra>([a0, a1, a2]: [A::Factor; 3], [b0, b1, b2]: [A::Factor; 3], a: &mut A) -> A::Sum {
+    const RULE: Rule = Rule::Cmb8;
+    let [x, y, z] = [a.product(RULE, a0, b0), a.product(RULE, a1, b1), a.product(RULE, a2, b2)];
+    match a.policies().dot_rounding {
+        DotRounding::Once => {
+            let sum = a.add(RULE, x, y);
+            a.add(RULE, sum, z)
+        }
+        DotRounding::Each => {
+            let [x, y, z] = [a.rounded(x), a.rounded(y), a.rounded(z)];
+            let sum = a.plus(x, y);
+            let sum = a.plus(sum, z);
+            a.widened(RULE, sum)
+        }
     }
 }
 
+/// CMB-7: AB + CD at full width.
 #[inline(always)]
-pub(super) fn scaled<R: crate::number::Register>(v: R, scale: Scale) -> R {
-    match scale {
-        Scale::One => v,
-        Scale::Two => v + v,
-        Scale::Four => (v + v) + (v + v),
-        Scale::Half => v.halved(),
+pub fn sum<A: Algebra>(ab: A::Sum, cd: A::Sum, a: &mut A) -> A::Sum {
+    match a.policies().sum_rounding {
+        SumRounding::Once => a.add(Rule::Cmb7, ab, cd),
+        SumRounding::Each => {
+            let (ab, cd) = (a.rounded(ab), a.rounded(cd));
+            let sum = a.plus(ab, cd);
+            a.widened(Rule::Cmb7, sum)
+        }
     }
 }
 
-/// CMB-9=after: biased and scaled at full width, then rounded; not yet saturated.
+/// CMB-9: rounded, biased, scaled, saturated.
 #[inline(always)]
-pub(super) fn rounded_after<L: Lane>(raw: L::Full, bias: Bias, scale: Scale) -> L {
-    let raw = match bias {
-        Bias::None => raw,
-        Bias::NegativeHalf => raw - L::HALF.widened(),
+pub fn output<A: Algebra>(portion: &Portion, raw: A::Sum, a: &mut A) -> A::Register {
+    let value = match a.policies().output_rounding {
+        OutputRounding::BeforeScale => {
+            let rounded = a.rounded(raw);
+            a.scaled(portion.bias, portion.scale, rounded)
+        }
+        OutputRounding::AfterScale => a.rounded_after(portion.bias, portion.scale, raw),
     };
-    match scale {
-        Scale::One => raw.rounded(),
-        Scale::Two => (raw + raw).rounded(),
-        Scale::Four => ((raw + raw) + (raw + raw)).rounded(),
-        Scale::Half => L::rounded_half(raw),
-    }
+    a.saturated(value)
 }
 
-/// CMB-10: whether the mux takes CD.
-#[inline]
-pub fn mux_takes_cd<L: Lane>(spare0_alpha: L, select: MuxSelect, policies: &Policies) -> bool {
-    takes_cd(spare0_alpha.decision(), select, policies)
+/// Everything that a portion computes, for its `N` channels: three in an RGB portion, one in an alpha portion. `F`, `S` and `R` are the factors,
+/// sums and registers of an [`Algebra`].
+#[derive(Clone, Copy, Debug)]
+pub struct Values<F, S, R, const N: usize> {
+    /// A, B, C, D after their mappings.
+    pub factors: [[F; N]; 4],
+    /// AB and CD at full width.
+    pub products: [[S; N]; 2],
+    /// The sum or mux at full width.
+    pub third: [S; N],
+    /// AB, CD and the sum or mux as registers.
+    pub outputs: [[R; N]; 3],
 }
 
-/// CMB-10 of SPARE0's alpha as an integer.
+/// Everything that a stage computes.
+#[derive(Clone, Copy, Debug)]
+pub struct StageValues<F, S, R, C> {
+    /// What muxes take.
+    pub takes_cd: C,
+    /// The RGB portion.
+    pub rgb: Values<F, S, R, 3>,
+    /// The alpha portion.
+    pub alpha: Values<F, S, R, 1>,
+}
+
+/// What a portion is in an algebra.
+type PortionOf<A, const N: usize> = Values<<A as Algebra>::Factor, <A as Algebra>::Sum, <A as Algebra>::Register, N>;
+
+/// What a stage is in an algebra.
+pub type StageOf<A> =
+    StageValues<<A as Algebra>::Factor, <A as Algebra>::Sum, <A as Algebra>::Register, <A as Algebra>::Choice>;
+
+/// What a stage computes from the registers before it.
 #[inline(always)]
-pub fn takes_cd(v: i32, select: MuxSelect, policies: &Policies) -> bool {
-    match select {
-        MuxSelect::Lsb => v & 1 != 0,
-        MuxSelect::Msb => match policies.mux_negative {
-            MuxNegative::Sign => v >= 128,
-            MuxNegative::Bit7 => v & 128 != 0,
-        },
+pub fn evaluate<A: Algebra>(
+    stage: &PlannedStage,
+    mux_select: MuxSelect,
+    registers: &Registers<A::Register>,
+    a: &mut A,
+) -> StageOf<A> {
+    let takes_cd = a.choice(mux_select, registers.read(Register::Spare0, 3));
+    StageValues {
+        takes_cd,
+        rgb: evaluate_portion(&stage.rgb.portion, takes_cd, registers, a),
+        alpha: evaluate_portion(&stage.alpha.portion, takes_cd, registers, a),
     }
+}
+
+#[inline(always)]
+fn evaluate_portion<A: Algebra, const N: usize>(
+    portion: &Portion,
+    takes_cd: A::Choice,
+    registers: &Registers<A::Register>,
+    a: &mut A,
+) -> PortionOf<A, N> {
+    let first = first_channel::<N>();
+    let [input_a, input_b, input_c, input_d] = &portion.inputs;
+    let factors = [
+        a.factors(Site::factor(0, first), input_a.mapping, read(input_a, first, registers)),
+        a.factors(Site::factor(1, first), input_b.mapping, read(input_b, first, registers)),
+        a.factors(Site::factor(2, first), input_c.mapping, read(input_c, first, registers)),
+        a.factors(Site::factor(3, first), input_d.mapping, read(input_d, first, registers)),
+    ];
+    // A dot product is one value in all channels, and so is what is made of dot products alone.
+    let [ab_dot, cd_dot] = [portion.ab_dot_product, portion.cd_dot_product];
+    let ab = product(Site::product(0, first), ab_dot, &factors[0], &factors[1], a);
+    let cd = product(Site::product(1, first), cd_dot, &factors[2], &factors[3], a);
+    let site = Site::third(first);
+    let third = match (portion.mux, ab_dot && cd_dot) {
+        (true, true) => [a.sum(site, |a| a.select(takes_cd, cd[0], ab[0])); N],
+        (true, false) => a.sums(site, |a, c| a.select(takes_cd, cd[c], ab[c])),
+        (false, true) => [a.sum(site, |a| sum(ab[0], cd[0], a)); N],
+        (false, false) => a.sums(site, |a, c| sum(ab[c], cd[c], a)),
+    };
+    let outputs = [
+        finish(Site::output(0, first), ab_dot, portion, &ab, a),
+        finish(Site::output(1, first), cd_dot, portion, &cd, a),
+        finish(Site::output(2, first), ab_dot && cd_dot, portion, &third, a),
+    ];
+    let products = [ab, cd];
+    Values { factors, products, third, outputs }
+}
+
+/// AB or CD, of which the first channel is at this place.
+#[inline(always)]
+fn product<A: Algebra, const N: usize>(
+    site: Site,
+    is_dot: bool,
+    x: &[A::Factor; N],
+    y: &[A::Factor; N],
+    a: &mut A,
+) -> [A::Sum; N] {
+    match (&x[..], &y[..]) {
+        // Only RGB portions have dot products.
+        ([x0, x1, x2], [y0, y1, y2]) if is_dot => [a.sum(site, |a| dot([*x0, *x1, *x2], [*y0, *y1, *y2], a)); N],
+        _ => a.sums(site, |a, c| a.product(Rule::Cmb6, x[c], y[c])),
+    }
+}
+
+/// An output in all channels; `is_one` says that it is the same in them.
+#[inline(always)]
+fn finish<A: Algebra, const N: usize>(
+    site: Site,
+    is_one: bool,
+    portion: &Portion,
+    raw: &[A::Sum; N],
+    a: &mut A,
+) -> [A::Register; N] {
+    if is_one {
+        [a.register(site, |a| output(portion, raw[0], a)); N]
+    } else {
+        a.registers(site, |a, c| output(portion, raw[c], a))
+    }
+}
+
+/// The channels of its register that an input brings to a portion.
+#[inline(always)]
+fn read<R: Copy, const N: usize>(input: &CombinerInput, first: usize, registers: &Registers<R>) -> [R; N] {
+    let value = &registers.values[input.register as usize];
+    match input.component {
+        Component::Rgb => std::array::from_fn(|c| value[first + c]),
+        Component::Blue => [value[2]; N],
+        Component::Alpha => [value[3]; N],
+    }
+}
+
+/// Writes what a stage has computed: AB, CD, then the sum or mux; blue to alpha (CMB-11) last of each.
+#[inline(always)]
+pub fn write<A: Algebra>(stage: &PlannedStage, values: &StageOf<A>, registers: &mut Registers<A::Register>, a: &mut A) {
+    write_portion(&stage.rgb.portion, &values.rgb, registers, a);
+    write_portion(&stage.alpha.portion, &values.alpha, registers, a);
+}
+
+#[inline(always)]
+fn write_portion<A: Algebra, const N: usize>(
+    portion: &Portion,
+    values: &PortionOf<A, N>,
+    registers: &mut Registers<A::Register>,
+    a: &mut A,
+) {
+    let first = first_channel::<N>();
+    let destinations = [
+        (portion.ab_output, portion.ab_blue_to_alpha),
+        (portion.cd_output, portion.cd_blue_to_alpha),
+        (portion.sum_output, false),
+    ];
+    for (n, (destination, blue_to_alpha)) in destinations.into_iter().enumerate() {
+        if destination == Register::Zero {
+            continue;
+        }
+        let written: [A::Register; N] = a.registers(Site::write(n, first), |a, c| a.written(values.outputs[n][c]));
+        for (c, value) in written.into_iter().enumerate() {
+            registers.write(destination, first + c, value);
+        }
+        if blue_to_alpha {
+            let value = a.register(Site::blue_to_alpha(n), |a| a.written(values.outputs[n][N - 1]));
+            registers.write(destination, 3, value);
+        }
+    }
+}
+
+/// A stage on values of any kind: its constants, [`evaluate`], [`write()`].
+pub fn stage<A: Algebra>(
+    stage: &PlannedStage,
+    mux_select: MuxSelect,
+    registers: &mut Registers<A::Register>,
+    a: &mut A,
+) {
+    load_constants(stage.constants, registers, a);
+    let values = evaluate(stage, mux_select, registers, a);
+    write(stage, &values, registers, a);
+}
+
+/// The constants of a stage, or of the final combiner.
+#[inline(always)]
+pub fn load_constants<A: Algebra>(constants: [[u8; 4]; 2], registers: &mut Registers<A::Register>, a: &mut A) {
+    registers.load(Register::ConstantColor0, constants[0].map(|byte| a.byte(byte)));
+    registers.load(Register::ConstantColor1, constants[1].map(|byte| a.byte(byte)));
 }
 
 /// A portion with what the plan found out: which channels of which output anybody reads.
@@ -118,25 +253,39 @@ pub struct PlannedPortion {
     pub live: [u8; 3],
     /// AB's and CD's blue are needed in the alpha of their destination.
     pub blue_to_alpha: [bool; 2],
+    /// Every value that is needed ([`Site`]).
+    pub sites: u64,
 }
 
 impl PlannedPortion {
     /// A portion of which everything that it writes is needed, in these channels.
     pub fn whole(portion: Portion, channels: u8) -> PlannedPortion {
-        let live = |output: Register| if output == Register::Zero { 0 } else { channels };
+        let outputs = [portion.ab_output, portion.cd_output, portion.sum_output];
+        // More than is needed: everything that comes before the outputs.
+        let mut sites = 0;
+        for n in (0..3).filter(|n| outputs[*n] != Register::Zero) {
+            sites |= (1 << 28) - 1 | 15 << (28 + 4 * n) | 15 << (40 + 4 * n);
+        }
+        sites = (sites | 3 << 52) & Site::of_channels(if channels & 7 == 0 { 8 } else { 7 });
         PlannedPortion {
             portion,
-            live: [portion.ab_output, portion.cd_output, portion.sum_output].map(live),
+            live: outputs.map(|output| if output == Register::Zero { 0 } else { channels }),
             blue_to_alpha: [
                 portion.ab_blue_to_alpha && portion.ab_output != Register::Zero,
                 portion.cd_blue_to_alpha && portion.cd_output != Register::Zero,
             ],
+            sites,
         }
     }
 
     /// Whether nothing of it is needed.
     pub fn is_idle(&self) -> bool {
         self.live == [0; 3] && self.blue_to_alpha == [false; 2]
+    }
+
+    /// Whether a mux of it is needed.
+    pub fn muxes(&self) -> bool {
+        self.portion.mux && self.live[2] != 0
     }
 
     /// Channels of the product AB (0) or CD (1) that some output needs.
@@ -163,20 +312,6 @@ pub struct PlannedStage {
     pub reads_constants: bool,
 }
 
-/// Everything that a portion computes, for its `N` channels: three in an RGB portion, one in an alpha portion.
-///
-/// What the plan found dead is left at zero.
-pub(super) struct Values<L: Lane, const N: usize> {
-    /// A, B, C, D after their mappings.
-    pub(super) factors: [[L::Mapped; N]; 4],
-    /// AB and CD at full width.
-    pub(super) products: [[L::Full; N]; 2],
-    /// The sum or mux at full width.
-    pub(super) third: [L::Full; N],
-    /// AB, CD and the sum or mux as registers.
-    pub(super) outputs: [[L; N]; 3],
-}
-
 /// Runs a stage: reads everything, then writes everything (CMB-1).
 #[inline]
 pub fn run<L: Lane, O: Observer>(
@@ -186,107 +321,23 @@ pub fn run<L: Lane, O: Observer>(
     registers: &mut Registers<L>,
     observer: &mut O,
 ) {
-    if stage.reads_constants {
-        registers.load(Register::ConstantColor0, stage.constants[0].map(L::byte));
-        registers.load(Register::ConstantColor1, stage.constants[1].map(L::byte));
-    }
     let spare0 = registers.read(Register::Spare0, 3);
-    let takes_cd = mux_takes_cd(spare0, mux_select, policies);
-    let muxes = [&stage.rgb, &stage.alpha].into_iter().any(|p| p.portion.mux && p.live[2] != 0);
+    let muxes = [&stage.rgb, &stage.alpha].into_iter().any(PlannedPortion::muxes);
     if O::MEASURES && muxes {
-        let ideal = || i64::from(self::takes_cd(spare0.ideal_decision(), mux_select, policies));
-        observer.decided(Decision::Mux, i64::from(takes_cd), ideal);
+        let decide = |alpha: i32| i64::from(takes_cd(alpha, mux_select, policies.mux_negative));
+        observer.decided(Decision::Mux, decide(spare0.decision()), || decide(spare0.ideal_decision()));
     }
-    let rgb = evaluate::<L, O, 3>(&stage.rgb, takes_cd, policies, registers, observer);
-    let alpha = evaluate::<L, O, 1>(&stage.alpha, takes_cd, policies, registers, observer);
+    // Different ones: their channels are.
+    let sites = stage.rgb.sites | stage.alpha.sites;
+    let mut direct = Direct::new(policies, observer).only(sites);
+    if stage.reads_constants {
+        load_constants(stage.constants, registers, &mut direct);
+    }
+    let values = evaluate(stage, mux_select, registers, &mut direct);
     if O::ON {
-        if muxes {
-            StageReport::new(stage.index, false).mux(spare0, mux_select, policies, takes_cd, observer);
-        }
-        for (portion, report) in [(&stage.rgb, false), (&stage.alpha, true)] {
-            let report = StageReport::new(stage.index, report);
-            for product in 0..2 {
-                report.inputs(portion, product, registers, policies, observer);
-            }
-        }
-        StageReport::new(stage.index, false).values(&stage.rgb, 0, &rgb, takes_cd, policies, observer);
-        StageReport::new(stage.index, true).values(&stage.alpha, 3, &alpha, takes_cd, policies, observer);
+        report::stage(stage, mux_select, &values, registers, policies, observer);
     }
-    write(&stage.rgb, 0, &rgb, stage.index, registers, observer);
-    write(&stage.alpha, 3, &alpha, stage.index, registers, observer);
-}
-
-/// One portion. Channels that nobody reads are computed along where that is cheaper than asking.
-#[inline(always)]
-fn evaluate<L: Lane, O: Observer, const N: usize>(
-    planned: &PlannedPortion,
-    takes_cd: bool,
-    policies: &Policies,
-    registers: &Registers<L>,
-    observer: &mut O,
-) -> Values<L, N> {
-    let portion = &planned.portion;
-    let (a, b, ab) = product::<L, O, N>(planned, 0, policies, registers, observer);
-    let (c, d, cd) = product::<L, O, N>(planned, 1, policies, registers, observer);
-    let takes_cd = portion.mux.then_some(takes_cd);
-    let [rule_ab, rule_cd] =
-        [portion.ab_dot_product, portion.cd_dot_product].map(|dot| if dot { Rule::Cmb8 } else { Rule::Cmb6 });
-    let third = if planned.live[2] == 0 {
-        [L::ZERO.widened(); N]
-    } else {
-        std::array::from_fn(|n| {
-            let live = planned.live[2] >> (first_channel::<N>() + n) & 1 != 0;
-            third::<L, O>([ab[n], cd[n]], live.then_some([rule_ab, rule_cd]), takes_cd, policies, observer)
-        })
-    };
-    let rule_third = match takes_cd {
-        None => Rule::Cmb7,
-        Some(true) => rule_cd,
-        Some(false) => rule_ab,
-    };
-    let same = [portion.ab_dot_product, portion.cd_dot_product];
-    let outputs = [
-        finish_all::<L, O, N>(planned, 0, ab, same[0], rule_ab, policies, observer),
-        finish_all::<L, O, N>(planned, 1, cd, same[1], rule_cd, policies, observer),
-        finish_all::<L, O, N>(planned, 2, third, same[0] && same[1], rule_third, policies, observer),
-    ];
-    Values { factors: [a, b, c, d], products: [ab, cd], third, outputs }
-}
-
-/// The factors of AB (0) or CD (1), and their product or dot product at full width; zeros where nobody asks.
-#[inline(always)]
-#[allow(clippy::type_complexity, reason = "two factors and their product, unpacked at once")]
-fn product<L: Lane, O: Observer, const N: usize>(
-    planned: &PlannedPortion,
-    which: usize,
-    policies: &Policies,
-    registers: &Registers<L>,
-    observer: &mut O,
-) -> ([L::Mapped; N], [L::Mapped; N], [L::Full; N]) {
-    if planned.product_channels(which) == 0 {
-        let zero = [L::ZERO.factor(); N];
-        return (zero, zero, [L::ZERO.widened(); N]);
-    }
-    let portion = &planned.portion;
-    let dot_product = if which == 0 { portion.ab_dot_product } else { portion.cd_dot_product };
-    let needed = if dot_product { 7 } else { planned.product_channels(which) };
-    let mut factor = |input: &CombinerInput| {
-        let mut factors = mapping::map(channels::<L, N>(input, registers), input.mapping, policies);
-        if O::MEASURES {
-            for channel in (0..N).filter(|c| needed >> (first_channel::<N>() + c) & 1 != 0) {
-                factors[channel] = observer.settle_factor::<L>(mapping::rule(input.mapping), factors[channel]);
-            }
-        }
-        factors
-    };
-    let (a, b) = (factor(&portion.inputs[2 * which]), factor(&portion.inputs[2 * which + 1]));
-    observer.count(Work::Products, N as u64);
-    let raw = if dot_product {
-        [dot::<L, O>(&a, &b, policies, observer); N]
-    } else {
-        std::array::from_fn(|c| a[c].product(b[c]))
-    };
-    (a, b, raw)
+    write(stage, &values, registers, &mut Direct::new(policies, observer).only(sites));
 }
 
 /// The register channel of a portion's first one: R of an RGB portion, A of an alpha portion.
@@ -294,148 +345,16 @@ const fn first_channel<const N: usize>() -> usize {
     if N == 1 { 3 } else { 0 }
 }
 
-/// Output `n` of every channel; `same` says that the channels are equal, as a dot product's are.
-#[inline(always)]
-fn finish_all<L: Lane, O: Observer, const N: usize>(
-    planned: &PlannedPortion,
-    n: usize,
-    raw: [L::Full; N],
-    same: bool,
-    rule: Rule,
-    policies: &Policies,
-    observer: &mut O,
-) -> [L; N] {
-    let live = planned.live[n] | if n < 2 && planned.blue_to_alpha[n] { BLUE } else { 0 };
-    if live == 0 {
-        [L::ZERO; N]
-    } else if same {
-        [finish::<L, O>(raw[0], &planned.portion, Some(rule), policies, observer); N]
-    } else {
-        std::array::from_fn(|c| {
-            // What is computed along for nobody has no error.
-            let rule = (live >> (first_channel::<N>() + c) & 1 != 0).then_some(rule);
-            finish::<L, O>(raw[c], &planned.portion, rule, policies, observer)
-        })
-    }
-}
-
-/// The channels of its register that an input brings to a portion.
-#[inline(always)]
-fn channels<L: Lane, const N: usize>(input: &CombinerInput, registers: &Registers<L>) -> [L; N] {
-    let value = &registers.values[input.register as usize];
-    match input.component {
-        Component::Rgb => std::array::from_fn(|c| value[c]),
-        Component::Blue => [value[2]; N],
-        Component::Alpha => [value[3]; N],
-    }
-}
-
-/// CMB-8 with its alternative. Only RGB portions have dot products, so there are three channels.
-#[inline(always)]
-pub(crate) fn dot<L: Lane, O: Observer>(
-    a: &[L::Mapped],
-    b: &[L::Mapped],
-    policies: &Policies,
-    observer: &mut O,
-) -> L::Full {
-    let ([a0, a1, a2], [b0, b1, b2]) = (a, b) else { return L::ZERO.widened() };
-    let (a, b) = ([*a0, *a1, *a2], [*b0, *b1, *b2]);
-    match policies.dot_rounding {
-        DotRounding::Once => dot_product(a, b),
-        DotRounding::Each => {
-            observer.count(Work::Roundings, 3);
-            let mut term = |n: usize| observer.settle(Rule::Cmb8, a[n].product(b[n]).rounded());
-            (term(0) + term(1) + term(2)).widened()
-        }
-    }
-}
-
-/// CMB-7, or CMB-10 where `takes_cd` is given: the third output before bias and scale.
-#[inline(always)]
-pub(crate) fn third<L: Lane, O: Observer>(
-    [ab, cd]: [L::Full; 2],
-    rules: Option<[Rule; 2]>,
-    takes_cd: Option<bool>,
-    policies: &Policies,
-    observer: &mut O,
-) -> L::Full {
-    match (takes_cd, policies.sum_rounding) {
-        (Some(true), _) => cd,
-        (Some(false), _) => ab,
-        (None, SumRounding::Once) => ab + cd,
-        (None, SumRounding::Each) => {
-            observer.count(Work::Roundings, 2);
-            let (ab, cd) = (ab.rounded(), cd.rounded());
-            let Some(rules) = rules else { return (ab + cd).widened() };
-            (observer.settle(rules[0], ab) + observer.settle(rules[1], cd)).widened()
-        }
-    }
-}
-
-/// CMB-9 with its alternative.
-#[inline(always)]
-pub(crate) fn finish<L: Lane, O: Observer>(
-    raw: L::Full,
-    portion: &Portion,
-    rule: Option<Rule>,
-    policies: &Policies,
-    observer: &mut O,
-) -> L {
-    observer.count(Work::Roundings, 1);
-    let mut settle = |step, v| match (step, rule) {
-        (_, None) => v,
-        (OutputStep::Rounded, Some(rule)) => observer.settle(rule, v),
-        (OutputStep::Scaled, _) => observer.settle(Rule::Cmb9, v),
-        (OutputStep::Saturated, _) => observer.settle(Rule::Num3, v),
-    };
-    match policies.output_rounding {
-        OutputRounding::BeforeScale => output(raw, portion.bias, portion.scale, policies.register_floor, settle),
-        OutputRounding::AfterScale => {
-            let v = settle(OutputStep::Scaled, rounded_after::<L>(raw, portion.bias, portion.scale));
-            settle(OutputStep::Saturated, v.saturated(policies.register_floor))
-        }
-    }
-}
-
-/// Writes the live channels of a portion, `first` being the register channel of its first one; CMB-11 last.
-#[inline(always)]
-fn write<L: Lane, O: Observer, const N: usize>(
-    planned: &PlannedPortion,
-    first: usize,
-    values: &Values<L, N>,
-    stage: usize,
-    registers: &mut Registers<L>,
-    observer: &mut O,
-) {
-    let portion = &planned.portion;
-    let report = || StageReport::new(stage, first == 3);
-    let mut output = |n: usize, destination: Register| {
-        let value = &values.outputs[n];
-        if planned.live[n] != 0 {
-            // Dead channels are written along; nobody reads them.
-            for c in 0..N {
-                registers.write(destination, first + c, value[c]);
-                if O::ON && planned.live[n] >> (first + c) & 1 != 0 {
-                    report().write(destination, first + c, value[c], n, "CMB-1", observer);
-                }
-            }
-        }
-        if n < 2 && planned.blue_to_alpha[n] {
-            registers.write(destination, 3, value[N - 1]);
-            if O::ON {
-                report().write(destination, 3, value[N - 1], n, "CMB-11", observer);
-            }
-        }
-    };
-    output(0, portion.ab_output);
-    output(1, portion.cd_output);
-    output(2, portion.sum_output);
-}
-
 /// The channel of its register that an input reads.
 #[inline(always)]
 pub fn source_channel(input: &CombinerInput, channel: usize) -> usize {
-    match input.component {
+    component_channel(input.component, channel)
+}
+
+/// The channel of a register that a component is, for what is computed in `channel`.
+#[inline(always)]
+pub fn component_channel(component: Component, channel: usize) -> usize {
+    match component {
         Component::Rgb => channel,
         Component::Blue => 2,
         Component::Alpha => 3,

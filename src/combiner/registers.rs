@@ -27,24 +27,32 @@ impl<L: Lane> Registers<L> {
     /// CMB-13: zeros; the caller loads what the pixel brings, SPARE0's alpha included.
     #[inline]
     pub fn new() -> Self {
-        Registers { values: [[L::ZERO; 4]; REGISTERS] }
+        Registers::of(L::ZERO)
+    }
+}
+
+impl<V: Copy> Registers<V> {
+    /// The same everywhere.
+    #[inline]
+    pub fn of(value: V) -> Self {
+        Registers { values: [[value; 4]; REGISTERS] }
     }
 
     /// Loads a register before the first stage.
     #[inline]
-    pub fn load(&mut self, register: Register, value: [L; 4]) {
+    pub fn load(&mut self, register: Register, value: [V; 4]) {
         self.values[register as usize] = value;
     }
 
     /// Sets one channel.
     #[inline(always)]
-    pub fn write(&mut self, register: Register, channel: usize, value: L) {
+    pub fn write(&mut self, register: Register, channel: usize, value: V) {
         self.values[register as usize][channel] = value;
     }
 
     /// Reads one channel.
     #[inline(always)]
-    pub fn read(&self, register: Register, channel: usize) -> L {
+    pub fn read(&self, register: Register, channel: usize) -> V {
         self.values[register as usize][channel]
     }
 }

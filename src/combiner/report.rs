@@ -1,7 +1,9 @@
 //! What a general stage tells an observer. Nothing here computes a value that is used.
 
-use super::general::{PlannedPortion, Values, biased, rounded_after, scaled, source_channel};
+use super::direct::Ruled;
+use super::general::{PlannedPortion, PlannedStage, StageValues, source_channel};
 use super::mapping;
+use super::output::{biased, rounded_after, scaled};
 use super::registers::{self, Registers, channel_name};
 use crate::number::{Lane, Sum};
 use crate::state::{
@@ -13,15 +15,43 @@ use crate::trace::{Observer, Step, plain, report};
 const PRODUCT_NAMES: [&str; 3] = ["AB", "CD", "sum"];
 const INPUT_NAMES: [&str; 4] = ["A", "B", "C", "D"];
 
+/// Everything that a portion computes, on numbers.
+type Values<L, const N: usize> = super::general::Values<<L as Lane>::Mapped, Ruled<<L as Lane>::Full>, L, N>;
+
+/// A stage, in the order of a trace: what it reads, what it computes, what it writes.
+pub(super) fn stage<L: Lane, O: Observer>(
+    stage: &PlannedStage,
+    mux_select: MuxSelect,
+    values: &StageValues<L::Mapped, Ruled<L::Full>, L, bool>,
+    registers: &Registers<L>,
+    policies: &Policies,
+    observer: &mut O,
+) {
+    let (rgb, alpha) = (StageReport::new(stage.index, false), StageReport::new(stage.index, true));
+    if [&stage.rgb, &stage.alpha].into_iter().any(PlannedPortion::muxes) {
+        let spare0 = registers.read(Register::Spare0, 3);
+        rgb.mux(spare0, mux_select, policies, values.takes_cd, observer);
+    }
+    for (portion, report) in [(&stage.rgb, &rgb), (&stage.alpha, &alpha)] {
+        for product in 0..2 {
+            report.inputs(portion, product, registers, policies, observer);
+        }
+    }
+    rgb.values(&stage.rgb, 0, &values.rgb, values.takes_cd, policies, observer);
+    alpha.values(&stage.alpha, 3, &values.alpha, values.takes_cd, policies, observer);
+    rgb.writes(&stage.rgb, 0, &values.rgb, observer);
+    alpha.writes(&stage.alpha, 3, &values.alpha, observer);
+}
+
 /// Names of one portion of one stage.
-pub(super) struct StageReport {
+struct StageReport {
     block: String,
     prefix: String,
     stage: usize,
 }
 
 impl StageReport {
-    pub(super) fn new(stage: usize, alpha: bool) -> Self {
+    fn new(stage: usize, alpha: bool) -> Self {
         let portion = if alpha { "alpha" } else { "rgb" };
         StageReport {
             block: format!("general stage {stage} {portion}"),
@@ -30,7 +60,7 @@ impl StageReport {
         }
     }
 
-    pub(super) fn mux<L: Lane, O: Observer>(
+    fn mux<L: Lane, O: Observer>(
         &self,
         spare0_alpha: L,
         select: MuxSelect,
@@ -52,7 +82,7 @@ impl StageReport {
     }
 
     /// The inputs of AB (0) or CD (1), as far as they are read.
-    pub(super) fn inputs<L: Lane, O: Observer>(
+    fn inputs<L: Lane, O: Observer>(
         &self,
         planned: &PlannedPortion,
         product: usize,
@@ -78,7 +108,7 @@ impl StageReport {
     }
 
     /// Products, third output, and the way of each output to its register.
-    pub(super) fn values<L: Lane, O: Observer, const N: usize>(
+    fn values<L: Lane, O: Observer, const N: usize>(
         &self,
         planned: &PlannedPortion,
         first: usize,
@@ -101,10 +131,10 @@ impl StageReport {
                 if planned.live[n] >> channel & 1 == 0 && !blue {
                     continue;
                 }
-                let raw = if n == 2 { values.third[c] } else { values.products[n][c] };
+                let raw = if n == 2 { values.third[c].sum } else { values.products[n][c].sum };
                 if n == 2 {
                     let selected = portion.mux.then_some(takes_cd);
-                    let products = [values.products[0][c], values.products[1][c]];
+                    let products = [values.products[0][c].sum, values.products[1][c].sum];
                     self.third::<L, O>(channel, products, raw, selected, policies.sum_rounding, observer);
                 }
                 self.output::<L, O>(portion, raw, values.outputs[n][c], (n, channel), policies, observer);
@@ -144,7 +174,7 @@ impl StageReport {
             let pairs = if rounding.is_some() { 0..N } else { c..c + 1 };
             let inputs = pairs.flat_map(|c| [operand(2 * product, c), operand(2 * product + 1, c)]).collect();
             let name = self.product_name(product, first + c);
-            let raw = values.products[product][c];
+            let raw = values.products[product][c].sum;
             observer.step(report::sum_step::<L>(&self.block, rule, name, raw).by(operation, inputs));
         }
     }
@@ -221,7 +251,27 @@ impl StageReport {
         step("output", "NUM-3", saturate, value, false);
     }
 
-    pub(super) fn write<L: Lane, O: Observer>(
+    /// What the outputs write.
+    fn writes<L: Lane, O: Observer, const N: usize>(
+        &self,
+        planned: &PlannedPortion,
+        first: usize,
+        values: &Values<L, N>,
+        observer: &mut O,
+    ) {
+        let portion = &planned.portion;
+        let destinations = [portion.ab_output, portion.cd_output, portion.sum_output];
+        for (n, destination) in destinations.into_iter().enumerate() {
+            for c in (0..N).filter(|c| planned.live[n] >> (first + c) & 1 != 0) {
+                self.write(destination, first + c, values.outputs[n][c], n, "CMB-1", observer);
+            }
+            if n < 2 && planned.blue_to_alpha[n] {
+                self.write(destination, 3, values.outputs[n][N - 1], n, "CMB-11", observer);
+            }
+        }
+    }
+
+    fn write<L: Lane, O: Observer>(
         &self,
         destination: Register,
         channel: usize,

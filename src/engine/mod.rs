@@ -34,7 +34,7 @@ named! {
     pub enum Engine {
         /// The definition: one pixel at a time.
         Scalar = "scalar",
-        /// Blocks of pixels; draws under policies that are not the default ones are the definition's all the same.
+        /// Blocks of pixels.
         Fast = "fast",
     }
 }
@@ -124,7 +124,7 @@ impl<'a> Renderer<'a> {
             .isa
             .filter(|isa| isa.is_available())
             .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
-        let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan)).flatten();
+        let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan));
         let threads = pool.as_ref().map_or(1, |pool| pool.current_num_threads() + 1);
         let mut renderer = Renderer { plan, rows, isa, band: options.band, threads, pool, bins: Vec::new() };
         if renderer.rows.is_some() {
@@ -139,7 +139,7 @@ impl<'a> Renderer<'a> {
         self.plan.draws[draws].iter().map(move |draw| (bands > 1).then(|| Bins::new(&draw.assembly, height, bands)))
     }
 
-    /// The engine that draws: under policies that are not the default ones it is the definition.
+    /// The engine that draws.
     pub fn engine(&self) -> Engine {
         if self.rows.is_some() { Engine::Fast } else { Engine::Scalar }
     }

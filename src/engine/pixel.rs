@@ -1,6 +1,7 @@
 //! One pixel: the order in which the blocks of the chip run.
 
 use super::report as reports;
+use crate::combiner::direct::Direct;
 use crate::combiner::registers::{Registers, channel_name};
 use crate::combiner::{final_combiner, general};
 use crate::number::{Lane, convert};
@@ -418,17 +419,11 @@ impl<'a> TriangleContext<'a> {
             }
             depth = test.write.then_some(z);
         }
-        let dropped = surface::dropped_bits(draw.surface);
         let channels = match &draw.blend {
             None => source,
             Some(state) => {
-                let truncated: [L; 4] = std::array::from_fn(|n| {
-                    if n < 3 && dropped[n] != 0 {
-                        observer.settle(Rule::Rop5, source[n].truncated(dropped[n]))
-                    } else {
-                        source[n]
-                    }
-                });
+                let mut direct = Direct::new(&self.plan.policies, observer);
+                let truncated = blend::truncated(draw.surface, source, &mut direct);
                 observer.count(Work::BytesRead, u64::from(draw.surface.bytes()));
                 let stored = surface::read(draw.surface, fragment.stored);
                 let destination = match destination {

@@ -1,6 +1,6 @@
 //! What a draw costs, from its plan alone.
 
-use crate::combiner::general::PlannedPortion;
+use crate::combiner::general::{BLUE, PlannedPortion};
 use crate::plan::PlannedDraw;
 use crate::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, ShaderOperation, SumRounding};
 use crate::texture::dot::{DOT_OPERATIONS, REFLECTION_OPERATIONS};
@@ -72,8 +72,8 @@ fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
         add(Work::Dots, shader.stages.iter().map(dot_unit).sum());
     }
     for stage in &planned.stages {
-        for (portion, channels) in [(&stage.rgb, 3), (&stage.alpha, 1)] {
-            let (products, roundings) = portion_cost(portion, channels, policies);
+        for portion in [&stage.rgb, &stage.alpha] {
+            let (products, roundings) = portion_cost(portion, policies);
             add(Work::Products, products);
             add(Work::Roundings, roundings);
         }
@@ -119,29 +119,25 @@ fn dot_unit(stage: &PlannedShaderStage) -> u64 {
     product + if reflects && stage.live != 0 { REFLECTION_OPERATIONS } else { 0 }
 }
 
-/// Products and roundings of a portion of three channels or one.
-fn portion_cost(planned: &PlannedPortion, channels: u64, policies: &Policies) -> (u64, u64) {
+/// Products and roundings of a portion.
+fn portion_cost(planned: &PlannedPortion, policies: &Policies) -> (u64, u64) {
     let portion = &planned.portion;
     let dots = [portion.ab_dot_product, portion.cd_dot_product];
+    // A dot product is the same in all channels.
+    let values = |channels: u8, same: bool| u64::from(if same { channels.min(1) } else { channels.count_ones() as u8 });
     let (mut products, mut roundings) = (0, 0);
     for n in 0..2 {
-        if planned.product_channels(n) != 0 {
-            products += channels;
-            if dots[n] && policies.dot_rounding == DotRounding::Each {
-                roundings += 3;
-            }
+        let channels = planned.product_channels(n);
+        products += values(channels, dots[n]) * if dots[n] { 3 } else { 1 };
+        if dots[n] && policies.dot_rounding == DotRounding::Each {
+            roundings += 3 * values(channels, true);
         }
+        let blue = if planned.blue_to_alpha[n] { BLUE } else { 0 };
+        roundings += values(planned.live[n] | blue, dots[n]);
     }
-    if planned.live[2] != 0 && !portion.mux && policies.sum_rounding == SumRounding::Each {
-        roundings += 2 * channels;
-    }
-    // A dot product is the same in all channels.
-    for (n, same) in [dots[0], dots[1], dots[0] && dots[1]].into_iter().enumerate() {
-        if planned.live[n] != 0 || (n < 2 && planned.blue_to_alpha[n]) {
-            roundings += if same { 1 } else { channels };
-        }
-    }
-    (products, roundings)
+    let third = values(planned.live[2], dots[0] && dots[1]);
+    let rounds_each = !portion.mux && policies.sum_rounding == SumRounding::Each;
+    (products, roundings + third * if rounds_each { 3 } else { 1 })
 }
 
 fn stored(planned: &PlannedDraw) -> Amounts {

@@ -1,22 +1,29 @@
-//! Stages, final combiner and blend as equations, of what is left in the plan. Inputs are written as in the combiner language.
+//! Stages, final combiner and blend as equations, of what is left in the plan: the order of a pixel, run on [`Printed`]. Inputs are written as
+//! in the combiner language.
 
-use crate::combiner::final_combiner::PlannedFinal;
-use crate::combiner::general::{PlannedPortion, PlannedStage};
+use crate::algebra::Algebra;
+use crate::combiner::final_combiner::{self, PlannedFinal};
+use crate::combiner::general::{self, PlannedPortion, PlannedStage};
+use crate::combiner::registers::Registers;
 use crate::plan::PlannedDraw;
-use crate::program::text::words::{final_operand, operand, register};
-use crate::rop::blend::{is_signed, uses_factors};
-use crate::state::{
-    Bias, BlendEquation, BlendFactor, CombinerInput, Component, FinalInput, FinalRegister, InputMapping, MuxSelect,
-    Named, Portion, Register, Scale,
-};
+use crate::program::text::words::register;
+use crate::rop::blend;
+use crate::state::{Bias, FinalRegister, InputMapping, MuxSelect, Named, Policies, Register, Scale};
+use crate::trace::Rule;
 
 /// A term; products bind closer than sums.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Term {
     Zero,
     One,
+    /// What is written as it is.
     Plain(String),
+    /// A register or a special of the final combiner, limited below.
+    Unsigned(String),
+    Product(String),
     Sum(String),
+    /// A sum that can be above 1.
+    Above(String),
 }
 
 impl Term {
@@ -24,81 +31,214 @@ impl Term {
         match self {
             Term::Zero => "0".to_string(),
             Term::One => "1".to_string(),
-            Term::Plain(text) | Term::Sum(text) => text,
+            Term::Plain(text) | Term::Unsigned(text) | Term::Product(text) | Term::Sum(text) | Term::Above(text) => {
+                text
+            }
         }
     }
 
     fn factor(self) -> String {
         match self {
-            Term::Sum(text) => format!("({text})"),
+            Term::Sum(text) | Term::Above(text) => format!("({text})"),
             other => other.sum(),
         }
     }
 
-    fn times(self, other: Term) -> Term {
-        match (self, other) {
+    /// In brackets unless it is one word.
+    fn whole(self) -> String {
+        match self {
+            Term::Product(text) => format!("({text})"),
+            other => other.factor(),
+        }
+    }
+}
+
+/// Where a term stands among all.
+#[derive(Clone, Copy, Debug)]
+struct Text(usize);
+
+/// Writes down what the order does; every channel of a portion as its first.
+#[derive(Debug, Default)]
+struct Printed {
+    terms: Vec<Term>,
+    policies: Policies,
+}
+
+impl Printed {
+    fn of(&mut self, term: Term) -> Text {
+        self.terms.push(term);
+        Text(self.terms.len() - 1)
+    }
+
+    fn term(&self, text: Text) -> Term {
+        self.terms[text.0].clone()
+    }
+
+    fn text(&self, text: Text) -> String {
+        self.term(text).sum()
+    }
+
+    /// The registers, each under its name: colour, blue and alpha as the component that an input reads.
+    fn registers(&mut self) -> Registers<Text> {
+        let zero = self.of(Term::Zero);
+        let mut registers = Registers::of(zero);
+        for of in Register::ALL.iter().filter(|of| **of != Register::Zero) {
+            for (channel, suffix) in ["", "", ".b", ".a"].into_iter().enumerate() {
+                let name = self.of(Term::Plain(format!("{}{suffix}", register(*of))));
+                registers.write(*of, channel, name);
+            }
+        }
+        registers
+    }
+
+    fn times(&mut self, a: Text, b: Text) -> Text {
+        let term = match (self.term(a), self.term(b)) {
             (Term::Zero, _) | (_, Term::Zero) => Term::Zero,
             (Term::One, x) | (x, Term::One) => x,
-            (a, b) => Term::Plain(format!("{} * {}", a.factor(), b.factor())),
+            (a, b) => Term::Product(format!("{} * {}", a.factor(), b.factor())),
+        };
+        self.of(term)
+    }
+}
+
+impl Algebra for Printed {
+    type Register = Text;
+    type Factor = Text;
+    type Sum = Text;
+    type Choice = &'static str;
+
+    fn policies(&self) -> &Policies {
+        &self.policies
+    }
+    fn byte(&mut self, value: u8) -> Text {
+        self.of(match value {
+            0 => Term::Zero,
+            255 => Term::One,
+            byte => Term::Plain(format!("{byte}/255")),
+        })
+    }
+    fn map(&mut self, mapping: InputMapping, x: Text) -> Text {
+        let (term, name) = (self.term(x), if self.term(x) == Term::Zero { "zero".to_owned() } else { self.text(x) });
+        let term = match (mapping, term) {
+            (
+                InputMapping::UnsignedIdentity | InputMapping::SignedIdentity | InputMapping::SignedNegate,
+                Term::Zero,
+            ) => Term::Zero,
+            (InputMapping::UnsignedInvert, Term::Zero) => Term::One,
+            (InputMapping::SignedIdentity, term) => term,
+            (InputMapping::SignedNegate, _) => Term::Plain(format!("-{name}")),
+            (InputMapping::UnsignedIdentity, _) => Term::Plain(format!("unsigned({name})")),
+            (InputMapping::UnsignedInvert, _) => Term::Plain(format!("unsigned_invert({name})")),
+            (InputMapping::ExpandNormal, _) => Term::Plain(format!("expand({name})")),
+            (InputMapping::ExpandNegate, _) => Term::Plain(format!("-expand({name})")),
+            (InputMapping::HalfBiasNormal, _) => Term::Plain(format!("half_bias({name})")),
+            (InputMapping::HalfBiasNegate, _) => Term::Plain(format!("-half_bias({name})")),
+        };
+        self.of(term)
+    }
+    fn plain(&mut self, x: Text) -> Text {
+        x
+    }
+    fn product(&mut self, rule: Rule, a: Text, b: Text) -> Text {
+        if rule != Rule::Cmb8 {
+            return self.times(a, b);
+        }
+        let term = Term::Product(format!("{} . {}", self.term(a).factor(), self.term(b).factor()));
+        self.of(term)
+    }
+    fn add(&mut self, rule: Rule, a: Text, b: Text) -> Text {
+        // Of a dot product's three channels the first says it.
+        if rule == Rule::Cmb8 { a } else { self.plus(a, b) }
+    }
+    fn subtract(&mut self, _rule: Rule, a: Text, b: Text) -> Text {
+        self.minus(a, b)
+    }
+    fn widened(&mut self, _rule: Rule, x: Text) -> Text {
+        x
+    }
+    fn choice(&mut self, select: MuxSelect, _spare0_alpha: Text) -> &'static str {
+        match select {
+            MuxSelect::Msb => "spare0.a >= 1/2",
+            MuxSelect::Lsb => "spare0.a is odd",
         }
     }
-
-    fn plus(self, other: Term) -> Term {
-        match (self, other) {
-            (Term::Zero, x) | (x, Term::Zero) => x,
-            (a, b) => Term::Sum(format!("{} + {}", a.sum(), b.sum())),
+    fn select(&mut self, takes_cd: &'static str, cd: Text, ab: Text) -> Text {
+        let term = Term::Plain(format!("({takes_cd} ? {} : {})", self.text(cd), self.text(ab)));
+        self.of(term)
+    }
+    fn rounded(&mut self, sum: Text) -> Text {
+        sum
+    }
+    fn rounded_after(&mut self, bias: Bias, scale: Scale, sum: Text) -> Text {
+        self.scaled(bias, scale, sum)
+    }
+    fn scaled(&mut self, bias: Bias, scale: Scale, x: Text) -> Text {
+        let biased = match bias {
+            Bias::None => self.term(x),
+            Bias::NegativeHalf => Term::Sum(format!("{} - 1/2", self.text(x))),
+        };
+        let times = |number: &str, term: Term| Term::Product(format!("{number} * {}", term.whole()));
+        let term = match scale {
+            Scale::One => biased,
+            Scale::Two => times("2", biased),
+            Scale::Four => times("4", biased),
+            Scale::Half => times("1/2", biased),
+        };
+        self.of(term)
+    }
+    fn saturated(&mut self, x: Text) -> Text {
+        x
+    }
+    fn max0(&mut self, x: Text) -> Text {
+        match self.term(x) {
+            Term::Plain(name) => self.of(Term::Unsigned(name)),
+            _ => x,
         }
     }
-
-    fn complement(self) -> Term {
-        match self {
+    fn complement(&mut self, x: Text) -> Text {
+        let term = match self.term(x) {
             Term::Zero => Term::One,
             Term::One => Term::Zero,
+            Term::Unsigned(name) => Term::Plain(format!("unsigned_invert({name})")),
             x => Term::Sum(format!("1 - {}", x.factor())),
+        };
+        self.of(term)
+    }
+    fn plus(&mut self, a: Text, b: Text) -> Text {
+        match (self.term(a), self.term(b)) {
+            (Term::Zero, _) => b,
+            (_, Term::Zero) => a,
+            (a, b) => self.of(Term::Above(format!("{} + {}", a.sum(), b.sum()))),
         }
     }
-}
-
-fn input(input: &CombinerInput, alpha: bool) -> Term {
-    match (input.register, input.mapping) {
-        (
-            Register::Zero,
-            InputMapping::UnsignedIdentity | InputMapping::SignedIdentity | InputMapping::SignedNegate,
-        ) => Term::Zero,
-        (Register::Zero, InputMapping::UnsignedInvert) => Term::One,
-        _ => Term::Plain(operand(input, alpha)),
+    fn minus(&mut self, a: Text, b: Text) -> Text {
+        let term = Term::Sum(format!("{} - {}", self.text(a), self.term(b).factor()));
+        self.of(term)
     }
-}
-
-fn product(portion: &Portion, n: usize, alpha: bool) -> Term {
-    let [a, b] = [0, 1].map(|k| input(&portion.inputs[2 * n + k], alpha));
-    if [portion.ab_dot_product, portion.cd_dot_product][n] {
-        Term::Plain(format!("{} . {}", a.factor(), b.factor()))
-    } else {
-        a.times(b)
+    fn least(&mut self, a: Text, b: Text) -> Text {
+        let term = match (self.term(a), self.term(b)) {
+            // Nothing else is above 1.
+            (Term::Above(sum), Term::One) => Term::Product(format!("min(1, {sum})")),
+            (Term::Unsigned(name), Term::One) => Term::Plain(name),
+            (a, Term::One) => a,
+            (a, b) => Term::Plain(format!("min({}, {})", a.sum(), b.sum())),
+        };
+        self.of(term)
     }
-}
-
-fn output(portion: &Portion, term: Term) -> String {
-    let biased = match portion.bias {
-        Bias::None => term,
-        Bias::NegativeHalf => Term::Sum(format!("{} - 1/2", term.sum())),
-    };
-    let whole = |text: Term| match text {
-        Term::Plain(text) if text.contains(' ') => format!("({text})"),
-        other => other.factor(),
-    };
-    match portion.scale {
-        Scale::One => biased.sum(),
-        Scale::Two => format!("2 * {}", whole(biased)),
-        Scale::Four => format!("4 * {}", whole(biased)),
-        Scale::Half => format!("1/2 * {}", whole(biased)),
+    fn greatest(&mut self, a: Text, b: Text) -> Text {
+        let term = Term::Plain(format!("max({}, {})", self.text(a), self.text(b)));
+        self.of(term)
     }
-}
-
-/// The channels of a destination that count: `rgb`, or those of them.
-fn live(mask: u8) -> String {
-    super::channels(mask)
+    fn clamped(&mut self, x: Text) -> Text {
+        x
+    }
+    fn truncated(&mut self, _bits: u32, x: Text) -> Text {
+        x
+    }
+    fn signed_byte(&mut self, x: Text) -> Text {
+        let term = Term::Plain(format!("signed byte({})", self.text(x)));
+        self.of(term)
+    }
 }
 
 /// What a stage computes, of what is needed.
@@ -110,8 +250,23 @@ pub(super) fn stage(stage: &PlannedStage, mux_select: MuxSelect) -> Vec<String> 
             lines.push(format!("{} = {r}, {g}, {b}, {a}", register(constant)));
         }
     }
-    lines.extend(portion(&stage.rgb, false, mux_select));
-    lines.extend(portion(&stage.alpha, true, mux_select));
+    let mut printed = Printed::default();
+    let registers = printed.registers();
+    let values = general::evaluate(stage, mux_select, &registers, &mut printed);
+    let [rgb, alpha] = [values.rgb.outputs.map(|all| all[0]), values.alpha.outputs.map(|all| all[0])];
+    for (planned, outputs) in [(&stage.rgb, rgb), (&stage.alpha, alpha)] {
+        let portion = &planned.portion;
+        let destinations = [portion.ab_output, portion.cd_output, portion.sum_output];
+        for (n, (output, destination)) in outputs.into_iter().zip(destinations).enumerate() {
+            let name = register(destination);
+            if planned.live[n] != 0 {
+                lines.push(format!("{name}.{} = {}", super::channels(planned.live[n]), printed.text(output)));
+            }
+            if n < 2 && planned.blue_to_alpha[n] {
+                lines.push(format!("{name}.a = blue of {}", ["AB", "CD"][n]));
+            }
+        }
+    }
     lines.iter().map(|line| format!("stage {}: {line}", stage.index)).collect()
 }
 
@@ -121,32 +276,6 @@ fn reads(planned: &PlannedPortion, register: Register) -> bool {
         let inputs = &planned.portion.inputs[2 * n..2 * n + 2];
         planned.product_channels(n) != 0 && inputs.iter().any(|input| input.register == register)
     })
-}
-
-fn portion(planned: &PlannedPortion, alpha: bool, mux_select: MuxSelect) -> Vec<String> {
-    let portion = &planned.portion;
-    let [ab, cd] = [0, 1].map(|n| product(portion, n, alpha));
-    let third = if portion.mux {
-        let condition = match mux_select {
-            MuxSelect::Msb => "spare0.a >= 1/2",
-            MuxSelect::Lsb => "spare0.a is odd",
-        };
-        Term::Plain(format!("({condition} ? {} : {})", cd.clone().sum(), ab.clone().sum()))
-    } else {
-        ab.clone().plus(cd.clone())
-    };
-    let outputs = [(ab, portion.ab_output), (cd, portion.cd_output), (third, portion.sum_output)];
-    let mut lines = Vec::new();
-    for (n, (term, destination)) in outputs.into_iter().enumerate() {
-        let name = register(destination);
-        if planned.live[n] != 0 {
-            lines.push(format!("{name}.{} = {}", live(planned.live[n]), output(portion, term)));
-        }
-        if n < 2 && planned.blue_to_alpha[n] {
-            lines.push(format!("{name}.a = blue of {}", ["AB", "CD"][n]));
-        }
-    }
-    lines
 }
 
 /// What the final combiner computes, of what is needed.
@@ -160,62 +289,25 @@ pub(super) fn final_combiner(planned: &PlannedFinal) -> Vec<String> {
             lines.push(format!("final: const{n} = {r}, {g}, {b}, {a}"));
         }
     }
-    if planned.live & 7 != 0 {
-        let [a, b, c, d] = [0, 1, 2, 3].map(|n| final_input(planned, &state.inputs[n], false));
-        let lerp = a.clone().times(b).plus(a.complement().times(c));
-        lines.push(format!("fragment.{} = {}", live(planned.live & 7), lerp.plus(d).sum()));
-    }
-    if planned.live & 8 != 0 {
-        lines.push(format!("fragment.a = {}", final_input(planned, &state.g, true).sum()));
+    let mut printed = Printed::default();
+    let registers = printed.registers();
+    let fragment = final_combiner::evaluate(state, &registers, &mut printed).fragment;
+    for (live, value) in [(planned.live & 7, fragment[0]), (planned.live & 8, fragment[3])] {
+        if live != 0 {
+            lines.push(format!("fragment.{} = {}", super::channels(live), printed.text(value)));
+        }
     }
     lines
 }
 
-fn final_input(planned: &PlannedFinal, input: &FinalInput, alpha: bool) -> Term {
-    let state = &planned.state;
-    let term = match input.register {
-        FinalRegister::Zero => Term::Zero,
-        // Their alpha is 0 (FIN-1).
-        FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF if input.component == Component::Alpha => {
-            Term::Zero
-        }
-        FinalRegister::Spare0PlusSecondary => {
-            let side = |of: Register, invert: bool| {
-                let name = register(of);
-                if invert { format!("unsigned_invert({name})") } else { name.to_string() }
-            };
-            let spare0 = side(Register::Spare0, state.invert_spare0);
-            let sum = format!("{spare0} + {}", side(Register::SecondaryColor, state.invert_secondary));
-            if state.color_sum_clamp { Term::Plain(format!("min(1, {sum})")) } else { Term::Sum(sum) }
-        }
-        FinalRegister::ETimesF => {
-            let [e, f] = [4, 5].map(|n| final_input(planned, &state.inputs[n], false));
-            e.times(f)
-        }
-        _ => return Term::Plain(final_operand(input, alpha)),
-    };
-    if input.invert { term.complement() } else { term }
-}
-
 /// The blend of what is written.
 pub(super) fn blend(planned: &PlannedDraw) -> Option<String> {
-    let blend = planned.blend.as_ref()?;
-    let factor = |factor: BlendFactor| match factor {
-        BlendFactor::Zero => Term::Zero,
-        BlendFactor::One => Term::One,
-        other => Term::Plain(other.name().to_string()),
-    };
-    let side = |name: &str, f: BlendFactor| Term::Plain(name.to_string()).times(factor(f));
-    let (s, d) = (side("fragment", blend.source), side("destination", blend.destination));
-    let text = match blend.equation {
-        BlendEquation::Add => s.plus(d).sum(),
-        BlendEquation::Subtract => format!("{} - {}", s.sum(), d.sum()),
-        BlendEquation::ReverseSubtract => format!("{} - {}", d.sum(), s.sum()),
-        BlendEquation::Min => "min(fragment, destination)".to_string(),
-        BlendEquation::Max => "max(fragment, destination)".to_string(),
-        BlendEquation::SignedAdd => "destination + signed byte(fragment)".to_string(),
-        BlendEquation::SignedReverseSubtract => "destination - signed byte(fragment)".to_string(),
-    };
-    debug_assert!(uses_factors(blend.equation) || is_signed(blend.equation) || text.starts_with('m'));
-    Some(format!("blend.{} = {text}", live(planned.blended)))
+    let state = planned.blend.as_ref()?;
+    let mut printed = Printed::default();
+    let mut color = |name: &str| ["", "", "", ".a"].map(|suffix| printed.of(Term::Plain(format!("{name}{suffix}"))));
+    let (source, destination, constant) = (color("fragment"), color("destination"), color("constant"));
+    // Alpha is blended like colour, but for a factor that is 1 there.
+    let channel = if planned.blended & 7 == 0 { 3 } else { 0 };
+    let values = blend::evaluate(state, channel, &source, &destination, &constant, &mut printed);
+    Some(format!("blend.{} = {}", super::channels(planned.blended), printed.text(values.blended)))
 }

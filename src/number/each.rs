@@ -183,6 +183,10 @@ impl Lane for Each<i32> {
     fn truncated(self, shift: u32) -> Self {
         self.map(|v| v.truncated(shift))
     }
+    #[inline(always)]
+    fn signed_byte(self) -> Self {
+        self.map(i32::signed_byte)
+    }
     fn observe(self) -> (i64, Option<f64>) {
         self.0[0].observe()
     }
@@ -226,6 +230,7 @@ mod tests {
             assert_eq!(<Each<i32> as Lane>::negated(numbers.factor()).0[n], i32::negated(a.factor()));
             assert_eq!(Lane::halfway(numbers, others).0[n], <i32 as Lane>::halfway(a, b));
             assert_eq!(numbers.truncated(3).0[n], a.truncated(3));
+            assert_eq!(numbers.signed_byte().0[n], a.signed_byte());
             assert_eq!(numbers.times(others).round8().0[n], a.times(b).round8());
         }
     }

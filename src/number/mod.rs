@@ -21,6 +21,7 @@ mod block;
 pub mod convert;
 mod each;
 mod paired;
+mod part;
 mod real;
 mod scalar;
 mod strands;
@@ -28,11 +29,11 @@ mod strands;
 pub use block::{Halved, Narrow, Quarter, Two, byte_product};
 pub use each::{EACH, Each};
 pub use paired::{Paired, PairedFactor, PairedSum};
+pub use part::Part;
 pub use scalar::{Halves, Quarters};
 pub use strands::{STRANDS, Strands};
 
 use crate::state::RegisterFloor;
-use crate::trace::Part;
 use std::ops::{Add, Sub};
 
 /// A value that is mixed by weights of 256ths: interpolated colours and filtered texels.
@@ -127,6 +128,10 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
     fn decision(self) -> i32;
     /// The high bits that a surface keeps: v >> shift << shift (ROP-5); the ideal keeps all.
     fn truncated(self, shift: u32) -> Self;
+    /// A byte read as two's complement (ROP-3): 128 and more are negative. The definition says which.
+    fn signed_byte(self) -> Self {
+        if self.decision() >= 128 { self - Self::value(256, || 256.0) } else { self }
+    }
     /// Whether the lane decides by its own numbers where the definition has integers of its own: texels, depth.
     const DECIDES: bool = false;
     /// What the ideal would decide by, where the lane has one.

@@ -1,8 +1,7 @@
 //! The definition and the ideal side by side: every operation is done in both, every decision is the definition's.
 
-use super::{Blend, Factor, Halves, Ideal, Lane, Quarters, Register, Sum};
+use super::{Blend, Factor, Halves, Ideal, Lane, Part, Quarters, Register, Sum};
 use crate::state::RegisterFloor;
-use crate::trace::Part;
 use std::ops::{Add, Sub};
 
 /// A value as an integer of the definition and as the real number that it stands for.

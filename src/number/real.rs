@@ -2,9 +2,8 @@
 //! precision, from weights and coordinates in double.
 #![allow(clippy::float_arithmetic, reason = "this lane is the real-number reference; it never feeds a stored byte")]
 
-use super::{Blend, Factor, Ideal, Lane, Register, Sum};
+use super::{Blend, Factor, Ideal, Lane, Part, Register, Sum};
 use crate::state::RegisterFloor;
-use crate::trace::Part;
 
 /// The ideal's depths are kept in parts of the buffer's last bit.
 pub(super) const DEPTH_SCALE: f64 = 65536.0;

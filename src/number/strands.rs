@@ -1,9 +1,8 @@
 //! Several ideals at once, which tell the errors of the rules apart.
 #![allow(clippy::float_arithmetic, reason = "real-number references; they never feed a stored byte")]
 
-use super::{Blend, Factor, Ideal, Lane, Register, Sum};
+use super::{Blend, Factor, Ideal, Lane, Part, Register, Sum};
 use crate::state::{Named, RegisterFloor};
-use crate::trace::Part;
 use std::ops::{Add, Sub};
 
 /// Number of [`Strands`] that tell everything apart: the ideal, and one for each part up to which errors are let in.

@@ -1,19 +1,49 @@
-//! Which outputs of the combiners anybody reads: backwards from the stored word to the interpolators and texture units.
+//! Which values of a draw anybody reads, and which are the same in every pixel: the order of a pixel, run on a [`Trail`].
 
+use crate::algebra::{Algebra, Site, Trail, Value};
 use crate::combiner::final_combiner::{self, PlannedFinal};
-use crate::combiner::general::{PlannedPortion, PlannedStage, source_channel};
-use crate::combiner::registers::{bit, initially_undefined};
+use crate::combiner::general::{self, PlannedPortion, PlannedStage};
+use crate::combiner::registers::{REGISTERS, Registers, bit, initially_undefined};
 use crate::rop::blend;
 use crate::state::{
-    Blend, BlendFactor, Combiners, Component, DotMapping, Draw, FinalInput, FinalRegister, Portion, Register,
-    ShaderOperation, ShaderStage, TEXTURE_UNITS,
+    Blend, Combiners, DotMapping, Draw, FinalInput, Named, Portion, Register, ShaderOperation, ShaderStage,
+    SurfaceFormat, TEXTURE_UNITS,
 };
-
-/// Every channel of both constant colours.
-const CONSTANTS: u64 = 255 << (4 * Register::ConstantColor0 as usize);
 
 const RGB: u8 = 7;
 const ALPHA: u8 = 8;
+
+/// What a draw's combiners compute, value by value.
+pub(super) struct Computed<'d> {
+    combiners: &'d Combiners,
+    trail: Trail,
+    /// The registers before the first stage.
+    initial: Registers<Value>,
+    /// Stage by stage: the places of its text, and its constants.
+    stages: Vec<Part>,
+    last: Part,
+    fragment: [Value; 4],
+}
+
+/// The values of a stage or of the final combiner.
+struct Part {
+    sites: Vec<(Site, Value)>,
+    constants: [[Value; 4]; 2],
+}
+
+impl Part {
+    /// Closes a part whose text has just been run.
+    fn close(registers: &Registers<Value>, trail: &mut Trail) -> Part {
+        let constants = [Register::ConstantColor0, Register::ConstantColor1];
+        Part { sites: trail.take_sites(), constants: constants.map(|register| registers.values[register as usize]) }
+    }
+
+    /// The places whose values are needed, and whether one of the constants is.
+    fn needed(&self, needed: &impl Fn(Value) -> bool) -> (u64, bool) {
+        let sites = self.sites.iter().filter(|(_, value)| needed(*value)).fold(0, |all, (site, _)| all | site.0);
+        (sites, self.constants.as_flattened().iter().any(|value| needed(*value)))
+    }
+}
 
 /// What a draw's combiners need, and what of them is needed.
 pub(super) struct Liveness {
@@ -29,39 +59,92 @@ pub(super) struct Liveness {
     pub(super) undefined: u64,
 }
 
-impl Liveness {
+impl<'d> Computed<'d> {
+    /// `zero`: registers that hold 0 in every pixel before the first stage, as bits of registers and channels.
+    pub(super) fn new(combiners: &'d Combiners, zero: u64) -> Computed<'d> {
+        let mut trail = Trail::default();
+        let mut initial = Registers::of(trail.input(Some(0)));
+        for register in Register::ALL.iter().skip(1) {
+            for channel in 0..4 {
+                let known = (zero & bit(*register, channel) != 0).then_some(0);
+                initial.write(*register, channel, trail.input(known));
+            }
+        }
+        // CMB-13: SPARE0's alpha starts as texture 0's.
+        let alpha = trail.written(initial.read(Register::Texture0, 3));
+        initial.write(Register::Spare0, 3, alpha);
+        let mut registers = initial;
+        let mut stages = Vec::new();
+        for stage in &combiners.stages {
+            let [rgb, alpha] = [&stage.rgb, &stage.alpha].map(|portion| planned(portion, 0, 0));
+            let whole = PlannedStage { index: 0, rgb, alpha, constants: stage.constants, reads_constants: true };
+            general::load_constants(stage.constants, &mut registers, &mut trail);
+            let values = general::evaluate(&whole, combiners.mux_select, &registers, &mut trail);
+            let mut after = registers;
+            general::write(&whole, &values, &mut after, &mut trail);
+            stages.push(Part::close(&registers, &mut trail));
+            registers = after;
+        }
+        let state = &combiners.final_combiner;
+        general::load_constants(state.constants, &mut registers, &mut trail);
+        let fragment = final_combiner::evaluate(state, &registers, &mut trail).fragment;
+        let last = Part::close(&registers, &mut trail);
+        Computed { combiners, trail, initial, stages, last, fragment }
+    }
+
+    /// Channels of the fragment that are 0 whatever the pixel, bits R, G, B, A.
+    pub(super) fn zero_fragment(&self) -> u8 {
+        (0..4).filter(|c| self.fragment[*c].known == Some(0)).map(|c| 1 << c).sum()
+    }
+
     /// `written` are the channels that the surface stores; without `prune` everything counts as read.
-    pub(super) fn of(draw: &Draw, alpha_test: bool, blend: Option<Blend>, written: u8, prune: bool) -> Liveness {
-        let fragment = if prune { fragment_channels(alpha_test, blend, written) } else { RGB | ALPHA };
-        let (final_combiner, mut live) = final_liveness(&draw.combiners, fragment);
-        let mut stages: Vec<PlannedStage> = Vec::new();
-        for (index, stage) in draw.combiners.stages.iter().enumerate().rev() {
-            let [rgb, alpha] = [(&stage.rgb, RGB), (&stage.alpha, ALPHA)].map(|(portion, channels)| PlannedPortion {
-                portion: *portion,
-                live: outputs(portion).map(|d| live_channels(d, channels, live, prune)),
-                blue_to_alpha: [
-                    portion.ab_blue_to_alpha && live_channels(portion.ab_output, ALPHA, live, prune) != 0,
-                    portion.cd_blue_to_alpha && live_channels(portion.cd_output, ALPHA, live, prune) != 0,
-                ],
-            });
-            live &= !(written_bits(&stage.rgb, RGB) | written_bits(&stage.alpha, ALPHA));
-            let read = read_bits(&rgb, RGB) | read_bits(&alpha, ALPHA);
-            live |= read;
+    pub(super) fn liveness(
+        mut self,
+        draw: &Draw,
+        (surface, alpha_test, blend): (SurfaceFormat, bool, Option<Blend>),
+        written: u8,
+        prune: bool,
+    ) -> Liveness {
+        let mut stored = self.fragment;
+        if let Some(state) = &blend {
+            let destination = [0; 4].map(|_: u8| self.trail.input(None));
+            let source = blend::truncated(surface, self.fragment, &mut self.trail);
+            stored = blend::blend(state, written, draw.blend_constant, &source, &destination, &mut self.trail);
+        }
+        let mut roots: Vec<Value> = (0..4).filter(|c| written >> c & 1 != 0).map(|c| stored[c]).collect();
+        roots.extend(alpha_test.then_some(self.fragment[3]));
+        if !prune {
+            roots.extend(self.fragment);
+            let sites = self.stages.iter().flat_map(|stage| &stage.sites);
+            roots.extend(sites.filter(|(site, _)| site.writes()).map(|(_, value)| *value));
+        }
+        let needed = self.trail.needed(&roots);
+        let mut stages = Vec::new();
+        for (index, (stage, part)) in self.combiners.stages.iter().zip(&self.stages).enumerate() {
+            let (sites, reads_constants) = part.needed(&needed);
+            let (rgb, alpha) = (planned(&stage.rgb, RGB, sites), planned(&stage.alpha, ALPHA, sites));
             if !(rgb.is_idle() && alpha.is_idle()) {
-                let reads_constants = read & CONSTANTS != 0;
                 stages.push(PlannedStage { index, rgb, alpha, constants: stage.constants, reads_constants });
             }
         }
-        stages.reverse();
-        if !prune {
-            live = u64::MAX;
-        }
-        let channels = |register: Register| (live >> (4 * register as usize) & 15) as u8;
+        let state = self.combiners.final_combiner;
+        let (sites, reads_constants) = self.last.needed(&needed);
+        let final_combiner = PlannedFinal {
+            state,
+            live: (sites >> 8) as u8 & 15,
+            product: (sites >> 4) as u8 & 15,
+            sum: sites as u8 & 15,
+            reads_constants,
+            lerps: ![state.inputs[0], state.inputs[2]].iter().all(FinalInput::is_zero),
+        };
+        let channels = |register: Register| {
+            let values = self.initial.values[register as usize];
+            (0..4).filter(|c| !prune || needed(values[*c])).map(|c| 1 << c).sum::<u8>()
+        };
         let mut units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3].map(channels);
-        // CMB-13: SPARE0's alpha starts as texture 0's.
         let spare0_alpha = channels(Register::Spare0) & ALPHA != 0;
-        units[0] |= if spare0_alpha { ALPHA } else { 0 };
         let dots = shader_liveness(&draw.texture_shader, &mut units);
+        let live = (0..REGISTERS).fold(0, |live, n| live | u64::from(channels(Register::ALL[n])) << (4 * n));
         Liveness {
             stages,
             final_combiner,
@@ -73,6 +156,17 @@ impl Liveness {
             spare0_alpha,
             undefined: live & initially_undefined(),
         }
+    }
+}
+
+/// A portion of some channels, of which the values at these places are needed.
+fn planned(portion: &Portion, channels: u8, sites: u64) -> PlannedPortion {
+    let sites = sites & Site::of_channels(channels);
+    PlannedPortion {
+        portion: *portion,
+        live: [0, 1, 2].map(|n| (0..4).filter(|c| sites & Site::write(n, *c).0 != 0).map(|c| 1 << c).sum()),
+        blue_to_alpha: [0, 1].map(|n| sites & Site::blue_to_alpha(n).0 != 0),
+        sites,
     }
 }
 
@@ -107,103 +201,4 @@ fn shader_liveness(shader: &[ShaderStage; TEXTURE_UNITS], units: &mut [u8; TEXTU
         }
     }
     dots
-}
-
-/// Channels of the fragment that alpha test, blend and store read.
-fn fragment_channels(alpha_test: bool, blend: Option<Blend>, written: u8) -> u8 {
-    let alpha_factor = |f: BlendFactor| {
-        matches!(f, BlendFactor::SourceAlpha | BlendFactor::OneMinusSourceAlpha | BlendFactor::SourceAlphaSaturate)
-    };
-    let blends_alpha = blend.is_some_and(|b| {
-        blend::uses_factors(b.equation) && (alpha_factor(b.source) || alpha_factor(b.destination)) && written != 0
-    });
-    written | if alpha_test || blends_alpha { ALPHA } else { 0 }
-}
-
-fn final_liveness(combiners: &Combiners, fragment: u8) -> (PlannedFinal, u64) {
-    let state = combiners.final_combiner;
-    let mut planned = PlannedFinal { state, live: fragment, product: 0, sum: 0, reads_constants: false, lerps: true };
-    planned.lerps = ![state.inputs[0], state.inputs[2]].iter().all(FinalInput::is_zero);
-    let mut live = 0;
-    let mut read = |input: &FinalInput, channels: u8| {
-        for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
-            let source = match input.component {
-                Component::Rgb => channel,
-                Component::Blue => 2,
-                Component::Alpha => 3,
-            };
-            match input.register {
-                // Their alpha is 0 and reads nothing.
-                FinalRegister::Spare0PlusSecondary if source < 3 => planned.sum |= 1 << source,
-                FinalRegister::ETimesF if source < 3 => planned.product |= 1 << source,
-                FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => {}
-                register => live |= bit(final_combiner::general(register), source),
-            }
-        }
-    };
-    for input in &state.inputs[..4] {
-        read(input, fragment & RGB);
-    }
-    if fragment & ALPHA != 0 {
-        read(&state.g, ALPHA);
-    }
-    for channel in (0..3).filter(|c| planned.product >> c & 1 != 0) {
-        for input in &state.inputs[4..] {
-            let source = if input.component == Component::Rgb { channel } else { 3 };
-            live |= bit(final_combiner::general(input.register), source);
-        }
-    }
-    for channel in (0..3).filter(|c| planned.sum >> c & 1 != 0) {
-        live |= bit(Register::Spare0, channel) | bit(Register::SecondaryColor, channel);
-    }
-    planned.reads_constants = live & CONSTANTS != 0;
-    (planned, live)
-}
-
-fn outputs(portion: &Portion) -> [Register; 3] {
-    [portion.ab_output, portion.cd_output, portion.sum_output]
-}
-
-/// Channels of a destination, among `channels`, that are live.
-fn live_channels(destination: Register, channels: u8, live: u64, prune: bool) -> u8 {
-    match destination {
-        Register::Zero => 0,
-        _ if !prune => channels,
-        register => (live >> (4 * register as usize)) as u8 & channels,
-    }
-}
-
-/// Bits that a portion overwrites.
-fn written_bits(portion: &Portion, channels: u8) -> u64 {
-    let whole = |register: Register| {
-        if register == Register::Zero { 0 } else { u64::from(channels) << (4 * register as usize) }
-    };
-    let mut written: u64 = outputs(portion).into_iter().fold(0, |all, register| all | whole(register));
-    for (flag, register) in
-        [(portion.ab_blue_to_alpha, portion.ab_output), (portion.cd_blue_to_alpha, portion.cd_output)]
-    {
-        if flag && register != Register::Zero {
-            written |= bit(register, 3);
-        }
-    }
-    written
-}
-
-/// Bits that a planned portion reads.
-fn read_bits(planned: &PlannedPortion, channels: u8) -> u64 {
-    let mut read = 0;
-    for product in 0..2 {
-        let dot = [planned.portion.ab_dot_product, planned.portion.cd_dot_product][product];
-        let needed = planned.product_channels(product);
-        let needed = if dot && needed != 0 { RGB } else { needed & channels };
-        for input in &planned.portion.inputs[2 * product..2 * product + 2] {
-            for channel in (0..4).filter(|c| needed >> c & 1 != 0) {
-                read |= bit(input.register, source_channel(input, channel));
-            }
-        }
-    }
-    if planned.portion.mux && planned.live[2] != 0 {
-        read |= bit(Register::Spare0, 3);
-    }
-    read
 }

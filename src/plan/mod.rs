@@ -20,7 +20,7 @@ use crate::state::{
 };
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
-use liveness::Liveness;
+use liveness::{Computed, Liveness};
 
 /// How a plan is made.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -278,15 +278,16 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
     let state_blend = draw.blend.filter(|_| surface::blends(target.format));
     let depth_test = draw.depth_test.filter(|_| target.depth.is_some());
     let mut folded = Folded::default();
+    let computed = Computed::new(&draw.combiners, fold::initially_zero(draw, black));
     if options.prune {
         let written = written_channels(target.format, state_mask);
-        folded.zero = fold::zero_fragment(draw, black);
+        folded.zero = computed.zero_fragment();
+        let mut keeps_always = false;
         if let Some(blend) = &state_blend {
-            let zero = written & !folded.zero == 0;
-            folded.replaces = fold::replaces(blend, draw.blend_constant, written);
-            folded.keeps = fold::keeps(blend, draw.blend_constant, written, zero);
+            (folded.replaces, keeps_always) = fold::blend(blend, draw.blend_constant, written, 0);
+            let zero = if written & !folded.zero == 0 { folded.zero } else { 0 };
+            folded.keeps = fold::blend(blend, draw.blend_constant, written, zero).1;
         }
-        let keeps_always = state_blend.is_some_and(|b| fold::keeps(&b, draw.blend_constant, written, false));
         folded.invisible = if assembly.triangles.is_empty() {
             Some(Invisible::NoTriangles)
         } else if window.width == 0 || window.height == 0 {
@@ -306,7 +307,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
     let alpha_test = draw.alpha_test.filter(|t| !(options.prune && t.function == CompareFunction::Always));
     let written = written_channels(target.format, write_mask);
     let blended = if options.prune { written } else { 15 };
-    let liveness = Liveness::of(draw, alpha_test.is_some(), blend, written, options.prune);
+    let liveness = computed.liveness(draw, (target.format, alpha_test.is_some(), blend), written, options.prune);
     let sampled = |index: usize| draw.textures[index].filter(|_| draw.texture_shader[index].operation.samples());
     let units: Vec<PlannedUnit> = liveness
         .units

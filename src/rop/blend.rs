@@ -1,61 +1,147 @@
-//! ROP-1 to ROP-4: alpha test, blend equations and factors.
+//! ROP-1 to ROP-5: alpha test, blend equations and factors, in the operations of an [`Algebra`]; [`run`] is them on numbers, with reports.
 
+use super::surface;
+use crate::algebra::Algebra;
+use crate::combiner::direct::Direct;
 use crate::combiner::registers::channel_name;
-use crate::number::{Factor, Lane, Sum};
-use crate::state::{AlphaTest, Blend, BlendEquation, BlendFactor};
+use crate::number::Lane;
+use crate::state::{AlphaTest, Blend, BlendEquation, BlendFactor, SurfaceFormat};
 use crate::trace::{Decision, Observer, Operand, Rule, Work, report};
 
 const BLOCK: &str = "blend";
 
 /// ROP-4: a blend factor of one channel.
 #[inline(always)]
-pub fn factor<L: Lane>(
+pub fn factor<A: Algebra>(
     factor: BlendFactor,
     channel: usize,
-    source: &[L; 4],
-    destination: &[L; 4],
-    constant: &[L; 4],
-) -> L {
+    source: &[A::Register; 4],
+    destination: &[A::Register; 4],
+    constant: &[A::Register; 4],
+    a: &mut A,
+) -> A::Register {
     match factor {
-        BlendFactor::Zero => L::ZERO,
-        BlendFactor::One => L::ONE,
+        BlendFactor::Zero => a.byte(0),
+        BlendFactor::One => a.byte(255),
         BlendFactor::SourceColor => source[channel],
-        BlendFactor::OneMinusSourceColor => L::ONE - source[channel],
+        BlendFactor::OneMinusSourceColor => a.complement(source[channel]),
         BlendFactor::SourceAlpha => source[3],
-        BlendFactor::OneMinusSourceAlpha => L::ONE - source[3],
+        BlendFactor::OneMinusSourceAlpha => a.complement(source[3]),
         BlendFactor::DestinationAlpha => destination[3],
-        BlendFactor::OneMinusDestinationAlpha => L::ONE - destination[3],
+        BlendFactor::OneMinusDestinationAlpha => a.complement(destination[3]),
         BlendFactor::DestinationColor => destination[channel],
-        BlendFactor::OneMinusDestinationColor => L::ONE - destination[channel],
-        BlendFactor::SourceAlphaSaturate if channel == 3 => L::ONE,
-        BlendFactor::SourceAlphaSaturate => source[3].least(L::ONE - destination[3]),
+        BlendFactor::OneMinusDestinationColor => a.complement(destination[channel]),
+        BlendFactor::SourceAlphaSaturate if channel == 3 => a.byte(255),
+        BlendFactor::SourceAlphaSaturate => {
+            let free = a.complement(destination[3]);
+            a.least(source[3], free)
+        }
         BlendFactor::ConstantColor => constant[channel],
-        BlendFactor::OneMinusConstantColor => L::ONE - constant[channel],
+        BlendFactor::OneMinusConstantColor => a.complement(constant[channel]),
         BlendFactor::ConstantAlpha => constant[3],
-        BlendFactor::OneMinusConstantAlpha => L::ONE - constant[3],
+        BlendFactor::OneMinusConstantAlpha => a.complement(constant[3]),
     }
 }
 
 /// ROP-2, ROP-3: one channel, not yet clamped. `fs` and `fd` are the factors.
 #[inline(always)]
-pub fn equation<L: Lane>(equation: BlendEquation, s: L, d: L, fs: L, fd: L) -> L {
-    let source = || s.factor().product(fs.factor());
-    let destination = || d.factor().product(fd.factor());
-    match equation {
-        BlendEquation::Add => (source() + destination()).rounded(),
-        BlendEquation::Subtract => (source() - destination()).rounded(),
-        BlendEquation::ReverseSubtract => (destination() - source()).rounded(),
-        BlendEquation::Min => s.least(d),
-        BlendEquation::Max => s.greatest(d),
-        BlendEquation::SignedAdd => d + twos_complement(s),
-        BlendEquation::SignedReverseSubtract => d - twos_complement(s),
-    }
+pub fn equation<A: Algebra>(
+    equation: BlendEquation,
+    [s, d]: [A::Register; 2],
+    [fs, fd]: [A::Register; 2],
+    a: &mut A,
+) -> A::Register {
+    const RULE: Rule = Rule::Rop2;
+    let products = |a: &mut A| {
+        let [s, d, fs, fd] = [s, d, fs, fd].map(|v| a.plain(v));
+        (a.product(RULE, s, fs), a.product(RULE, d, fd))
+    };
+    let sum = match equation {
+        BlendEquation::Add => {
+            let (source, destination) = products(a);
+            a.add(RULE, source, destination)
+        }
+        BlendEquation::Subtract => {
+            let (source, destination) = products(a);
+            a.subtract(RULE, source, destination)
+        }
+        BlendEquation::ReverseSubtract => {
+            let (source, destination) = products(a);
+            a.subtract(RULE, destination, source)
+        }
+        BlendEquation::Min => {
+            let least = a.least(s, d);
+            return a.yielded(RULE, least);
+        }
+        BlendEquation::Max => {
+            let greatest = a.greatest(s, d);
+            return a.yielded(RULE, greatest);
+        }
+        BlendEquation::SignedAdd => {
+            let signed = a.signed_byte(s);
+            let sum = a.plus(d, signed);
+            return a.yielded(RULE, sum);
+        }
+        BlendEquation::SignedReverseSubtract => {
+            let signed = a.signed_byte(s);
+            let difference = a.minus(d, signed);
+            return a.yielded(RULE, difference);
+        }
+    };
+    a.rounded(sum)
 }
 
-/// The byte as two's complement.
+/// ROP-5: a fragment without the low bits that the surface drops. Its alpha keeps all.
 #[inline(always)]
-fn twos_complement<L: Lane>(s: L) -> L {
-    if s.decision() >= 128 { s - L::value(256, || 256.0) } else { s }
+pub fn truncated<A: Algebra>(format: SurfaceFormat, mut fragment: [A::Register; 4], a: &mut A) -> [A::Register; 4] {
+    for (value, bits) in fragment.iter_mut().zip(surface::dropped_bits(format)).filter(|(_, bits)| *bits != 0) {
+        *value = a.truncated(bits, *value);
+    }
+    fragment
+}
+
+/// What blending a channel computes.
+#[derive(Clone, Copy, Debug)]
+pub struct BlendValues<R> {
+    /// Of source and destination (ROP-4).
+    factors: [R; 2],
+    /// By the equation, not yet clamped (ROP-2, ROP-3).
+    raw: R,
+    /// Limited to a byte.
+    pub blended: R,
+}
+
+/// ROP-2 to ROP-4 of one channel. `source` has been [`truncated`].
+#[inline(always)]
+pub fn evaluate<A: Algebra>(
+    blend: &Blend,
+    channel: usize,
+    source: &[A::Register; 4],
+    destination: &[A::Register; 4],
+    constant: &[A::Register; 4],
+    a: &mut A,
+) -> BlendValues<A::Register> {
+    let fs = factor(blend.source, channel, source, destination, constant, a);
+    let fd = factor(blend.destination, channel, source, destination, constant, a);
+    let raw = equation(blend.equation, [source[channel], destination[channel]], [fs, fd], a);
+    BlendValues { factors: [fs, fd], raw, blended: a.clamped(raw) }
+}
+
+/// ROP-2 to ROP-5 on values of any kind: the `channels` (bits R, G, B, A) of a fragment blended, the others as the source has them.
+pub fn blend<A: Algebra>(
+    blend: &Blend,
+    channels: u8,
+    constant: [u8; 4],
+    source: &[A::Register; 4],
+    destination: &[A::Register; 4],
+    a: &mut A,
+) -> [A::Register; 4] {
+    let constant = constant.map(|byte| a.byte(byte));
+    let mut out = *source;
+    for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
+        out[channel] = evaluate(blend, channel, source, destination, &constant, a).blended;
+    }
+    out
 }
 
 /// Whether the equation takes the source as two's complement (ROP-3).
@@ -83,17 +169,17 @@ pub fn run<L: Lane, O: Observer>(
     let constant = constant.map(L::byte);
     let mut out = *source;
     for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
-        let [fs, fd] = [blend.source, blend.destination].map(|f| factor(f, channel, source, destination, &constant));
         if O::MEASURES && is_signed(blend.equation) {
             let negative = |byte: i32| i64::from(byte >= 128);
             let s = source[channel];
             observer.decided(Decision::Sign, negative(s.decision()), || negative(s.ideal_decision()));
         }
         observer.count(Work::Blends, 1);
-        let raw = observer.settle(Rule::Rop2, equation(blend.equation, source[channel], destination[channel], fs, fd));
-        out[channel] = raw.clamped();
+        let mut direct = Direct::plain(observer);
+        let values = evaluate(blend, channel, source, destination, &constant, &mut direct);
+        out[channel] = values.blended;
         if O::ON {
-            report_channel(blend, channel, source, destination, &constant, [fs, fd], raw, out[channel], observer);
+            report_channel(blend, channel, source, destination, &constant, &values, observer);
         }
     }
     out
@@ -134,16 +220,13 @@ pub fn compare_operation(function: crate::state::CompareFunction) -> &'static st
     }
 }
 
-#[allow(clippy::too_many_arguments, reason = "one channel's blend and what the trace says of it")]
 fn report_channel<L: Lane, O: Observer>(
     blend: &Blend,
     channel: usize,
     source: &[L; 4],
     destination: &[L; 4],
     constant: &[L; 4],
-    factors: [L; 2],
-    raw: L,
-    out: L,
+    &BlendValues { factors, raw, blended: out }: &BlendValues<L>,
     observer: &mut O,
 ) {
     let suffix = channel_name(channel);

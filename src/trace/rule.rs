@@ -1,5 +1,6 @@
 //! What an observer is told without words: which rule yielded a value, which decision was taken, how much work was done.
 
+use crate::number::Part;
 use crate::state::named;
 
 named! {
@@ -69,22 +70,6 @@ named! {
         Rop2 = "ROP-2",
         /// What a surface keeps.
         Rop5 = "ROP-5",
-    }
-}
-
-named! {
-    /// Where on its way a value picks up an error.
-    pub enum Part {
-        /// Vertex colours, weights, coordinates, fog.
-        Interpolation = "interpolation",
-        /// Texels and their filter.
-        Filtering = "filtering",
-        /// Input mappings.
-        Expansion = "expansion",
-        /// Products, sums, bias, scale, saturation, the final combiner.
-        Product = "product and sum",
-        /// Blend and store.
-        Store = "store",
     }
 }
 

@@ -34,15 +34,6 @@ impl Pixel {
     }
 }
 
-fn planned(portion: Portion, all: u8) -> PlannedPortion {
-    let outputs = [portion.ab_output, portion.cd_output, portion.sum_output];
-    PlannedPortion {
-        portion,
-        live: outputs.map(|output| if output == Register::Zero { 0 } else { all }),
-        blue_to_alpha: [portion.ab_blue_to_alpha, portion.cd_blue_to_alpha],
-    }
-}
-
 /// The fragment's colour in 255ths.
 pub(crate) fn run<L: Lane>(combiners: &Combiners, profile: Profile, pixel: &Pixel) -> [L; 4] {
     let mut registers = Registers::<L>::new();
@@ -57,8 +48,8 @@ pub(crate) fn run<L: Lane>(combiners: &Combiners, profile: Profile, pixel: &Pixe
     for (index, stage) in combiners.stages.iter().enumerate() {
         let stage = PlannedStage {
             index,
-            rgb: planned(stage.rgb, 7),
-            alpha: planned(stage.alpha, 8),
+            rgb: PlannedPortion::whole(stage.rgb, 7),
+            alpha: PlannedPortion::whole(stage.alpha, 8),
             constants: stage.constants,
             reads_constants: true,
         };

@@ -31,16 +31,10 @@ fn run(rgb: Portion, select: MuxSelect, policies: &Policies, registers: &mut Reg
 }
 
 fn run_both(rgb: Portion, alpha: Portion, select: MuxSelect, policies: &Policies, registers: &mut Registers<i32>) {
-    let planned = |portion: Portion, channels: u8| PlannedPortion {
-        portion,
-        live: [portion.ab_output, portion.cd_output, portion.sum_output]
-            .map(|register| if register == Register::Zero { 0 } else { channels }),
-        blue_to_alpha: [portion.ab_blue_to_alpha, portion.cd_blue_to_alpha],
-    };
     let stage = PlannedStage {
         index: 0,
-        rgb: planned(rgb, 7),
-        alpha: planned(alpha, 8),
+        rgb: PlannedPortion::whole(rgb, 7),
+        alpha: PlannedPortion::whole(alpha, 8),
         constants: [[0; 4]; 2],
         reads_constants: false,
     };

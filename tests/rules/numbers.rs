@@ -59,11 +59,11 @@ fn examples_of_numbers() {
 
 /// What a general stage reads from a constant, through the mapping that changes nothing.
 fn constant_in_spare0(byte: u8) -> i32 {
-    let planned = |portion, live| PlannedPortion { portion, live: [live, 0, 0], blue_to_alpha: [false; 2] };
+    let planned = PlannedPortion::whole;
     let stage = PlannedStage {
         index: 0,
         rgb: planned(load_spare0(Component::Rgb, Register::ConstantColor0), 7),
-        alpha: planned(Portion::idle(Component::Alpha), 0),
+        alpha: planned(Portion::idle(Component::Alpha), 8),
         constants: [[byte; 4], [0; 4]],
         reads_constants: true,
     };

@@ -2,6 +2,7 @@
 
 use crate::handbook::example;
 use crate::pixel::{Pixel, covering, scene};
+use ninebit::combiner::direct::Direct;
 use ninebit::rop::{blend, surface};
 use ninebit::state::*;
 use ninebit::trace::Silent;
@@ -48,7 +49,11 @@ fn examples_of_raster_operations() {
         [0, 0, 0, 200],
     );
     rop4.gives("colour times 255, alpha times 100", saturated, [55, 55, 55, 100]);
-    let factor = |channel| blend::factor(source, channel, &[255, 255, 255, 100], &[0, 0, 0, 200], &[0; 4]);
+    let factor = |channel| {
+        let mut silent = Silent;
+        let mut direct = Direct::plain(&mut silent);
+        blend::factor(source, channel, &[255, 255, 255, 100], &[0, 0, 0, 200], &[0; 4], &mut direct)
+    };
     rop4.gives("the factors", [0, 1, 2, 3].map(factor), [55, 55, 55, 255]);
 
     let rop5 =

@@ -304,7 +304,7 @@ fn rows_interpolate_what_the_definition_does() {
         let small = pixels >= wanted;
         let vertices = (0..if small { 1024 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
         let Ok(plan) = Plan::compile(&scene(vertices, filter, depth, fog), &PlanOptions::default()) else { continue };
-        let rows_of_plan = Rows::compile(&plan).unwrap();
+        let rows_of_plan = Rows::compile(&plan);
         let compiled = rows_of_plan.draw(&plan, 0, &[]);
         assert_eq!(compiled.samplers.len(), 4);
         // The first one, in every place that a sampler can have.

@@ -3,7 +3,11 @@
 //! Each value has a range, found when it is made. A clamp that cannot clamp and a maximum that is never taken disappear by it.
 
 use super::kernels;
-use crate::state::{Bias, InputMapping, MuxSelect, Scale};
+use crate::algebra::Algebra;
+use crate::state::{
+    Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
+};
+use crate::trace::Rule;
 use std::collections::HashMap;
 
 /// A value of every pixel: its number in the graph.
@@ -37,6 +41,114 @@ pub(super) struct Pairs {
     pub(super) values: [Value; 2 * MOST],
 }
 
+impl Pairs {
+    fn new(pairs: &[(Value, Value)]) -> Pairs {
+        let mut values = [Value(0); 2 * MOST];
+        for (n, (a, b)) in pairs.iter().enumerate() {
+            (values[2 * n], values[2 * n + 1]) = (*a.min(b), *a.max(b));
+        }
+        Pairs { count: pairs.len(), values }
+    }
+
+    fn renamed(mut self, name: impl Fn(Value) -> Value) -> Pairs {
+        for value in &mut self.values[..2 * self.count] {
+            *value = name(*value);
+        }
+        self
+    }
+}
+
+/// A factor: a value, in halves of a step if told so (CMB-4=127.5).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Factor {
+    value: Value,
+    halves: bool,
+}
+
+/// A sum that has not been rounded.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Total {
+    /// Of products.
+    Products(Products),
+    /// The first less the second.
+    Difference([Factor; 4]),
+    /// CMB-10: CD, then AB.
+    Select(Choice, Products, Products),
+}
+
+/// Products that are added; as many as are told.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Products(usize, [(Factor, Factor); MOST]);
+
+/// What a mux takes, by a value.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Choice(Mux, Value);
+
+impl Total {
+    /// Its products; nothing else is added to or selected from.
+    fn products(self) -> Products {
+        match self {
+            Total::Products(products) => products,
+            // The order of the rules forms neither.
+            Total::Difference([a, b, ..]) => Products::one(a, b),
+            Total::Select(_, cd, _) => cd,
+        }
+    }
+}
+
+impl Products {
+    fn one(a: Factor, b: Factor) -> Products {
+        Products(1, [(a, b); MOST])
+    }
+
+    fn all(&self) -> &[(Factor, Factor)] {
+        &self.1[..self.0]
+    }
+
+    fn and(mut self, other: Products) -> Products {
+        for pair in other.all() {
+            self.1[self.0] = *pair;
+            self.0 += 1;
+        }
+        self
+    }
+}
+
+/// A mapping with the policies that it has; the defaults of those that it has not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Mapping {
+    /// CMB-2 to CMB-5.
+    pub(super) of: InputMapping,
+    /// CMB-3.
+    pub(super) centre: ExpandCentre,
+    /// CMB-4. With 127.5 the mapping yields halves.
+    pub(super) half: HalfBiasConstant,
+}
+
+impl Mapping {
+    /// A mapping that no policy concerns.
+    pub(super) fn plain(of: InputMapping) -> Mapping {
+        Mapping { of, centre: ExpandCentre::Centred, half: HalfBiasConstant::Half128 }
+    }
+
+    fn new(of: InputMapping, policies: &Policies) -> Mapping {
+        let plain = Mapping::plain(of);
+        match of {
+            InputMapping::ExpandNormal | InputMapping::ExpandNegate => {
+                Mapping { centre: policies.expand_centre, ..plain }
+            }
+            InputMapping::HalfBiasNormal | InputMapping::HalfBiasNegate => {
+                Mapping { half: policies.half_bias, ..plain }
+            }
+            _ => plain,
+        }
+    }
+}
+
+/// What a mux is steered by, with its policy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Mux(pub(super) MuxSelect, pub(super) MuxNegative);
+
 /// How a value comes about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) enum Node {
@@ -45,19 +157,25 @@ pub(super) enum Node {
     /// Given.
     Input(Input),
     /// CMB-2 to CMB-5.
-    Map(InputMapping, Value),
+    Map(Mapping, Value),
     /// NUM-2 of a sum of products, not saturated.
     Sum(Pairs),
+    /// NUM-2 of a sum of products of halves (CMB-4=127.5).
+    HalfSum(Pairs),
+    /// CMB-9=after of a sum of products, which are of halves if told so; not saturated.
+    After(Bias, Scale, bool, Pairs),
     /// NUM-2 of a product of two bytes.
     Bytes(Value, Value),
     /// NUM-2 of a difference of two products.
     Difference([Value; 4]),
     /// CMB-8 of two vectors that are still to be expanded (CMB-3), read as unsigned.
     UnsignedDot([Value; 6]),
+    /// CMB-9, not saturated.
+    Scaled(Bias, Scale, Value),
     /// CMB-9 and NUM-3.
-    Output(Bias, Scale, Value),
+    Output(Bias, Scale, RegisterFloor, Value),
     /// CMB-10: by the first; the second where it takes CD, otherwise the third.
-    Select(MuxSelect, [Value; 3]),
+    Select(Mux, [Value; 3]),
     /// a + b.
     Add(Value, Value),
     /// a - b.
@@ -70,8 +188,8 @@ pub(super) enum Node {
     Clamp(Value),
     /// ROP-5: without so many low bits.
     Truncate(u32, Value),
-    /// A byte as two's complement (ROP-3), negated if told so.
-    Signed(bool, Value),
+    /// A byte as two's complement (ROP-3).
+    Signed(Value),
 }
 
 impl Node {
@@ -79,10 +197,15 @@ impl Node {
     pub(super) fn operands(&self) -> Vec<Value> {
         match self {
             Node::Constant(_) | Node::Input(_) => Vec::new(),
-            Node::Map(_, v) | Node::Output(_, _, v) | Node::Clamp(v) | Node::Truncate(_, v) | Node::Signed(_, v) => {
-                vec![*v]
+            Node::Map(_, v)
+            | Node::Scaled(_, _, v)
+            | Node::Output(_, _, _, v)
+            | Node::Clamp(v)
+            | Node::Truncate(_, v)
+            | Node::Signed(v) => vec![*v],
+            Node::Sum(pairs) | Node::HalfSum(pairs) | Node::After(_, _, _, pairs) => {
+                pairs.values[..2 * pairs.count].to_vec()
             }
-            Node::Sum(pairs) => pairs.values[..2 * pairs.count].to_vec(),
             Node::Difference(v) => v.to_vec(),
             Node::UnsignedDot(v) => v.to_vec(),
             Node::Select(_, v) => v.to_vec(),
@@ -97,15 +220,13 @@ impl Node {
         match self {
             Node::Constant(_) | Node::Input(_) => self,
             Node::Map(mapping, v) => Node::Map(mapping, name(v)),
-            Node::Sum(mut pairs) => {
-                for value in &mut pairs.values[..2 * pairs.count] {
-                    *value = name(*value);
-                }
-                Node::Sum(pairs)
-            }
+            Node::Sum(pairs) => Node::Sum(pairs.renamed(name)),
+            Node::HalfSum(pairs) => Node::HalfSum(pairs.renamed(name)),
+            Node::After(bias, scale, halves, pairs) => Node::After(bias, scale, halves, pairs.renamed(name)),
             Node::Difference(v) => Node::Difference(v.map(name)),
             Node::UnsignedDot(v) => Node::UnsignedDot(v.map(name)),
-            Node::Output(bias, scale, v) => Node::Output(bias, scale, name(v)),
+            Node::Scaled(bias, scale, v) => Node::Scaled(bias, scale, name(v)),
+            Node::Output(bias, scale, floor, v) => Node::Output(bias, scale, floor, name(v)),
             Node::Select(mux, v) => Node::Select(mux, v.map(name)),
             Node::Bytes(a, b) => Node::Bytes(name(a), name(b)),
             Node::Add(a, b) => Node::Add(name(a), name(b)),
@@ -114,22 +235,31 @@ impl Node {
             Node::Greatest(a, b) => Node::Greatest(name(a), name(b)),
             Node::Clamp(v) => Node::Clamp(name(v)),
             Node::Truncate(bits, v) => Node::Truncate(bits, name(v)),
-            Node::Signed(negated, v) => Node::Signed(negated, name(v)),
+            Node::Signed(v) => Node::Signed(name(v)),
         }
     }
 }
+
+/// What [`Node::UnsignedDot`] does to its factors.
+const EXPANDED: Mapping =
+    Mapping { of: InputMapping::ExpandNormal, centre: ExpandCentre::Centred, half: HalfBiasConstant::Half128 };
 
 /// Least and largest.
 type Range = (i16, i16);
 
 /// Values, each made of earlier ones.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct Graph {
     nodes: Vec<(Node, Range)>,
     known: HashMap<Node, Value>,
+    policies: Policies,
 }
 
 impl Graph {
+    pub(super) fn new(policies: Policies) -> Graph {
+        Graph { nodes: Vec::new(), known: HashMap::new(), policies }
+    }
+
     /// How a value comes about.
     pub(super) fn node(&self, value: Value) -> Node {
         self.nodes[usize::from(value.0)].0
@@ -170,10 +300,10 @@ impl Graph {
         value
     }
 
-    /// CMB-2 to CMB-5.
-    pub(super) fn map(&mut self, mapping: InputMapping, v: Value) -> Value {
+    /// A mapping of a value.
+    fn mapped(&mut self, mapping: Mapping, v: Value) -> Value {
         let (low, high) = self.range(v);
-        match mapping {
+        match mapping.of {
             InputMapping::SignedIdentity => return v,
             InputMapping::UnsignedIdentity if low >= 0 => return v,
             InputMapping::UnsignedIdentity => {
@@ -190,18 +320,18 @@ impl Graph {
 
     /// A dot product of expanded vectors, of which only what is not negative is read.
     fn unsigned_dot(&mut self, v: Value) -> Option<Value> {
-        let Node::Output(Bias::None, Scale::One, sum) = self.node(v) else { return None };
+        let Node::Output(Bias::None, Scale::One, _, sum) = self.node(v) else { return None };
         let Node::Sum(pairs) = self.node(sum) else { return None };
         let mut vectors = [Value(0); 6];
         for (vector, factor) in vectors.iter_mut().zip(&pairs.values) {
-            let Node::Map(InputMapping::ExpandNormal, unexpanded) = self.node(*factor) else { return None };
+            let Node::Map(EXPANDED, unexpanded) = self.node(*factor) else { return None };
             *vector = unexpanded;
         }
         (pairs.count == 3).then(|| self.add(Node::UnsignedDot(vectors), (0, 255)))
     }
 
     /// NUM-2 of the sum of products.
-    pub(super) fn sum(&mut self, pairs: &[(Value, Value)]) -> Value {
+    fn rounded_sum(&mut self, pairs: &[(Value, Value)]) -> Value {
         let mut left: Vec<(Value, Value)> = Vec::with_capacity(pairs.len());
         left.extend(pairs.iter().filter(|(a, b)| !self.is(*a, 0) && !self.is(*b, 0)));
         match left[..] {
@@ -219,7 +349,7 @@ impl Graph {
             }
             [one, other] => {
                 if let (Some(a), Some(b)) = (self.times_one(one), self.times_one(other)) {
-                    return self.plus(a, b);
+                    return self.added(a, b);
                 }
             }
             _ => {}
@@ -229,12 +359,39 @@ impl Graph {
             let ends = self.product_range(*a, *b);
             (low, high) = (low + ends.0, high + ends.1);
         }
-        let mut values = [Value(0); 2 * MOST];
-        for (n, (a, b)) in left.iter().enumerate() {
-            (values[2 * n], values[2 * n + 1]) = (*a.min(b), *a.max(b));
+        self.add(Node::Sum(Pairs::new(&left)), (kernels::rounded(low), kernels::rounded(high)))
+    }
+
+    /// The factors of products, in halves if one of them is, and the range of their sum, in quarters then.
+    fn pairs(&mut self, products: &Products) -> (bool, Vec<(Value, Value)>, (i32, i32)) {
+        let halves = products.all().iter().any(|(a, b)| a.halves || b.halves);
+        let mut whole = |factor: Factor| {
+            if halves && !factor.halves { self.added(factor.value, factor.value) } else { factor.value }
+        };
+        let pairs: Vec<_> = products.all().iter().map(|(a, b)| (whole(*a), whole(*b))).collect();
+        let range = pairs.iter().map(|(a, b)| self.product_range(*a, *b));
+        let range = range.fold((0, 0), |(low, high), ends| (low + ends.0, high + ends.1));
+        (halves, pairs, range)
+    }
+
+    fn rounded_products(&mut self, products: &Products) -> Value {
+        let (halves, pairs, (low, high)) = self.pairs(products);
+        if !halves {
+            return self.rounded_sum(&pairs);
         }
-        let node = Node::Sum(Pairs { count: left.len(), values });
-        self.add(node, (kernels::rounded(low), kernels::rounded(high)))
+        let range = (kernels::rounded_quarters(low), kernels::rounded_quarters(high));
+        self.add(Node::HalfSum(Pairs::new(&pairs)), range)
+    }
+
+    fn products_after(&mut self, bias: Bias, scale: Scale, products: &Products) -> Value {
+        if scale == Scale::One {
+            // A bias of whole steps goes through the rounding.
+            let rounded = self.rounded_products(products);
+            return self.scaled(bias, scale, rounded);
+        }
+        let (halves, pairs, (low, high)) = self.pairs(products);
+        let end = |sum: i32| kernels::rounded_after(sum, halves, bias, scale);
+        self.add(Node::After(bias, scale, halves, Pairs::new(&pairs)), (end(low), end(high)))
     }
 
     /// The other factor where one is 1.0: 255 a, divided by 255, loses nothing.
@@ -250,9 +407,9 @@ impl Graph {
     }
 
     /// NUM-2 of a b - c d.
-    pub(super) fn difference(&mut self, [a, b, c, d]: [Value; 4]) -> Value {
+    fn difference(&mut self, [a, b, c, d]: [Value; 4]) -> Value {
         if self.is(c, 0) || self.is(d, 0) {
-            return self.sum(&[(a, b)]);
+            return self.rounded_sum(&[(a, b)]);
         }
         if let (Some(first), Some(second)) = (self.times_one((a, b)), self.times_one((c, d))) {
             let (x, y) = (self.range(first), self.range(second));
@@ -263,19 +420,7 @@ impl Graph {
         self.add(Node::Difference([a, b, c, d]), range)
     }
 
-    /// CMB-9 and NUM-3.
-    pub(super) fn output(&mut self, bias: Bias, scale: Scale, v: Value) -> Value {
-        let (low, high) = self.range(v);
-        let plain = bias == Bias::None && scale == Scale::One;
-        if plain && low >= -256 && high <= 255 {
-            return v;
-        }
-        let range = (kernels::finished(low, bias, scale), kernels::finished(high, bias, scale));
-        self.add(Node::Output(bias, scale, v), range)
-    }
-
-    /// CMB-10.
-    pub(super) fn select(&mut self, mux: MuxSelect, by: Value, cd: Value, ab: Value) -> Value {
+    fn selected(&mut self, Choice(mux, by): Choice, cd: Value, ab: Value) -> Value {
         if ab == cd {
             return ab;
         }
@@ -286,7 +431,7 @@ impl Graph {
         self.add(Node::Select(mux, [by, cd, ab]), (c.0.min(a.0), c.1.max(a.1)))
     }
 
-    pub(super) fn plus(&mut self, a: Value, b: Value) -> Value {
+    fn added(&mut self, a: Value, b: Value) -> Value {
         match (self.known_constant(a), self.known_constant(b)) {
             (Some(0), _) => b,
             (_, Some(0)) => a,
@@ -296,8 +441,126 @@ impl Graph {
             }
         }
     }
+}
 
-    pub(super) fn least(&mut self, a: Value, b: Value) -> Value {
+impl Algebra for Graph {
+    type Register = Value;
+    type Factor = Factor;
+    type Sum = Total;
+    type Choice = Choice;
+
+    fn policies(&self) -> &Policies {
+        &self.policies
+    }
+
+    fn byte(&mut self, value: u8) -> Value {
+        self.constant(value.into())
+    }
+
+    fn map(&mut self, mapping: InputMapping, x: Value) -> Factor {
+        let mapping = Mapping::new(mapping, &self.policies);
+        Factor { value: self.mapped(mapping, x), halves: mapping.half == HalfBiasConstant::Half127And5 }
+    }
+
+    fn plain(&mut self, x: Value) -> Factor {
+        Factor { value: x, halves: false }
+    }
+
+    fn product(&mut self, _rule: Rule, a: Factor, b: Factor) -> Total {
+        Total::Products(Products::one(a, b))
+    }
+
+    fn add(&mut self, _rule: Rule, a: Total, b: Total) -> Total {
+        Total::Products(a.products().and(b.products()))
+    }
+
+    fn subtract(&mut self, _rule: Rule, a: Total, b: Total) -> Total {
+        let [(a, b), (c, d)] = [a, b].map(|total| total.products().1[0]);
+        Total::Difference([a, b, c, d])
+    }
+
+    fn widened(&mut self, _rule: Rule, x: Value) -> Total {
+        let one = self.constant(255);
+        let [x, one] = [x, one].map(|value| Factor { value, halves: false });
+        Total::Products(Products::one(x, one))
+    }
+
+    fn choice(&mut self, select: MuxSelect, spare0_alpha: Value) -> Choice {
+        let negative = match select {
+            MuxSelect::Msb => self.policies.mux_negative,
+            MuxSelect::Lsb => MuxNegative::Sign,
+        };
+        Choice(Mux(select, negative), spare0_alpha)
+    }
+
+    fn select(&mut self, takes_cd: Choice, cd: Total, ab: Total) -> Total {
+        Total::Select(takes_cd, cd.products(), ab.products())
+    }
+
+    fn rounded(&mut self, sum: Total) -> Value {
+        match sum {
+            Total::Products(products) => self.rounded_products(&products),
+            // Of the blend, whose factors are whole.
+            Total::Difference(factors) => self.difference(factors.map(|factor| factor.value)),
+            Total::Select(choice, cd, ab) => {
+                let (cd, ab) = (self.rounded_products(&cd), self.rounded_products(&ab));
+                self.selected(choice, cd, ab)
+            }
+        }
+    }
+
+    fn rounded_after(&mut self, bias: Bias, scale: Scale, sum: Total) -> Value {
+        if let Total::Select(choice, cd, ab) = sum {
+            let [cd, ab] = [cd, ab].map(|products| self.products_after(bias, scale, &products));
+            return self.selected(choice, cd, ab);
+        }
+        self.products_after(bias, scale, &sum.products())
+    }
+
+    fn scaled(&mut self, bias: Bias, scale: Scale, x: Value) -> Value {
+        if (bias, scale) == (Bias::None, Scale::One) {
+            return x;
+        }
+        let (low, high) = self.range(x);
+        let range = (kernels::scaled(low, bias, scale), kernels::scaled(high, bias, scale));
+        self.add(Node::Scaled(bias, scale, x), range)
+    }
+
+    fn saturated(&mut self, x: Value) -> Value {
+        let floor = self.policies.register_floor;
+        let saturated = |v: i16| kernels::finished(v, Bias::None, Scale::One, floor);
+        let (low, high) = self.range(x);
+        let range = (saturated(low), saturated(high));
+        // In one step with what it saturates.
+        match self.node(x) {
+            Node::Scaled(bias, scale, v) => self.add(Node::Output(bias, scale, floor, v), range),
+            _ if range == (low, high) => x,
+            _ => self.add(Node::Output(Bias::None, Scale::One, floor, x), range),
+        }
+    }
+
+    fn max0(&mut self, x: Value) -> Value {
+        self.mapped(Mapping::plain(InputMapping::UnsignedIdentity), x)
+    }
+
+    fn complement(&mut self, x: Value) -> Value {
+        if self.range(x).0 >= 0 {
+            return self.mapped(Mapping::plain(InputMapping::UnsignedInvert), x);
+        }
+        let one = self.constant(255);
+        self.minus(one, x)
+    }
+
+    fn plus(&mut self, a: Value, b: Value) -> Value {
+        self.added(a, b)
+    }
+
+    fn minus(&mut self, a: Value, b: Value) -> Value {
+        let (x, y) = (self.range(a), self.range(b));
+        self.add(Node::Minus(a, b), (x.0 - y.1, x.1 - y.0))
+    }
+
+    fn least(&mut self, a: Value, b: Value) -> Value {
         let (x, y) = (self.range(a), self.range(b));
         if x.1 <= y.0 {
             a
@@ -308,7 +571,7 @@ impl Graph {
         }
     }
 
-    pub(super) fn greatest(&mut self, a: Value, b: Value) -> Value {
+    fn greatest(&mut self, a: Value, b: Value) -> Value {
         let (x, y) = (self.range(a), self.range(b));
         if x.0 >= y.1 {
             a
@@ -319,7 +582,7 @@ impl Graph {
         }
     }
 
-    pub(super) fn clamp(&mut self, v: Value) -> Value {
+    fn clamped(&mut self, v: Value) -> Value {
         let (low, high) = self.range(v);
         if low >= 0 && high <= 255 {
             return v;
@@ -327,7 +590,7 @@ impl Graph {
         self.add(Node::Clamp(v), (low.clamp(0, 255), high.clamp(0, 255)))
     }
 
-    pub(super) fn truncate(&mut self, bits: u32, v: Value) -> Value {
+    fn truncated(&mut self, bits: u32, v: Value) -> Value {
         if bits == 0 {
             return v;
         }
@@ -335,8 +598,7 @@ impl Graph {
         self.add(Node::Truncate(bits, v), (low >> bits << bits, high >> bits << bits))
     }
 
-    /// ROP-3: a byte as two's complement.
-    pub(super) fn signed(&mut self, negated: bool, v: Value) -> Value {
-        self.add(Node::Signed(negated, v), (-128, 128))
+    fn signed_byte(&mut self, x: Value) -> Value {
+        self.add(Node::Signed(x), (-128, 127))
     }
 }

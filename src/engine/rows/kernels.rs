@@ -1,13 +1,14 @@
 //! The rules on rows: each kernel is a rule's text in a loop over the pixels of a block.
 
 use super::BLOCK;
-use super::graph::{MOST, Node, Value};
-use crate::combiner::final_combiner::product;
-use crate::combiner::general::{self, dot_product};
+use super::graph::{MOST, Mapping, Mux, Node, Pairs, Value};
+use crate::combiner::general::dot_product;
 use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
-use crate::number::{Factor, Lane, Narrow, Sum, byte_product};
-use crate::rop::blend;
-use crate::state::{Bias, BlendEquation, InputMapping, MuxSelect, Policies, RegisterFloor, Scale};
+use crate::combiner::output;
+use crate::number::{Factor, Lane, Narrow, Quarters, Sum, byte_product};
+use crate::state::{
+    Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
+};
 
 /// Lanes that a piece may write past its end: pieces are handled in whole steps.
 pub(super) const STEP: usize = 16;
@@ -45,11 +46,12 @@ impl Row {
     }
 }
 
-/// A mapping of one register.
+/// A mapping of one register; in halves with CMB-4=127.5.
 #[inline(always)]
-pub(super) fn mapped(mapping: InputMapping, x: i16) -> i16 {
-    // Halves, which are even under the default policies.
-    (map_one(i32::from(x), mapping, &Policies::DEFAULT).0 >> 1) as i16
+pub(super) fn mapped(mapping: Mapping, x: i16) -> i16 {
+    let policies = Policies { expand_centre: mapping.centre, half_bias: mapping.half, ..Policies::DEFAULT };
+    let halves = map_one(i32::from(x), mapping.of, &policies).0;
+    (if mapping.half == HalfBiasConstant::Half127And5 { halves } else { halves >> 1 }) as i16
 }
 
 /// NUM-2.
@@ -58,42 +60,52 @@ pub(super) fn rounded(sum: i32) -> i16 {
     sum.rounded()
 }
 
+/// NUM-2 of products of halves.
+#[inline(always)]
+pub(super) fn rounded_quarters(sum: i32) -> i16 {
+    Quarters(sum).rounded() as i16
+}
+
+/// CMB-9=after, of a sum that is in quarters if its factors are in halves.
+#[inline(always)]
+pub(super) fn rounded_after(sum: i32, halves: bool, bias: Bias, scale: Scale) -> i16 {
+    output::rounded_after::<i32>(Quarters(if halves { sum } else { 4 * sum }), bias, scale) as i16
+}
+
+/// CMB-9 of what has been rounded.
+#[inline(always)]
+pub(super) fn scaled(v: i16, bias: Bias, scale: Scale) -> i16 {
+    output::scaled(output::biased(v, bias), scale)
+}
+
 /// CMB-9 and NUM-3 of what has been rounded.
 #[inline(always)]
-pub(super) fn finished(v: i16, bias: Bias, scale: Scale) -> i16 {
-    general::finished(v, bias, scale, RegisterFloor::Full, |_, v| v)
+pub(super) fn finished(v: i16, bias: Bias, scale: Scale, floor: RegisterFloor) -> i16 {
+    output::finished(v, bias, scale, floor)
 }
 
 /// CMB-10.
 #[inline(always)]
-pub(super) fn takes_cd(spare0_alpha: i16, mux: MuxSelect) -> bool {
-    general::takes_cd(i32::from(spare0_alpha), mux, &Policies::DEFAULT)
+pub(super) fn takes_cd(spare0_alpha: i16, Mux(select, negative): Mux) -> bool {
+    output::takes_cd(i32::from(spare0_alpha), select, negative)
 }
 
-/// NUM-2 of a sum of products.
+/// The sum of products.
 #[inline(always)]
-fn sum<const N: usize>(rows: [&[i16; BLOCK]; N], n: usize) -> i16 {
+fn total<const N: usize>(rows: [&[i16; BLOCK]; N], n: usize) -> i32 {
     let mut total = rows[0][n].product(rows[1][n]);
     let mut k = 2;
     while k < N {
         total += rows[k][n].product(rows[k + 1][n]);
         k += 2;
     }
-    total.rounded()
+    total
 }
 
 /// ROP-2 of one channel, not yet clamped.
 #[inline(always)]
 fn difference([a, b, c, d]: [i16; 4]) -> i16 {
-    let (a, b, c, d) = (i32::from(a), i32::from(b), i32::from(c), i32::from(d));
-    blend::equation(BlendEquation::Subtract, a, c, b, d) as i16
-}
-
-/// ROP-3: what is added to the destination.
-#[inline(always)]
-fn signed(negated: bool, s: i16) -> i16 {
-    let equation = if negated { BlendEquation::SignedReverseSubtract } else { BlendEquation::SignedAdd };
-    blend::equation(equation, i32::from(s), 0, 0, 0) as i16
+    (a.product(b) - c.product(d)).rounded()
 }
 
 #[inline(always)]
@@ -114,14 +126,45 @@ fn each(out: &mut [i16; BLOCK], f: impl Fn(usize) -> i16) {
 
 /// A mapping of a row; `mapping` is a constant where this is called, so that the loop holds one text.
 #[inline(always)]
-fn map_row(mapping: InputMapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
+fn map_row(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
     each(out, |n| mapped(mapping, v[n]))
 }
 
-/// CMB-9 and NUM-3 of a row; `bias` and `scale` likewise.
+/// The same of one whose policies are to be told apart.
 #[inline(always)]
-fn finish_row(bias: Bias, scale: Scale, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
-    each(out, |n| finished(v[n], bias, scale))
+fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
+    use ExpandCentre::{Centred, Literal};
+    use HalfBiasConstant::{Half127, Half127And5, Half128};
+    match (mapping.centre, mapping.half) {
+        (Centred, Half128) => map_row(Mapping { centre: Centred, half: Half128, ..mapping }, v, out),
+        (Literal, _) => map_row(Mapping { centre: Literal, half: Half128, ..mapping }, v, out),
+        (_, Half127) => map_row(Mapping { centre: Centred, half: Half127, ..mapping }, v, out),
+        (_, Half127And5) => map_row(Mapping { centre: Centred, half: Half127And5, ..mapping }, v, out),
+    }
+}
+
+/// What becomes of the sums of the products of rows.
+#[inline(always)]
+fn sum_row(pairs: &Pairs, before: &[Row], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
+    // Past the last pair nothing is added, whatever the rows hold that nobody reads.
+    let mut all: [&[i16; BLOCK]; 2 * MOST] = [&ZEROS; 2 * MOST];
+    for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
+        *factor = before[usize::from(value.0)].block();
+    }
+    let [a, b, c, d, e, f, g, h, ..] = all;
+    match pairs.count {
+        1 => each(out, |n| of(total([a, b], n))),
+        2 => each(out, |n| of(total([a, b, c, d], n))),
+        3 => each(out, |n| of(dot_product([a[n], c[n], e[n]], [b[n], d[n], f[n]]))),
+        4 => each(out, |n| of(total([a, b, c, d, e, f, g, h], n))),
+        _ => each(out, |n| of(total(all, n))),
+    }
+}
+
+/// CMB-9 and NUM-3 of a row; `bias` and `scale` likewise constants.
+#[inline(always)]
+fn finish_row(bias: Bias, scale: Scale, floor: RegisterFloor, v: &[i16; BLOCK], out: &mut [i16; BLOCK]) {
+    each(out, |n| finished(v[n], bias, scale, floor))
 }
 
 /// Computes the row of a node from rows before it.
@@ -136,30 +179,34 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
         Node::Constant(_) | Node::Input(_) => {}
         Node::Map(mapping, v) => {
             let v = row(v);
-            match mapping {
-                InputMapping::UnsignedIdentity => map_row(InputMapping::UnsignedIdentity, v, out),
-                InputMapping::UnsignedInvert => map_row(InputMapping::UnsignedInvert, v, out),
-                InputMapping::ExpandNormal => map_row(InputMapping::ExpandNormal, v, out),
-                InputMapping::ExpandNegate => map_row(InputMapping::ExpandNegate, v, out),
-                InputMapping::HalfBiasNormal => map_row(InputMapping::HalfBiasNormal, v, out),
-                InputMapping::HalfBiasNegate => map_row(InputMapping::HalfBiasNegate, v, out),
+            match mapping.of {
+                InputMapping::UnsignedIdentity => map_row(Mapping::plain(InputMapping::UnsignedIdentity), v, out),
+                InputMapping::UnsignedInvert => map_row(Mapping::plain(InputMapping::UnsignedInvert), v, out),
+                InputMapping::ExpandNormal => {
+                    map_row_by_policy(Mapping { of: InputMapping::ExpandNormal, ..mapping }, v, out);
+                }
+                InputMapping::ExpandNegate => {
+                    map_row_by_policy(Mapping { of: InputMapping::ExpandNegate, ..mapping }, v, out);
+                }
+                InputMapping::HalfBiasNormal => {
+                    map_row_by_policy(Mapping { of: InputMapping::HalfBiasNormal, ..mapping }, v, out);
+                }
+                InputMapping::HalfBiasNegate => {
+                    map_row_by_policy(Mapping { of: InputMapping::HalfBiasNegate, ..mapping }, v, out);
+                }
                 InputMapping::SignedIdentity => out.copy_from_slice(v),
-                InputMapping::SignedNegate => map_row(InputMapping::SignedNegate, v, out),
+                InputMapping::SignedNegate => map_row(Mapping::plain(InputMapping::SignedNegate), v, out),
             }
         }
-        Node::Sum(pairs) => {
-            // Past the last pair nothing is added, whatever the rows hold that nobody reads.
-            let mut all: [&[i16; BLOCK]; 2 * MOST] = [&ZEROS; 2 * MOST];
-            for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
-                *factor = row(*value);
-            }
-            let [a, b, c, d, e, f, g, h, ..] = all;
-            match pairs.count {
-                1 => each(out, |n| product(a[n], b[n])),
-                2 => each(out, |n| sum([a, b, c, d], n)),
-                3 => each(out, |n| dot_product([a[n], c[n], e[n]], [b[n], d[n], f[n]]).rounded()),
-                4 => each(out, |n| sum([a, b, c, d, e, f, g, h], n)),
-                _ => each(out, |n| sum(all, n)),
+        Node::Sum(pairs) => sum_row(&pairs, before, out, rounded),
+        Node::HalfSum(pairs) => sum_row(&pairs, before, out, rounded_quarters),
+        Node::After(bias, scale, halves, pairs) => {
+            let pairs = &pairs;
+            match scale {
+                Scale::One => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::One)),
+                Scale::Two => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::Two)),
+                Scale::Four => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::Four)),
+                Scale::Half => sum_row(pairs, before, out, |sum| rounded_after(sum, halves, bias, Scale::Half)),
             }
         }
         Node::Bytes(a, b) => {
@@ -174,26 +221,32 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
             let [a, b, c, d, e, f] = [row(v[0]), row(v[1]), row(v[2]), row(v[3]), row(v[4]), row(v[5])];
             each(out, |n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]]));
         }
-        Node::Output(bias, scale, v) => {
+        Node::Scaled(bias, scale, v) => {
+            let v = row(v);
+            each(out, |n| scaled(v[n], bias, scale));
+        }
+        Node::Output(bias, scale, floor, v) => {
             let v = row(v);
             match (bias, scale) {
-                (Bias::None, Scale::One) => finish_row(Bias::None, Scale::One, v, out),
-                (Bias::None, Scale::Two) => finish_row(Bias::None, Scale::Two, v, out),
-                (Bias::None, Scale::Four) => finish_row(Bias::None, Scale::Four, v, out),
-                (Bias::None, Scale::Half) => finish_row(Bias::None, Scale::Half, v, out),
-                (Bias::NegativeHalf, Scale::One) => finish_row(Bias::NegativeHalf, Scale::One, v, out),
-                (Bias::NegativeHalf, Scale::Two) => finish_row(Bias::NegativeHalf, Scale::Two, v, out),
+                (Bias::None, Scale::One) => finish_row(Bias::None, Scale::One, floor, v, out),
+                (Bias::None, Scale::Two) => finish_row(Bias::None, Scale::Two, floor, v, out),
+                (Bias::None, Scale::Four) => finish_row(Bias::None, Scale::Four, floor, v, out),
+                (Bias::None, Scale::Half) => finish_row(Bias::None, Scale::Half, floor, v, out),
+                (Bias::NegativeHalf, Scale::One) => finish_row(Bias::NegativeHalf, Scale::One, floor, v, out),
+                (Bias::NegativeHalf, Scale::Two) => finish_row(Bias::NegativeHalf, Scale::Two, floor, v, out),
                 // Not legal (CMB-9), and so never asked for.
-                (Bias::NegativeHalf, other) => finish_row(Bias::NegativeHalf, other, v, out),
+                (Bias::NegativeHalf, other) => finish_row(Bias::NegativeHalf, other, floor, v, out),
             }
         }
         Node::Select(mux, v) => {
             let [by, cd, ab] = [row(v[0]), row(v[1]), row(v[2])];
             // Both are read, whichever is taken.
             let choose = |takes_cd: bool, cd: i16, ab: i16| if takes_cd { cd } else { ab };
+            let mut select = |mux: Mux| each(out, |n| choose(takes_cd(by[n], mux), cd[n], ab[n]));
             match mux {
-                MuxSelect::Msb => each(out, |n| choose(takes_cd(by[n], MuxSelect::Msb), cd[n], ab[n])),
-                MuxSelect::Lsb => each(out, |n| choose(takes_cd(by[n], MuxSelect::Lsb), cd[n], ab[n])),
+                Mux(MuxSelect::Msb, MuxNegative::Sign) => select(Mux(MuxSelect::Msb, MuxNegative::Sign)),
+                Mux(MuxSelect::Msb, MuxNegative::Bit7) => select(Mux(MuxSelect::Msb, MuxNegative::Bit7)),
+                Mux(MuxSelect::Lsb, _) => select(Mux(MuxSelect::Lsb, MuxNegative::Sign)),
             }
         }
         Node::Add(a, b) => {
@@ -220,13 +273,9 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
             let v = row(v);
             each(out, |n| i32::from(v[n]).truncated(bits) as i16);
         }
-        Node::Signed(negated, v) => {
+        Node::Signed(v) => {
             let v = row(v);
-            if negated {
-                each(out, |n| signed(true, v[n]));
-            } else {
-                each(out, |n| signed(false, v[n]));
-            }
+            each(out, |n| i32::from(v[n]).signed_byte() as i16);
         }
     }
 }
@@ -235,7 +284,6 @@ static ZEROS: [i16; BLOCK] = [0; BLOCK];
 
 #[cfg(test)]
 mod tests {
-    use super::super::graph::Pairs;
     use super::*;
 
     /// Sums of one to six products, with other numbers in the rows that nobody reads.

@@ -44,7 +44,7 @@ use crate::frame::Surface;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Assembled;
 use crate::rop::surface;
-use crate::state::{Filter, Policies, TEXTURE_UNITS, TextureImage, TextureKind};
+use crate::state::{Filter, TEXTURE_UNITS, TextureImage, TextureKind};
 use crate::texture::unit::Image;
 use graph::{Input, Node, Value};
 use std::borrow::Cow;
@@ -143,13 +143,10 @@ pub(crate) struct Rows {
 }
 
 impl Rows {
-    /// Compiles every draw. `None`: the policies are not the default ones, whose rules rows have.
-    pub(crate) fn compile(plan: &Plan) -> Option<Rows> {
-        if plan.policies != Policies::DEFAULT {
-            return None;
-        }
+    /// Compiles every draw.
+    pub(crate) fn compile(plan: &Plan) -> Rows {
         let mut tables = Vec::new();
-        Some(Rows { draws: plan.draws.iter().map(|draw| compile(plan, draw, &mut tables)).collect() })
+        Rows { draws: plan.draws.iter().map(|draw| compile(plan, draw, &mut tables)).collect() }
     }
 
     /// A draw with the tables of images that were drawn before it.
@@ -186,7 +183,7 @@ fn pixels(draw: &PlannedDraw) -> u64 {
 
 fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Compiled {
     let samplers = if draw.shader.is_some() { None } else { samplers(plan, draw, tables) };
-    let built = build::build(draw, samplers.as_deref());
+    let built = build::build(draw, plan.policies, samplers.as_deref());
     let samples_pixels = samplers.is_none();
     let samplers = samplers.unwrap_or_default();
     let mut compiled = Compiled {

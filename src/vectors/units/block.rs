@@ -2,8 +2,8 @@
 
 use multiversion::multiversion;
 
-use crate::combiner::general::output;
-use crate::number::{EACH, Each, Factor};
+use crate::combiner::output::finished;
+use crate::number::{EACH, Each, Factor, Sum};
 use crate::state::{Bias, RegisterFloor, Scale};
 
 /// `sum` + `c` d, rounded and saturated, for d from `first` on; low byte first. Returns how many results are -256, and how many are 255.
@@ -14,7 +14,7 @@ pub(super) fn multiply_add(sum: i32, c: i16, first: i16, out: &mut [[u8; 2]]) ->
     let (mut low, mut high) = (0_u32, 0_u32);
     for n in 0..out.len() {
         let d = first.wrapping_add(n as i16);
-        let value = output(sum + c.product(d), Bias::None, Scale::One, RegisterFloor::Full, |_, v| v);
+        let value = finished((sum + c.product(d)).rounded(), Bias::None, Scale::One, RegisterFloor::Full);
         low += u32::from(value == -256);
         high += u32::from(value == 255);
         out[n] = value.to_le_bytes();

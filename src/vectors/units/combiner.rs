@@ -1,8 +1,9 @@
 //! The parts of a general combiner stage, one channel at a time.
 
 use super::{block, named, scale_takes_bias};
-use crate::combiner::general;
-use crate::combiner::mapping;
+use crate::algebra::Algebra;
+use crate::combiner::direct::Direct;
+use crate::combiner::{general, mapping, output};
 use crate::number::{Factor, Lane};
 use crate::state::{self, Bias, Component, MuxSelect, Portion, Scale};
 use crate::trace::{Observer, Rule, Silent, Step};
@@ -24,7 +25,8 @@ fn wide(sum: <i32 as Lane>::Full) -> i64 {
 
 /// Rounded and saturated, neither biased nor scaled.
 fn written(raw: <i32 as Lane>::Full, conditions: &Conditions) -> i64 {
-    general::output(raw, Bias::None, Scale::One, conditions.policies.register_floor, |_, v| v).into()
+    let rounded: i32 = crate::number::Sum::rounded(raw);
+    crate::number::Register::saturated(rounded, conditions.policies.register_floor).into()
 }
 
 /// A register through a mapping.
@@ -135,9 +137,11 @@ impl Unit for Sum {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let ab = factor(inputs[0]).product(factor(inputs[1]));
-        let cd = factor(inputs[2]).product(factor(inputs[3]));
-        let sum = general::third::<i32, _>([ab, cd], None, None, &conditions.policies, &mut Silent);
+        let mut silent = Silent;
+        let mut direct = Direct::<i32, _>::new(&conditions.policies, &mut silent);
+        let [ab, cd] = [[0, 1], [2, 3]].map(|[a, b]| direct.product(Rule::Cmb6, factor(inputs[a]), factor(inputs[b])));
+        let sum = general::sum(ab, cd, &mut direct);
+        let [ab, cd, sum] = [ab, cd, sum].map(|sum| sum.sum);
         results[..3].copy_from_slice(&[ab, cd, sum].map(wide));
         results[3] = written(sum, conditions);
     }
@@ -180,7 +184,7 @@ impl Unit for DotProduct {
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let [a, b] = [0, 3].map(|first| [0, 1, 2].map(|n| factor(inputs[first + n])));
-        let raw = general::dot::<i32, _>(&a, &b, &conditions.policies, &mut Silent);
+        let raw = general::dot(a, b, &mut Direct::<i32, _>::new(&conditions.policies, &mut Silent)).sum;
         results[0] = wide(raw);
         results[1] = written(raw, conditions);
     }
@@ -216,7 +220,7 @@ impl Unit for Mux {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        results[0] = general::mux_takes_cd(inputs[1] as i32, named(inputs[0]), &conditions.policies).into();
+        results[0] = output::mux_takes_cd(inputs[1] as i32, named(inputs[0]), &conditions.policies).into();
     }
 
     fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {
@@ -264,12 +268,13 @@ impl Unit for ScaleBias {
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        let raw = factor(inputs[2]).product(factor(inputs[3]));
         let mut portion = Portion::idle(Component::Rgb);
         (portion.scale, portion.bias) = (named(inputs[0]), named(inputs[1]));
         let mut tap = Tap::default();
-        let value = general::finish::<i32, _>(raw, &portion, Some(Rule::Cmb6), &conditions.policies, &mut tap);
-        results.copy_from_slice(&[wide(raw), tap.of(Rule::Cmb6), tap.of(Rule::Cmb9), value.into()]);
+        let mut direct = Direct::<i32, _>::new(&conditions.policies, &mut tap);
+        let raw = direct.product(Rule::Cmb6, factor(inputs[2]), factor(inputs[3]));
+        let value = general::output(&portion, raw, &mut direct);
+        results.copy_from_slice(&[wide(raw.sum), tap.of(Rule::Cmb6), tap.of(Rule::Cmb9), value.into()]);
     }
 
     fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
@@ -292,6 +297,7 @@ impl Tap {
 
 impl Observer for Tap {
     const ON: bool = false;
+    const MEASURES: bool = true;
 
     fn step(&mut self, _: Step) {}
 

@@ -120,7 +120,7 @@ impl Unit for GeneralStage {
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let file = general_file(|n| inputs[n] as i32);
-        let takes_cd = general::mux_takes_cd(inputs[22] as i32, named(inputs[7]), &conditions.policies);
+        let takes_cd = crate::combiner::output::mux_takes_cd(inputs[22] as i32, named(inputs[7]), &conditions.policies);
         // The factors by themselves: a trace of each row would be far slower.
         for (n, input) in portion(Component::Rgb, &inputs[..4]).inputs.iter().enumerate() {
             let x: [i32; 3] = std::array::from_fn(|channel| file.read(input.register, channel));

@@ -1,7 +1,8 @@
 //! Alpha test, blending, surfaces.
 
 use super::{block, named};
-use crate::number::{Each, Lane};
+use crate::combiner::direct::Direct;
+use crate::number::Each;
 use crate::rop::{blend, surface};
 use crate::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
 use crate::trace::Silent;
@@ -99,7 +100,11 @@ impl Unit for Blend {
         let state = blend_state(inputs);
         let [source, destination, constant] = [3, 7, 11].map(|first| color(&inputs[first..first + 4]));
         for channel in 0..4 {
-            let factor = |f: BlendFactor| i64::from(blend::factor(f, channel, &source, &destination, &constant));
+            let factor = |f: BlendFactor| {
+                let mut silent = Silent;
+                let mut direct = Direct::plain(&mut silent);
+                i64::from(blend::factor(f, channel, &source, &destination, &constant, &mut direct))
+            };
             results[channel] = factor(state.source);
             results[4 + channel] = factor(state.destination);
         }
@@ -111,17 +116,15 @@ impl Unit for Blend {
 
     fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         let state = blend_state(inputs);
-        // The signed equations decide by the source.
-        let has = varying >= 3 && !(blend::is_signed(state.equation) && varying < 7);
-        has.then(|| {
+        (varying >= 3).then(|| {
             let mut lanes: [Each<i32>; 12] = std::array::from_fn(|n| Each::all(inputs[3 + n] as i32));
             block::bytes(inputs, varying, out, |rows| {
                 lanes[varying - 3] = rows.numbers();
                 let [source, destination, constant] = lanes.as_chunks().0 else { return [Each::all(0); 4] };
                 let channel = |channel: usize| {
-                    let factor = |f| blend::factor(f, channel, source, destination, constant);
-                    let (fs, fd) = (factor(state.source), factor(state.destination));
-                    blend::equation(state.equation, source[channel], destination[channel], fs, fd).clamped()
+                    let mut silent = Silent;
+                    let mut direct = Direct::plain(&mut silent);
+                    blend::evaluate(&state, channel, source, destination, constant, &mut direct).blended
                 };
                 [channel(0), channel(1), channel(2), channel(3)]
             })

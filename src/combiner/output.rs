@@ -1,0 +1,61 @@
+//! CMB-9, CMB-10: bias, scale and saturation of an output, and what a mux takes.
+
+use crate::number::{Lane, Register, Sum};
+use crate::state::{Bias, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale};
+
+/// CMB-9: the bias.
+#[inline(always)]
+pub fn biased<R: Register>(v: R, bias: Bias) -> R {
+    match bias {
+        Bias::None => v,
+        Bias::NegativeHalf => v - R::HALF,
+    }
+}
+
+/// CMB-9: the scale.
+#[inline(always)]
+pub fn scaled<R: Register>(v: R, scale: Scale) -> R {
+    match scale {
+        Scale::One => v,
+        Scale::Two => v + v,
+        Scale::Four => (v + v) + (v + v),
+        Scale::Half => v.halved(),
+    }
+}
+
+/// CMB-9 and NUM-3 of what has been rounded.
+#[inline(always)]
+pub fn finished<R: Register>(v: R, bias: Bias, scale: Scale, floor: RegisterFloor) -> R {
+    scaled(biased(v, bias), scale).saturated(floor)
+}
+
+/// CMB-9=after: biased and scaled at full width, then rounded; not yet saturated.
+#[inline(always)]
+pub fn rounded_after<L: Lane>(raw: L::Full, bias: Bias, scale: Scale) -> L {
+    let raw = match bias {
+        Bias::None => raw,
+        Bias::NegativeHalf => raw - L::HALF.widened(),
+    };
+    match scale {
+        Scale::One => raw.rounded(),
+        Scale::Two => (raw + raw).rounded(),
+        Scale::Four => ((raw + raw) + (raw + raw)).rounded(),
+        Scale::Half => L::rounded_half(raw),
+    }
+}
+
+/// CMB-10: whether the mux takes CD.
+#[inline]
+pub fn mux_takes_cd<L: Lane>(spare0_alpha: L, select: MuxSelect, policies: &Policies) -> bool {
+    takes_cd(spare0_alpha.decision(), select, policies.mux_negative)
+}
+
+/// CMB-10 of SPARE0's alpha as an integer.
+#[inline(always)]
+pub fn takes_cd(v: i32, select: MuxSelect, negative: MuxNegative) -> bool {
+    match (select, negative) {
+        (MuxSelect::Lsb, _) => v & 1 != 0,
+        (MuxSelect::Msb, MuxNegative::Sign) => v >= 128,
+        (MuxSelect::Msb, MuxNegative::Bit7) => v & 128 != 0,
+    }
+}
