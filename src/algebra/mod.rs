@@ -57,6 +57,16 @@ impl Site {
         Site(1 << (52 + n))
     }
 
+    /// The same place some channels on.
+    pub const fn channel(self, channel: usize) -> Site {
+        Site(self.0 << channel)
+    }
+
+    /// The places of so many channels, this being the first.
+    pub const fn channels(self, count: usize) -> u64 {
+        self.0 * ((1 << count) - 1)
+    }
+
     /// Whether a stage writes the value to a register.
     pub const fn writes(self) -> bool {
         self.0 >> 40 & 0x3fff != 0
@@ -119,6 +129,35 @@ pub trait Algebra {
     #[inline(always)]
     fn register(&mut self, _site: Site, value: impl FnOnce(&mut Self) -> Self::Register) -> Self::Register {
         value(self)
+    }
+
+    /// [`factor`](Self::factor)s of some channels, the first at this place: registers through a mapping.
+    #[inline(always)]
+    fn factors<const N: usize>(
+        &mut self,
+        first: Site,
+        mapping: InputMapping,
+        x: [Self::Register; N],
+    ) -> [Self::Factor; N] {
+        std::array::from_fn(|c| self.factor(first.channel(c), |a| a.map(mapping, x[c])))
+    }
+    /// [`sum`](Self::sum)s of some channels, the first at this place.
+    #[inline(always)]
+    fn sums<const N: usize>(
+        &mut self,
+        first: Site,
+        mut value: impl FnMut(&mut Self, usize) -> Self::Sum,
+    ) -> [Self::Sum; N] {
+        std::array::from_fn(|c| self.sum(first.channel(c), |a| value(a, c)))
+    }
+    /// [`register`](Self::register)s of some channels, the first at this place.
+    #[inline(always)]
+    fn registers<const N: usize>(
+        &mut self,
+        first: Site,
+        mut value: impl FnMut(&mut Self, usize) -> Self::Register,
+    ) -> [Self::Register; N] {
+        std::array::from_fn(|c| self.register(first.channel(c), |a| value(a, c)))
     }
 
     /// A byte of the state (NUM-5).

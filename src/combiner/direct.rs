@@ -17,6 +17,9 @@ pub struct Direct<'o, L, O> {
 }
 
 impl<'o, L: Lane, O: Observer> Direct<'o, L, O> {
+    /// Nothing is computed along, and sums have their rules.
+    const EXACT: bool = O::MEASURES || O::COUNTS;
+
     /// Under these policies, for whoever observes.
     #[inline(always)]
     pub fn new(policies: &'o Policies, observer: &'o mut O) -> Self {
@@ -54,6 +57,14 @@ pub struct Ruled<S> {
     rule: Rule,
 }
 
+impl<S> Ruled<S> {
+    /// The rule is kept for those who measure or count.
+    #[inline(always)]
+    fn new<O: Observer>(sum: S, rule: Rule) -> Ruled<S> {
+        Ruled { sum, rule: if O::MEASURES || O::COUNTS { rule } else { Rule::Cmb6 } }
+    }
+}
+
 impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     type Register = L;
     type Factor = L::Mapped;
@@ -70,11 +81,50 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     }
     #[inline(always)]
     fn sum(&mut self, site: Site, value: impl FnOnce(&mut Self) -> Self::Sum) -> Self::Sum {
-        if self.sites & site.0 == 0 { Ruled { sum: L::ZERO.widened(), rule: Rule::Cmb6 } } else { value(self) }
+        if self.sites & site.0 == 0 { Ruled::new::<O>(L::ZERO.widened(), Rule::Cmb6) } else { value(self) }
     }
     #[inline(always)]
     fn register(&mut self, site: Site, value: impl FnOnce(&mut Self) -> L) -> L {
         if self.sites & site.0 == 0 { L::ZERO } else { value(self) }
+    }
+
+    // Whoever measures or counts is told of needed channels only. Otherwise the others are computed along: that costs less than asking for each. Loops,
+    // because what goes through `from_fn` is not always inlined.
+    #[inline(always)]
+    fn factors<const N: usize>(&mut self, first: Site, mapping: InputMapping, x: [L; N]) -> [L::Mapped; N] {
+        if !Self::EXACT {
+            let zero = [L::ZERO.factor(); N];
+            return if self.sites & first.channels(N) == 0 { zero } else { mapping::map(x, mapping, self.policies) };
+        }
+        std::array::from_fn(|c| self.factor(first.channel(c), |a| a.map(mapping, x[c])))
+    }
+    #[inline(always)]
+    fn sums<const N: usize>(
+        &mut self,
+        first: Site,
+        mut value: impl FnMut(&mut Self, usize) -> Self::Sum,
+    ) -> [Self::Sum; N] {
+        let mut all = [Ruled::new::<O>(L::ZERO.widened(), Rule::Cmb6); N];
+        if Self::EXACT || self.sites & first.channels(N) != 0 {
+            for c in 0..N {
+                if !Self::EXACT || self.sites & first.channel(c).0 != 0 {
+                    all[c] = value(self, c);
+                }
+            }
+        }
+        all
+    }
+    #[inline(always)]
+    fn registers<const N: usize>(&mut self, first: Site, mut value: impl FnMut(&mut Self, usize) -> L) -> [L; N] {
+        let mut all = [L::ZERO; N];
+        if Self::EXACT || self.sites & first.channels(N) != 0 {
+            for c in 0..N {
+                if !Self::EXACT || self.sites & first.channel(c).0 != 0 {
+                    all[c] = value(self, c);
+                }
+            }
+        }
+        all
     }
 
     #[inline(always)]
@@ -92,19 +142,19 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     #[inline(always)]
     fn product(&mut self, rule: Rule, a: L::Mapped, b: L::Mapped) -> Self::Sum {
         self.count(Work::Products, rule);
-        Ruled { sum: a.product(b), rule }
+        Ruled::new::<O>(a.product(b), rule)
     }
     #[inline(always)]
     fn add(&mut self, rule: Rule, a: Self::Sum, b: Self::Sum) -> Self::Sum {
-        Ruled { sum: a.sum + b.sum, rule }
+        Ruled::new::<O>(a.sum + b.sum, rule)
     }
     #[inline(always)]
     fn subtract(&mut self, rule: Rule, a: Self::Sum, b: Self::Sum) -> Self::Sum {
-        Ruled { sum: a.sum - b.sum, rule }
+        Ruled::new::<O>(a.sum - b.sum, rule)
     }
     #[inline(always)]
     fn widened(&mut self, rule: Rule, x: L) -> Self::Sum {
-        Ruled { sum: x.widened(), rule }
+        Ruled::new::<O>(x.widened(), rule)
     }
     #[inline(always)]
     fn choice(&mut self, select: MuxSelect, spare0_alpha: L) -> bool {

@@ -127,27 +127,25 @@ pub fn evaluate<A: Algebra>(
     let zero = a.byte(0);
     let mut specials = Specials { sum: [zero; 4], product: [zero; 4] };
     let mut inputs = [[zero; 3]; 6];
-    for c in 0..3 {
-        let (spare0, secondary) = (registers.read(Register::Spare0, c), registers.read(Register::SecondaryColor, c));
-        specials.sum[c] = a.register(Site::color_sum(c), |a| color_sum(spare0, secondary, state, a));
+    let sum: [A::Register; 3] = a.registers(Site::color_sum(0), |a, c| {
+        color_sum(registers.read(Register::Spare0, c), registers.read(Register::SecondaryColor, c), state, a)
+    });
+    specials.sum[..3].copy_from_slice(&sum);
+    for n in [4, 5] {
+        let from = &state.inputs[n];
+        inputs[n] = a.registers(Site::final_product(0), |a, c| read(from, c, registers, &specials, a));
     }
-    for c in 0..3 {
-        let site = Site::final_product(c);
-        for n in [4, 5] {
-            inputs[n][c] = a.register(site, |a| read(&state.inputs[n], c, registers, &specials, a));
-        }
-        specials.product[c] = a.register(site, |a| product(inputs[4][c], inputs[5][c], a));
+    let product: [A::Register; 3] = a.registers(Site::final_product(0), |a, c| product(inputs[4][c], inputs[5][c], a));
+    specials.product[..3].copy_from_slice(&product);
+    for n in 0..4 {
+        let (from, site) = (&state.inputs[n], if n == 3 { Site::fragment(0) } else { Site::lerp(0) });
+        inputs[n] = a.registers(site, |a, c| read(from, c, registers, &specials, a));
     }
-    let (mut raw, mut fragment) = ([zero; 3], [zero; 4]);
-    for c in 0..3 {
-        for n in 0..3 {
-            inputs[n][c] = a.register(Site::lerp(c), |a| read(&state.inputs[n], c, registers, &specials, a));
-        }
-        let lerp = a.register(Site::lerp(c), |a| lerp([inputs[0][c], inputs[1][c], inputs[2][c]], a));
-        inputs[3][c] = a.register(Site::fragment(c), |a| read(&state.inputs[3], c, registers, &specials, a));
-        raw[c] = a.plus(lerp, inputs[3][c]);
-        fragment[c] = a.register(Site::fragment(c), |a| a.clamped(raw[c]));
-    }
+    let lerps: [A::Register; 3] =
+        a.registers(Site::lerp(0), |a, c| lerp([inputs[0][c], inputs[1][c], inputs[2][c]], a));
+    let raw = [0, 1, 2].map(|c: usize| a.plus(lerps[c], inputs[3][c]));
+    let rgb: [A::Register; 3] = a.registers(Site::fragment(0), |a, c| a.clamped(raw[c]));
+    let mut fragment = [rgb[0], rgb[1], rgb[2], zero];
     fragment[3] = a.register(Site::fragment(3), |a| read(&state.g, 3, registers, &specials, a));
     FinalValues { specials, inputs, raw, fragment }
 }

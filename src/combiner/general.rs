@@ -120,44 +120,74 @@ fn evaluate_portion<A: Algebra, const N: usize>(
     a: &mut A,
 ) -> PortionOf<A, N> {
     let first = first_channel::<N>();
-    let factors: [[A::Factor; N]; 4] = std::array::from_fn(|n| {
-        let input = &portion.inputs[n];
-        std::array::from_fn(|c| {
-            let x = registers.read(input.register, source_channel(input, first + c));
-            a.factor(Site::factor(n, first + c), |a| a.map(input.mapping, x))
-        })
-    });
-    let dots = [portion.ab_dot_product, portion.cd_dot_product];
-    let products: [[A::Sum; N]; 2] = std::array::from_fn(|n| {
-        let (x, y) = (factors[2 * n], factors[2 * n + 1]);
-        channels(dots[n], |c| {
-            a.sum(Site::product(n, first + c), |a| match (&x[..], &y[..]) {
-                // Only RGB portions have dot products.
-                ([x0, x1, x2], [y0, y1, y2]) if dots[n] => dot([*x0, *x1, *x2], [*y0, *y1, *y2], a),
-                _ => a.product(Rule::Cmb6, x[c], y[c]),
-            })
-        })
-    });
-    let both = dots[0] && dots[1];
-    let [ab, cd] = products;
-    let third: [A::Sum; N] = channels(both, |c| {
-        a.sum(
-            Site::third(first + c),
-            |a| if portion.mux { a.select(takes_cd, cd[c], ab[c]) } else { sum(ab[c], cd[c], a) },
-        )
-    });
-    let all = [(ab, dots[0]), (cd, dots[1]), (third, both)];
-    let outputs = std::array::from_fn(|n| {
-        let (raw, same) = all[n];
-        channels(same, |c| a.register(Site::output(n, first + c), |a| output(portion, raw[c], a)))
-    });
+    let [input_a, input_b, input_c, input_d] = &portion.inputs;
+    let factors = [
+        a.factors(Site::factor(0, first), input_a.mapping, read(input_a, first, registers)),
+        a.factors(Site::factor(1, first), input_b.mapping, read(input_b, first, registers)),
+        a.factors(Site::factor(2, first), input_c.mapping, read(input_c, first, registers)),
+        a.factors(Site::factor(3, first), input_d.mapping, read(input_d, first, registers)),
+    ];
+    // A dot product is one value in all channels, and so is what is made of dot products alone.
+    let [ab_dot, cd_dot] = [portion.ab_dot_product, portion.cd_dot_product];
+    let ab = product(Site::product(0, first), ab_dot, &factors[0], &factors[1], a);
+    let cd = product(Site::product(1, first), cd_dot, &factors[2], &factors[3], a);
+    let site = Site::third(first);
+    let third = match (portion.mux, ab_dot && cd_dot) {
+        (true, true) => [a.sum(site, |a| a.select(takes_cd, cd[0], ab[0])); N],
+        (true, false) => a.sums(site, |a, c| a.select(takes_cd, cd[c], ab[c])),
+        (false, true) => [a.sum(site, |a| sum(ab[0], cd[0], a)); N],
+        (false, false) => a.sums(site, |a, c| sum(ab[c], cd[c], a)),
+    };
+    let outputs = [
+        finish(Site::output(0, first), ab_dot, portion, &ab, a),
+        finish(Site::output(1, first), cd_dot, portion, &cd, a),
+        finish(Site::output(2, first), ab_dot && cd_dot, portion, &third, a),
+    ];
+    let products = [ab, cd];
     Values { factors, products, third, outputs }
 }
 
-/// The channels of a portion. A dot product, and what is made of dot products alone, is one value for all of them.
+/// AB or CD, of which the first channel is at this place.
 #[inline(always)]
-fn channels<T: Copy, const N: usize>(one: bool, mut value: impl FnMut(usize) -> T) -> [T; N] {
-    if one { [value(0); N] } else { std::array::from_fn(value) }
+fn product<A: Algebra, const N: usize>(
+    site: Site,
+    is_dot: bool,
+    x: &[A::Factor; N],
+    y: &[A::Factor; N],
+    a: &mut A,
+) -> [A::Sum; N] {
+    match (&x[..], &y[..]) {
+        // Only RGB portions have dot products.
+        ([x0, x1, x2], [y0, y1, y2]) if is_dot => [a.sum(site, |a| dot([*x0, *x1, *x2], [*y0, *y1, *y2], a)); N],
+        _ => a.sums(site, |a, c| a.product(Rule::Cmb6, x[c], y[c])),
+    }
+}
+
+/// An output in all channels; `is_one` says that it is the same in them.
+#[inline(always)]
+fn finish<A: Algebra, const N: usize>(
+    site: Site,
+    is_one: bool,
+    portion: &Portion,
+    raw: &[A::Sum; N],
+    a: &mut A,
+) -> [A::Register; N] {
+    if is_one {
+        [a.register(site, |a| output(portion, raw[0], a)); N]
+    } else {
+        a.registers(site, |a, c| output(portion, raw[c], a))
+    }
+}
+
+/// The channels of its register that an input brings to a portion.
+#[inline(always)]
+fn read<R: Copy, const N: usize>(input: &CombinerInput, first: usize, registers: &Registers<R>) -> [R; N] {
+    let value = &registers.values[input.register as usize];
+    match input.component {
+        Component::Rgb => std::array::from_fn(|c| value[first + c]),
+        Component::Blue => [value[2]; N],
+        Component::Alpha => [value[3]; N],
+    }
 }
 
 /// Writes what a stage has computed: AB, CD, then the sum or mux; blue to alpha (CMB-11) last of each.
@@ -184,8 +214,8 @@ fn write_portion<A: Algebra, const N: usize>(
         if destination == Register::Zero {
             continue;
         }
-        for c in 0..N {
-            let value = a.register(Site::write(n, first + c), |a| a.written(values.outputs[n][c]));
+        let written: [A::Register; N] = a.registers(Site::write(n, first), |a, c| a.written(values.outputs[n][c]));
+        for (c, value) in written.into_iter().enumerate() {
             registers.write(destination, first + c, value);
         }
         if blue_to_alpha {

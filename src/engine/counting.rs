@@ -18,6 +18,7 @@ pub struct DrawCounts {
 
 impl Observer for DrawCounts {
     const ON: bool = false;
+    const COUNTS: bool = true;
     fn step(&mut self, _step: Step) {}
     fn count(&mut self, work: Work, amount: u64) {
         self.work[work as usize] += amount;

@@ -218,7 +218,7 @@ impl Algebra for Printed {
     fn least(&mut self, a: Text, b: Text) -> Text {
         let term = match (self.term(a), self.term(b)) {
             // Nothing else is above 1.
-            (Term::Above(sum), Term::One) => Term::Plain(format!("min(1, {sum})")),
+            (Term::Above(sum), Term::One) => Term::Product(format!("min(1, {sum})")),
             (Term::Unsigned(name), Term::One) => Term::Plain(name),
             (a, Term::One) => a,
             (a, b) => Term::Plain(format!("min({}, {})", a.sum(), b.sum())),

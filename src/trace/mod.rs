@@ -19,6 +19,8 @@ pub trait Observer {
     const ON: bool;
     /// Whether rules, decisions and work are wanted; `false` lets the compiler drop them.
     const MEASURES: bool = false;
+    /// Whether work is counted: then nothing is computed along that is not needed.
+    const COUNTS: bool = false;
     /// One rule has been applied.
     fn step(&mut self, step: Step);
     /// A rule has yielded a value; what is returned goes on in its place. It may differ in the ideal only.

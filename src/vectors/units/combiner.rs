@@ -297,6 +297,7 @@ impl Tap {
 
 impl Observer for Tap {
     const ON: bool = false;
+    const MEASURES: bool = true;
 
     fn step(&mut self, _: Step) {}
 
