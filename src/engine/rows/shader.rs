@@ -765,6 +765,10 @@ fn define(
             let lives = context.sample_textures(&sample, pixel, &mut registers, job.textures, &mut Silent);
             alive[lane] = lives.is_some();
             count += 1;
+            if lives.is_none() {
+                // Nothing reads what it holds; and rows of constants must stay as they are, for the next block.
+                continue;
+            }
             for (unit, register) in UNITS.into_iter().enumerate() {
                 for channel in 0..4 {
                     if let Some(slot) = job.compiled.textures[unit][channel] {
