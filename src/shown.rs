@@ -152,7 +152,7 @@ mod tests {
             prop_assert!(harmless(&shown), "{shown:?}");
             prop_assert_eq!(name(&shown), shown.as_str());
             let lines = lines(&text).into_owned();
-            prop_assert!(lines.split('\n').all(|line| harmless(&line.replace('\t', ""))), "{lines:?}");
+            prop_assert!(lines.split('\n').all(|line| harmless(&line.replace('\t', " "))), "{lines:?}");
         }
 
         #[test]

@@ -72,8 +72,8 @@ fn every_command_shows_hostile_names_as_text() {
         let stderr = if colored { run.stderr.replace("\x1b[", "[") } else { run.stderr.clone() };
         harmless_run(command, &Run { stderr, ..run }, "");
     }
-    let json: serde_json::Value =
-        serde_json::from_str(&bench.run("trace a.ron --pixel 1,1 --format json").text()).unwrap();
+    let run = bench.run("trace a.ron --pixel 1,1 --format json");
+    let json: serde_json::Value = serde_json::from_slice(&run.stdout).unwrap();
     assert!(
         json["target"].as_str().unwrap().starts_with("n\n::error::injected\r##[error]old\u{1b}[31m\u{9b}2J\u{202e}")
     );
@@ -156,7 +156,7 @@ fn valid(xml: &str) -> std::collections::BTreeMap<String, usize> {
     let inside = |open: &[String], name: &str| {
         let parent = open.last().unwrap();
         let known = JUNIT.iter().find(|(element, ..)| element == parent);
-        let within = known.map_or(&["testsuites"][..], |(_, _, within)| within);
+        let within = known.map_or(&["testsuites"][..], |(_, _, within)| *within);
         assert!(within.contains(&name), "`{name}` in `{parent}`: {xml}");
     };
     loop {
