@@ -226,7 +226,6 @@ const CASES: &[Case] = &[
 /// What nv10 lacks.
 const CASES_OF_NV10: &[Case] = &[
     ("Nv10 has no surface format G8B8", |s| s.targets[1].format = SurfaceFormat::G8B8),
-    ("Nv10 has no palette of 64 entries", |s| s.palettes[0].entries = vec![0; 64].into()),
     ("Nv10 has no texture format A8B8G8R8", |s| s.textures[0].format = TextureFormat::A8B8G8R8),
     ("Nv10 has no textures with border texels", |s| texels(s).border = true),
     ("(Rectangle, A8R8G8B8) of 3 x 4", |s| (s.textures[0].kind, texels(s).width) = (TextureKind::Rectangle, 3)),

@@ -119,8 +119,6 @@ impl Check<'_> {
             if !Palette::LENGTHS.contains(&entries.len()) {
                 let message = format!("palette `{name}` has {} entries", entries.len());
                 self.refuse("TEX-1", message, "take 32, 64, 128 or 256");
-            } else {
-                self.only_nv2a("TEX-1", entries.len() < 256, &format!("palette of {} entries", entries.len()));
             }
         }
     }
