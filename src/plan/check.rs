@@ -59,9 +59,6 @@ impl Check<'_> {
 
     fn counts(&mut self) {
         let Scene { targets, draws, .. } = self.scene;
-        if targets.is_empty() {
-            self.refuse(None, "a scene needs a render target".to_owned(), "add one to `targets`");
-        }
         let total = |count: fn(&Draw) -> usize| draws.iter().map(count).fold(0, usize::saturating_add);
         let limits = *self.limits;
         for (count, most, what) in [
