@@ -80,7 +80,7 @@ fn what_lies_beyond_a_plane_is_not_drawn() {
     }
     // Depths that are limited are drawn, as far as w is in front.
     let clamped = quad(VIEW, -10.5).replace("vertices: [(", "viewport: (depth_clamp: true), vertices: [(");
-    assert!(white(&plan(&clamped)) > 3000);
+    assert!(white(&plan(&clamped)) > 2500);
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn traces_and_explanations_tell_what_was_cut() {
     assert_eq!(document["draws"][0]["clipped"]["planes"][0], "near");
     let explained = told("explain floor.ron");
     assert!(explained.contains("clipping (RAS-6): 2 triangles: 0 removed and 2 cut into"), "{explained}");
-    let whole = told("trace far.ron --pixel 32,50 --format json");
+    let whole = told("trace far.ron --pixel 32,44 --format json");
     assert!(whole.contains("\"triangle\"") && !whole.contains("clipped"), "{whole}");
     assert!(!told("explain far.ron").contains("RAS-6"));
 }

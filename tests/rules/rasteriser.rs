@@ -84,7 +84,7 @@ fn examples_of_the_rasteriser() {
         clip_depth: ClipDepth::MinusOneToOne,
         depth_clamp: false,
     };
-    let beyond = positions.map(|position| project::beyond(position, &port));
+    let beyond = positions.map(|position| project::beyond(position, &port) & ClipPlane::Near.bit());
     ras6.gives("who lies beyond near", beyond, [0, ClipPlane::Near.bit(), 0]);
     let corners = positions.map(|position| Vertex { position, ..Vertex::default() });
     let (polygon, planes) = project::clip(&corners, &port);
