@@ -7,8 +7,8 @@ use crate::program::legality::{Help, Notation, stage_count};
 use crate::program::{Part, Place, Places};
 use crate::scene::raw::Tuple;
 use crate::state::{
-    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
-    MuxSelect, Named, Portion, Register, Scale,
+    Bias, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, MuxSelect, Named, Portion,
+    Register, Scale,
 };
 
 /// The words of scene files.
@@ -46,21 +46,11 @@ impl Notation for Fields {
 
 /// OpenGL's initial program: the colours of the vertices, with fog.
 pub(super) fn default_program() -> Combiners {
-    let one = |component| CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert };
-    let primary = |component| CombinerInput {
-        register: Register::PrimaryColor,
-        component,
-        mapping: InputMapping::UnsignedIdentity,
-    };
-    let portion = |component| {
-        let mut portion = Portion::idle(component);
-        portion.inputs[0] = primary(component);
-        portion.inputs[1] = one(component);
-        portion.sum_output = Register::Spare0;
-        portion
-    };
-    let stage = GeneralStage { rgb: portion(Component::Rgb), alpha: portion(Component::Alpha), constants: [[0; 4]; 2] };
-    Combiners { stages: vec![stage], mux_select: MuxSelect::Msb, final_combiner: FinalCombiner::initial([[0; 4]; 2]) }
+    Combiners {
+        stages: vec![GeneralStage::initial([[0; 4]; 2])],
+        mux_select: MuxSelect::Msb,
+        final_combiner: FinalCombiner::initial([[0; 4]; 2]),
+    }
 }
 
 /// A program as it is written, and where its parts stand. `None` once the reason has been recorded.
