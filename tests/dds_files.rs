@@ -201,6 +201,14 @@ fn files_that_lie_are_refused() {
             "NB0519: image `rock.dds` holds texels of Direct3D format 113, which this program does not read",
         ),
         (
+            File::coded(&[75, 0, 0, 0], 2, 2, 1, vec![0; 32]),
+            "NB0519: image `rock.dds` holds depths (D24S8), which this program does not read",
+        ),
+        (
+            File::numbered(55, 3, 0, 1, 4, 4, &[0; 32]),
+            "NB0519: image `rock.dds` holds D16_UNORM texels, which this program does not read",
+        ),
+        (
             File::numbered(98, 3, 0, 1, 4, 4, &[0; 16]),
             "NB0519: image `rock.dds` holds BC7_UNORM texels, which this program does not read",
         ),

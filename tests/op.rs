@@ -18,6 +18,20 @@ fn result(arguments: &str, name: &str) -> Value {
 const PRODUCT: &str = "combiner --a tex0 --b primary --in tex0=100 --in primary=200";
 const SUM: &str = "combiner --a tex0 --b primary --c tex0 --d primary --in tex0=100 --in primary=200";
 
+/// Numbers may be written as registers are.
+#[test]
+fn hexadecimal_numbers() {
+    for arguments in ["tex0=0x64 --in primary=0xC8", "tex0=0X64,0x64,100,0 --in primary=200"] {
+        assert_eq!(result(&format!("combiner --a tex0 --b primary --in {arguments}"), "spare0.r"), 78, "{arguments}");
+    }
+    assert_eq!(result("combiner --a tex0:signed --b zero:invert --in tex0=-0x40", "spare0.r"), -64);
+    let plain = result("filter --texels 10,200 --weights 51", "mix");
+    assert_eq!(result("filter --texels 0xa,0xc8 --weights 0x33", "mix"), plain);
+    for wrong in ["0x", "0x-1", "-0x-1", "0xg", "0x10000000000000000"] {
+        Bench::new().run(&format!("op combiner --a tex0 --in tex0={wrong}")).failed(2, "whole numbers");
+    }
+}
+
 #[test]
 fn products_and_sums() {
     assert_eq!(result(PRODUCT, "spare0.r"), 78);

@@ -120,7 +120,7 @@ fn direct3d5_stage(mode: u32) -> GeneralStage {
     let text = format!(
         "{{ rgb {{ discard = {rgb} spare0 = {third}(); }} alpha {{ discard = {alpha} spare0 = {third}(); }} }}"
     );
-    let mut stage = read(&text).unwrap().0.stages[0];
+    let mut stage = read(&text).unwrap().combiners.stages[0];
     // What the words leave 0 in the alpha portion is the blue of ZERO.
     for input in &mut stage.alpha.inputs {
         if *input == CombinerInput::zero(Component::Alpha) {

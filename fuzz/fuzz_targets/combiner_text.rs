@@ -14,9 +14,9 @@ fuzz_target!(|text: &str| {
                 assert!(finding.span.is_none_or(|span| text.get(span).is_some()));
             }
         }
-        Ok((combiners, _)) => {
-            let normal = print(&combiners);
-            assert!(read(&normal).expect("what is printed can be read").0 == combiners);
+        Ok(program) => {
+            let normal = print(&program.combiners);
+            assert!(read(&normal).expect("what is printed can be read").combiners == program.combiners);
         }
     }
     for profile in [Profile::Nv10, Profile::Nv2a] {

@@ -2,6 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
+use ninebit::program::Pasted;
 use ninebit::program::texture_stages::{Context, lower, parse};
 use ninebit::state::Profile;
 
@@ -13,7 +14,7 @@ fuzz_target!(|text: &str| {
                 assert!(finding.span.is_some_and(|span| text.get(span).is_some()));
             }
         }
-        Ok(program) => {
+        Ok(Pasted { program, .. }) => {
             for profile in [Profile::Nv10, Profile::Nv2a] {
                 let context = Context { profile, bound: [true, true, false, false], signed: [false; 4], fog: true };
                 match lower(&program, &context) {

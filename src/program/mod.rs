@@ -1,6 +1,7 @@
 //! Programs in the languages that people have them in. Pixel programs of each become the same [`Combiners`](crate::state::Combiners).
 //!
 //! * [`text`]: general stages and final combiner as statements, read and printed (`docs/combiner-language.md`).
+//! * [`combiner_calls`]: the calls of OpenGL that set register combiners (`docs/programs.md`).
 //! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
 //! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
 //!   (`docs/programs.md`). Both write each of their stages as equations over [arguments](cascade::Argument), and [`cascade`]
@@ -12,9 +13,13 @@
 //!
 //! Nothing here knows scenes or files.
 
+pub mod c_source;
+mod calls;
 pub mod cascade;
+pub mod combiner_calls;
 mod finding;
 pub mod legality;
+mod lexer;
 pub mod pixel_shader;
 mod place;
 pub mod registers;
@@ -23,5 +28,6 @@ pub mod texture_environment;
 pub mod texture_stages;
 pub mod vertex_shader;
 
+pub use calls::{Aside, Pasted};
 pub use finding::At;
 pub use place::{Part, Place, Places};

@@ -5,9 +5,10 @@
 pub const CODES: &[(&str, &str)] = &[
     ("NB0101", "the notation is broken: a bracket, a comma, a quote"),
     ("NB0102", "the file is not UTF-8 text"),
-    ("NB0103", "texture stages or a pixel shader as text that is not a statement"),
+    ("NB0103", "pasted calls or a pixel shader that are not written as such"),
     ("NB0104", "a combiner program that is not written as one: a bracket, a semicolon, an operator"),
     ("NB0108", "a vertex program that is not written as one"),
+    ("NB0109", "a program as it stands in C that cannot be taken out of it: a directive, a quote"),
     ("NB0111", "there is no such scene file"),
     ("NB0112", "the scene file cannot be read"),
     ("NB0201", "a field that does not exist here"),
@@ -75,9 +76,8 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0351", "a program that needs more constant colours than the chip has"),
     ("NB0352", "a part of a program that the draw has in a field of its own"),
     ("NB0353", "an operation, source or operand where the API does not have it"),
-    ("NB0354", "a sampler's state in the text of a program"),
     ("NB0355", "a field of a texture environment that its mode does not read"),
-    ("NB0356", "texture stages, or a pixel shader, that are given twice"),
+    ("NB0356", "a program of an API that is given twice"),
     ("NB0360", "a register code that the chip does not take in a register word"),
     ("NB0361", "bits that the chip does not take in a register word"),
     ("NB0362", "an operation code of a register word that the chip does not take"),
@@ -161,6 +161,10 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0912", "warning: a vertex program reads one component and does not name it"),
     ("NB0913", "warning: an instruction of a vertex program in a comment"),
     ("NB0914", "warning: more bits than the chip looks at"),
+    ("NB0915", "warning: a final combiner that leaves its colour or its alpha out"),
+    ("NB0916", "warning: a constant colour that is limited to 0..1"),
+    ("NB0917", "warning: something in a pasted text that is passed over"),
+    ("NB0918", "warning: a state in a pasted text that is a field of the draw"),
 ];
 
 /// What a code means; `None` if there is no such code.

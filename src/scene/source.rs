@@ -427,7 +427,7 @@ source! {
         constants: Entries<'a, Color>,
         bump: Entries<'a, BumpEnvironment<'a>>,
     }
-    struct TextureEnvironment { units: List<'a, EnvironmentUnit<'a>>, color_sum: bool }
+    struct TextureEnvironment { units: List<'a, EnvironmentUnit<'a>>, color_sum: bool, text: String, file: String }
     struct EnvironmentUnit {
         mode: Name<texture_environment::Mode>,
         combine_rgb: Name<texture_environment::Function>,

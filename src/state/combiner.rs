@@ -222,6 +222,26 @@ pub struct GeneralStage {
     pub constants: [[u8; 4]; 2],
 }
 
+impl GeneralStage {
+    /// A stage that changes nothing.
+    pub fn idle(constants: [[u8; 4]; 2]) -> Self {
+        GeneralStage { rgb: Portion::idle(Component::Rgb), alpha: Portion::idle(Component::Alpha), constants }
+    }
+
+    /// OpenGL's initial stage (NV_register_combiners, table 5): SPARE0 is the primary colour.
+    pub fn initial(constants: [[u8; 4]; 2]) -> Self {
+        let portion = |component| {
+            let input = |register, mapping| CombinerInput { register, component, mapping };
+            let mut portion = Portion::idle(component);
+            portion.inputs[0] = input(Register::PrimaryColor, InputMapping::UnsignedIdentity);
+            portion.inputs[1] = input(Register::Zero, InputMapping::UnsignedInvert);
+            portion.sum_output = Register::Spare0;
+            portion
+        };
+        GeneralStage { rgb: portion(Component::Rgb), alpha: portion(Component::Alpha), constants }
+    }
+}
+
 /// One of the inputs A to G of the final combiner.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FinalInput {

@@ -2,8 +2,8 @@
 
 use super::{
     Combiners, Component, Cull, Draw, FinalCombiner, FinalInput, FinalRegister, Fog, FrontFace, GeneralStage,
-    InputMapping, MuxSelect, Portion, Positions, Profile, ProvokingVertex, Register, Scene, ShadeModel, ShaderStage,
-    SurfaceFormat, TEXTURE_UNITS, Target, Topology, Vertices,
+    MuxSelect, Portion, Positions, Profile, ProvokingVertex, Scene, ShadeModel, ShaderStage, SurfaceFormat,
+    TEXTURE_UNITS, Target, Topology, Vertices,
 };
 use std::sync::Arc;
 
@@ -98,18 +98,8 @@ impl FinalCombiner {
 impl Default for Combiners {
     /// OpenGL's initial program: one stage that copies the primary colour to SPARE0, then [`FinalCombiner::initial`].
     fn default() -> Self {
-        let portion = |component| {
-            let mut portion = Portion::idle(component);
-            portion.inputs[0].register = Register::PrimaryColor;
-            // ZERO inverted is 1.
-            portion.inputs[1].mapping = InputMapping::UnsignedInvert;
-            portion.sum_output = Register::Spare0;
-            portion
-        };
-        let stage =
-            GeneralStage { rgb: portion(Component::Rgb), alpha: portion(Component::Alpha), ..GeneralStage::default() };
         Combiners {
-            stages: vec![stage],
+            stages: vec![GeneralStage::initial([[0; 4]; 2])],
             mux_select: MuxSelect::Msb,
             final_combiner: FinalCombiner::initial([[0; 4]; 2]),
         }

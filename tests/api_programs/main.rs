@@ -7,6 +7,7 @@
     reason = "a test fails by panicking; the reference is in real numbers"
 )]
 
+mod calls;
 mod direct3d;
 mod opengl;
 mod pasted;

@@ -117,15 +117,19 @@ proptest! {
         let program = stages(&mut Choices::new(seed), 8);
         for form in [Form::Calls, Form::Numbers, Form::Effect] {
             let text = text(&program, form);
-            let read = parse(&text).map(bare);
+            let read = parse(&text).map(|pasted| bare(pasted.program));
             prop_assert_eq!(read.as_ref(), Ok(&program), "{}", text);
         }
     }
 
     /// Anything is read or refused, with places inside the text.
     #[test]
-    fn nothing_makes_it_fail(text in "(?s)([A-Za-z_0-9x.,;()\\[\\]|= \n-]|SetTextureStageState|D3DTSS_COLOROP|ColorOp\\[0\\]|/\\*|//|->|\\PC){0,40}") {
-        if let Err(findings) = parse(&text) {
+    fn nothing_makes_it_fail(text in "(?s)([A-Za-z_0-9x.,;()\\[\\]|= \n-]|SetTextureStageState\\(|SetRenderState\\(|FAILED\\(|if|\\{|\\}|<t>|#define |\"|D3DRS_SRCBLEND|CullMode = |D3DTSS_COLOROP|ColorOp\\[0\\]|/\\*|//|->|\\PC){0,40}") {
+        let findings = match parse(&text) {
+            Ok(pasted) => pasted.asides.into_iter().map(|aside| aside.finding).collect(),
+            Err(findings) => findings,
+        };
+        {
             for finding in findings {
                 let span = finding.span.unwrap();
                 prop_assert!(span.end <= text.len() && text.is_char_boundary(span.start) && text.is_char_boundary(span.end));
@@ -157,7 +161,6 @@ fn findings_point_at_words_and_say_what_was_meant() {
         ("SetTextureStageState(8, D3DTSS_COLOROP, 4);", "NB0206", "8", "0 to 7"),
         ("SetTextureStageState(0, D3DTSS_COLOROP, 27);", "NB0206", "27", "1 to 26"),
         ("SetTextureStageState(n, D3DTSS_COLOROP, 4);", "NB0205", "n", "number"),
-        ("SetTextureStageState(0, D3DTSS_MINFILTER, 2);", "NB0354", "D3DTSS_MINFILTER", "min_filter"),
         ("ColorOp[0] = ModulateAlpha_AddColour;", "NB0204", "ModulateAlpha_AddColour", "`ModulateAlpha_AddColor`"),
         ("ColorArg1[1] = Texture | Current;", "NB0205", "Texture | Current", "one"),
         ("SetTexturStageState(0, 1, 2);", "NB0204", "SetTexturStageState", "`SetTextureStageState`"),
@@ -182,8 +185,126 @@ fn several_findings_come_together() {
 fn bump_states_are_floats_or_their_bits() {
     let text = "d->SetTextureStageState(0, D3DTSS_BUMPENVMAT00, F2DW(-0.5f)); d->SetTextureStageState(0, D3DTSS_BUMPENVMAT01, 0x3f800000);\n\
                 BumpEnvLScale[0] = 1.5; d->SetTextureStageState(0, D3DTSS_TEXCOORDINDEX, D3DTSS_TCI_PASSTHRU | 1);";
-    let program = parse(text).unwrap();
+    let program = parse(text).unwrap().program;
     let stage = &program.stages[0];
     assert_eq!((stage.bump_matrix, stage.bump_luminance), ([-0.5, 1.0, 0.0, 0.0], [1.5, 0.0]));
     assert_eq!(stage.coordinate_index.as_ref().unwrap().value.set, 1);
+}
+
+/// Marked text, code and help of everything that is passed over.
+fn aside(text: &str) -> Vec<(String, &'static str, String)> {
+    let pasted = parse(text).unwrap_or_else(|findings| panic!("{text}: {findings:?}"));
+    let findings = pasted.asides.into_iter().map(|aside| aside.finding);
+    findings.map(|found| (text[found.span.unwrap()].to_owned(), found.code, found.help.unwrap_or_default())).collect()
+}
+
+/// A function as it stood in programs of the time: what is the cascade is read, the rest is told, once for each name.
+#[test]
+fn a_whole_block_is_read() {
+    let text = r#"
+        HRESULT hr = S_OK;
+        D3DXMATRIX matWorld;
+        pDevice->SetTransform( D3DTS_WORLD, &matWorld );
+        pDevice->SetTransform( D3DTS_VIEW, &matView );
+        pDevice->SetRenderState( D3DRS_LIGHTING, FALSE );
+        if( FAILED( hr = pDevice->SetTextureStageState( 0, D3DTSS_COLOROP, D3DTOP_ADD ) ) )
+        {
+            OutputDebugString( "SetTextureStageState(0, D3DTSS_COLOROP, 4);\n" );
+            return hr;
+        }
+        if( caps.MaxTextureBlendStages > 2 ) {
+            V( pDevice->SetTextureStageState( 1, D3DTSS_COLOROP, (DWORD)D3DTOP_MODULATE2X ) );
+        }
+        pDevice->SetRenderState( D3DRS_TEXTUREFACTOR, D3DCOLOR_COLORVALUE( 0.5f, 1.0f, 0.0f, 0.25f ) );
+        pDevice->SetTexture( 0, g_pTexture );
+        Texture[0] = <t0>;
+        AlphaBlendEnable = False;
+    "#;
+    let program = parse(text).unwrap().program;
+    assert_eq!(program.stages[0].color.operation.value, Operation::Add);
+    assert_eq!(program.stages[1].color.operation.value, Operation::Modulate2X);
+    assert_eq!(program.texture_factor, [127, 255, 0, 63]);
+    let said: Vec<String> = aside(text).into_iter().map(|(marked, code, _)| format!("{code} {marked}")).collect();
+    assert_eq!(
+        said,
+        [
+            "NB0917 hr",
+            "NB0917 matWorld",
+            "NB0917 SetTransform",
+            "NB0917 D3DRS_LIGHTING",
+            "NB0917 if",
+            "NB0917 OutputDebugString",
+        ]
+    );
+}
+
+#[test]
+fn colours_by_every_macro() {
+    for (value, expected) in [
+        ("RGBA_MAKE(1, 2, 3, 4)", [1, 2, 3, 4]),
+        ("RGB_MAKE(1, 2, 3)", [1, 2, 3, 0]),
+        ("D3DRGBA(0.5, 1.0, 0, 1)", [127, 255, 0, 255]),
+        ("D3DRGB(0.5f, 0.25f, 1)", [127, 63, 255, 255]),
+        ("D3DXCOLOR(0.5f, 0.25f, 0.0f, 1.0f)", [128, 64, 0, 255]),
+        ("D3DCOLOR_XRGB(9, 8, 7)", [9, 8, 7, 255]),
+        ("D3DCOLOR_RGBA(9, 8, 7, 6)", [9, 8, 7, 6]),
+    ] {
+        let text = format!("SetRenderState(D3DRS_TEXTUREFACTOR, {value});");
+        assert_eq!(parse(&text).unwrap().program.texture_factor, expected, "{value}");
+    }
+    for value in [
+        "D3DCOLOR_COLORVALUE(1.5f, 0, 0, 0)",
+        "RGBA_MAKE(256, 0, 0, 0)",
+        "RGBA_MAKE(1, 2, 3)",
+        "RGB_MAKE(1, 2, 3, 4)",
+        "MAKE(1)",
+    ] {
+        let text = format!("SetRenderState(D3DRS_TEXTUREFACTOR, {value});");
+        assert_eq!(said(&text)[0].0, "NB0205", "{value}");
+    }
+}
+
+#[test]
+fn states_of_the_draw_are_pointed_at() {
+    for (text, help) in [
+        (
+            "SetRenderState(D3DRS_ALPHABLENDENABLE, TRUE); SetRenderState(D3DRS_SRCBLEND, D3DBLEND_SRCALPHA); SetRenderState(D3DRS_DESTBLEND, 6);",
+            "`blend: (source: SourceAlpha, destination: OneMinusSourceAlpha)`",
+        ),
+        (
+            "AlphaTestEnable = True; AlphaFunc = GreaterEqual; AlphaRef = 0x80;",
+            "`alpha_test: (function: GreaterOrEqual, reference: 128)`",
+        ),
+        ("SetRenderState(D3DRS_CULLMODE, D3DCULL_CCW);", "`cull: Back, front_face: Clockwise`"),
+        ("SetRenderState(D3DRS_CULLMODE, D3DCULL_CW);", "`cull: Back`"),
+        ("SetRenderState(D3DRS_SHADEMODE, D3DSHADE_FLAT);", "`shade_model: Flat, provoking_vertex: First`"),
+        (
+            "SetRenderState(D3DRS_ZENABLE, D3DZB_TRUE); ZWriteEnable = FALSE;",
+            "`depth_test: (function: LessOrEqual, write: false)`",
+        ),
+        ("ColorWriteEnable = 7;", "`color_mask: (true, true, true, false)`"),
+        (
+            "SetRenderState(D3DRS_FOGENABLE, TRUE); SetRenderState(D3DRS_FOGCOLOR, 0xff8040); SetRenderState(D3DRS_FOGTABLEMODE, D3DFOG_LINEAR);",
+            "`fog: (mode: Linear, start: ..., end: ..., evaluation: PerPixel, coordinate_source: W, color: (255, 128, 64))`",
+        ),
+    ] {
+        let found = aside(text);
+        assert_eq!(found.len(), 1, "{text}: {found:?}");
+        assert_eq!(
+            (found[0].1, found[0].2.as_str()),
+            ("NB0918", format!("write it in the draw: {help}").as_str()),
+            "{text}"
+        );
+    }
+    // What the draw is without any field.
+    let text = "AlphaBlendEnable = False; SetRenderState(D3DRS_FOGENABLE, FALSE); CullMode = None; ShadeMode = Gouraud; ZEnable = 0;";
+    assert_eq!(aside(text), []);
+    let sampler = aside(
+        "d->SetSamplerState(0, D3DSAMP_MINFILTER, D3DTEXF_LINEAR); d->SetTextureStageState(1, D3DTSS_ADDRESSU, 3);",
+    );
+    assert_eq!(
+        sampler.iter().map(|(marked, ..)| marked.as_str()).collect::<Vec<_>>(),
+        ["SetSamplerState", "D3DSAMP_MINFILTER", "D3DTSS_ADDRESSU"]
+    );
+    assert!(sampler[1].2.contains("min_filter"), "{sampler:?}");
 }

@@ -22,7 +22,17 @@ fn a_surface_in_every_notation_has_the_same_bytes() {
         assert_eq!(load(name).scene.draws[0].combiners, stages.scene.draws[0].combiners, "{name}");
     }
     assert_eq!(words(&stages), definition);
-    for name in ["texture-environment", "combiner-text", "pixel-shader", "register-words"] {
+    let environment = load("dot3-texture-environment");
+    let pasted = load("dot3-texture-environment-text");
+    assert_eq!(pasted.scene.draws[0].combiners, environment.scene.draws[0].combiners);
+    for name in [
+        "texture-environment",
+        "texture-environment-text",
+        "combiner-calls",
+        "combiner-text",
+        "pixel-shader",
+        "register-words",
+    ] {
         assert_eq!(words(&load(&format!("dot3-{name}"))), definition, "{name}");
     }
 }
@@ -215,4 +225,64 @@ fn a_viewer_far_away_sees_one_reflection() {
     assert_eq!(places("viewer: Local"), [first, last]);
     assert_eq!(places("viewer: Infinite"), [[0.0, 0.0, 1.0, 1.0]; 2]);
     assert_eq!(places("viewer: Infinite(0, 0, 2)"), [[0.0, 0.0, -1.0, 1.0]; 2]);
+}
+
+/// Direct3D looks at s, t and r; the chip tests q as well.
+#[test]
+fn texkill_looks_at_three_coordinates() {
+    let shown = |t0: &str, more: &str, program: &str| {
+        let fields = format!("{more} program: PixelShader(\"ps.1.1\n{program}\nmov r0, v0\")");
+        let (loaded, pixels) =
+            drawn("Nv2a", CHECKS, &format!("diffuse: (255, 255, 255), t0: {t0}, t1: (0.5, 0.5, 0.5, -1)"), &fields);
+        (loaded, pixels[9])
+    };
+    let white = [255; 4];
+    for (t0, kept) in [
+        ("(1, 1, 1, -1)", true),
+        ("(0, 0, 0, -0.5)", true),
+        ("(1, 1, -1, 1)", false),
+        ("(-1, 1, 1, 1)", false),
+        ("(1, -1, 1, -1)", false),
+    ] {
+        assert_eq!(shown(t0, "", "texkill t0").1 == white, kept, "{t0}");
+    }
+    // Another unit that reads the same set keeps its q.
+    let fields = "textures: [(texture: \"t\", coordinates: 1), (texture: \"t\", coordinates: 1)],";
+    let (loaded, pixel) = shown("(1, 1, 1, 1)", fields, "tex t0\ntexkill t1");
+    assert_eq!(pixel, white);
+    let draw = &loaded.scene.draws[0];
+    let q =
+        [0, 1].map(|unit: usize| draw.vertices.at(0).texture_coordinates[draw.texture_shader[unit].coordinate_set][3]);
+    assert_eq!(q, [-1.0, 1.0]);
+}
+
+/// As it stands in C, a shader is what stands between its quotes.
+#[test]
+fn shaders_out_of_c_are_the_same() {
+    let program = |text: &str| {
+        let fields = format!("textures: [\"t\"], program: PixelShader(r##\"{text}\"##)");
+        drawn("Nv2a", CHECKS, "diffuse: (255, 200, 100), t0: (0.25, 0.5)", &fields).1
+    };
+    let plain = program("ps.1.1\ndef c0, 0.5, 0.5, 0.5, 1\ntex t0\nmul r0, t0, v0\nmul r0, r0, c0");
+    let quoted = program(
+        "#define HALF \"c0\"\nconst char shader[] = // darker\n  \"ps.1.1\\n\"\n  \"def \" HALF \", 0.5, 0.5, 0.5, 1\\n\"\n  \"tex t0 ; base\\n\"\n  \
+         \"mul r0, t0, v0\\n\"\n  \"mul r0, r0, \" HALF \"\\n\";",
+    );
+    let named = program(
+        "#define HALF c0\n#define BASE t0\nps.1.1\ndef HALF, 0.5, 0.5, 0.5, 1\ntex BASE\nmul r0, BASE, v0\nmul r0, r0, HALF",
+    );
+    assert_eq!(quoted, plain);
+    assert_eq!(named, plain);
+    let vertices = |text: &str| {
+        let scene = format!(
+            "(version: 1, profile: Nv2a, targets: [(name: \"f\", width: 8, height: 8)], draws: [(vertices: Program(text: r##\"{text}\"##, \
+             vertices: [(position: (-1, -1)), (position: (1, -1)), (position: (0, 1))], inputs: (v0: Position)))])"
+        );
+        let loaded = scene::parse(&scene, Path::new("program.ron"), &Limits::default())
+            .unwrap_or_else(|error| panic!("{error}"));
+        engine::render(&loaded.plan, &RenderOptions::default()).surfaces[0].rgba8()
+    };
+    let plain = vertices("vs.1.1\nmov oPos, v0\nmov oD0, v0");
+    assert_eq!(vertices("\"vs.1.1\\n\"\n\"mov oPos, v0\\n\"\n\"mov oD0, v0\\n\""), plain);
+    assert_eq!(vertices("#define OUT oPos, v0\nvs.1.1\nmov OUT\nmov oD0, v0"), plain);
 }

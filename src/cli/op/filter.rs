@@ -134,7 +134,7 @@ impl Operation for Mix {
 }
 
 fn numbers(text: &str) -> Option<Vec<i64>> {
-    text.split(',').map(|number| number.trim().parse().ok()).collect()
+    text.split(',').map(|text| super::inputs::number(text.trim())).collect()
 }
 
 fn texels(text: &str) -> Result<Texels, String> {

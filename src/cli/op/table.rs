@@ -141,7 +141,7 @@ fn row(
     }
     for (index, (field, column)) in fields.iter().zip(columns).enumerate() {
         let wanted = &operation.columns()[*column].range;
-        let value = field.parse::<i64>().ok().filter(|value| wanted.contains(value)).ok_or_else(|| {
+        let value = super::inputs::number(field).filter(|value| wanted.contains(value)).ok_or_else(|| {
             let field: String = field.chars().take(40).collect();
             let range = format!("{} to {}", wanted.start(), wanted.end());
             format!(

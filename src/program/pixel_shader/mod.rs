@@ -16,7 +16,6 @@
 mod check;
 mod constants;
 mod factor;
-mod lexer;
 mod lower;
 mod operand;
 mod parser;

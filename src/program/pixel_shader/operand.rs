@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::lexer::Kind;
 use super::parser::{Parser, Pieces};
 use super::words;
 use super::*;
 use crate::diagnostic::shorten;
+use crate::program::lexer::Kind;
 
 impl Parser<'_> {
     fn register(&mut self, word: &str, place: Range<usize>) -> Option<ShaderRegister> {

@@ -2,11 +2,11 @@
 
 use std::ops::Range;
 
-use super::lexer::{Kind, Token, tokens};
 use super::words::{self, Word};
 use super::*;
 use crate::diagnostic::shorten;
-use crate::program::finding::finding;
+use crate::program::finding::{finding, foreign, header};
+use crate::program::lexer::{Kind, Language, Token, tokens};
 use crate::spelling::closest;
 
 /// Findings beyond this many are not gathered.
@@ -16,8 +16,10 @@ const MOST_FINDINGS: usize = 32;
 pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
     let program =
         PixelShader { version: Version::Ps11, definitions: Vec::new(), textures: Vec::new(), arithmetic: Vec::new() };
-    let mut parser = Parser { text, tokens: tokens(text), at: 0, findings: Vec::new(), program };
-    if parser.version().is_some() {
+    let mut parser = Parser { text, tokens: tokens(text, Language::ASSEMBLER).0, at: 0, findings: Vec::new(), program };
+    if let Some(place) = header(text) {
+        parser.findings.push(foreign(text, place, "NB0370", "a pixel shader begins with `ps.1.1`"));
+    } else if parser.version().is_some() {
         while parser.at < parser.tokens.len() && parser.findings.len() < MOST_FINDINGS {
             if parser.instruction().is_none() {
                 parser.recover();

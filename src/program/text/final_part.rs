@@ -77,28 +77,51 @@ impl Final {
         Ok(())
     }
 
-    /// The state of it all. Without any statement it is OpenGL's initial one.
+    /// Whether any of them was there.
+    pub(super) fn is_written(&self) -> bool {
+        self.rgb.is_some() || self.alpha.is_some() || self.aside().is_some()
+    }
+
+    /// The place of the first statement that only helps others.
+    fn aside(&self) -> Option<Range<usize>> {
+        let product = self.product.as_ref().map(|(_, span)| span.clone());
+        product.or(self.sum.as_ref().map(|(_, span)| span.clone())).or(self.clamp.clone())
+    }
+
+    /// The state of it all. Without any statement it is OpenGL's initial one; an output that is not written is 0.
     pub(super) fn finish(self, parser: &mut Parser<'_>, constants: [[u8; 4]; 2]) -> FinalCombiner {
-        let first = self.alpha.as_ref().map(|(_, span)| span.clone());
-        let first = first.or(self.product.as_ref().map(|(_, span)| span.clone()));
-        let first = first.or(self.sum.as_ref().map(|(_, span)| span.clone())).or(self.clamp.clone());
         let initial = FinalCombiner::initial(constants);
-        let Some((inputs, _)) = self.rgb else {
-            if let Some(span) = first {
+        match (&self.rgb, &self.alpha, self.aside()) {
+            (Some(_), Some(_), _) | (None, None, None) => {}
+            (Some((_, span)), None, _) => parser.warn(
+                Diagnostic::warning("NB0915", span.clone(), "without `out.a` the alpha is 0")
+                    .label("the final combiner has no other output")
+                    .rule("FIN-1")
+                    .help("write `out.a = spare0.a;` for the alpha that the stages made, or `out.a = zero;`"),
+            ),
+            (None, Some((_, span)), _) => parser.warn(
+                Diagnostic::warning("NB0915", span.clone(), "without `out.rgb` the colour is black")
+                    .label("the final combiner has no other output")
+                    .rule("FIN-1")
+                    .help("write `out.rgb = spare0;` for the colour that the stages made, or `out.rgb = zero;`"),
+            ),
+            (None, None, Some(span)) => {
                 parser.give_up(
                     Diagnostic::error("NB0202", span, "this final combiner has no `out.rgb`")
                         .label("without it")
                         .help("write `out.rgb = ...;`, or leave the whole final combiner out"),
                 );
             }
+        }
+        if self.rgb.is_none() && self.alpha.is_none() {
             return initial;
-        };
-        let [a, b, c, d] = inputs;
+        }
+        let [a, b, c, d] = self.rgb.map_or([ZERO; 4], |(inputs, _)| inputs);
         let [e, f] = self.product.map_or([ZERO; 2], |(inputs, _)| inputs);
         let [invert_spare0, invert_secondary] = self.sum.map_or([false; 2], |(inverts, _)| inverts);
         FinalCombiner {
             inputs: [a, b, c, d, e, f],
-            g: self.alpha.map_or(initial.g, |(g, _)| g),
+            g: self.alpha.map_or(FinalInput::zero(Component::Alpha), |(g, _)| g),
             color_sum_clamp: self.clamp.is_some(),
             invert_spare0,
             invert_secondary,
@@ -118,40 +141,64 @@ fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Range<usize>)>, value: 
     }
 }
 
-/// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`: A B + (1 - A) C + D.
+/// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`, or with d first: A B + (1 - A) C + D.
 fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
     let mut inputs = [ZERO; 4];
     if parser.word() == "lerp" {
-        parser.advance();
-        parser.sign('(')?;
-        for n in 0..3 {
-            if n > 0 {
-                parser.sign(',')?;
-            }
-            inputs[n] = operand(parser, n)?;
-        }
-        parser.sign(')')?;
-    } else {
-        // Where a lone operand stands in the sum is known behind it.
-        let first = unplaced(parser, false)?;
-        let slot = if parser.is('*') || parser.is('+') { 0 } else { 3 };
-        inputs[slot] = place(parser, slot, first);
-        if slot == 0 {
-            inputs[1] = ONE;
-        }
-        if parser.is('*') {
+        lerp(parser, &mut inputs)?;
+        if parser.is('+') {
             parser.advance();
-            inputs[1] = operand(parser, 1)?;
+            inputs[3] = operand(parser, 3)?;
         }
-        if slot == 3 {
-            return Ok(inputs);
-        }
+        return Ok(inputs);
     }
-    if parser.is('+') {
+    // Where an operand stands in the sum is known behind it.
+    let first = unplaced(parser, false)?;
+    if parser.is('*') {
+        inputs[0] = place(parser, 0, first);
         parser.advance();
-        inputs[3] = operand(parser, 3)?;
+        inputs[1] = operand(parser, 1)?;
+        if parser.is('+') {
+            parser.advance();
+            inputs[3] = operand(parser, 3)?;
+        }
+        return Ok(inputs);
+    }
+    if !parser.is('+') {
+        inputs[3] = place(parser, 3, first);
+        return Ok(inputs);
+    }
+    parser.advance();
+    if parser.word() == "lerp" {
+        inputs[3] = place(parser, 3, first);
+        lerp(parser, &mut inputs)?;
+        return Ok(inputs);
+    }
+    let second = unplaced(parser, false)?;
+    if parser.is('*') {
+        inputs[3] = place(parser, 3, first);
+        inputs[0] = place(parser, 0, second);
+        parser.advance();
+        inputs[1] = operand(parser, 1)?;
+    } else {
+        inputs[0] = place(parser, 0, first);
+        inputs[1] = ONE;
+        inputs[3] = place(parser, 3, second);
     }
     Ok(inputs)
+}
+
+/// `lerp(a, b, c)`
+fn lerp(parser: &mut Parser<'_>, inputs: &mut [FinalInput; 4]) -> Result<(), GivenUp> {
+    parser.advance();
+    parser.sign('(')?;
+    for (n, input) in inputs.iter_mut().take(3).enumerate() {
+        if n > 0 {
+            parser.sign(',')?;
+        }
+        *input = operand(parser, n)?;
+    }
+    parser.sign(')')
 }
 
 /// Input n of the final combiner.
@@ -189,13 +236,19 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
             .help("its inputs are taken as they are, or inverted: `spare0`, `unsigned_invert(spare0)`; map in a stage");
         return Err(parser.give_up(finding));
     }
+    if function == "lerp" {
+        let finding = Diagnostic::error("NB0104", parser.here(), "`lerp` is not an input")
+            .label("not here")
+            .rule("FIN-1")
+            .help("a final combiner has one: `out.rgb = lerp(a, b, c) + d;`");
+        return Err(parser.give_up(finding));
+    }
     let mapped = matches!(function, "unsigned" | "unsigned_invert");
     if mapped {
         parser.advance();
         parser.sign('(')?;
     } else if find(function).is_none() && !function.is_empty() {
-        let known: Vec<&str> =
-            REGISTERS.iter().map(|(name, _)| *name).chain(["unsigned", "unsigned_invert", "lerp"]).collect();
+        let known: Vec<&str> = REGISTERS.iter().map(|(name, _)| *name).chain(["unsigned", "unsigned_invert"]).collect();
         return Err(parser.unknown("input", &known));
     }
     let Source { register, component, .. } = parser.register()?;

@@ -14,7 +14,6 @@
 //! The grammar is in `docs/combiner-language.md`.
 
 mod final_part;
-mod lexer;
 mod parser;
 mod portion;
 mod print;
@@ -44,18 +43,18 @@ pub struct Program {
 /// # Errors
 /// Everything that is wrong with it, with places in `text`.
 pub fn parse(text: &str, profile: Profile) -> Result<Program, Vec<Diagnostic>> {
-    let (combiners, places) = read(text)?;
-    let findings = check(&combiners, profile, &places, &Words).findings;
-    if findings.iter().any(|finding| finding.severity == Severity::Error) {
-        return Err(findings);
+    let mut program = read(text)?;
+    program.warnings.extend(check(&program.combiners, profile, &program.places, &Words).findings);
+    if program.warnings.iter().any(|finding| finding.severity == Severity::Error) {
+        return Err(program.warnings);
     }
-    Ok(Program { combiners, places, warnings: findings })
+    Ok(program)
 }
 
 /// Reads a program without asking whether a chip allows it.
 ///
 /// # Errors
 /// Everything that is wrong with its notation, with places in `text`; at most 64 findings.
-pub fn read(text: &str) -> Result<(Combiners, Places), Vec<Diagnostic>> {
+pub fn read(text: &str) -> Result<Program, Vec<Diagnostic>> {
     parser::Parser::new(text).program()
 }

@@ -2,12 +2,14 @@
 
 use std::ops::Range;
 
+use super::Program;
 use super::final_part::Final;
-use super::lexer::{Kind, Lexer, Token};
 use super::portion::PortionReader;
 use super::words::{REGISTERS, find};
-use crate::diagnostic::{Diagnostic, shorten};
+use crate::diagnostic::{Diagnostic, Severity, shorten};
 use crate::number::convert::constant;
+use crate::program::finding::{foreign, header};
+use crate::program::lexer::{Kind, Language, Token, tokens};
 use crate::program::{Place, Places};
 use crate::spelling::closest;
 use crate::state::{Combiners, Component, FinalRegister, GeneralStage, MuxSelect, Portion};
@@ -31,9 +33,9 @@ pub(super) struct Source {
 /// What is known while a program is read.
 pub(super) struct Parser<'t> {
     text: &'t str,
-    lexer: Lexer<'t>,
+    tokens: Vec<Token>,
     /// The token to be looked at.
-    token: Token,
+    at: usize,
     /// Where the token before it ended.
     end: usize,
     findings: Vec<Diagnostic>,
@@ -45,24 +47,43 @@ type Written = Option<([u8; 4], Range<usize>)>;
 
 impl<'t> Parser<'t> {
     pub(super) fn new(text: &'t str) -> Self {
-        let mut lexer = Lexer::new(text);
-        let token = lexer.next();
-        Parser { text, lexer, token, end: 0, findings: Vec::new(), places: Places::default() }
+        let (tokens, _) = tokens(text, Language::COMBINERS);
+        let mut parser = Parser { text, tokens, at: 0, end: 0, findings: Vec::new(), places: Places::default() };
+        parser.header();
+        parser
+    }
+
+    /// Passes over what programs of the assembler start with, and refuses the languages beside it by name.
+    fn header(&mut self) {
+        // Comments may stand before it.
+        let start = self.here().start;
+        let Some(place) = header(self.text.get(start..).unwrap_or("")) else { return };
+        let place = start + place.start..start + place.end;
+        if self.text[place.clone()].starts_with("!!RC1.0") {
+            let end = place.start + "!!RC1.0".len();
+            self.at = self.tokens.iter().take_while(|token| token.place.start < end).count();
+            return;
+        }
+        self.give_up(foreign(self.text, place, "NB0104", "a combiner program starts with `!!RC1.0`"));
+        self.at = self.tokens.len();
     }
 
     /// Reads the whole text.
-    pub(super) fn program(mut self) -> Result<(Combiners, Places), Vec<Diagnostic>> {
+    pub(super) fn program(mut self) -> Result<Program, Vec<Diagnostic>> {
+        if !self.findings.is_empty() {
+            return Err(self.findings);
+        }
         let mut shared: [Written; 2] = [None, None];
         let mut stages: Vec<(GeneralStage, [Written; 2])> = Vec::new();
         let mut mux: Option<Range<usize>> = None;
         let mut last = Final::default();
-        while self.token.kind != Kind::End && self.findings.len() < MOST_FINDINGS {
+        while self.kind().is_some() && self.findings.len() < MOST_FINDINGS {
             let outcome = match self.word() {
-                _ if self.token.kind == Kind::Sign('{') => self.stage(&mut stages),
+                _ if self.is('{') => self.stage(&mut stages),
                 "const0" => self.constant(&mut shared[0]),
                 "const1" => self.constant(&mut shared[1]),
                 "mux_by_least_significant_bit" => {
-                    let span = self.token.span.clone();
+                    let span = self.here();
                     self.call().map(|()| self.once(&mut mux, span))
                 }
                 "out" | "final_product" | "color_sum" | "clamp_color_sum" => last.statement(&mut self),
@@ -82,7 +103,7 @@ impl<'t> Parser<'t> {
             if outcome.is_err() {
                 self.recover();
                 // Nothing outside a stage can be closed.
-                while self.token.kind == Kind::Sign('}') {
+                while self.is('}') {
                     self.advance();
                 }
             }
@@ -90,8 +111,13 @@ impl<'t> Parser<'t> {
         let end = self.text.trim_end().len();
         self.places.set(Place::Stages, self.before(end));
         let shared = shared.map(|written| written.map_or([0; 4], |(bytes, _)| bytes));
+        if stages.is_empty() && last.is_written() {
+            // The final combiner alone: the chip has at least one stage, which changes nothing then.
+            stages.push((GeneralStage::idle([[0; 4]; 2]), [None, None]));
+        }
         let final_combiner = last.finish(&mut self, shared);
-        if !self.findings.is_empty() {
+        if self.findings.iter().any(|finding| finding.severity == Severity::Error) {
+            self.findings.retain(|finding| finding.severity == Severity::Error);
             return Err(self.findings);
         }
         let mux_select = if mux.is_some() { MuxSelect::Lsb } else { MuxSelect::Msb };
@@ -104,19 +130,20 @@ impl<'t> Parser<'t> {
             }
             stage
         });
-        Ok((Combiners { stages: stages.collect(), mux_select, final_combiner }, self.places))
+        let combiners = Combiners { stages: stages.collect(), mux_select, final_combiner };
+        Ok(Program { combiners, places: self.places, warnings: self.findings })
     }
 
     /// `{ const0 = ...; rgb { ... } alpha { ... } }`
     fn stage(&mut self, stages: &mut Vec<(GeneralStage, [Written; 2])>) -> Read<()> {
-        let opening = self.token.span.clone();
+        let opening = self.here();
         self.advance();
         let index = stages.len();
         self.places.set(Place::Stage(index), opening.clone());
         let mut own: [Written; 2] = [None, None];
         let mut portions: [Option<(Portion, Range<usize>)>; 2] = [None, None];
-        while self.token.kind != Kind::Sign('}') && self.findings.len() < MOST_FINDINGS {
-            if self.token.kind == Kind::End {
+        while !self.is('}') && self.findings.len() < MOST_FINDINGS {
+            if self.kind().is_none() {
                 return Err(self.unclosed(opening));
             }
             let outcome = match self.word() {
@@ -151,13 +178,13 @@ impl<'t> Parser<'t> {
 
     /// `rgb { ... }` or `alpha { ... }`
     fn portion(&mut self, stage: usize, alpha: bool, slot: &mut Option<(Portion, Range<usize>)>) -> Read<()> {
-        let name = self.token.span.clone();
+        let name = self.here();
         self.advance();
-        let opening = self.token.span.clone();
+        let opening = self.here();
         self.sign('{')?;
         let mut reader = PortionReader::new(stage, alpha);
-        while self.token.kind != Kind::Sign('}') && self.findings.len() < MOST_FINDINGS {
-            if self.token.kind == Kind::End {
+        while !self.is('}') && self.findings.len() < MOST_FINDINGS {
+            if self.kind().is_none() {
                 return Err(self.unclosed(opening));
             }
             if reader.statement(self).is_err() {
@@ -177,23 +204,29 @@ impl<'t> Parser<'t> {
 
     /// `const0 = (1.0, 0.5, 0.0, 1.0);` or `const0 = bytes(255, 128, 0, 255);`
     fn constant(&mut self, slot: &mut Written) -> Read<()> {
-        let name = self.token.span.clone();
+        let name = self.here();
         self.advance();
         self.sign('=')?;
         let bytes = self.word() == "bytes";
         if bytes {
             self.advance();
         }
-        let opening = self.token.span.start;
+        let opening = self.here().start;
         self.sign('(')?;
         let mut values = Vec::new();
         loop {
-            if self.token.kind != Kind::Number {
+            let start = self.here().start;
+            let negative = self.is('-');
+            if negative || self.is('+') {
+                self.advance();
+            }
+            if self.kind() != Some(Kind::Number) {
                 return Err(self.expected("a number"));
             }
-            values.push(self.number(bytes));
+            let place = start..self.here().end;
             self.advance();
-            if self.token.kind != Kind::Sign(',') {
+            values.push(self.number(place, negative, bytes));
+            if !self.is(',') {
                 break;
             }
             self.advance();
@@ -221,14 +254,25 @@ impl<'t> Parser<'t> {
         Ok(())
     }
 
-    /// The number at hand as a byte of a colour.
-    fn number(&mut self, byte: bool) -> Option<u8> {
-        let text = self.lexeme();
-        let value = if byte {
-            text.parse::<u8>().ok()
-        } else {
-            // NUM-0. Digits and a point are a number, at most infinite.
-            text.parse::<f32>().ok().filter(|value| *value <= 1.0).map(constant)
+    /// A number as a byte of a colour. What is beyond 0.0 to 1.0 is limited to it, as the extension has it.
+    fn number(&mut self, place: Range<usize>, negative: bool, byte: bool) -> Option<u8> {
+        let written = self.text.get(place.clone()).unwrap_or("");
+        let digits = written.trim_start_matches(['+', '-']).trim_start();
+        let limited = if negative { "0" } else { "1" };
+        // NUM-0. Digits and a point are a number, at most infinite.
+        let value = match digits.parse::<f32>() {
+            _ if byte => digits.parse::<u8>().ok().filter(|byte| !negative || *byte == 0),
+            Ok(value) if value == 0.0 || !negative && value <= 1.0 => Some(constant(value)),
+            Ok(_) => {
+                let message = format!("`{}` is limited to {limited}", shorten(written));
+                let finding = Diagnostic::warning("NB0916", place, message).label("a part of a colour is 0.0 to 1.0");
+                self.findings.push(finding.rule("NUM-0").help(match negative {
+                    true => "write 0; registers hold negative numbers, constants do not",
+                    false => "write 1; for bytes write `bytes(255, 128, 0, 255)`",
+                }));
+                return Some(if negative { 0 } else { 255 });
+            }
+            Err(_) => None,
         };
         if value.is_none() {
             let (range, help) = if byte {
@@ -236,21 +280,17 @@ impl<'t> Parser<'t> {
             } else {
                 ("a part of a colour is a number from 0.0 to 1.0", "for bytes write `bytes(255, 128, 0, 255)`")
             };
-            let message = format!("`{}` is not a part of this colour", shorten(text));
-            self.findings.push(
-                Diagnostic::error("NB0206", self.token.span.clone(), message)
-                    .label("out of range")
-                    .note(range)
-                    .help(help),
-            );
+            let message = format!("`{}` is not a part of this colour", shorten(written));
+            self.findings
+                .push(Diagnostic::error("NB0206", place, message).label("out of range").note(range).help(help));
         }
         value
     }
 
     /// A register, perhaps with a component: `tex0`, `tex0.a`.
     pub(super) fn register(&mut self) -> Read<Source> {
-        let span = self.token.span.clone();
-        if self.token.kind != Kind::Word {
+        let span = self.here();
+        if self.kind() != Some(Kind::Word) {
             return Err(self.expected("a register"));
         }
         let Some(register) = find(self.word()) else {
@@ -264,15 +304,15 @@ impl<'t> Parser<'t> {
 
     /// `.rgb`, `.a` or `.b` without a space before the point: anything else is an operator.
     pub(super) fn component(&mut self) -> Option<(Component, Range<usize>)> {
-        if self.token.kind != Kind::Sign('.') || self.token.span.start != self.end {
+        if !self.is('.') || self.here().start != self.end {
             return None;
         }
-        let mut ahead = self.lexer.clone();
-        let token = ahead.next();
-        if token.span.start != self.token.span.end {
+        let token = self.tokens.get(self.at + 1)?;
+        if token.place.start != self.here().end {
             return None;
         }
-        let component = match &self.text[token.span.clone()] {
+        let place = token.place.clone();
+        let component = match &self.text[place.clone()] {
             "rgb" => Component::Rgb,
             "a" => Component::Alpha,
             "b" => Component::Blue,
@@ -280,18 +320,24 @@ impl<'t> Parser<'t> {
         };
         self.advance();
         self.advance();
-        Some((component, token.span))
+        Some((component, place))
     }
 
     // What all statements share.
 
     pub(super) fn advance(&mut self) {
-        self.end = self.token.span.end;
-        self.token = self.lexer.next();
+        self.end = self.here().end;
+        self.at += 1;
     }
 
+    fn kind(&self) -> Option<Kind> {
+        self.tokens.get(self.at).map(|token| token.kind)
+    }
+
+    /// The place of the token at hand; the end of the text behind the last.
     pub(super) fn here(&self) -> Range<usize> {
-        self.token.span.clone()
+        let behind = || self.text.trim_end().len()..self.text.trim_end().len();
+        self.tokens.get(self.at).map_or_else(behind, |token| token.place.clone())
     }
 
     /// Where the token before the one at hand ended.
@@ -301,16 +347,16 @@ impl<'t> Parser<'t> {
 
     /// Text of the token.
     fn lexeme(&self) -> &'t str {
-        &self.text[self.token.span.clone()]
+        &self.text[self.here()]
     }
 
     /// The word at hand; empty if it is none.
     pub(super) fn word(&self) -> &'t str {
-        if self.token.kind == Kind::Word { self.lexeme() } else { "" }
+        if self.kind() == Some(Kind::Word) { self.lexeme() } else { "" }
     }
 
     pub(super) fn is(&self, sign: char) -> bool {
-        self.token.kind == Kind::Sign(sign)
+        self.kind() == Some(Kind::Sign(sign))
     }
 
     /// Takes the sign, or says that it is missing.
@@ -338,19 +384,24 @@ impl<'t> Parser<'t> {
         }
     }
 
+    /// Records what is probably not meant.
+    pub(super) fn warn(&mut self, finding: Diagnostic) {
+        self.findings.push(finding);
+    }
+
     pub(super) fn give_up(&mut self, finding: Diagnostic) -> GivenUp {
         self.findings.push(finding);
         GivenUp
     }
 
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
-        let found = match self.token.kind {
-            Kind::End => "the end of the program".to_owned(),
-            _ => format!("`{}`", shorten(self.lexeme())),
+        let found = match self.kind() {
+            None => "the end of the program".to_owned(),
+            Some(_) => format!("`{}`", shorten(self.lexeme())),
         };
         // What is missing at the end of a line is missing there, not where the next one starts.
-        let between = self.text.get(self.end..self.token.span.start).unwrap_or("");
-        let (span, label) = if self.token.kind == Kind::End || between.contains('\n') {
+        let between = self.text.get(self.end..self.here().start).unwrap_or("");
+        let (span, label) = if self.kind().is_none() || between.contains('\n') {
             (self.before(self.end), "behind this")
         } else {
             (self.here(), "not expected here")
@@ -362,7 +413,7 @@ impl<'t> Parser<'t> {
     pub(super) fn unknown(&mut self, what: &str, known: &[&str]) -> GivenUp {
         let word = self.word();
         let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-        let help = match closest(word, known.iter().copied()) {
+        let help = match closest(word, known.iter().copied().filter(|name| *name != word)) {
             Some(name) => format!("did you mean `{name}`? All of them: {list}"),
             None => format!("write one of {list}"),
         };
@@ -372,11 +423,11 @@ impl<'t> Parser<'t> {
 
     /// A word that is not known, or something that is no word.
     pub(super) fn unknown_or_expected(&mut self, what: &str, known: &[&str]) -> GivenUp {
-        if self.token.kind == Kind::Word { self.unknown(what, known) } else { self.expected(&format!("a {what}")) }
+        if self.kind() == Some(Kind::Word) { self.unknown(what, known) } else { self.expected(&format!("a {what}")) }
     }
 
     fn unknown_statement(&mut self, expected: &str, known: &[&str]) -> GivenUp {
-        if self.token.kind == Kind::Word { self.unknown("statement", known) } else { self.expected(expected) }
+        if self.kind() == Some(Kind::Word) { self.unknown("statement", known) } else { self.expected(expected) }
     }
 
     /// Records that a statement, which has been read to its end, was there before.
@@ -407,12 +458,12 @@ impl<'t> Parser<'t> {
     fn recover(&mut self) {
         let mut depth = 0usize;
         loop {
-            match self.token.kind {
-                Kind::End => return,
-                Kind::Sign(';') if depth == 0 => return self.advance(),
-                Kind::Sign('{') => depth += 1,
-                Kind::Sign('}') if depth == 0 => return,
-                Kind::Sign('}') => {
+            match self.kind() {
+                None => return,
+                Some(Kind::Sign(';')) if depth == 0 => return self.advance(),
+                Some(Kind::Sign('{')) => depth += 1,
+                Some(Kind::Sign('}')) if depth == 0 => return,
+                Some(Kind::Sign('}')) => {
                     depth -= 1;
                     if depth == 0 {
                         return self.advance();

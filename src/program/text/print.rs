@@ -7,7 +7,7 @@ use crate::state::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, GeneralStage, MuxSelect, Portion, Register,
 };
 
-/// The program as text. What it gives reads back as the same state, legal or not.
+/// The program as text. What it gives reads back as the same state, legal or not, if there is a general stage.
 pub fn print(combiners: &Combiners) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.

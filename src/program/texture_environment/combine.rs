@@ -46,7 +46,7 @@ pub(super) fn unit(
         false => &[(&unit.rgb, false), (&unit.alpha, true)],
     };
     for (half, alpha) in halves {
-        legal(unit.mode, half, *alpha, findings);
+        legal(unit, half, *alpha, findings);
     }
     let crossbar = halves.iter().flat_map(|(half, _)| read(unit.mode, half)).filter_map(other);
     if unit.mode == Mode::Combine && crossbar.into_iter().any(|other| textures[other].is_none()) {
@@ -115,8 +115,20 @@ impl Combined {
 }
 
 /// Functions that a half cannot be.
-fn legal(mode: Mode, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) {
-    let function = half.function.value;
+fn legal(unit: &Unit, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) {
+    let (mode, function) = (unit.mode, half.function.value);
+    let fits = mode != Mode::Combine4 || matches!(function, Function::Add | Function::AddSigned);
+    if !fits && half.function.place.is_empty() {
+        let what = if alpha { "combine_alpha" } else { "combine_rgb" };
+        findings.push(finding(
+            "NB0353",
+            unit.place.clone(),
+            format!("a unit in mode Combine4 says its `{what}`"),
+            "this one does not",
+            format!("write `{what}: Add` or `AddSigned`; what the API starts with, Modulate, is none of Combine4's"),
+        ));
+        return;
+    }
     let mut wrong = |message: String, help: &str| {
         findings.push(finding("NB0353", half.function.place.clone(), message, "not here", help));
     };
@@ -125,7 +137,7 @@ fn legal(mode: Mode, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) {
             format!("the alpha of a unit cannot be {}", function.name()),
             "write `combine_rgb: Dot3RgbaArb` for a dot product in all four channels",
         );
-    } else if mode == Mode::Combine4 && !matches!(function, Function::Add | Function::AddSigned) {
+    } else if !fits {
         wrong(format!("Combine4 has no {}", function.name()), "write Add or AddSigned, or `mode: Combine`");
     }
     let reads = function.reads(mode);

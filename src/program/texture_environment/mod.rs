@@ -4,6 +4,7 @@
 
 mod combine;
 mod lower;
+mod text;
 
 use std::ops::Range;
 
@@ -11,6 +12,7 @@ use crate::program::At;
 use crate::state::{Scale, TextureFormat, named};
 
 pub use lower::{Context, lower};
+pub use text::parse;
 
 named! {
     /// TEXTURE_ENV_MODE.

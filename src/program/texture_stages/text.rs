@@ -1,9 +1,6 @@
 //! Texture stages as pasted text: calls of SetTextureStageState and SetRenderState, and lines of effect files.
-//!
-//! Calls may have anything before the name (`pDevice->`, `hr = `) and the C form's device as an extra first argument. Nothing is
-//! compiled: a value is a number, a name of the API, or several joined by `|`.
 
-mod token;
+mod draw_state;
 mod value;
 
 use std::ops::Range;
@@ -11,28 +8,60 @@ use std::ops::Range;
 use super::{CoordinateIndex, STAGES, TextureStages};
 use crate::diagnostic::Diagnostic;
 use crate::program::At;
+use crate::program::calls::{self, Pasted, Reader, Statement, Value, Vocabulary};
 use crate::program::finding::finding;
 use crate::spelling::closest;
-use token::{Token, TokenKind, tokens};
-use value::Value;
+use draw_state::{DrawStates, OTHER_STATES};
 
-/// Findings beyond this many are not gathered.
-const MOST_FINDINGS: usize = 32;
+/// What is read of Direct3D.
+static DIRECT3D: Vocabulary = Vocabulary {
+    calls: &["SetTextureStageState", "SetRenderState", "SetSamplerState"],
+    silent: &["SetTexture"],
+    states: &[
+        &["ColorOp", "ColorArg0", "ColorArg1", "ColorArg2", "AlphaOp", "AlphaArg0", "AlphaArg1", "AlphaArg2"],
+        &["BumpEnvMat00", "BumpEnvMat01", "BumpEnvMat10", "BumpEnvMat11", "BumpEnvLScale", "BumpEnvLOffset"],
+        &["TexCoordIndex", "TextureTransformFlags", "ResultArg", "Constant", "Texture", "Sampler"],
+        &["Address", "AddressU", "AddressV", "AddressW", "BorderColor", "MagFilter", "MinFilter", "MipFilter"],
+        &["MipMapLodBias", "MaxMipLevel", "MaxAnisotropy", "SpecularEnable", "TextureFactor"],
+        draw_state::NAMES,
+        OTHER_STATES,
+    ],
+    instead: &[
+        ("SetTransform", "the draw's `vertices: Matrix(...)` and `texture_matrices` have the matrices"),
+        ("MultiplyTransform", "the draw's `vertices: Matrix(...)` and `texture_matrices` have the matrices"),
+        ("SetViewport", "the draw's `vertices: Matrix(viewport: ...)` has it"),
+        ("SetVertexShader", "write a vertex program as the draw's `vertices: Program(text: ...)`"),
+        ("SetPixelShader", "write a pixel shader as the draw's `program: PixelShader(...)`"),
+        ("SetVertexShaderConstant", "the draw's `vertices: Program(constants: ...)` has them"),
+        ("SetPixelShaderConstant", "the draw's `program: PixelShader(constants: ...)` has them"),
+        ("SetRenderTarget", "the draw's `target` names it"),
+        ("Clear", "the target's `clear` has the colour, its depth buffer the depth"),
+        ("Primitive", "the draw's `vertices`, `indices` and `topology` say what is drawn"),
+        ("PrimitiveUP", "the draw's `vertices`, `indices` and `topology` say what is drawn"),
+        ("SetLight", "give the vertices the colours that they have once they are lit"),
+        ("SetMaterial", "give the vertices the colours that they have once they are lit"),
+    ],
+    example: "`SetTextureStageState(0, D3DTSS_COLOROP, D3DTOP_MODULATE);` or `ColorOp[0] = Modulate;`",
+    what: "a pixel program",
+};
 
 /// Reads the text over the API's initial state.
 ///
 /// # Errors
-/// Everything that is not a statement, or sets something that is not known.
-pub fn parse(text: &str) -> Result<TextureStages, Vec<Diagnostic>> {
-    let mut findings = Vec::new();
-    let tokens = tokens(text, &mut findings);
-    let mut parser = Parser { text, tokens, at: 0, findings, program: TextureStages::default() };
-    while parser.at < parser.tokens.len() && parser.findings.len() < MOST_FINDINGS {
-        if parser.statement().is_none() {
-            parser.recover();
+/// Everything that is not a statement, or sets something that the API does not have.
+pub fn parse(text: &str) -> Result<Pasted<TextureStages>, Vec<Diagnostic>> {
+    let reader = Reader::new(text, &DIRECT3D);
+    let mut parser = Parser { reader, program: TextureStages::default(), draw: DrawStates::default() };
+    while let Some(statement) = parser.reader.next() {
+        match statement {
+            Statement::Call { name, arguments } => parser.call(&name, &arguments),
+            Statement::State { name, index: Some(stage), value } => parser.stage_state(&stage, &name, &value, false),
+            Statement::State { name, index: None, value } => parser.render_state(&name, &value, false),
         }
     }
-    if parser.findings.is_empty() { Ok(parser.program) } else { Err(parser.findings) }
+    let Parser { mut reader, program, draw } = parser;
+    reader.asides.extend(draw.asides());
+    reader.finish(program)
 }
 
 /// The states of a stage that are read here, by their names without prefix, with their D3DTSS values.
@@ -74,204 +103,56 @@ const SAMPLER_STATES: &[(&str, u32, &str)] = &[
 const RENDER_STATES: &[(&str, u32)] = &[("SpecularEnable", 29), ("TextureFactor", 60)];
 
 struct Parser<'t> {
-    text: &'t str,
-    tokens: Vec<Token>,
-    at: usize,
-    findings: Vec<Diagnostic>,
+    reader: Reader<'t>,
     program: TextureStages,
+    draw: DrawStates,
 }
 
 impl<'t> Parser<'t> {
-    fn peek(&self) -> Option<TokenKind> {
-        self.tokens.get(self.at).map(|token| token.kind)
-    }
-
-    fn next(&mut self) -> Option<Token> {
-        let token = self.tokens.get(self.at).cloned();
-        self.at += usize::from(token.is_some());
-        token
-    }
-
-    /// The place of the token at hand; the end of the text after the last.
-    fn place(&self) -> Range<usize> {
-        match (self.tokens.get(self.at), self.tokens.last()) {
-            (Some(token), _) => token.place.clone(),
-            (None, Some(last)) => last.place.end..last.place.end,
-            (None, None) => 0..0,
-        }
-    }
-
     fn word(&self, place: &Range<usize>) -> &'t str {
-        self.text.get(place.clone()).unwrap_or("")
+        self.reader.word(place)
     }
 
-    fn expected(&mut self, what: &str) {
-        let place = self.place();
-        let found = match self.word(&place) {
-            "" => "the end of the text".to_owned(),
-            word => format!("`{word}`"),
-        };
-        self.findings.push(finding(
-            "NB0103",
-            place,
-            format!("expected {what}, found {found}"),
-            "not a statement from here",
-            "write `SetTextureStageState(0, D3DTSS_COLOROP, D3DTOP_MODULATE);` or `ColorOp[0] = Modulate;`",
-        ));
-    }
-
-    fn symbol(&mut self, symbol: char) -> Option<()> {
-        if self.peek() == Some(TokenKind::Symbol(symbol)) {
-            self.at += 1;
-            return Some(());
-        }
-        self.expected(&format!("`{symbol}`"));
-        None
-    }
-
-    /// Skips to the next statement: behind a semicolon, or at the start of a line.
-    fn recover(&mut self) {
-        while let Some(token) = self.next() {
-            if token.kind == TokenKind::Symbol(';') || self.tokens.get(self.at).is_some_and(|next| next.first) {
-                return;
-            }
-        }
-    }
-
-    /// One statement; `None` once the reason that it is none has been recorded.
-    fn statement(&mut self) -> Option<()> {
-        if self.peek() == Some(TokenKind::Symbol(';')) {
-            self.at += 1;
-            return Some(());
-        }
-        if self.peek() != Some(TokenKind::Word) {
-            self.expected("a call or an assignment");
-            return None;
-        }
-        let name = self.next()?;
-        match self.peek() {
-            Some(TokenKind::Symbol('(')) => self.call(&name.place)?,
-            Some(TokenKind::Symbol('[')) => {
-                self.at += 1;
-                let stage = self.value()?;
-                self.symbol(']')?;
-                self.symbol('=')?;
-                let value = self.value()?;
-                self.stage_state(&stage, &name.place, &value, false);
-            }
-            Some(TokenKind::Symbol('=')) if self.is_render_state(&name.place) => {
-                self.at += 1;
-                let value = self.value()?;
-                self.render_state(&name.place, &value, false);
-            }
-            // What stands before a call: a pointer, a result.
-            Some(TokenKind::Arrow | TokenKind::Symbol('=' | '.' | ':')) => {
-                while matches!(self.peek(), Some(TokenKind::Arrow | TokenKind::Symbol('=' | '.' | ':'))) {
-                    self.at += 1;
-                }
-                return self.statement_after_prefix();
-            }
-            _ => {
-                self.expected("`(`, `[` or `=`");
-                return None;
-            }
-        }
-        self.end()
-    }
-
-    fn statement_after_prefix(&mut self) -> Option<()> {
-        if self.peek() == Some(TokenKind::Word) {
-            // Each turn takes at least one token; the nesting is that of the prefixes, which are few: go on in the loop of `parse`.
-            return Some(());
-        }
-        self.expected("a call");
-        None
-    }
-
-    /// A semicolon, or nothing where the next statement begins a line.
-    fn end(&mut self) -> Option<()> {
-        match self.tokens.get(self.at) {
-            None => Some(()),
-            Some(token) if token.kind == TokenKind::Symbol(';') => {
-                self.at += 1;
-                Some(())
-            }
-            Some(token) if token.first => Some(()),
-            Some(_) => {
-                self.expected("`;`");
-                None
-            }
-        }
-    }
-
-    fn call(&mut self, name: &Range<usize>) -> Option<()> {
+    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) {
         let function = self.word(name);
-        self.symbol('(')?;
-        if function.ends_with("SetTexture") {
-            return self.skip_arguments();
-        }
-        let stage = function.ends_with("SetTextureStageState");
-        if !stage && !function.ends_with("SetRenderState") {
-            let known = ["SetTextureStageState", "SetRenderState"];
-            let help = match closest(function, known) {
-                Some(known) => format!("did you mean `{known}`?"),
-                None => "this reads SetTextureStageState and SetRenderState, and passes over SetTexture".to_owned(),
-            };
-            self.findings.push(finding(
-                "NB0204",
-                name.clone(),
-                format!("`{function}` is no call that is read here"),
-                "not known",
-                help,
-            ));
-            return None;
-        }
-        let mut arguments = Vec::new();
-        loop {
-            arguments.push(self.value()?);
-            if self.peek() != Some(TokenKind::Symbol(',')) {
-                break;
-            }
-            self.at += 1;
-        }
-        self.symbol(')')?;
-        let count = 2 + usize::from(stage);
+        let render = function.ends_with("SetRenderState");
+        let count = if render { 2 } else { 3 };
         // The C form has the device first.
         let arguments = match arguments.len().checked_sub(count) {
             Some(extra @ (0 | 1)) => &arguments[extra..],
             _ => {
                 let message = format!("{function} has {count} arguments, not {}", arguments.len());
-                let help = "write the stage, the state and its value";
-                self.findings.push(finding("NB0211", name.clone(), message, "this call", help));
-                return Some(());
+                let help =
+                    if render { "write the state and its value" } else { "write the stage, the state and its value" };
+                self.reader.findings.push(finding("NB0211", name.clone(), message, "this call", help));
+                return;
             }
         };
         match arguments {
+            [_, state, _] if function.ends_with("SetSamplerState") => self.sampler_state(name, state),
             [stage, state, value] => self.stage_state(stage, &state.place.clone(), value, true),
             [state, value] => self.render_state(&state.place.clone(), value, true),
             _ => {}
         }
-        Some(())
     }
 
-    fn skip_arguments(&mut self) -> Option<()> {
-        let mut depth = 1;
-        while depth > 0 {
-            match self.next() {
-                Some(token) if token.kind == TokenKind::Symbol('(') => depth += 1,
-                Some(token) if token.kind == TokenKind::Symbol(')') => depth -= 1,
-                Some(_) => {}
-                None => {
-                    self.expected("`)`");
-                    return None;
-                }
-            }
+    /// Direct3D 9 took these states out of the stages.
+    fn sampler_state(&mut self, name: &Range<usize>, state: &Value<'t>) {
+        let function = self.word(name);
+        let message = "`SetSamplerState` is Direct3D 9's: the interfaces of these chips set samplers by stage";
+        let help =
+            "the draw's `textures` have filters and address modes: `textures: [(texture: ..., min_filter: Linear)]`";
+        self.reader.pass(name.clone(), function, message, "passed over", help);
+        let bare = calls::without_prefix(self.word(&state.place), &["D3DSAMP_"]).1;
+        if let Some((name, _, field)) = SAMPLER_STATES.iter().find(|(name, ..)| name.eq_ignore_ascii_case(bare)) {
+            self.sampler(name, field, state.place.clone());
         }
-        Some(())
     }
 
-    fn is_render_state(&self, place: &Range<usize>) -> bool {
-        RENDER_STATES.iter().any(|(name, _)| name.eq_ignore_ascii_case(self.word(place)))
+    fn sampler(&mut self, name: &'static str, field: &str, place: Range<usize>) {
+        let message = format!("{name} is a state of the sampler");
+        let help = format!("write it in the draw: `textures: [(texture: ..., {field}: ...)]`");
+        self.reader.pass(place, name, &message, "no part of a pixel program", &help);
     }
 
     /// The state's name without its prefix, in its own spelling: by name, or by its value.
@@ -283,8 +164,8 @@ impl<'t> Parser<'t> {
         call: bool,
     ) -> Option<&'static str> {
         let word = self.word(place);
-        let value = value::integer(word);
-        let (prefix, bare) = value::without_prefix(word, prefixes);
+        let value = calls::integer(word);
+        let (prefix, bare) = calls::without_prefix(word, prefixes);
         let found = known.iter().find(|(name, number)| name.eq_ignore_ascii_case(bare) || value == Some(*number));
         if let Some((name, _)) = found
             && (value.is_some() || call != prefix.is_empty())
@@ -303,33 +184,35 @@ impl<'t> Parser<'t> {
             }
         };
         let message = format!("there is no state `{word}` of a pixel program");
-        self.findings.push(finding("NB0204", place.clone(), message, "not known", help));
+        self.reader.findings.push(finding("NB0204", place.clone(), message, "not known", help));
         None
     }
 
     fn stage_state(&mut self, stage: &Value<'t>, state: &Range<usize>, value: &Value<'t>, call: bool) {
         let prefixes: &[&str] = if call { &["D3DTSS_"] } else { &[] };
-        let bare = value::without_prefix(self.word(state), prefixes).1;
-        let number = value::integer(bare);
+        let bare = calls::without_prefix(self.word(state), prefixes).1;
+        let number = calls::integer(bare);
         let sampler = SAMPLER_STATES.iter().find(|(name, n, _)| name.eq_ignore_ascii_case(bare) || number == Some(*n));
         if let Some((name, _, field)) = sampler {
-            let message = format!("{name} is no part of the pixel program");
-            let help = format!("write it in the draw: `textures: [(texture: ..., {field}: ...)]`");
-            self.findings.push(finding("NB0354", state.clone(), message, "a state of the sampler", help));
+            self.sampler(name, field, state.clone());
+            return;
+        }
+        if !call && ["Texture", "Sampler"].iter().any(|name| name.eq_ignore_ascii_case(bare)) {
+            // The draw's `textures` say what is bound, as for SetTexture.
             return;
         }
         let Some(name) = self.state(state, prefixes, STATES, call) else { return };
-        let Some(index) = value::number(stage, &mut self.findings) else { return };
+        let Some(index) = value::number(stage, &mut self.reader.findings) else { return };
         let Some(target) = self.program.stage_mut(index as usize) else {
             let message = format!("there is no texture stage {index}");
             let help = format!("write 0 to {}", STAGES - 1);
-            self.findings.push(finding("NB0206", stage.place.clone(), message, "out of range", help));
+            self.reader.findings.push(finding("NB0206", stage.place.clone(), message, "out of range", help));
             return;
         };
         if target.place.is_empty() {
             target.place = state.clone();
         }
-        let findings = &mut self.findings;
+        let findings = &mut self.reader.findings;
         let place = value.place.clone();
         let at = |argument| At { value: argument, place: place.clone() };
         match name {
@@ -385,14 +268,28 @@ impl<'t> Parser<'t> {
 
     fn render_state(&mut self, state: &Range<usize>, value: &Value<'t>, call: bool) {
         let prefixes: &[&str] = if call { &["D3DRS_", "D3DRENDERSTATE_"] } else { &[] };
+        let word = self.word(state);
+        let (prefix, bare) = calls::without_prefix(word, prefixes);
+        let number = calls::integer(word);
+        if call != prefix.is_empty() || number.is_some() {
+            if self.draw.take(bare, number, state, value) {
+                return;
+            }
+            if let Some(other) = OTHER_STATES.iter().find(|name| name.eq_ignore_ascii_case(bare)) {
+                let message = format!("{} is passed over", other.to_uppercase());
+                let help = draw_state::instead(other);
+                self.reader.pass(state.clone(), other, &message, "no part of a pixel program", help);
+                return;
+            }
+        }
         match self.state(state, prefixes, RENDER_STATES, call) {
             Some("SpecularEnable") => {
-                if let Some(enable) = value::flag(value, &mut self.findings) {
+                if let Some(enable) = value::flag(value, &mut self.reader.findings) {
                     self.program.specular_enable = enable;
                 }
             }
             Some(_) => {
-                if let Some(color) = value::color(value, &mut self.findings) {
+                if let Some(color) = value::color(value, &mut self.reader.findings) {
                     self.program.texture_factor = color;
                 }
             }

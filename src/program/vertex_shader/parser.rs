@@ -6,7 +6,7 @@ use super::check::natural;
 use super::scanner::{Scanner, uncomment};
 use super::{InstructionPlaces, Written, operand};
 use crate::diagnostic::{Diagnostic, shorten};
-use crate::program::finding::finding;
+use crate::program::finding::{finding, foreign, header};
 use crate::spelling::closest;
 use crate::vertex::shader::{Instruction, Opcode, SourceRegister, VertexShader};
 
@@ -47,6 +47,10 @@ pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
     let mut parser = Parser { text: &uncommented.text, findings, written, version: None };
     for comment in &uncommented.behind_semicolons {
         parser.hidden(text, comment);
+    }
+    if let Some(place) = header(text) {
+        parser.findings.push(foreign(text, place, "NB0108", "a vertex program begins with `vs.1.1`"));
+        return (parser.written, parser.findings);
     }
     let mut start = 0;
     for line in uncommented.text.split_inclusive('\n') {

@@ -89,7 +89,14 @@ fn of_four_characters(text: [u8; 4]) -> Result<TextureFormat, String> {
         b"DXT2" | b"DXT3" => Ok(TextureFormat::Dxt3),
         b"DXT4" | b"DXT5" => Ok(TextureFormat::Dxt5),
         _ if text.iter().all(u8::is_ascii_graphic) => Err(format!("{} texels", text.escape_ascii())),
-        _ => Err(format!("texels of Direct3D format {}", u32::from_le_bytes(text))),
+        _ => {
+            let number = u32::from_le_bytes(text);
+            let depths = DEPTHS.iter().find(|(known, _)| *known == number);
+            Err(match depths {
+                Some((_, name)) => format!("depths ({name})"),
+                None => format!("texels of Direct3D format {number}"),
+            })
+        }
     }
 }
 
@@ -116,11 +123,18 @@ pub(super) fn of_number(number: u32) -> Result<TextureFormat, String> {
     })
 }
 
+/// Direct3D's numbers of depth formats, which a texture unit compares with: shadow maps.
+const DEPTHS: [(u32, &str); 7] =
+    [(70, "D16_LOCKABLE"), (71, "D32"), (73, "D15S1"), (75, "D24S8"), (77, "D24X8"), (79, "D24X4S4"), (80, "D16")];
+
 /// Names of numbers that are often met.
-const REFUSED: [(u32, &str); 12] = [
+const REFUSED: [(u32, &str); 15] = [
     (2, "R32G32B32A32_FLOAT"),
     (10, "R16G16B16A16_FLOAT"),
     (29, "R8G8B8A8_UNORM_SRGB"),
+    (40, "D32_FLOAT"),
+    (45, "D24_UNORM_S8_UINT"),
+    (55, "D16_UNORM"),
     (72, "BC1_UNORM_SRGB"),
     (75, "BC2_UNORM_SRGB"),
     (78, "BC3_UNORM_SRGB"),

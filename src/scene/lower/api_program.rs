@@ -18,7 +18,7 @@ pub(super) enum ApiProgram {
     /// Direct3D.
     Stages(TextureStages, Option<ProgramText>),
     /// OpenGL.
-    Environment(TextureEnvironment),
+    Environment(TextureEnvironment, Option<ProgramText>),
     /// Direct3D, version 1.1 of pixel shaders.
     Shader(Box<ShaderProgram>),
 }
@@ -33,6 +33,8 @@ pub(super) struct Around {
     pub(super) generators: bool,
     /// How the coordinate sets are made, if not all are as they were given.
     pub(super) sets: Option<[CoordinateSet; 4]>,
+    /// Sets that are written at the end: the set s, t and r come from, q being 1.
+    pub(super) without_q: [Option<usize>; 4],
 }
 
 /// What it becomes in a draw.
@@ -69,20 +71,18 @@ impl ApiProgram {
                     (lowered.combiners, lowered.origins)
                 });
                 let lowered = lowered.and_then(|lowered| if findings.is_empty() { Ok(lowered) } else { Err(findings) });
-                lowered.map_err(|findings| match text {
-                    Some(text) => findings.into_iter().map(|finding| text.place(finding)).collect(),
-                    None => findings,
-                })
+                lowered.map_err(|findings| placed(text, findings))
             }
             ApiProgram::Shader(program) => program.lower(reader, units, textures, &mut shader, around, signed),
-            ApiProgram::Environment(program) => {
+            ApiProgram::Environment(program, text) => {
                 let format = |unit: TextureUnit| textures.list.get(unit.texture).map(|texture| texture.format);
                 let formats = std::array::from_fn(|index| match units.shader[index].operation {
                     ShaderOperation::None => None,
                     _ => Some(units.bound[index].and_then(format).map_or(BaseFormat::Rgba, BaseFormat::of)),
                 });
                 let context = environment::Context { profile, textures: formats, signed, fog: around.fog };
-                environment::lower(program, &context).map(|lowered| (lowered.combiners, lowered.origins))
+                let lowered = environment::lower(program, &context).map_err(|findings| placed(text, findings));
+                lowered.map(|lowered| (lowered.combiners, lowered.origins))
             }
         };
         match lowered {
@@ -97,6 +97,14 @@ impl ApiProgram {
                 Lowered { combiners: Combiners::default(), origins: Vec::new(), shader }
             }
         }
+    }
+}
+
+/// Findings about a text, which have their places in it, as findings about the scene or the file.
+fn placed(text: &Option<ProgramText>, findings: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    match text {
+        Some(text) => findings.into_iter().map(|finding| text.place(finding)).collect(),
+        None => findings,
     }
 }
 

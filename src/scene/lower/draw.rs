@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::api_program::Around;
 use super::geometry::{geometry, vertex_side};
 use super::names::Names;
-use super::program::Program;
+use super::program::{Form, Program};
 use super::target::Targets;
 use super::texture::Textures;
 use super::*;
@@ -124,12 +124,17 @@ fn draw<'a>(
         shader: fields.texture_shader.is_some(),
         generators: fields.texgen.is_some(),
         sets,
+        without_q: [None; 4],
     };
     let mut program_origin = Vec::new();
     let mut texture_shader = units.shader;
-    let (combiners, reads) = match program.flatten().as_deref() {
-        Some(Program::Combiners(program)) => (program.combiners.clone(), program.reads.clone()),
-        Some(Program::Api(program)) => {
+    let program = program.flatten();
+    if let Some(program) = program.as_deref() {
+        asides(reader, fields, program);
+    }
+    let (combiners, reads) = match program.as_deref().map(|program| &program.form) {
+        Some(Form::Combiners(program)) => (program.combiners.clone(), program.reads.clone()),
+        Some(Form::Api(program)) => {
             let lowered = program.lower(reader, &units, textures, &mut around);
             (program_origin, texture_shader) = (lowered.origins, lowered.shader);
             (lowered.combiners, [None, None, None, None])
@@ -140,6 +145,9 @@ fn draw<'a>(
         && !vertex_side(reader, made, &around.sets, &fog, viewer, &header.place)
     {
         geometry = None;
+    }
+    if let Some(made) = &mut geometry {
+        made.without_q(&around.without_q);
     }
     let mut draw = Draw {
         name: header.name,
@@ -192,6 +200,27 @@ fn draw<'a>(
     budget.take(reader, &draw, &header.place)?;
     let spans = DrawSpans { draw: header.place, vertices: geometry.spans };
     Some(Drawn { draw, spans, mesh: geometry.mesh, truth })
+}
+
+/// Warns of states in the text of a program that the draw does not say: each once, though several draws may share the program.
+fn asides(reader: &mut Reader<'_>, fields: &source::Draw<'_>, program: &Program) {
+    for (finding, field) in &program.asides {
+        let said = match *field {
+            "blend" => fields.blend.is_some(),
+            "alpha_test" => fields.alpha_test.is_some(),
+            "depth_test" => fields.depth_test.is_some(),
+            "fog" => fields.fog.is_some(),
+            "cull" => fields.cull.is_some(),
+            "shade_model" => fields.shade_model.is_some(),
+            "color_mask" => fields.color_mask.is_some(),
+            "scissor" => fields.scissor.is_some(),
+            "texture_shader" => fields.texture_shader.is_some(),
+            _ => false,
+        };
+        if !said && !reader.diagnostics.contains(finding) {
+            reader.push(finding.clone());
+        }
+    }
 }
 
 impl Budget {

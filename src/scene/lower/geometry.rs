@@ -63,6 +63,25 @@ impl Objects {
     }
 }
 
+impl Geometry {
+    /// Writes coordinate sets anew: s, t and r of the set that is named, q = 1.
+    pub(super) fn without_q(&mut self, sets: &[Option<usize>; 4]) {
+        if sets.iter().all(Option::is_none) {
+            return;
+        }
+        let made = self.vertices.iter().map(|mut vertex| {
+            let given = vertex.texture_coordinates;
+            for (set, from) in vertex.texture_coordinates.iter_mut().zip(sets) {
+                if let Some([s, t, r, _]) = from.and_then(|from| given.get(from)) {
+                    *set = [*s, *t, *r, 1.0];
+                }
+            }
+            vertex
+        });
+        self.vertices = made.collect();
+    }
+}
+
 /// Generated texture coordinates, texture matrices and fog, into the vertices. False once a finding has been recorded.
 pub(super) fn vertex_side(
     reader: &mut Reader<'_>,

@@ -6,6 +6,7 @@ use super::program_text::ProgramText;
 use super::texture::Textures;
 use super::unit::Units;
 use super::*;
+use crate::program::c_source::Style;
 use crate::program::pixel_shader::{self, Bump, CONSTANTS, Context, PixelShader, UnitUse};
 use crate::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS};
 
@@ -53,6 +54,7 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
             }
         }
     };
+    let text = text.expanded(reader, Style::Assembler)?;
     let program = match pixel_shader::parse(&text.text) {
         Ok(parsed) => {
             parsed.warnings.into_iter().for_each(|warning| reader.push(text.place(warning)));
@@ -119,7 +121,7 @@ impl ShaderProgram {
         units: &Units,
         textures: &Textures,
         shader: &mut [ShaderStage; TEXTURE_UNITS],
-        around: &Around,
+        around: &mut Around,
         signed: [bool; TEXTURE_UNITS],
     ) -> Result<(Combiners, Vec<StageOrigin>), Vec<Diagnostic>> {
         let constants = self.constants.map(Option::unwrap_or_default);
@@ -146,7 +148,27 @@ impl ShaderProgram {
             shader[index].operation = using.operation;
             (shader[index].previous, shader[index].mapping) = (using.previous, using.mapping);
         }
+        without_q(shader, &mut around.without_q);
         if findings.is_empty() { Ok((lowered.combiners, lowered.origins)) } else { Err(findings) }
+    }
+}
+
+/// `texkill` looks at s, t and r; the chip tests q as well (TSH-10), so that it reads a set whose q is 1: its own, or one that no other unit
+/// reads.
+fn without_q(shader: &mut [ShaderStage; TEXTURE_UNITS], sets: &mut [Option<usize>; 4]) {
+    for index in 0..TEXTURE_UNITS {
+        if !matches!(shader[index].operation, ShaderOperation::CullFragment { .. }) {
+            continue;
+        }
+        let from = shader[index].coordinate_set;
+        let read = |set: usize| {
+            let mut others = shader.iter().enumerate().filter(|(other, _)| *other != index);
+            others.any(|(_, stage)| stage.operation != ShaderOperation::None && stage.coordinate_set == set)
+        };
+        if let Some(to) = std::iter::once(from).chain(0..4).find(|set| !read(*set)) {
+            sets[to] = Some(from);
+            shader[index].coordinate_set = to;
+        }
     }
 }
 

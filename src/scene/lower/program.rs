@@ -4,13 +4,25 @@ use super::api_program::ApiProgram;
 use super::names::Names;
 use super::program_text::ProgramText;
 use super::*;
-use crate::program::Places;
+use crate::program::c_source::Style;
+use crate::program::combiner_calls;
 use crate::program::legality::{Notation, check};
 use crate::program::text::{self, words::Words};
+use crate::program::{Aside, Pasted, Places};
 use crate::state::Combiners;
 
 /// A program as a draw takes it.
-pub(super) enum Program {
+pub(super) struct Program {
+    pub(super) form: Form,
+    /// What its text says of the draw besides.
+    pub(super) asides: Asides,
+}
+
+/// Warnings about states in a pasted text, each with the field of the draw that says the same.
+pub(super) type Asides = Vec<(Diagnostic, &'static str)>;
+
+/// What a program is written in.
+pub(super) enum Form {
     /// Written for the combiners.
     Combiners(ProgramData),
     /// Written for an API: what it becomes depends on the draw.
@@ -24,8 +36,15 @@ pub(super) struct ProgramData {
     pub(super) reads: [Option<Range<usize>>; 4],
 }
 
-const KINDS: &[&str] =
-    &["Combiners", "TextureStages", "TextureEnvironment", "CombinerText", "PixelShader", "RegisterWords"];
+const KINDS: &[&str] = &[
+    "Combiners",
+    "TextureStages",
+    "TextureEnvironment",
+    "CombinerText",
+    "PixelShader",
+    "RegisterWords",
+    "CombinerCalls",
+];
 
 /// Reads a pixel program.
 pub(super) fn program<'a>(
@@ -35,30 +54,71 @@ pub(super) fn program<'a>(
 ) -> Option<Program> {
     let (kind, rest) = reader.variant(raw, "pixel program", KINDS)?;
     let errors = reader.errors;
+    let mut asides = Vec::new();
+    let api = |form: Option<ApiProgram>, asides| form.map(|form| Program { form: Form::Api(form), asides });
     let data = match kind {
         0 => {
             let (combiners, places) = combiner::combiners(reader, names, rest)?;
             judge(reader, combiners, &places, &combiner::Fields, None)
         }
-        1 => return texture_stages::texture_stages(reader, names, rest).map(Program::Api),
-        2 => return texture_environment::texture_environment(reader, names, rest).map(Program::Api),
+        1 => {
+            let form = texture_stages::texture_stages(reader, names, rest, &mut asides);
+            return api(form, asides);
+        }
+        2 => {
+            let form = texture_environment::texture_environment(reader, names, rest, &mut asides);
+            return api(form, asides);
+        }
         3 => {
-            let program = ProgramText::read(reader, names, rest)?;
+            let program = ProgramText::read(reader, names, rest)?.expanded(reader, Style::Combiners)?;
             match text::read(&program.text) {
-                Ok((combiners, places)) => judge(reader, combiners, &places, &Words, Some(&program)),
+                Ok(text::Program { combiners, places, warnings }) => {
+                    warnings.into_iter().for_each(|finding| reader.push(program.place(finding)));
+                    judge(reader, combiners, &places, &Words, Some(&program))
+                }
                 Err(findings) => {
                     findings.into_iter().for_each(|finding| reader.push(program.place(finding)));
                     return None;
                 }
             }
         }
-        4 => return pixel_shader::pixel_shader(reader, names, rest).map(Program::Api),
+        4 => return api(pixel_shader::pixel_shader(reader, names, rest), asides),
+        6 => {
+            let text = ProgramText::read(reader, names, rest)?.expanded(reader, Style::Calls)?;
+            let combiner_calls::Program { combiners, places } =
+                pasted(reader, &text, combiner_calls::parse(&text.text), &mut asides)?;
+            judge(reader, combiners, &places, &combiner_calls::Words, Some(&text))
+        }
         _ => {
             let (combiners, places) = register_words::register_words(reader, rest)?;
             judge(reader, combiners, &places, &Words, None)
         }
     };
-    (reader.errors == errors).then_some(Program::Combiners(data))
+    (reader.errors == errors).then_some(Program { form: Form::Combiners(data), asides })
+}
+
+/// The program of a pasted text, its warnings told or kept for the draws. `None` once the reasons that it is none have been recorded.
+pub(super) fn pasted<P>(
+    reader: &mut Reader<'_>,
+    text: &ProgramText,
+    pasted: Result<Pasted<P>, Vec<Diagnostic>>,
+    asides: &mut Asides,
+) -> Option<P> {
+    match pasted {
+        Ok(Pasted { program, asides: found }) => {
+            for Aside { finding, field } in found {
+                match field {
+                    Some(field) => asides.push((text.place(finding), field)),
+                    None => reader.push(text.place(finding)),
+                }
+            }
+            Some(program)
+        }
+        Err(findings) => {
+            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
+            None
+        }
+    }
 }
 
 /// Holds a program against the chip. `inside`: the text that the places are of, if it is not the scene.
@@ -81,4 +141,24 @@ fn judge(
         (read, _) => read,
     });
     ProgramData { combiners, reads }
+}
+
+/// Refuses a program of an API that is given by fields, as a text and in a file at once. `what`: how it and its fields are called.
+pub(super) fn once<'a>(
+    reader: &mut Reader<'a>,
+    fields: Option<Range<usize>>,
+    text: &Option<Raw<'a, String>>,
+    file: &Option<Raw<'a, String>>,
+    (what, name): (&str, &str),
+) -> Option<()> {
+    let given = [fields, text.as_ref().map(|raw| reader.span(raw)), file.as_ref().map(|raw| reader.span(raw))];
+    let mut given = given.into_iter().flatten();
+    let (Some(first), Some(second)) = (given.next(), given.next()) else { return Some(()) };
+    reader.push(
+        Diagnostic::error("NB0356", second, format!("{what} given twice"))
+            .label("again here")
+            .related(first, "first here")
+            .help(format!("keep one of `{name}`, `text` and `file`")),
+    );
+    None
 }

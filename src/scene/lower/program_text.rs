@@ -6,6 +6,7 @@ use super::names::Names;
 use super::*;
 use crate::diagnostic::{self, Source};
 use crate::limits::FileLimit;
+use crate::program::c_source::{Expanded, Style, expand};
 use crate::read::{self, Kind, ReadError};
 use crate::scene::path;
 use crate::scene::raw::Tuple;
@@ -14,6 +15,8 @@ use crate::scene::raw::Tuple;
 pub(super) struct ProgramText {
     pub(super) text: String,
     origin: Origin,
+    /// Where the bytes of a text that was expanded stood before.
+    before: Option<Vec<usize>>,
 }
 
 enum Origin {
@@ -63,11 +66,34 @@ impl ProgramText {
         Some(self)
     }
 
+    /// The text as the reader of a language takes it: out of C. `None` once the reason that it cannot be has been recorded.
+    pub(super) fn expanded(self, reader: &mut Reader<'_>, style: Style) -> Option<Self> {
+        let most = usize::try_from(reader.limits.program_bytes).unwrap_or(usize::MAX);
+        match expand(&self.text, style, most) {
+            Ok(None) => Some(self),
+            Ok(Some(Expanded { text, places })) => Some(ProgramText { text, before: Some(places), ..self }),
+            Err(finding) => {
+                reader.push(self.place(finding));
+                None
+            }
+        }
+    }
+
+    /// Where a part stood before the text was expanded.
+    fn before(&self, part: Range<usize>) -> Range<usize> {
+        let Some(places) = &self.before else { return part };
+        let place = |at: usize| places.get(at).or(places.last()).copied().unwrap_or_default();
+        let start = place(part.start);
+        // Parts of what a name stands for are where the name is.
+        start..place(part.end).max(start + usize::from(!part.is_empty()))
+    }
+
     /// The place in the scene of a part of the text; of a file, where the scene names it.
     pub(super) fn span(&self, part: Range<usize>) -> Range<usize> {
+        let part = self.before(part);
         match &self.origin {
             Origin::Scene(places) => {
-                let place = |at: usize| places.get(at.min(self.text.len())).copied().unwrap_or_default();
+                let place = |at: usize| places.get(at).or(places.last()).copied().unwrap_or_default();
                 place(part.start)..place(part.end)
             }
             Origin::Somewhere(span) => span.clone(),
@@ -78,6 +104,10 @@ impl ProgramText {
     /// A finding about the text as one about the scene or the file.
     pub(super) fn place(&self, mut finding: Diagnostic) -> Diagnostic {
         if let Origin::File(file) = &self.origin {
+            finding.span = finding.span.map(|span| self.before(span));
+            for (span, _) in &mut finding.related {
+                *span = self.before(span.clone());
+            }
             return finding.inside(file);
         }
         finding.span = finding.span.map(|span| self.span(span));
@@ -115,7 +145,7 @@ fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Program
         Some(places) => Origin::Scene(places.into_iter().map(|place| span.start + place).collect()),
         None => Origin::Somewhere(span),
     };
-    Some(ProgramText { text, origin })
+    Some(ProgramText { text, origin, before: None })
 }
 
 /// Where each byte of a text stands in its literal, and where its end does; `None` if the literal is of an unknown kind.
@@ -178,7 +208,7 @@ fn named<'a>(
     most: FileLimit,
 ) -> Option<ProgramText> {
     let file = text_file(reader, &names.folder, raw, most)?;
-    Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file) })
+    Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file), before: None })
 }
 
 /// A text in a file of the scene's folder, within a limit. `None` once the reason that it cannot be read has been recorded.

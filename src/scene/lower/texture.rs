@@ -211,8 +211,51 @@ fn format<'a>(
         );
         return None;
     }
+    if let (name, "") = raw.split()
+        && DEPTH_FORMATS.iter().any(|known| known.eq_ignore_ascii_case(name))
+    {
+        reader.push(
+            Diagnostic::error(
+                "NB0402",
+                reader.span(raw),
+                format!("{name} holds depths, which a texture unit compares"),
+            )
+            .label("shadow maps are not modelled")
+            .rule("TEX-1")
+            .help("write Y16 or A8R8G8B8 for the bits as they are; the comparison with r has no form here"),
+        );
+        return None;
+    }
     reader.name(raw)
 }
+
+/// Names of depth formats in the chip's registers and in both APIs.
+const DEPTH_FORMATS: [&str; 24] = [
+    "Z16",
+    "Z24S8",
+    "Z24X8",
+    "D15S1",
+    "D16",
+    "D16_LOCKABLE",
+    "D24S8",
+    "D24X8",
+    "D24X4S4",
+    "D32",
+    "F16",
+    "F24S8",
+    "LIN_D16",
+    "LIN_D24S8",
+    "LIN_F16",
+    "LIN_F24S8",
+    "DEPTH_COMPONENT",
+    "DEPTH_COMPONENT16",
+    "DEPTH_COMPONENT24",
+    "DEPTH_COMPONENT32",
+    "DEPTH_X8_Y24_FIXED",
+    "DEPTH_X8_Y24_FLOAT",
+    "DEPTH_Y16_FIXED",
+    "DEPTH_Y16_FLOAT",
+];
 
 /// What the texture is sampled as: as written, or a cube map where there are six faces.
 fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &Given) -> Option<TextureKind> {

@@ -2,23 +2,42 @@
 
 use super::api_program::{ApiProgram, name_at};
 use super::names::Names;
+use super::program::{Asides, once, pasted};
+use super::program_text::ProgramText;
 use super::*;
 use crate::program::At;
-use crate::program::texture_environment::{Half, Mode, TextureEnvironment, Unit};
+use crate::program::c_source::Style;
+use crate::program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
 use crate::scene::reader::Name;
 use crate::scene::source::List;
 use crate::state::{Named, Scale};
 
 /// Reads the fields in the parentheses.
-pub(super) fn texture_environment<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
+pub(super) fn texture_environment<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    text: &'a str,
+    asides: &mut Asides,
+) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureEnvironment<'a>>::new(text))?;
-    let mut program = TextureEnvironment { units: Vec::new(), color_sum: reader.or(&fields.color_sum, false) };
+    let units = fields.units.as_ref().map(|raw| reader.span(raw));
+    once(reader, units, &fields.text, &fields.file, ("a texture environment is", "units"))?;
+    let written = match (&fields.text, &fields.file) {
+        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?.expanded(reader, Style::Calls)?),
+        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?.expanded(reader, Style::Calls)?),
+        (None, None) => None,
+    };
+    let mut program = match &written {
+        None => TextureEnvironment::default(),
+        Some(written) => pasted(reader, written, texture_environment::parse(&written.text), asides)?,
+    };
+    program.color_sum = reader.or(&fields.color_sum, program.color_sum);
     for raw in fields.units.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default() {
         let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
         let Some(fields) = reader.read(&raw) else { continue };
         program.units.push(unit(reader, names, &fields, place));
     }
-    Some(ApiProgram::Environment(program))
+    Some(ApiProgram::Environment(program, written))
 }
 
 fn unit<'a>(

@@ -2,9 +2,11 @@
 
 use super::api_program::{ApiProgram, name_at};
 use super::names::Names;
+use super::program::{Asides, once, pasted};
 use super::program_text::ProgramText;
 use super::*;
 use crate::program::At;
+use crate::program::c_source::Style;
 use crate::program::texture_stages::{
     self, ArgumentSource, CoordinateIndex, Generation, Half, PROJECTED, STAGES, StageArgument, TextureStage,
     TextureStages,
@@ -13,23 +15,23 @@ use crate::scene::raw::Tuple;
 use crate::state::Named;
 
 /// Reads the fields in the parentheses.
-pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
+pub(super) fn texture_stages<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    text: &'a str,
+    asides: &mut Asides,
+) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
-    several(reader, &fields)?;
+    let stages = fields.stages.as_ref().map(|raw| reader.span(raw));
+    once(reader, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
     let written = match (&fields.text, &fields.file) {
-        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?),
-        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?),
+        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?.expanded(reader, Style::Calls)?),
+        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?.expanded(reader, Style::Calls)?),
         (None, None) => None,
     };
     let mut program = match &written {
         None => TextureStages::default(),
-        Some(written) => match texture_stages::parse(&written.text) {
-            Ok(program) => program,
-            Err(findings) => {
-                findings.into_iter().for_each(|finding| reader.push(written.place(finding)));
-                return None;
-            }
-        },
+        Some(written) => pasted(reader, written, texture_stages::parse(&written.text), asides)?,
     };
     if let Some(raw) = &fields.stages {
         let list = reader.read(raw)?;
@@ -52,24 +54,6 @@ pub(super) fn texture_stages<'a>(reader: &mut Reader<'a>, names: &Names<'a>, tex
     program.texture_factor = color::constant_or(reader, names, &fields.texture_factor, program.texture_factor);
     program.specular_enable = reader.or(&fields.specular_enable, program.specular_enable);
     Some(ApiProgram::Stages(program, written))
-}
-
-/// Stages come from one place.
-fn several<'a>(reader: &mut Reader<'a>, fields: &source::TextureStages<'a>) -> Option<()> {
-    let given = [
-        fields.stages.as_ref().map(|raw| reader.span(raw)),
-        fields.text.as_ref().map(|raw| reader.span(raw)),
-        fields.file.as_ref().map(|raw| reader.span(raw)),
-    ];
-    let mut given = given.into_iter().flatten();
-    let (Some(first), Some(second)) = (given.next(), given.next()) else { return Some(()) };
-    reader.push(
-        Diagnostic::error("NB0356", second, "texture stages are given twice")
-            .label("again here")
-            .related(first, "first here")
-            .help("keep one of `stages`, `text` and `file`"),
-    );
-    None
 }
 
 fn stage<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::TextureStage<'a>, stage: &mut TextureStage) {

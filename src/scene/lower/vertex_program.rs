@@ -10,6 +10,7 @@ use super::program_text::ProgramText;
 use super::target::Targets;
 use super::vertex::VertexData;
 use super::*;
+use crate::program::c_source::Style;
 use crate::program::vertex_shader::{self, Written, print};
 use crate::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
 use crate::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
@@ -102,6 +103,7 @@ fn program<'a>(
             return None;
         }
     };
+    let text = text.expanded(reader, Style::Assembler)?;
     match vertex_shader::read(&text.text) {
         Ok(written) => {
             for warning in written.warnings.clone() {

@@ -1,174 +1,12 @@
-//! Values of pasted text: numbers and names of the API.
+//! Values of texture stage states and render states.
 
-use std::ops::Range;
-
-use super::Parser;
-use super::token::TokenKind;
 use crate::diagnostic::Diagnostic;
-use crate::program::finding::finding;
+use crate::number::convert::constant;
+use crate::program::calls::{self, Part, PartKind, Value, one, out_of_range, without_prefix, wrong_kind};
 use crate::program::texture_stages::{ArgumentSource, Operation, ResultArgument, StageArgument};
-use crate::spelling::closest;
 use crate::state::Named;
 
-/// Brackets and casts around one value.
-const MOST_BRACKETS: usize = 8;
-
-/// One part of a value.
-#[derive(Clone, Debug)]
-pub(super) struct Part<'t> {
-    text: &'t str,
-    place: Range<usize>,
-    kind: PartKind<'t>,
-}
-
-#[derive(Clone, Debug)]
-enum PartKind<'t> {
-    Name,
-    Integer(u32),
-    Float(f32),
-    /// `D3DCOLOR_ARGB(...)`.
-    Call(Vec<Value<'t>>),
-}
-
-/// Parts joined by `|`.
-#[derive(Clone, Debug)]
-pub(super) struct Value<'t> {
-    parts: Vec<Part<'t>>,
-    pub(super) place: Range<usize>,
-}
-
-impl<'t> Parser<'t> {
-    /// Reads a value; `None` once the reason that it is none has been recorded.
-    pub(super) fn value(&mut self) -> Option<Value<'t>> {
-        self.nested_value(0)
-    }
-
-    fn nested_value(&mut self, depth: usize) -> Option<Value<'t>> {
-        let start = self.place().start;
-        let mut parts = Vec::new();
-        loop {
-            self.part(&mut parts, depth)?;
-            if !matches!(self.peek(), Some(TokenKind::Symbol('|' | '+'))) {
-                break;
-            }
-            self.at += 1;
-        }
-        let end = self.tokens[..self.at].last().map_or(start, |token| token.place.end);
-        Some(Value { parts, place: start..end })
-    }
-
-    fn part(&mut self, parts: &mut Vec<Part<'t>>, depth: usize) -> Option<()> {
-        if depth > MOST_BRACKETS {
-            self.expected("a value in fewer brackets");
-            return None;
-        }
-        let place = self.place();
-        let text = self.word(&place);
-        match self.peek() {
-            Some(TokenKind::Number) => {
-                self.at += 1;
-                parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, false)? });
-            }
-            Some(TokenKind::Symbol('-')) => {
-                self.at += 1;
-                let number = self.place();
-                let text = self.word(&number);
-                if self.peek() != Some(TokenKind::Number) {
-                    self.expected("a number");
-                    return None;
-                }
-                self.at += 1;
-                let place = place.start..number.end;
-                parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, true)? });
-            }
-            Some(TokenKind::Symbol('(')) => {
-                self.at += 1;
-                let inner = self.nested_value(depth + 1)?;
-                self.symbol(')')?;
-                let cast = matches!(&inner.parts[..], [Part { kind: PartKind::Name, text, .. }] if is_type(text));
-                if cast {
-                    return self.part(parts, depth + 1);
-                }
-                parts.extend(inner.parts);
-            }
-            Some(TokenKind::Word) => {
-                self.at += 1;
-                if self.peek() != Some(TokenKind::Symbol('(')) {
-                    parts.push(Part { text, place, kind: PartKind::Name });
-                    return Some(());
-                }
-                self.at += 1;
-                let mut arguments = Vec::new();
-                loop {
-                    arguments.push(self.nested_value(depth + 1)?);
-                    if self.peek() != Some(TokenKind::Symbol(',')) {
-                        break;
-                    }
-                    self.at += 1;
-                }
-                self.symbol(')')?;
-                let end = self.tokens[..self.at].last().map_or(place.end, |token| token.place.end);
-                parts.push(Part { text, place: place.start..end, kind: PartKind::Call(arguments) });
-            }
-            _ => {
-                self.expected("a number or a name of the API");
-                return None;
-            }
-        }
-        Some(())
-    }
-
-    fn number_kind(&mut self, text: &str, place: Range<usize>, negative: bool) -> Option<PartKind<'t>> {
-        if let Some(value) = integer(text) {
-            return Some(PartKind::Integer(if negative { value.wrapping_neg() } else { value }));
-        }
-        let digits = text.trim_end_matches(['f', 'F']);
-        let plain = digits.bytes().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'e' | b'E'));
-        match digits.parse::<f32>() {
-            Ok(value) if plain && value.is_finite() => {
-                // The sign bit: no arithmetic here.
-                Some(PartKind::Float(f32::from_bits(value.to_bits() ^ u32::from(negative) << 31)))
-            }
-            _ => {
-                let help = "write a whole number, a hexadecimal one such as 0xff8040, or a fraction such as 0.5f";
-                self.findings.push(finding("NB0205", place, format!("`{text}` is not a number"), "not a number", help));
-                None
-            }
-        }
-    }
-}
-
-fn is_type(word: &str) -> bool {
-    ["DWORD", "UINT", "ULONG", "LONG", "int", "long", "unsigned", "D3DCOLOR", "D3DTEXTUREOP"].contains(&word)
-}
-
-/// A whole number, decimal or hexadecimal, with C's suffixes.
-pub(super) fn integer(text: &str) -> Option<u32> {
-    let text = text.trim_end_matches(['u', 'U', 'l', 'L']);
-    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
-        Some(digits) => u32::from_str_radix(digits, 16).ok(),
-        None => text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok())?,
-    }
-}
-
-/// A word without the first of the prefixes that it has, whatever the case: the prefix and the rest.
-pub(super) fn without_prefix<'w>(word: &'w str, prefixes: &[&str]) -> (&'w str, &'w str) {
-    for prefix in prefixes {
-        if let (Some(head), Some(rest)) = (word.get(..prefix.len()), word.get(prefix.len()..))
-            && head.eq_ignore_ascii_case(prefix)
-        {
-            return (head, rest);
-        }
-    }
-    ("", word)
-}
-
-/// Letters and digits only, in lower case: `MODULATEALPHA_ADDCOLOR` and `ModulateAlphaAddColor` are one.
-fn folded(word: &str) -> String {
-    word.chars().filter(|c| *c != '_').map(|c| c.to_ascii_lowercase()).collect()
-}
-
-/// The entry of `known` that a name means; says what was probably meant otherwise. Spelled as calls do, or as effect files.
+/// The entry of `known` that a name means, spelled as calls do, or as effect files.
 fn known<T: Copy>(
     part: &Part<'_>,
     what: &str,
@@ -177,43 +15,12 @@ fn known<T: Copy>(
     known: &[(&str, T)],
     findings: &mut Vec<Diagnostic>,
 ) -> Option<T> {
-    let (_, bare) = without_prefix(part.text, &[prefix]);
-    let word = folded(bare);
-    if let Some((_, value)) = known.iter().find(|(name, _)| folded(name) == word)
-        && matches!(part.kind, PartKind::Name)
-    {
-        return Some(*value);
-    }
     let spelled = |name: &str| {
         // The API's names have an underscore between the two halves of these.
         let name = if name.starts_with("Modulate") { name.replace("Add", "_Add") } else { name.to_owned() };
         if call { format!("{prefix}{}", name.to_uppercase()) } else { name }
     };
-    let help = match closest(bare, known.iter().map(|(name, _)| *name)) {
-        Some(name) => format!("did you mean `{}`?", spelled(name)),
-        None => format!("known: {}", known.iter().map(|(name, _)| spelled(name)).collect::<Vec<_>>().join(", ")),
-    };
-    let message = format!("there is no {what} `{}`", part.text.chars().take(40).collect::<String>());
-    findings.push(finding("NB0204", part.place.clone(), message, "not known", help));
-    None
-}
-
-fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&'v Part<'t>> {
-    if let [part] = &value.parts[..] {
-        return Some(part);
-    }
-    let message = format!("expected one {what}, found several joined by `|`");
-    findings.push(finding("NB0205", value.place.clone(), message, "not one value", "write one of them"));
-    None
-}
-
-fn out_of_range(place: &Range<usize>, what: &str, value: u32, help: &str, findings: &mut Vec<Diagnostic>) {
-    let message = format!("there is no {what} {value}");
-    findings.push(finding("NB0206", place.clone(), message, "out of range", help));
-}
-
-fn wrong_kind(place: &Range<usize>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) {
-    findings.push(finding("NB0205", place.clone(), format!("expected {what}"), "wrong kind of value", help));
+    calls::known(part, what, without_prefix(part.text, &[prefix]).1, known, spelled, findings)
 }
 
 /// A plain number.
@@ -354,34 +161,76 @@ pub(super) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<
 
 /// A D3DCOLOR, 0xAARRGGBB, as R, G, B, A bytes; or one of its macros.
 pub(super) fn color(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<[u8; 4]> {
-    const HELP: &str = "write 0xAARRGGBB, or D3DCOLOR_ARGB(a, r, g, b) with bytes";
+    const HELP: &str =
+        "write 0xAARRGGBB, D3DCOLOR_ARGB(a, r, g, b) with bytes, or D3DCOLOR_COLORVALUE(r, g, b, a) with 0.0 to 1.0";
     let part = one(value, "colour", findings)?;
-    match &part.kind {
+    let found = match &part.kind {
         PartKind::Integer(number) => {
             let [a, r, g, b] = number.to_be_bytes();
             return Some([r, g, b, a]);
         }
         PartKind::Call(arguments) => {
+            let read: fn(&Value<'_>) -> Option<u8> = match part.text {
+                // The macros cut what is behind the point; the class rounds.
+                "D3DCOLOR_COLORVALUE" | "D3DRGBA" | "D3DRGB" => cut,
+                "D3DXCOLOR" => |value| real(value).map(constant),
+                _ => byte,
+            };
+            let wanted = if ["D3DCOLOR_XRGB", "RGB_MAKE", "D3DRGB"].contains(&part.text) { 3 } else { 4 };
             let mut bytes = Vec::with_capacity(4);
-            for argument in arguments {
-                match &argument.parts[..] {
-                    [Part { kind: PartKind::Integer(byte @ 0..=255), .. }] => bytes.push(*byte as u8),
-                    _ => {
-                        wrong_kind(&argument.place, "a byte, 0 to 255", HELP, findings);
-                        return None;
-                    }
-                }
+            for argument in arguments.iter().take(4) {
+                let Some(byte) = read(argument) else {
+                    let what = match part.text {
+                        "D3DCOLOR_COLORVALUE" | "D3DRGBA" | "D3DRGB" | "D3DXCOLOR" => "a number from 0.0 to 1.0",
+                        _ => "a byte, 0 to 255",
+                    };
+                    wrong_kind(&argument.place, what, HELP, findings);
+                    return None;
+                };
+                bytes.push(byte);
             }
             match (part.text, &bytes[..]) {
-                ("D3DCOLOR_ARGB", [a, r, g, b]) | ("D3DCOLOR_RGBA", [r, g, b, a]) => return Some([*r, *g, *b, *a]),
-                ("D3DCOLOR_XRGB", [r, g, b]) => return Some([*r, *g, *b, 255]),
-                _ => {}
+                _ if arguments.len() > wanted => None,
+                ("D3DCOLOR_ARGB", [a, r, g, b])
+                | ("D3DCOLOR_RGBA" | "RGBA_MAKE" | "D3DCOLOR_COLORVALUE" | "D3DRGBA" | "D3DXCOLOR", [r, g, b, a]) => {
+                    Some([*r, *g, *b, *a])
+                }
+                ("D3DCOLOR_XRGB" | "RGB_MAKE" | "D3DRGB", [r, g, b]) => {
+                    // RGB_MAKE leaves the top byte 0.
+                    Some([*r, *g, *b, if part.text == "RGB_MAKE" { 0 } else { 255 }])
+                }
+                _ => None,
             }
         }
-        PartKind::Name | PartKind::Float(_) => {}
+        PartKind::Name | PartKind::Float(_) | PartKind::List(_) => None,
+    };
+    if found.is_none() {
+        wrong_kind(&value.place, "a colour", HELP, findings);
     }
-    wrong_kind(&value.place, "a colour", HELP, findings);
-    None
+    found
+}
+
+fn byte(value: &Value<'_>) -> Option<u8> {
+    match &value.parts[..] {
+        [Part { kind: PartKind::Integer(byte @ 0..=255), .. }] => Some(*byte as u8),
+        _ => None,
+    }
+}
+
+/// A number from 0.0 to 1.0.
+fn real(value: &Value<'_>) -> Option<f32> {
+    let number = match &value.parts[..] {
+        [Part { kind: PartKind::Float(number), .. }] => *number,
+        [Part { kind: PartKind::Integer(number @ 0..=1), .. }] => *number as f32,
+        _ => return None,
+    };
+    (0.0..=1.0).contains(&number).then_some(number)
+}
+
+/// (DWORD)(c * 255.f), as the macros of the API have it.
+fn cut(value: &Value<'_>) -> Option<u8> {
+    #[allow(clippy::float_arithmetic, reason = "the API's own macro, in the precision of its text")]
+    real(value).map(|number| (number * 255.0) as u8)
 }
 
 /// A float: written as one, in a wrapper such as `F2DW(0.5f)`, or as the bits of one, as the API takes it.
@@ -399,7 +248,7 @@ pub(super) fn float(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option
             },
             _ => None,
         },
-        PartKind::Name => None,
+        PartKind::Name | PartKind::List(_) => None,
     };
     let found = found.filter(|number| number.is_finite());
     if found.is_none() {

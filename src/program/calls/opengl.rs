@@ -1,0 +1,215 @@
+//! What OpenGL's calls have in common: names, numbers, colours, capabilities.
+
+use std::ops::Range;
+
+use super::{Part, PartKind, Reader, Value, known, wrong_kind};
+use crate::diagnostic::{Diagnostic, shorten};
+use crate::number::convert::constant;
+use crate::program::finding::finding;
+
+/// A name without what only decorates it: `GL_COMBINE_RGB_ARB` is `COMBINE_RGB`. `keep`: endings that matter.
+pub(in crate::program) fn bare<'w>(word: &'w str, keep: &[&str]) -> &'w str {
+    let word = word.strip_prefix("GL_").unwrap_or(word);
+    let end = ["_NV", "_ARB", "_EXT"].into_iter().filter(|end| !keep.contains(end));
+    end.into_iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word)
+}
+
+/// The entry of `table` that a value names.
+pub(in crate::program) fn choose<T: Copy>(
+    value: &Value<'_>,
+    what: &str,
+    table: &[(&str, T)],
+    findings: &mut Vec<Diagnostic>,
+) -> Option<T> {
+    let keep: &[&str] = if table.iter().any(|(name, _)| name.ends_with("_EXT")) { &["_EXT"] } else { &[] };
+    match &value.parts[..] {
+        [part] if matches!(part.kind, PartKind::Name) => {
+            let name = bare(part.text, keep);
+            // An ending that matters for some names is decoration of the others.
+            let find = |name: &str| table.iter().find(|(known, _)| *known == name);
+            let found = find(name).or_else(|| find(bare(name, &[])));
+            match found {
+                Some((_, value)) => Some(*value),
+                None => known(part, what, bare(name, &[]), table, |name| format!("GL_{name}"), findings),
+            }
+        }
+        _ => {
+            wrong_kind(&value.place, &format!("a {what}"), "write the name that the API has for it", findings);
+            None
+        }
+    }
+}
+
+/// n of `GL_TEXTURE0 + n`, `GL_TEXTUREn_ARB`, and likewise of other names: below `count`.
+pub(in crate::program) fn numbered(
+    value: &Value<'_>,
+    name: &str,
+    count: usize,
+    what: &str,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<usize> {
+    let number = |part: &Part<'_>| match part.kind {
+        PartKind::Integer(number) => Some(number as usize),
+        PartKind::Name => bare(part.text, &[]).strip_prefix(name)?.parse::<u16>().ok().map(usize::from),
+        _ => None,
+    };
+    let named = value.parts.first().is_some_and(|part| matches!(part.kind, PartKind::Name));
+    let numbers: Option<Vec<usize>> = value.parts.iter().map(number).collect();
+    let index = numbers
+        .filter(|_| named && value.parts.len() <= 2)
+        .map(|numbers| numbers.iter().fold(0usize, |sum, n| sum.saturating_add(*n)));
+    match index {
+        Some(index) if index < count => return Some(index),
+        Some(index) => findings.push(finding(
+            "NB0206",
+            value.place.clone(),
+            format!("there is no {what} {index}"),
+            "out of range",
+            format!("write GL_{name}0 to GL_{name}{}", count - 1),
+        )),
+        None => {
+            wrong_kind(&value.place, &format!("a {what}"), &format!("write GL_{name}0, or GL_{name}0 + 1"), findings)
+        }
+    }
+    None
+}
+
+/// TRUE, FALSE or a number.
+pub(in crate::program) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<bool> {
+    match &value.parts[..] {
+        [Part { kind: PartKind::Integer(number), .. }] => Some(*number != 0),
+        [Part { kind: PartKind::Float(number), .. }] => Some(*number != 0.0),
+        _ => choose(value, "truth value", &[("TRUE", true), ("FALSE", false)], findings),
+    }
+}
+
+/// A whole number, also written as a fraction.
+pub(in crate::program) fn whole(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
+    let found = match &value.parts[..] {
+        [Part { kind: PartKind::Integer(number), .. }] => Some(*number),
+        [Part { kind: PartKind::Float(number), .. }] => (0..=64u8).find(|n| f32::from(*n) == *number).map(u32::from),
+        _ => None,
+    };
+    if found.is_none() {
+        wrong_kind(&value.place, "a whole number", "variables have no value here: write the number", findings);
+    }
+    found
+}
+
+/// Whether a call takes a pointer to its values: its name ends with `v`, perhaps before that of its vendor.
+pub(in crate::program) fn is_vector(function: &str) -> bool {
+    bare_call(function).ends_with('v')
+}
+
+/// Whether its values are whole numbers.
+fn is_integral(function: &str) -> bool {
+    bare_call(function).ends_with("iv")
+}
+
+fn bare_call(function: &str) -> &str {
+    ["NV", "ARB", "EXT"].iter().find_map(|end| function.strip_suffix(end)).unwrap_or(function)
+}
+
+/// A colour of four values, R, G, B, A, as bytes: the fractions limited to 0..1 (NUM-0), the integers of `iv` by the API's table, the
+/// greatest being 1.
+pub(in crate::program) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) -> Option<[u8; 4]> {
+    const HELP: &str =
+        "define it in the text, `GLfloat color[4] = { 1, 0.5, 0, 1 };`, or write `{ 1, 0.5, 0, 1 }` here";
+    let Some(values) = reader.list(value) else {
+        let message = format!("the values of `{}` are not in the text", shorten(reader.word(&value.place)));
+        reader.findings.push(finding("NB0205", value.place.clone(), message, "four numbers are needed", HELP));
+        return None;
+    };
+    let integral = is_integral(function);
+    let bytes: Option<Vec<u8>> = values.iter().take(5).map(|value| byte(value, integral)).collect();
+    match bytes.as_deref() {
+        Some(&[r, g, b, a]) => Some([r, g, b, a]),
+        Some(bytes) => {
+            let message = format!("a colour has four numbers, not {}", if bytes.len() > 4 { "more" } else { "fewer" });
+            reader.findings.push(finding("NB0211", value.place.clone(), message, "R, G, B and A", HELP));
+            None
+        }
+        None => {
+            let wanted = if integral { "four whole numbers" } else { "four numbers" };
+            wrong_kind(&value.place, wanted, HELP, &mut reader.findings);
+            None
+        }
+    }
+}
+
+fn byte(value: &Value<'_>, integral: bool) -> Option<u8> {
+    match &value.parts[..] {
+        [Part { kind: PartKind::Integer(number), .. }] if integral => {
+            // floor(255 c + 1/2) of c = (2n + 1) / (2^32 - 1); what is negative is 0.
+            let n = i64::from((*number as i32).max(0));
+            let most = (1i64 << 32) - 1;
+            Some(if *number as i32 >= 0 { ((510 * (2 * n + 1) + most) / (2 * most)) as u8 } else { 0 })
+        }
+        [Part { kind: PartKind::Integer(number), .. }] => Some(if (*number as i32) > 0 { 255 } else { 0 }),
+        [Part { kind: PartKind::Float(number), .. }] if !integral => Some(constant(*number)),
+        _ => None,
+    }
+}
+
+/// Capabilities that a scene's draw has in its fields: name, field, how it is written.
+const CAPABILITIES: &[(&str, &str, &str)] = &[
+    ("BLEND", "blend", "`blend: (source: SourceAlpha, destination: OneMinusSourceAlpha)`"),
+    ("ALPHA_TEST", "alpha_test", "`alpha_test: (function: Greater, reference: 128)`"),
+    ("DEPTH_TEST", "depth_test", "`depth_test: (function: Less)`"),
+    ("FOG", "fog", "`fog: (mode: Linear, start: ..., end: ..., color: ...)`"),
+    ("CULL_FACE", "cull", "`cull: Back`"),
+    ("SCISSOR_TEST", "scissor", "`scissor: (x: ..., y: ..., width: ..., height: ...)`"),
+    ("TEXTURE_SHADER", "texture_shader", "`texture_shader: [Sample, ...]`"),
+    ("VERTEX_PROGRAM", "vertices", "`vertices: Program(text: ...)`"),
+];
+
+/// `glEnable` and `glDisable` of something that is no part of the program.
+pub(in crate::program) fn capability<'t>(
+    reader: &mut Reader<'t>,
+    name: &Range<usize>,
+    value: &Value<'t>,
+    enable: bool,
+) {
+    let written = reader.word(&value.place);
+    let capability = bare(written, &[]);
+    if capability.starts_with("TEXTURE_") && capability != "TEXTURE_SHADER" {
+        // The draw's `textures` say which units have one.
+        return;
+    }
+    match CAPABILITIES.iter().find(|(known, ..)| *known == capability) {
+        Some(_) if !enable => {}
+        Some((_, field, form)) => {
+            let message = format!("`{}` is a state of the draw", shorten(written));
+            let help = format!("write it in the draw: {form}");
+            reader.aside(value.place.clone(), written, &message, &help, Some(*field));
+        }
+        None => {
+            let message = format!("`{}({})` is passed over", reader.word(name), shorten(written));
+            let help = "nothing to do, if the scene says what it is for in fields of its own";
+            reader.pass(value.place.clone(), written, &message, "no part of the program", help);
+        }
+    }
+}
+
+/// Calls that a scene's draw has in its fields, for [`Vocabulary::instead`](super::Vocabulary).
+pub(in crate::program) const INSTEAD: &[(&str, &str)] = &[
+    ("BlendFunc", "write `blend: (source: ..., destination: ...)` in the draw"),
+    ("AlphaFunc", "write `alpha_test: (function: ..., reference: ...)` in the draw"),
+    ("DepthFunc", "write `depth_test: (function: ...)` in the draw"),
+    ("Fogf", "write `fog: (...)` in the draw"),
+    ("Fogi", "write `fog: (...)` in the draw"),
+    ("Fogfv", "write `fog: (...)` in the draw"),
+    ("CullFace", "write `cull: ...` in the draw"),
+    ("FrontFace", "write `front_face: ...` in the draw"),
+    ("ShadeModel", "write `shade_model: ...` in the draw"),
+    ("ColorMask", "write `color_mask: (...)` in the draw"),
+    ("TexParameteri", "write filters and address modes in the draw's `textures`"),
+    ("TexParameterf", "write filters and address modes in the draw's `textures`"),
+    ("TexGeni", "write `texgen: [...]` in the draw"),
+    ("TexGenfv", "write `texgen: [...]` in the draw"),
+    ("CombinerInputNV", "a program is either `TextureEnvironment` or `CombinerCalls`: paste these calls there"),
+    ("CombinerOutputNV", "a program is either `TextureEnvironment` or `CombinerCalls`: paste these calls there"),
+    ("TexEnvi", "a program is either `CombinerCalls` or `TextureEnvironment`: paste these calls there"),
+    ("TexEnvf", "a program is either `CombinerCalls` or `TextureEnvironment`: paste these calls there"),
+    ("TexEnvfv", "a program is either `CombinerCalls` or `TextureEnvironment`: paste these calls there"),
+];

@@ -1,0 +1,302 @@
+//! Values of pasted text: numbers, names of an API, macros, lists.
+
+use std::ops::Range;
+
+use super::{Kind, Reader};
+use crate::diagnostic::{Diagnostic, shorten};
+use crate::program::finding::finding;
+use crate::spelling::closest;
+
+/// Brackets and casts around one value.
+const MOST_BRACKETS: usize = 8;
+
+/// One part of a value.
+#[derive(Clone, Debug)]
+pub(in crate::program) struct Part<'t> {
+    pub(in crate::program) text: &'t str,
+    pub(in crate::program) place: Range<usize>,
+    pub(in crate::program) kind: PartKind<'t>,
+}
+
+#[derive(Clone, Debug)]
+pub(in crate::program) enum PartKind<'t> {
+    /// A name, which may be a variable's.
+    Name,
+    Integer(u32),
+    Float(f32),
+    /// `D3DCOLOR_ARGB(...)`.
+    Call(Vec<Value<'t>>),
+    /// `{ 1, 0, 0, 1 }`.
+    List(Vec<Value<'t>>),
+}
+
+/// Parts joined by `|` or `+`.
+#[derive(Clone, Debug)]
+pub(in crate::program) struct Value<'t> {
+    pub(in crate::program) parts: Vec<Part<'t>>,
+    pub(in crate::program) place: Range<usize>,
+}
+
+impl<'t> Reader<'t> {
+    /// Reads a value; `None` once the reason that it is none has been recorded.
+    pub(super) fn value(&mut self) -> Option<Value<'t>> {
+        self.nested_value(0)
+    }
+
+    fn nested_value(&mut self, depth: usize) -> Option<Value<'t>> {
+        let start = self.place().start;
+        let mut parts = Vec::new();
+        loop {
+            self.part(&mut parts, depth)?;
+            if !matches!(self.peek(), Some(Kind::Sign('|' | '+'))) {
+                break;
+            }
+            self.at += 1;
+        }
+        Some(Value { parts, place: start..self.end_before() })
+    }
+
+    /// Where the token before the one at hand ends.
+    fn end_before(&self) -> usize {
+        self.tokens.get(self.at.wrapping_sub(1)).map_or(0, |token| token.place.end)
+    }
+
+    fn part(&mut self, parts: &mut Vec<Part<'t>>, depth: usize) -> Option<()> {
+        if depth > MOST_BRACKETS {
+            self.expected("a value in fewer brackets");
+            return None;
+        }
+        let place = self.place();
+        let text = self.word(&place);
+        match self.peek() {
+            Some(Kind::Number) => {
+                self.at += 1;
+                parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, false)? });
+            }
+            Some(Kind::Sign('-')) => {
+                self.at += 1;
+                let number = self.place();
+                let text = self.word(&number);
+                if self.peek() != Some(Kind::Number) {
+                    self.expected("a number");
+                    return None;
+                }
+                self.at += 1;
+                let place = place.start..number.end;
+                parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, true)? });
+            }
+            // The address of an array's first element is the array.
+            Some(Kind::Sign('&' | '+')) => {
+                self.at += 1;
+                return self.part(parts, depth + 1);
+            }
+            Some(Kind::Sign('(')) => {
+                if let Some(behind) = self.cast() {
+                    self.at = behind;
+                    return self.part(parts, depth + 1);
+                }
+                self.at += 1;
+                let inner = self.nested_value(depth + 1)?;
+                self.sign(')')?;
+                parts.extend(inner.parts);
+            }
+            Some(Kind::Sign('{')) => {
+                self.at += 1;
+                let values = self.values('}', depth)?;
+                let place = place.start..self.end_before();
+                parts.push(Part { text: self.word(&place), place, kind: PartKind::List(values) });
+            }
+            Some(Kind::Sign('<')) if self.kind_at(self.at + 2) == Some(Kind::Sign('>')) => {
+                self.at += 3;
+                let place = place.start..self.end_before();
+                parts.push(Part { text: self.word(&place), place, kind: PartKind::Name });
+            }
+            Some(Kind::Word) => {
+                self.at += 1;
+                if self.peek() == Some(Kind::Sign('(')) {
+                    self.at += 1;
+                    let arguments = self.values(')', depth)?;
+                    let place = place.start..self.end_before();
+                    parts.push(Part { text, place, kind: PartKind::Call(arguments) });
+                    return Some(());
+                }
+                self.members();
+                let text = self.word(&(place.start..self.end_before()));
+                parts.push(Part {
+                    text: text.trim_end_matches("[0]"),
+                    place: place.start..self.end_before(),
+                    kind: PartKind::Name,
+                });
+            }
+            _ => {
+                self.expected("a number or a name of the API");
+                return None;
+            }
+        }
+        Some(())
+    }
+
+    /// Values with commas between them, up to a closing bracket.
+    fn values(&mut self, closing: char, depth: usize) -> Option<Vec<Value<'t>>> {
+        let mut values = Vec::new();
+        while self.peek() != Some(Kind::Sign(closing)) {
+            values.push(self.nested_value(depth + 1)?);
+            if self.peek() != Some(Kind::Sign(',')) {
+                break;
+            }
+            self.at += 1;
+        }
+        self.sign(closing)?;
+        Some(values)
+    }
+
+    /// Takes `[0]`, `.v` and `->v` behind a name.
+    fn members(&mut self) {
+        loop {
+            let inside = [1, 2].map(|n| self.kind_at(self.at + n));
+            match (self.peek(), inside) {
+                (Some(Kind::Sign('[')), [Some(Kind::Number | Kind::Word), Some(Kind::Sign(']'))]) => self.at += 3,
+                (Some(Kind::Arrow | Kind::Sign('.')), [Some(Kind::Word), _]) => self.at += 2,
+                _ => return,
+            }
+        }
+    }
+
+    /// The token behind `(DWORD)`, `(const GLfloat *)`, `(GLfloat[4])`, if a cast stands here.
+    fn cast(&self) -> Option<usize> {
+        if !is_type(self.word_at(self.at + 1)) {
+            return None;
+        }
+        let parts = |kind| matches!(kind, Some(Kind::Word | Kind::Number | Kind::Sign('*' | '[' | ']' | '&')));
+        let close = (self.at + 2..self.at + 10).find(|at| !parts(self.kind_at(*at)))?;
+        (self.kind_at(close) == Some(Kind::Sign(')'))).then_some(close + 1)
+    }
+
+    fn number_kind(&mut self, text: &str, place: Range<usize>, negative: bool) -> Option<PartKind<'t>> {
+        if let Some(value) = integer(text) {
+            return Some(PartKind::Integer(if negative { value.wrapping_neg() } else { value }));
+        }
+        let digits = text.trim_end_matches(['f', 'F']);
+        let plain =
+            digits.bytes().all(|byte| byte.is_ascii_digit() || matches!(byte, b'.' | b'e' | b'E' | b'+' | b'-'));
+        match digits.parse::<f32>() {
+            Ok(value) if plain && value.is_finite() => {
+                // The sign bit: no arithmetic here.
+                Some(PartKind::Float(f32::from_bits(value.to_bits() ^ u32::from(negative) << 31)))
+            }
+            _ => {
+                let help = "write a whole number, a hexadecimal one such as 0xff8040, or a fraction such as 0.5f";
+                let message = format!("`{}` is not a number", shorten(text));
+                self.findings.push(finding("NB0205", place, message, "not a number", help));
+                None
+            }
+        }
+    }
+}
+
+fn is_type(word: &str) -> bool {
+    [
+        "DWORD",
+        "UINT",
+        "ULONG",
+        "LONG",
+        "int",
+        "long",
+        "unsigned",
+        "float",
+        "double",
+        "const",
+        "void",
+        "D3DCOLOR",
+        "D3DTEXTUREOP",
+        "GLfloat",
+        "GLint",
+        "GLenum",
+        "GLuint",
+        "GLdouble",
+        "GLclampf",
+    ]
+    .contains(&word)
+}
+
+/// A whole number, decimal or hexadecimal, with C's suffixes.
+pub(in crate::program) fn integer(text: &str) -> Option<u32> {
+    let text = text.trim_end_matches(['u', 'U', 'l', 'L']);
+    match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
+        Some(digits) => u32::from_str_radix(digits, 16).ok(),
+        None => text.bytes().all(|byte| byte.is_ascii_digit()).then(|| text.parse().ok())?,
+    }
+}
+
+/// A word without the first of the prefixes that it has, whatever the case: the prefix and the rest.
+pub(in crate::program) fn without_prefix<'w>(word: &'w str, prefixes: &[&str]) -> (&'w str, &'w str) {
+    for prefix in prefixes {
+        if let (Some(head), Some(rest)) = (word.get(..prefix.len()), word.get(prefix.len()..))
+            && head.eq_ignore_ascii_case(prefix)
+        {
+            return (head, rest);
+        }
+    }
+    ("", word)
+}
+
+/// Letters and digits only, in lower case: `MODULATEALPHA_ADDCOLOR` and `ModulateAlphaAddColor` are one.
+fn folded(word: &str) -> String {
+    word.chars().filter(|c| *c != '_').map(|c| c.to_ascii_lowercase()).collect()
+}
+
+/// The entry of `known` that a name means; says what was probably meant otherwise. `bare`: the name as the entries have it, `spelled`: an entry
+/// as the text would have it.
+pub(in crate::program) fn known<T: Copy>(
+    part: &Part<'_>,
+    what: &str,
+    bare: &str,
+    known: &[(&str, T)],
+    spelled: impl Fn(&str) -> String,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<T> {
+    let word = folded(bare);
+    if let Some((_, value)) = known.iter().find(|(name, _)| folded(name) == word)
+        && matches!(part.kind, PartKind::Name)
+    {
+        return Some(*value);
+    }
+    let help = match closest(bare, known.iter().map(|(name, _)| *name)) {
+        Some(name) => format!("did you mean `{}`?", spelled(name)),
+        None => format!("known: {}", known.iter().map(|(name, _)| spelled(name)).collect::<Vec<_>>().join(", ")),
+    };
+    let message = format!("there is no {what} `{}`", part.text.chars().take(40).collect::<String>());
+    findings.push(finding("NB0204", part.place.clone(), message, "not known", help));
+    None
+}
+
+/// The only part of a value.
+pub(in crate::program) fn one<'v, 't>(
+    value: &'v Value<'t>,
+    what: &str,
+    findings: &mut Vec<Diagnostic>,
+) -> Option<&'v Part<'t>> {
+    if let [part] = &value.parts[..] {
+        return Some(part);
+    }
+    let message = format!("expected one {what}, found several joined by `|`");
+    findings.push(finding("NB0205", value.place.clone(), message, "not one value", "write one of them"));
+    None
+}
+
+/// Records that there is no such number.
+pub(in crate::program) fn out_of_range(
+    place: &Range<usize>,
+    what: &str,
+    value: u32,
+    help: &str,
+    findings: &mut Vec<Diagnostic>,
+) {
+    let message = format!("there is no {what} {value}");
+    findings.push(finding("NB0206", place.clone(), message, "out of range", help));
+}
+
+/// Records that another kind of value stands here.
+pub(in crate::program) fn wrong_kind(place: &Range<usize>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) {
+    findings.push(finding("NB0205", place.clone(), format!("expected {what}"), "wrong kind of value", help));
+}

@@ -1,0 +1,275 @@
+//! The texture environment as pasted text: calls of glTexEnv, with the extensions ARB_texture_env_combine and NV_texture_env_combine4.
+
+use std::ops::Range;
+
+use super::{EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit};
+use crate::diagnostic::Diagnostic;
+use crate::program::At;
+use crate::program::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, whole};
+use crate::program::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
+use crate::program::finding::finding;
+use crate::state::{Scale, TEXTURE_UNITS};
+
+/// What is read of OpenGL for the texture environment.
+static ENVIRONMENT: Vocabulary = Vocabulary {
+    calls: &[
+        "TexEnvi",
+        "TexEnvf",
+        "TexEnviv",
+        "TexEnvfv",
+        "ActiveTexture",
+        "ActiveTextureARB",
+        "glEnable",
+        "glDisable",
+        "LightModeli",
+        "LightModelf",
+        "LightModeliv",
+        "LightModelfv",
+    ],
+    silent: &["BindTexture"],
+    states: &[],
+    instead: opengl::INSTEAD,
+    example: "`glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);`",
+    what: "the texture environment",
+};
+
+/// Reads the text over the API's initial state.
+///
+/// # Errors
+/// Everything that is not a statement, or sets something that the API does not have.
+pub fn parse(text: &str) -> Result<Pasted<TextureEnvironment>, Vec<Diagnostic>> {
+    let reader = Reader::new(text, &ENVIRONMENT);
+    let mut parser = Parser { reader, program: TextureEnvironment::default(), unit: 0 };
+    while let Some(statement) = parser.reader.next() {
+        if let Statement::Call { name, arguments } = statement {
+            parser.call(&name, &arguments);
+        }
+    }
+    parser.reader.finish(parser.program)
+}
+
+struct Parser<'t> {
+    reader: Reader<'t>,
+    program: TextureEnvironment,
+    /// The active texture unit.
+    unit: usize,
+}
+
+/// What a parameter of the environment sets.
+#[derive(Clone, Copy)]
+enum Parameter {
+    Mode,
+    Color,
+    /// Of the alpha.
+    Function(bool),
+    Scale(bool),
+    Source(bool, usize),
+    Operand(bool, usize),
+}
+
+const MODES: &[(&str, Mode)] = &[
+    ("REPLACE", Mode::Replace),
+    ("MODULATE", Mode::Modulate),
+    ("DECAL", Mode::Decal),
+    ("BLEND", Mode::Blend),
+    ("ADD", Mode::Add),
+    ("COMBINE", Mode::Combine),
+    ("COMBINE4", Mode::Combine4),
+];
+const FUNCTIONS: &[(&str, Function)] = &[
+    ("REPLACE", Function::Replace),
+    ("MODULATE", Function::Modulate),
+    ("ADD", Function::Add),
+    ("ADD_SIGNED", Function::AddSigned),
+    ("INTERPOLATE", Function::Interpolate),
+    ("SUBTRACT", Function::Subtract),
+    ("DOT3_RGB", Function::Dot3RgbArb),
+    ("DOT3_RGBA", Function::Dot3RgbaArb),
+    ("DOT3_RGB_EXT", Function::Dot3RgbExt),
+    ("DOT3_RGBA_EXT", Function::Dot3RgbaExt),
+];
+const SOURCES: &[(&str, EnvironmentSource)] = &[
+    ("TEXTURE", EnvironmentSource::Texture),
+    ("TEXTURE0", EnvironmentSource::Texture0),
+    ("TEXTURE1", EnvironmentSource::Texture1),
+    ("TEXTURE2", EnvironmentSource::Texture2),
+    ("TEXTURE3", EnvironmentSource::Texture3),
+    ("CONSTANT", EnvironmentSource::Constant),
+    ("PRIMARY_COLOR", EnvironmentSource::PrimaryColor),
+    ("PREVIOUS", EnvironmentSource::Previous),
+    ("ZERO", EnvironmentSource::Zero),
+];
+const OPERANDS: &[(&str, Operand)] = &[
+    ("SRC_COLOR", Operand::SourceColor),
+    ("ONE_MINUS_SRC_COLOR", Operand::OneMinusSourceColor),
+    ("SRC_ALPHA", Operand::SourceAlpha),
+    ("ONE_MINUS_SRC_ALPHA", Operand::OneMinusSourceAlpha),
+];
+
+/// Names of parameters. OpenGL 1.5 writes SRC for SOURCE.
+fn parameters() -> Vec<(String, Parameter)> {
+    let mut table =
+        vec![("TEXTURE_ENV_MODE".to_owned(), Parameter::Mode), ("TEXTURE_ENV_COLOR".to_owned(), Parameter::Color)];
+    for (alpha, half) in [(false, "RGB"), (true, "ALPHA")] {
+        table.push((format!("COMBINE_{half}"), Parameter::Function(alpha)));
+        table.push((format!("{half}_SCALE"), Parameter::Scale(alpha)));
+        for n in 0..4 {
+            table.push((format!("SOURCE{n}_{half}"), Parameter::Source(alpha, n)));
+            table.push((format!("SRC{n}_{half}"), Parameter::Source(alpha, n)));
+            table.push((format!("OPERAND{n}_{half}"), Parameter::Operand(alpha, n)));
+        }
+    }
+    table
+}
+
+impl<'t> Parser<'t> {
+    fn call(&mut self, name: &Range<usize>, arguments: &[Value<'t>]) {
+        let function = self.reader.word(name);
+        let wanted = match function {
+            _ if function.contains("TexEnv") => 3,
+            _ if function.contains("LightModel") => 2,
+            _ => 1,
+        };
+        if arguments.len() != wanted {
+            let message = format!("{function} has {wanted} arguments, not {}", arguments.len());
+            let help = "write them all";
+            self.reader.findings.push(finding("NB0211", name.clone(), message, "this call", help));
+            return;
+        }
+        match arguments {
+            [target, parameter, value] => self.environment(function, target, parameter, value),
+            [parameter, value] => {
+                if bare(self.reader.word(&parameter.place), &[]) == "LIGHT_MODEL_COLOR_CONTROL" {
+                    let table = [("SEPARATE_SPECULAR_COLOR", true), ("SINGLE_COLOR", false)];
+                    let control = choose(value, "colour control", &table, &mut self.reader.findings);
+                    self.program.color_sum = control.unwrap_or(self.program.color_sum);
+                }
+            }
+            // Which set of coordinates of the vertices is meant.
+            [_] if function.contains("ClientActive") => {}
+            [unit] if function.contains("ActiveTexture") => {
+                let unit = numbered(unit, "TEXTURE", TEXTURE_UNITS, "texture unit", &mut self.reader.findings);
+                self.unit = unit.unwrap_or(self.unit);
+            }
+            [value] => {
+                let enable = function.ends_with("glEnable");
+                if bare(self.reader.word(&value.place), &[]) == "COLOR_SUM" {
+                    self.program.color_sum = enable;
+                } else {
+                    capability(&mut self.reader, name, value, enable);
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// `glTexEnvi(target, parameter, value)`
+    fn environment(&mut self, function: &str, target: &Value<'t>, parameter: &Value<'t>, value: &Value<'t>) {
+        let written = self.reader.word(&target.place);
+        let (message, help, field) = match bare(written, &[]) {
+            "TEXTURE_ENV" => ("", "", None),
+            "TEXTURE_FILTER_CONTROL" => (
+                "a bias of levels is a state of the sampler",
+                "write it in the draw: `textures: [(texture: ..., lod_bias: ...)]`",
+                None,
+            ),
+            "TEXTURE_SHADER" => (
+                "texture shaders are states of the draw",
+                "write it in the draw: `texture_shader: [Sample, ...]`",
+                Some("texture_shader"),
+            ),
+            _ => {
+                let help = "write GL_TEXTURE_ENV";
+                let findings = &mut self.reader.findings;
+                wrong_kind(&target.place, "the target GL_TEXTURE_ENV", help, findings);
+                return;
+            }
+        };
+        if !message.is_empty() {
+            self.reader.aside(target.place.clone(), written, message, help, field);
+            return;
+        }
+        let table = parameters();
+        let table: Vec<(&str, Parameter)> = table.iter().map(|(name, parameter)| (name.as_str(), *parameter)).collect();
+        let Some(chosen) = choose(parameter, "parameter of the texture environment", &table, &mut self.reader.findings)
+        else {
+            return;
+        };
+        self.set(function, chosen, parameter, value);
+    }
+
+    fn set(&mut self, function: &str, chosen: Parameter, parameter: &Value<'t>, value: &Value<'t>) {
+        let vector = is_vector(function);
+        let (place, index) = (value.place.clone(), self.unit);
+        if let Parameter::Color = chosen {
+            if !vector {
+                let help = "write `glTexEnvfv(GL_TEXTURE_ENV, GL_TEXTURE_ENV_COLOR, color);`";
+                wrong_kind(&place, "a pointer to four numbers", help, &mut self.reader.findings);
+                return;
+            }
+            if let Some(color) = color(&mut self.reader, value, function) {
+                self.unit(index, parameter).color = color;
+            }
+            return;
+        }
+        // A pointer to one value is the value.
+        let one = self.reader.list(value).and_then(|values| values.first()).filter(|_| vector).cloned();
+        let value = one.as_ref().unwrap_or(value);
+        let findings = &mut self.reader.findings;
+        match chosen {
+            Parameter::Mode => {
+                if let Some(mode) = choose(value, "mode of the texture environment", MODES, findings) {
+                    self.unit(index, parameter).mode = mode;
+                }
+            }
+            Parameter::Function(alpha) => {
+                if let Some(value) = choose(value, "combine function", FUNCTIONS, findings) {
+                    self.half(index, parameter, alpha).function = At { value, place };
+                }
+            }
+            Parameter::Source(alpha, n) => {
+                if let Some(value) = choose(value, "source", SOURCES, findings) {
+                    self.half(index, parameter, alpha).sources[n] = At { value, place };
+                }
+            }
+            Parameter::Operand(alpha, n) => {
+                if let Some(value) = choose(value, "operand", OPERANDS, findings) {
+                    self.half(index, parameter, alpha).operands[n] = At { value, place };
+                }
+            }
+            Parameter::Scale(alpha) => {
+                let scale = match whole(value, findings) {
+                    Some(1) => Scale::One,
+                    Some(2) => Scale::Two,
+                    Some(4) => Scale::Four,
+                    Some(other) => {
+                        let message = format!("a scale cannot be {other}");
+                        findings.push(finding("NB0206", place, message, "out of range", "write 1.0, 2.0 or 4.0"));
+                        return;
+                    }
+                    None => return,
+                };
+                self.half(index, parameter, alpha).scale = scale;
+            }
+            Parameter::Color => {}
+        }
+    }
+
+    /// A unit, brought into being with all before it.
+    fn unit(&mut self, index: usize, by: &Value<'t>) -> &mut Unit {
+        let units = &mut self.program.units;
+        while units.len() <= index {
+            units.push(Unit::initial());
+        }
+        let unit = &mut units[index];
+        if unit.place.is_empty() {
+            unit.place = by.place.clone();
+        }
+        unit
+    }
+
+    fn half(&mut self, index: usize, by: &Value<'t>, alpha: bool) -> &mut Half {
+        let unit = self.unit(index, by);
+        if alpha { &mut unit.alpha } else { &mut unit.rgb }
+    }
+}

@@ -1,0 +1,379 @@
+//! Render states that the scene's draw has in fields of its own: what to write there.
+
+use std::ops::Range;
+
+use crate::diagnostic::Diagnostic;
+use crate::program::Aside;
+use crate::program::calls::{Part, PartKind, Value, without_prefix};
+
+/// A field of the draw, and the states that it holds: name and D3DRS value.
+struct Group {
+    field: &'static str,
+    states: &'static [(&'static str, u32)],
+    /// The field as it is written, of the values by state; `None` if the draw's default says the same.
+    written: fn(&Values) -> Option<String>,
+}
+
+const GROUPS: [Group; 7] = [
+    Group {
+        field: "blend",
+        states: &[("AlphaBlendEnable", 27), ("SrcBlend", 19), ("DestBlend", 20), ("BlendOp", 171)],
+        written: blend,
+    },
+    Group {
+        field: "alpha_test",
+        states: &[("AlphaTestEnable", 15), ("AlphaRef", 24), ("AlphaFunc", 25)],
+        written: alpha_test,
+    },
+    Group { field: "depth_test", states: &[("ZEnable", 7), ("ZWriteEnable", 14), ("ZFunc", 23)], written: depth_test },
+    Group {
+        field: "fog",
+        states: &[
+            ("FogEnable", 28),
+            ("FogColor", 34),
+            ("FogTableMode", 35),
+            ("FogStart", 36),
+            ("FogEnd", 37),
+            ("FogDensity", 38),
+            ("RangeFogEnable", 48),
+            ("FogVertexMode", 140),
+        ],
+        written: fog,
+    },
+    Group { field: "cull", states: &[("CullMode", 22)], written: cull },
+    Group { field: "shade_model", states: &[("ShadeMode", 9)], written: shade_model },
+    Group { field: "color_mask", states: &[("ColorWriteEnable", 168)], written: color_mask },
+];
+
+/// Their names.
+pub(super) const NAMES: &[&str] = &[
+    "AlphaBlendEnable",
+    "SrcBlend",
+    "DestBlend",
+    "BlendOp",
+    "AlphaTestEnable",
+    "AlphaRef",
+    "AlphaFunc",
+    "ZEnable",
+    "ZWriteEnable",
+    "ZFunc",
+    "FogEnable",
+    "FogColor",
+    "FogTableMode",
+    "FogStart",
+    "FogEnd",
+    "FogDensity",
+    "RangeFogEnable",
+    "FogVertexMode",
+    "CullMode",
+    "ShadeMode",
+    "ColorWriteEnable",
+];
+
+/// Render states of the API that are passed over.
+pub(super) const OTHER_STATES: &[&str] = &[
+    "Lighting",
+    "Ambient",
+    "LocalViewer",
+    "ColorVertex",
+    "NormalizeNormals",
+    "DiffuseMaterialSource",
+    "SpecularMaterialSource",
+    "AmbientMaterialSource",
+    "EmissiveMaterialSource",
+    "DitherEnable",
+    "StencilEnable",
+    "StencilFail",
+    "StencilZFail",
+    "StencilPass",
+    "StencilFunc",
+    "StencilRef",
+    "StencilMask",
+    "StencilWriteMask",
+    "FillMode",
+    "LastPixel",
+    "LinePattern",
+    "Clipping",
+    "ClipPlaneEnable",
+    "ZBias",
+    "ZVisible",
+    "DepthBias",
+    "SlopeScaleDepthBias",
+    "EdgeAntialias",
+    "Antialias",
+    "MultisampleAntialias",
+    "MultisampleMask",
+    "TextureHandle",
+    "TexturePerspective",
+    "TextureMapBlend",
+    "TextureMag",
+    "TextureMin",
+    "TextureAddress",
+    "MonoEnable",
+    "Rop2",
+    "PlaneMask",
+    "SubPixel",
+    "StippledAlpha",
+    "StippleEnable",
+    "ColorKeyEnable",
+    "Extents",
+    "VertexBlend",
+    "IndexedVertexBlendEnable",
+    "TweenFactor",
+    "PointSize",
+    "PointSize_Min",
+    "PointSize_Max",
+    "PointSpriteEnable",
+    "PointScaleEnable",
+    "PointScale_A",
+    "PointScale_B",
+    "PointScale_C",
+    "SoftwareVertexProcessing",
+    "PatchEdgeStyle",
+    "PatchSegments",
+    "DebugMonitorToken",
+    "ScissorTestEnable",
+    "SRGBWriteEnable",
+    "BlendFactor",
+    "SeparateAlphaBlendEnable",
+    "SrcBlendAlpha",
+    "DestBlendAlpha",
+    "BlendOpAlpha",
+    "TwoSidedStencilMode",
+    "Wrap0",
+    "Wrap1",
+    "Wrap2",
+    "Wrap3",
+    "Wrap4",
+    "Wrap5",
+    "Wrap6",
+    "Wrap7",
+    "VertexShader",
+    "PixelShader",
+];
+
+/// What to write instead of one of [`OTHER_STATES`].
+pub(super) fn instead(state: &str) -> &'static str {
+    match state {
+        "Lighting" | "Ambient" | "ColorVertex" | "NormalizeNormals" => {
+            "nothing is lit here: give the vertices the colours that they have once they are lit"
+        }
+        "LocalViewer" => "the draw's `viewer` says it: `Local`, or `Infinite(0, 0, 1)`",
+        "TexturePerspective" => "the draw's `perspective` says it",
+        "DitherEnable" => "the draw's `dither` can only be `false`: what the chip does is not known",
+        "ScissorTestEnable" => "the draw's `scissor` has the rectangle",
+        "BlendFactor" => "the draw's `blend_constant` has the colour",
+        "PixelShader" => "write a pixel shader as the draw's `program: PixelShader(...)`",
+        "VertexShader" => "write a vertex program as the draw's `vertices: Program(text: ...)`",
+        _ => "no field of a scene says it",
+    }
+}
+
+/// A value as far as it is told here: a word without its prefix, or a number.
+#[derive(Clone, Debug)]
+enum Told {
+    Word(String),
+    Number(u32),
+    Other,
+}
+
+/// States in the order of their last statements.
+type Values = Vec<(&'static str, Told)>;
+
+/// What the text says of the draw.
+#[derive(Debug, Default)]
+pub(super) struct DrawStates {
+    /// Of each group the first place, and the values.
+    groups: [Option<(Range<usize>, Values)>; GROUPS.len()],
+}
+
+impl DrawStates {
+    /// Takes a state if it is one of these.
+    pub(super) fn take(&mut self, name: &str, number: Option<u32>, place: &Range<usize>, value: &Value<'_>) -> bool {
+        for (group, slot) in GROUPS.iter().zip(&mut self.groups) {
+            let found = group.states.iter().find(|(known, n)| known.eq_ignore_ascii_case(name) || number == Some(*n));
+            if let Some((name, _)) = found {
+                let (_, values) = slot.get_or_insert_with(|| (place.clone(), Vec::new()));
+                values.retain(|(known, _)| known != name);
+                values.push((*name, told(value)));
+                return true;
+            }
+        }
+        false
+    }
+
+    /// A warning for each field that the draw lacks then.
+    pub(super) fn asides(self) -> Vec<Aside> {
+        let groups = GROUPS.iter().zip(self.groups);
+        let asides = groups.filter_map(|(group, taken)| {
+            let (place, values) = taken?;
+            let written = (group.written)(&values)?;
+            let names: Vec<String> = values.iter().map(|(name, _)| name.to_uppercase()).collect();
+            let (last, rest) = names.split_last()?;
+            let message = match rest {
+                [] => format!("{last} is a state of the draw"),
+                _ => format!("{} and {last} are states of the draw", rest.join(", ")),
+            };
+            let finding = Diagnostic::warning("NB0918", place, message)
+                .label("no part of a pixel program")
+                .help(format!("write it in the draw: `{written}`"));
+            Some(Aside { finding, field: Some(group.field) })
+        });
+        asides.collect()
+    }
+}
+
+fn told(value: &Value<'_>) -> Told {
+    const PREFIXES: &[&str] = &["D3DBLENDOP_", "D3DBLEND_", "D3DCMP_", "D3DCULL_", "D3DSHADE_", "D3DFOG_", "D3DZB_"];
+    match &value.parts[..] {
+        [Part { kind: PartKind::Integer(number), .. }] => Told::Number(*number),
+        [Part { kind: PartKind::Name, text, .. }] => Told::Word(without_prefix(text, PREFIXES).1.to_ascii_uppercase()),
+        _ => Told::Other,
+    }
+}
+
+fn find<'v>(values: &'v Values, name: &str) -> Option<&'v Told> {
+    values.iter().find(|(known, _)| *known == name).map(|(_, told)| told)
+}
+
+/// Whether a state is switched off.
+fn off(values: &Values, name: &str) -> bool {
+    match find(values, name) {
+        Some(Told::Number(0)) => true,
+        Some(Told::Word(word)) => word == "FALSE",
+        _ => false,
+    }
+}
+
+/// The scene's word for a value: `names` in the order of the API's numbers from 1, each as the API and as the scene has it.
+fn named(values: &Values, state: &str, names: &[(&str, &'static str)], default: &'static str) -> String {
+    let found = match find(values, state) {
+        Some(Told::Number(number)) => names.get((*number as usize).wrapping_sub(1)).map(|(_, name)| *name),
+        Some(Told::Word(word)) => names.iter().find(|(known, _)| known == word).map(|(_, name)| *name),
+        Some(Told::Other) => None,
+        None => Some(default),
+    };
+    found.unwrap_or("...").to_owned()
+}
+
+fn blend(values: &Values) -> Option<String> {
+    const FACTORS: &[(&str, &str)] = &[
+        ("ZERO", "Zero"),
+        ("ONE", "One"),
+        ("SRCCOLOR", "SourceColor"),
+        ("INVSRCCOLOR", "OneMinusSourceColor"),
+        ("SRCALPHA", "SourceAlpha"),
+        ("INVSRCALPHA", "OneMinusSourceAlpha"),
+        ("DESTALPHA", "DestinationAlpha"),
+        ("INVDESTALPHA", "OneMinusDestinationAlpha"),
+        ("DESTCOLOR", "DestinationColor"),
+        ("INVDESTCOLOR", "OneMinusDestinationColor"),
+        ("SRCALPHASAT", "SourceAlphaSaturate"),
+    ];
+    const EQUATIONS: &[(&str, &str)] =
+        &[("ADD", "Add"), ("SUBTRACT", "Subtract"), ("REVSUBTRACT", "ReverseSubtract"), ("MIN", "Min"), ("MAX", "Max")];
+    if off(values, "AlphaBlendEnable") {
+        return None;
+    }
+    let equation = match named(values, "BlendOp", EQUATIONS, "Add").as_str() {
+        "Add" => String::new(),
+        other => format!("equation: {other}, "),
+    };
+    let [source, destination] =
+        [("SrcBlend", "One"), ("DestBlend", "Zero")].map(|(state, default)| named(values, state, FACTORS, default));
+    Some(format!("blend: ({equation}source: {source}, destination: {destination})"))
+}
+
+const FUNCTIONS: &[(&str, &str)] = &[
+    ("NEVER", "Never"),
+    ("LESS", "Less"),
+    ("EQUAL", "Equal"),
+    ("LESSEQUAL", "LessOrEqual"),
+    ("GREATER", "Greater"),
+    ("NOTEQUAL", "NotEqual"),
+    ("GREATEREQUAL", "GreaterOrEqual"),
+    ("ALWAYS", "Always"),
+];
+
+fn alpha_test(values: &Values) -> Option<String> {
+    if off(values, "AlphaTestEnable") {
+        return None;
+    }
+    let reference = match find(values, "AlphaRef") {
+        Some(Told::Number(number)) => (number & 255).to_string(),
+        Some(_) => "...".to_owned(),
+        None => "0".to_owned(),
+    };
+    let function = named(values, "AlphaFunc", FUNCTIONS, "Always");
+    Some(format!("alpha_test: (function: {function}, reference: {reference})"))
+}
+
+fn depth_test(values: &Values) -> Option<String> {
+    if off(values, "ZEnable") {
+        return None;
+    }
+    let function = named(values, "ZFunc", FUNCTIONS, "LessOrEqual");
+    Some(format!("depth_test: (function: {function}, write: {})", !off(values, "ZWriteEnable")))
+}
+
+fn fog(values: &Values) -> Option<String> {
+    const MODES: &[(&str, &str)] = &[("EXP", "Exp"), ("EXP2", "Exp2"), ("LINEAR", "Linear")];
+    if off(values, "FogEnable") {
+        return None;
+    }
+    let none = |state| match find(values, state) {
+        None | Some(Told::Number(0)) => true,
+        Some(Told::Word(word)) => word == "NONE",
+        Some(Told::Number(_) | Told::Other) => false,
+    };
+    let (table, vertex) = (!none("FogTableMode"), !none("FogVertexMode"));
+    let mut fields = Vec::new();
+    if table || vertex {
+        let mode = named(values, if table { "FogTableMode" } else { "FogVertexMode" }, MODES, "Linear");
+        let coordinate = match (table, off(values, "RangeFogEnable") || find(values, "RangeFogEnable").is_none()) {
+            (true, _) => "evaluation: PerPixel, coordinate_source: W",
+            (false, true) => "evaluation: PerVertex, coordinate_source: EyePlaneAbsolute",
+            (false, false) => "evaluation: PerVertex, coordinate_source: EyeRadial",
+        };
+        let range = if mode.starts_with("Exp") { "density: ..." } else { "start: ..., end: ..." };
+        fields.extend([format!("mode: {mode}"), range.to_owned(), coordinate.to_owned()]);
+    }
+    let color = match find(values, "FogColor") {
+        Some(Told::Number(number)) => {
+            let [_, r, g, b] = number.to_be_bytes();
+            format!("({r}, {g}, {b})")
+        }
+        Some(_) => "...".to_owned(),
+        None => "(0, 0, 0)".to_owned(),
+    };
+    fields.push(format!("color: {color}"));
+    Some(format!("fog: ({})", fields.join(", ")))
+}
+
+fn cull(values: &Values) -> Option<String> {
+    match named(values, "CullMode", &[("NONE", "None"), ("CW", "Clockwise"), ("CCW", "CounterClockwise")], "None")
+        .as_str()
+    {
+        "None" => None,
+        // What is culled is the back: the front faces the other way round.
+        "Clockwise" => Some("cull: Back".to_owned()),
+        "CounterClockwise" => Some("cull: Back, front_face: Clockwise".to_owned()),
+        other => Some(format!("cull: {other}")),
+    }
+}
+
+fn shade_model(values: &Values) -> Option<String> {
+    let mode = named(values, "ShadeMode", &[("FLAT", "Flat"), ("GOURAUD", "Smooth"), ("PHONG", "Smooth")], "Smooth");
+    (mode != "Smooth").then(|| format!("shade_model: {mode}, provoking_vertex: First"))
+}
+
+fn color_mask(values: &Values) -> Option<String> {
+    match find(values, "ColorWriteEnable") {
+        Some(Told::Number(bits)) if bits & 15 == 15 => None,
+        Some(Told::Number(bits)) => {
+            let channels = [1, 2, 4, 8].map(|bit| (bits & bit != 0).to_string());
+            Some(format!("color_mask: ({})", channels.join(", ")))
+        }
+        _ => Some("color_mask: (true, true, true, true)".to_owned()),
+    }
+}
