@@ -41,7 +41,7 @@ fn program(c: &mut Criterion) {
     let words = encode(&program.combiners, Profile::Nv10);
     group.bench_function("decode words", |b| b.iter(|| decode(black_box(&words))));
     group.bench_function("encode words", |b| b.iter(|| encode(black_box(&program.combiners), Profile::Nv10)));
-    let stages = texture_stages::parse(STAGES).unwrap_or_default();
+    let stages = texture_stages::parse(STAGES).map(|pasted| pasted.program).unwrap_or_default();
     let context = texture_stages::Context { profile: Profile::Nv10, bound: [true; 4], signed: [false; 4], fog: true };
     group.bench_function("read texture stages", |b| b.iter(|| texture_stages::parse(black_box(STAGES))));
     group.bench_function("lower texture stages", |b| b.iter(|| texture_stages::lower(black_box(&stages), &context)));
