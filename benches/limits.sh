@@ -40,7 +40,7 @@ triangle() {
 
 # measure NAME UNITS FRAME_PIXELS
 measure() {
-    "$ninebit" bench "$work/$1.ron" --threads 1 --frames "$frames" --json >"$work/json"
+    "$ninebit" bench "$work/$1.ron" --threads 1 --frames "$frames" --format json >"$work/json"
     awk -v name="$1" -v units="$2" -v frame="$3" '
         function number() { gsub(/[^0-9.]/, ""); return $0 }
         /"shaded_pixels"/ { pixels = number() }

@@ -1,32 +1,57 @@
 //! Files written so that a reader never sees half of one.
 //!
 //! A file is written under a temporary name in its own folder, flushed to the disk and renamed. Whatever goes wrong before the
-//! rename, the old file is untouched and the temporary one is removed.
+//! rename, the old file is untouched and the temporary one is removed; [`abandon`] removes those of a process that is told to end. What a
+//! process leaves that is killed outright is a [leftover](is_leftover), which readers of folders pass over.
 
+use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use image::codecs::png::{CompressionType, FilterType, PngEncoder};
 use image::{ExtendedColorType, ImageEncoder};
 use thiserror::Error;
 
+use crate::{files, shown};
+
 /// Why an output was not written. Nothing of it exists then.
 #[derive(Debug, Error)]
 pub enum OutputError {
     /// The place does not take files.
-    #[error("`{}` is a folder", path.display())]
+    #[error("`{}` is a folder", shown::path(path))]
     Folder {
         /// The output.
         path: PathBuf,
     },
     /// The file system refused.
-    #[error("`{}` cannot be written: {source}", path.display())]
+    #[error("`{}` cannot be written: {source}", shown::path(path))]
     Write {
         /// The output.
         path: PathBuf,
         /// Why.
         source: io::Error,
+    },
+    /// It would take the place of a file that was read.
+    #[error("`{}` is the input{}: nothing was written", shown::path(path), called(path, input))]
+    Input {
+        /// The output.
+        path: PathBuf,
+        /// What the file was called when it was read.
+        input: PathBuf,
+    },
+    /// It would take the place of another output of the same run.
+    #[error("`{}` would be written twice", shown::path(path))]
+    Twice {
+        /// The output.
+        path: PathBuf,
+    },
+    /// It would take the place of a file under version control.
+    #[error("`{}` is there, in a folder under version control", shown::path(path))]
+    Versioned {
+        /// The output.
+        path: PathBuf,
     },
     /// Standard output refused.
     #[error("standard output cannot be written: {source}")]
@@ -54,6 +79,9 @@ impl OutputError {
             OutputError::Write { .. } => "NB0702",
             OutputError::Stdout { .. } => "NB0703",
             OutputError::Encode { .. } => "NB0704",
+            OutputError::Input { .. } => "NB0705",
+            OutputError::Twice { .. } => "NB0706",
+            OutputError::Versioned { .. } => "NB0707",
         }
     }
 
@@ -69,13 +97,26 @@ impl OutputError {
             },
             OutputError::Stdout { .. } => "write to a file with `-o FILE`",
             OutputError::Encode { .. } => "pictures need at least one pixel",
+            OutputError::Input { .. } => "write the output to another file",
+            OutputError::Twice { .. } => "give each output a file of its own",
+            OutputError::Versioned { .. } => "write to another folder, or say `--overwrite`",
         }
+    }
+
+    /// It was not tried, because it would take the place of something else: the command line is wrong.
+    pub fn is_refused(&self) -> bool {
+        matches!(self, OutputError::Input { .. } | OutputError::Twice { .. } | OutputError::Versioned { .. })
     }
 
     /// The reader of standard output went away, as `head` does: no reason for a message.
     pub fn is_broken_pipe(&self) -> bool {
         matches!(self, OutputError::Stdout { source } if source.kind() == io::ErrorKind::BrokenPipe)
     }
+}
+
+/// The name of an input, where the output is called otherwise.
+fn called(path: &Path, input: &Path) -> String {
+    if path == input { String::new() } else { format!(" `{}`", shown::path(input)) }
 }
 
 /// Where output goes: a file, or standard output for `-`.
@@ -97,11 +138,30 @@ impl Destination {
     /// Writes `bytes` there.
     ///
     /// # Errors
-    /// See [`write_file`]; standard output refuses.
+    /// See [`files::claim`] and [`write_file`]; standard output refuses.
     pub fn write(&self, bytes: &[u8]) -> Result<(), OutputError> {
         match self {
-            Destination::File(path) => write_file(path, bytes),
+            Destination::File(path) => {
+                files::claim(path)?;
+                write_file(path, bytes)
+            }
             Destination::Stdout => write_stdout(bytes),
+        }
+    }
+
+    /// Whether it may be written, as far as files have been read: to be asked before much is computed.
+    ///
+    /// # Errors
+    /// See [`files::check`].
+    pub fn check(&self) -> Result<(), OutputError> {
+        files::check(self.path())
+    }
+
+    /// The file.
+    pub fn path(&self) -> Option<&Path> {
+        match self {
+            Destination::File(path) => Some(path),
+            Destination::Stdout => None,
         }
     }
 }
@@ -125,12 +185,13 @@ pub fn make_folder(path: &Path) -> Result<(), OutputError> {
     std::fs::create_dir_all(path).map_err(|source| OutputError::Write { path: path.to_path_buf(), source })
 }
 
-/// [`write_file`] in a folder that is made if it is not there.
+/// Writes an output, in a folder that is made if it is not there.
 ///
 /// # Errors
-/// As [`write_file`] and [`make_folder`].
+/// As [`files::claim`], [`write_file`] and [`make_folder`].
 pub fn write_below(path: &Path, bytes: &[u8]) -> Result<(), OutputError> {
     path.parent().map_or(Ok(()), make_folder)?;
+    files::claim(path)?;
     write_file(path, bytes)
 }
 
@@ -145,6 +206,116 @@ pub fn write_file_with<T>(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::
     Ok(result)
 }
 
+/// How the names of temporary files begin and end.
+const TEMPORARY: (&str, &str) = (".ninebit-", ".part");
+
+/// Whether a file of that name was left by a run that was killed: nobody reads it.
+pub fn is_leftover(name: &OsStr) -> bool {
+    name.to_str().is_some_and(|name| name.starts_with(TEMPORARY.0) && name.ends_with(TEMPORARY.1))
+}
+
+/// Removes what runs that were killed left in a folder. None may be at work in it.
+///
+/// # Errors
+/// The folder cannot be read, a file in it not removed.
+pub fn remove_leftovers(folder: &Path) -> Result<(), OutputError> {
+    let refused = |source| OutputError::Write { path: folder.to_path_buf(), source };
+    for entry in std::fs::read_dir(folder).map_err(refused)? {
+        let entry = entry.map_err(refused)?;
+        if is_leftover(&entry.file_name()) {
+            remove(&entry.path()).map_err(refused)?;
+        }
+    }
+    Ok(())
+}
+
+fn remove(path: &Path) -> io::Result<()> {
+    if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) }
+}
+
+/// Temporary files and folders that are there right now.
+static PENDING: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn pending() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    PENDING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes every temporary file and folder, for a process that ends at once: threads that begin or finish a file from now on wait for ever.
+pub fn abandon() {
+    let pending = pending();
+    for path in pending.iter() {
+        // There is nobody left to tell.
+        let _ = remove(path);
+    }
+    std::mem::forget(pending);
+}
+
+/// An entry of [`PENDING`].
+#[derive(Debug)]
+struct Pending(PathBuf);
+
+impl Pending {
+    /// Makes something temporary and enters it, between which no signal falls.
+    fn enter<T>(make: impl FnOnce() -> io::Result<T>, path: impl FnOnce(&T) -> &Path) -> io::Result<(T, Pending)> {
+        let mut pending = pending();
+        let made = make()?;
+        let path = path(&made).to_path_buf();
+        pending.insert(path.clone());
+        Ok((made, Pending(path)))
+    }
+}
+
+impl Drop for Pending {
+    fn drop(&mut self) {
+        pending().remove(&self.0);
+    }
+}
+
+/// A folder under construction: as a [`PendingFile`], it is at its place as a whole or not at all.
+#[derive(Debug)]
+pub struct PendingFolder {
+    place: PathBuf,
+    temporary: tempfile::TempDir,
+    _pending: Pending,
+}
+
+impl PendingFolder {
+    /// Begins the folder `place`, which must not be there, in a folder that is made if it is not there.
+    ///
+    /// # Errors
+    /// The folder around it cannot be made, or is not writable.
+    pub fn create(place: &Path) -> Result<PendingFolder, OutputError> {
+        let around = place.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+        make_folder(around)?;
+        let mut builder = tempfile::Builder::new();
+        builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
+        let made = Pending::enter(|| builder.tempdir_in(around), |folder| folder.path());
+        let (temporary, pending) =
+            made.map_err(|error| OutputError::Write { path: place.to_path_buf(), source: without_path(error) })?;
+        Ok(PendingFolder { place: place.to_path_buf(), temporary, _pending: pending })
+    }
+
+    /// Where its files are written.
+    pub fn path(&self) -> &Path {
+        self.temporary.path()
+    }
+
+    /// Puts the folder in its place.
+    ///
+    /// # Errors
+    /// Something is there, or the place refuses.
+    pub fn commit(self) -> Result<(), OutputError> {
+        {
+            let _pending = pending();
+            std::fs::rename(self.temporary.path(), &self.place)
+                .map_err(|source| OutputError::Write { path: self.place.clone(), source })?;
+        }
+        // Under its old name there is nothing left to remove.
+        let _ = self.temporary.keep();
+        Ok(())
+    }
+}
+
 /// A file under construction: nothing is at its place until it is [committed](Self::commit), and nothing is left of it if it is not.
 #[derive(Debug)]
 pub struct PendingFile {
@@ -155,8 +326,8 @@ pub struct PendingFile {
 /// Where the bytes go.
 #[derive(Debug)]
 enum Target {
-    /// A temporary file and what it will replace.
-    Temporary(BufWriter<tempfile::NamedTempFile>, PathBuf),
+    /// A temporary file, what it will replace, and its entry, which goes after the file.
+    Temporary(BufWriter<tempfile::NamedTempFile>, PathBuf, Pending),
     /// A place that is no regular file.
     Device(std::fs::File),
 }
@@ -186,7 +357,7 @@ impl PendingFile {
             _ => Path::new("."),
         };
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".ninebit-").suffix(".part");
+        builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
         let permissions = match &existing {
             Some(metadata) => Some(metadata.permissions()),
             None => ordinary_permissions(),
@@ -195,8 +366,12 @@ impl PendingFile {
             // On systems where the mode of a new file is subject to the user's mask, so is this one.
             builder.permissions(permissions);
         }
-        let temporary = builder.tempfile_in(folder).map_err(|error| refused(without_path(error)))?;
-        Ok(PendingFile { path: path.to_path_buf(), target: Target::Temporary(BufWriter::new(temporary), place) })
+        let made = Pending::enter(|| builder.tempfile_in(folder), |file| file.path());
+        let (temporary, pending) = made.map_err(|error| refused(without_path(error)))?;
+        Ok(PendingFile {
+            path: path.to_path_buf(),
+            target: Target::Temporary(BufWriter::new(temporary), place, pending),
+        })
     }
 
     /// An error of writing to it, for people.
@@ -213,9 +388,10 @@ impl PendingFile {
         let refused = |error: io::Error| OutputError::Write { path: path.clone(), source: without_path(error) };
         match self.target {
             Target::Device(mut device) => device.flush().map_err(refused),
-            Target::Temporary(buffered, place) => {
+            Target::Temporary(buffered, place, _entry) => {
                 let temporary = buffered.into_inner().map_err(|error| refused(error.into_error()))?;
                 temporary.as_file().sync_all().map_err(refused)?;
+                let _pending = pending();
                 temporary.persist(&place).map(|_| ()).map_err(|error| refused(error.error))
             }
         }
@@ -225,14 +401,14 @@ impl PendingFile {
 impl Write for PendingFile {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.target {
-            Target::Temporary(buffered, _) => buffered.write(bytes),
+            Target::Temporary(buffered, ..) => buffered.write(bytes),
             Target::Device(device) => device.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.target {
-            Target::Temporary(buffered, _) => buffered.flush(),
+            Target::Temporary(buffered, ..) => buffered.flush(),
             Target::Device(device) => device.flush(),
         }
     }
@@ -262,6 +438,22 @@ fn ordinary_permissions() -> Option<std::fs::Permissions> {
 pub fn write_stdout(bytes: &[u8]) -> Result<(), OutputError> {
     let mut stdout = io::stdout().lock();
     stdout.write_all(bytes).and_then(|()| stdout.flush()).map_err(|source| OutputError::Stdout { source })
+}
+
+/// Writes a text for people to standard output, as [`shown::lines`] has it.
+///
+/// # Errors
+/// As [`write_stdout`].
+pub fn write_text(text: &str) -> Result<(), OutputError> {
+    write_stdout(shown::lines(text).as_bytes())
+}
+
+/// Writes a JSON document to standard output, as [`shown::json`] has it, and ends its last line.
+///
+/// # Errors
+/// As [`write_stdout`].
+pub fn write_json(document: &str) -> Result<(), OutputError> {
+    write_stdout(format!("{}\n", shown::json(document.trim_end())).as_bytes())
 }
 
 /// What a PNG is made for. The pixels are the same.

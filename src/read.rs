@@ -1,16 +1,15 @@
-//! The one place through which files are read: never more of them than a limit, and noted down where somebody asks.
+//! The one place through which files are read: never more of them than a limit, and noted in [`files`].
 //!
 //! A caller states what a file may be. What a scene or a folder names must be a regular file, and is looked at before it is opened: opening a pipe would wait
 //! for its other end. What a person names on the command line may be a pipe.
 
-use std::collections::BTreeSet;
 use std::fs::{File, Metadata};
 use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
+use std::path::Path;
 
 use thiserror::Error;
 
+use crate::files;
 use crate::limits::{FileLimit, PAGE};
 
 /// What a file may be.
@@ -90,11 +89,8 @@ fn open(path: &Path, kind: Kind, limit: FileLimit) -> Result<(File, Metadata), R
     if metadata.is_file() && metadata.len() > limit.bytes {
         return Err(ReadError::TooLarge(limit));
     }
-    let file = File::open(path)?;
-    if let Some(record) = record().as_mut() {
-        record.insert(path.to_path_buf());
-    }
-    Ok((file, metadata))
+    files::note(path);
+    Ok((File::open(path)?, metadata))
 }
 
 /// What a file's size says may be outdated, and of a device it says nothing: what counts is what arrives.
@@ -114,23 +110,6 @@ fn within(mut reader: impl Read, limit: FileLimit, mut take: impl FnMut(&[u8])) 
         }
         take(&part[..read]);
     }
-}
-
-/// Files that were opened since [`start_record`]; nothing if nobody asked.
-static RECORD: Mutex<Option<BTreeSet<PathBuf>>> = Mutex::new(None);
-
-fn record() -> std::sync::MutexGuard<'static, Option<BTreeSet<PathBuf>>> {
-    RECORD.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// From now on every file that this process opens for reading through this module is noted down, on all threads: outputs must not replace inputs.
-pub fn start_record() {
-    record().get_or_insert_default();
-}
-
-/// The files noted down so far, as they were named, each once, in order.
-pub fn recorded() -> Vec<PathBuf> {
-    record().iter().flatten().cloned().collect()
 }
 
 #[cfg(test)]
@@ -167,21 +146,5 @@ mod tests {
         assert!(matches!(bytes(zero, Kind::Stream, LIMIT), Err(ReadError::TooLarge(_))));
         assert!(matches!(bytes(Path::new("."), Kind::Stream, LIMIT), Err(ReadError::NotRegular)));
         assert!(matches!(bytes(Path::new("nothing"), Kind::Stream, LIMIT), Err(ReadError::Missing)));
-    }
-
-    #[test]
-    fn files_are_noted_down_once_somebody_asks() {
-        let folder = tempfile::tempdir().expect("folder");
-        let [before, after] = ["before", "after"].map(|name| folder.path().join(name));
-        for path in [&before, &after] {
-            std::fs::write(path, b"x").expect("writes");
-        }
-        bytes(&before, Kind::Regular, LIMIT).expect("reads");
-        start_record();
-        bytes(&after, Kind::Regular, LIMIT).expect("reads");
-        bytes(&folder.path().join("nothing"), Kind::Regular, LIMIT).expect_err("missing");
-        // Other tests of this process may read at the same time.
-        let ours: Vec<PathBuf> = recorded().into_iter().filter(|path| path.starts_with(folder.path())).collect();
-        assert_eq!(ours, [after]);
     }
 }

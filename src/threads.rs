@@ -8,3 +8,17 @@ pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T
         None => work(),
     }
 }
+
+/// How many threads [`on_threads`] works with.
+pub fn count(threads: usize) -> usize {
+    on_threads(threads, rayon::current_num_threads)
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn none_is_one_a_core() {
+        assert!(super::count(0) > 0);
+        assert_eq!(super::count(3), 3);
+    }
+}

@@ -82,6 +82,20 @@ fn the_oracle_is_independent() {
     }
 }
 
+/// What others have named reaches people and reports through `shown`.
+#[test]
+fn names_are_shown_in_one_place() {
+    for (file, text) in sources("src") {
+        assert!(file == "src/shown.rs" || !text.contains(".display()"), "{file}: `shown::path` shows a path");
+        // Annotations are commands, and tables of numbers have no names in them.
+        let bytes = ["src/output.rs", "src/cli/replay.rs", "src/cli/op/table.rs"];
+        assert!(
+            bytes.contains(&file.as_str()) || !text.contains("write_stdout"),
+            "{file}: `write_text` or `write_json`"
+        );
+    }
+}
+
 /// Files in `tests` are no test binaries by themselves here: one that nobody names would never run.
 #[test]
 fn every_test_file_runs() {

@@ -154,3 +154,37 @@ mod unix {
         outcome.unwrap();
     }
 }
+
+/// A folder that cannot be put in its place leaves nothing, as one that is given up.
+#[test]
+fn folders_arrive_whole_or_not_at_all() {
+    use ninebit::output::PendingFolder;
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path().join("around/made");
+    let begin = || {
+        let pending = PendingFolder::create(&place).unwrap();
+        write_file(&pending.path().join("file"), b"x").unwrap();
+        pending
+    };
+    drop(begin());
+    assert_eq!(listing(&folder.path().join("around")), [""; 0]);
+    begin().commit().unwrap();
+    assert_eq!(listing(&place), ["file"]);
+    assert_eq!(begin().commit().expect_err("something is there").code(), "NB0702");
+    assert_eq!(listing(&folder.path().join("around")), ["made"]);
+    write_file(&folder.path().join("file"), b"x").unwrap();
+    PendingFolder::create(&folder.path().join("file/made")).expect_err("no folder can be made there");
+}
+
+#[test]
+fn leftovers_are_known_by_their_names() {
+    use ninebit::output::{is_leftover, remove_leftovers};
+    let folder = tempfile::tempdir().unwrap();
+    for name in [".ninebit-a1B2c3.part", "ninebit-a.part", ".ninebit-a.png", "a.part"] {
+        write_file(&folder.path().join(name), b"x").unwrap();
+    }
+    fs::create_dir(folder.path().join(".ninebit-folder.part")).unwrap();
+    assert!(is_leftover(OsStr::new(".ninebit-x.part")) && !is_leftover(OsStr::new("x.part")));
+    remove_leftovers(folder.path()).unwrap();
+    assert_eq!(listing(folder.path()), [".ninebit-a.png", "a.part", "ninebit-a.part"]);
+}

@@ -54,7 +54,7 @@ fn a_wrong_command_line_is_status_2() {
     bench.run("render scene.ron -o x.png --threads many").failed(2, "not a number from 0 to 1024");
     bench.run("trace scene.ron").failed(2, "--pixel");
     bench.run("trace scene.ron --pixel 3").failed(2, "not of the form X,Y");
-    bench.run("render scene.ron -o - --stats json").failed(2, "cannot both go to stdout");
+    bench.run("render scene.ron -o - --format json").failed(2, "cannot both go to stdout");
     bench.run("generate normal-map height.png -o n.png --scale NaN").failed(2, "not a finite number");
     bench.run("generate height-rocks -o h.png --size 8").failed(2, "16..=2048");
     bench.run("generate hemisphere-normals").failed(2, "--output");
@@ -259,9 +259,9 @@ fn scenes_are_timed() {
     let bench = Bench::new();
     bench.write("scene.ron", SCENE);
     let text = bench.run("bench scene.ron --frames 2 --threads 1 --isa baseline").text();
-    assert!(text.starts_with("engine fast, baseline, 1 thread(s)") && text.contains("scene.ron"), "{text}");
+    assert!(text.starts_with("engine fast, baseline, 1 thread. ") && text.contains("scene.ron"), "{text}");
     let document: serde_json::Value =
-        serde_json::from_slice(&bench.run("bench scene.ron scene.ron --frames 3 --engine scalar --json").data())
+        serde_json::from_slice(&bench.run("bench scene.ron scene.ron --frames 3 --engine scalar --format json").data())
             .unwrap();
     assert_eq!((&document["format"], &document["engine"]), (&"ninebit-bench-1".into(), &"scalar".into()));
     let scenes = document["scenes"].as_array().unwrap();
@@ -314,7 +314,7 @@ fn scenes_are_rendered() {
 fn statistics_are_json_on_stdout() {
     let bench = Bench::new();
     bench.write("scene.ron", SCENE);
-    let text = bench.run("render scene.ron -o frame.png --stats json").text();
+    let text = bench.run("render scene.ron -o frame.png --format json").text();
     let json: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(json["draws"][0]["name"], "triangle");
     assert_eq!(json["shaded_pixels"], json["draws"][0]["shaded_pixels"]);

@@ -25,11 +25,11 @@ fn text_and_json_say_the_same() {
     let text = bench.run("compare off.ron --mode follow").text();
     assert!(text.contains("expansion") && !text.contains("CMB-3"), "{text}");
     let value: serde_json::Value =
-        serde_json::from_str(&bench.run("compare off.ron --mode follow --json").text()).unwrap();
+        serde_json::from_str(&bench.run("compare off.ron --mode follow --format json").text()).unwrap();
     assert_eq!(value["format"], "ninebit-comparison-1");
     assert_eq!(value["channels"]["r"]["max"], 1.0);
     assert!(text.contains("1.0000"), "{text}");
-    let same = bench.run("compare off.ron --mode follow --format json").text();
+    let same = bench.run("compare off.ron --mode follow --json").text();
     assert_eq!(serde_json::from_str::<serde_json::Value>(&same).unwrap(), value);
     let rules = bench.run("compare off.ron --mode per-op").text();
     assert!(rules.contains("CMB-3") && rules.contains("-1.000 to 1.000") && !rules.contains("EXCEEDED"), "{rules}");

@@ -112,7 +112,7 @@ fn what_does_not_go_together_is_refused() {
         ("cube.dds --format DXT2", 2, "not one of A8R8G8B8"),
         ("cube.dds --profile nv11", 2, "not one of Nv10, Nv2a"),
         ("cube.dds --palette red", 2, "SCENE.ron:NAME"),
-        ("cube.dds --decode -o cube.dds", 2, "is the input"),
+        ("cube.dds --decode -o cube.dds", 2, "this command writes PNG"),
         ("scene.ron", 2, "scene.ron:bricks"),
         ("scene.ron:gravel", 2, "no texture `gravel`"),
         ("scene.ron:bricks --profile Nv2a", 2, "leave out `--profile`"),

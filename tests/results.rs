@@ -385,3 +385,20 @@ fn nothing_is_adopted_by_halves() {
     refused(&["-o", "adopted"], 3);
     assert_eq!(asked.run(&["compare", "pack", "results"]).status.code(), Some(1), "a failed draw is a difference");
 }
+
+#[test]
+fn what_a_killed_run_left_and_what_a_card_calls_itself_harm_nobody() {
+    let asked = Asked::new();
+    asked.answer("::error::injected\n::error::again", "\u{1b}[31mred\u{202e}##[error]old", Policies::DEFAULT);
+    fs::write(asked.results().join(".ninebit-a1B2c3.part"), "half a file").unwrap();
+    for command in ["compare", "adopt"] {
+        let output = asked.run(&[command, "pack", "results"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let order = |line: &str| {
+            line.trim_start().starts_with("::") || line.contains("##[") || line.contains(['\u{1b}', '\u{202e}'])
+        };
+        assert!(!text.lines().any(order), "{text:?}");
+        assert!(text.contains(r"\u{1b}[31mred\u{202e}"), "{text:?}");
+    }
+}

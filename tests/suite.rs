@@ -37,6 +37,8 @@ mod cli;
 mod cli_chart;
 mod cli_compare;
 mod cli_measure;
+mod cli_names;
+mod cli_outputs;
 mod cli_texture;
 mod combiner_language;
 mod compare;

@@ -33,7 +33,7 @@ fn what_vertices_have_in_common_is_held_once() {
 fn a_million_triangles_fit_into_64_megabytes() {
     let bench = Bench::new();
     bench.write("grid.ron", text(1000, 500, 1600, 1250));
-    let told = bench.run("bench grid.ron --frames 1 --json --threads 1").data();
+    let told = bench.run("bench grid.ron --frames 1 --format json --threads 1").data();
     let told: serde_json::Value = serde_json::from_slice(&told).unwrap();
     if let Some(peak) = told["scenes"][0]["peak_memory_bytes"].as_u64() {
         assert!(peak <= (64 << 20) + 4 * 1600 * 1250, "{peak} bytes");

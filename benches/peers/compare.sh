@@ -38,7 +38,7 @@ while [ "$round" -lt "$rounds" ]; do
     done
     for n in 1 2 3 4 5 6; do
         # shellcheck disable=SC2086
-        $pin "$ninebit" bench "$scenes/w$n.ron" --threads "$threads" ${isa:+--isa "$isa"} --json |
+        $pin "$ninebit" bench "$scenes/w$n.ron" --threads "$threads" ${isa:+--isa "$isa"} --format json |
             awk -v name="w$n" '
                 /"shaded_pixels"/ { gsub(/[^0-9]/, ""); pixels = $0 }
                 /"ns_per_shaded_pixel"/ { inside = 1 }

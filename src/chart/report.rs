@@ -41,6 +41,8 @@ pub struct Measured {
     pub curves: Vec<Curve>,
     /// Few frames were timed.
     pub quick: bool,
+    /// What is missing, because this program failed on it.
+    pub failed: Vec<String>,
 }
 
 /// A number of something, with its place in tables and data.
@@ -109,8 +111,12 @@ impl Measured {
 
     fn machine(&self) -> String {
         let effort = if self.quick { "one frame each, to see that it works" } else { "medians of at least 21 frames" };
+        let missing = match &self.failed[..] {
+            [] => String::new(),
+            failed => format!(" Internal errors kept out: {}.", failed.join(", ")),
+        };
         format!(
-            "Measured by ninebit {} on {} {}, instruction set {}, one thread, processor time, {effort}.",
+            "Measured by ninebit {} on {} {}, instruction set {}, one thread, processor time, {effort}.{missing}",
             env!("CARGO_PKG_VERSION"),
             std::env::consts::ARCH,
             std::env::consts::OS,
@@ -293,6 +299,7 @@ impl Measured {
             "evaluators": self.evaluators,
             "surfaces": self.surfaces,
             "curves": self.curves,
+            "failed": self.failed,
         })
     }
 }

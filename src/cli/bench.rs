@@ -7,15 +7,17 @@ use std::time::Instant;
 
 use clap::Args;
 use ninebit::engine::Renderer;
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
 use ninebit::read::page;
+use ninebit::shown;
 use ninebit::state::Named;
+use ninebit::threads;
 use serde::Serialize;
 
-use super::Context;
 use super::engine::EngineArguments;
 use super::exit::Failure;
-use super::scene::{PolicyArguments, load};
+use super::scene::{Failed, PolicyArguments, each, load};
+use super::{Context, Format, FormatArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -29,9 +31,8 @@ pub(crate) struct Arguments {
     /// Frames that are timed of each scene
     #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     frames: u32,
-    /// Print one JSON document
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    format: FormatArguments,
 }
 
 /// What was measured of a scene.
@@ -86,28 +87,22 @@ struct Document {
     isa: &'static str,
     threads: usize,
     scenes: Vec<Measured>,
+    failed: Vec<Failed>,
 }
 
 /// Draws each scene many times and prints how long that takes.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let options = arguments.engine.options()?;
-    let mut document = Document {
-        format: "ninebit-bench-1",
-        version: env!("CARGO_PKG_VERSION"),
-        engine: options.engine.name(),
-        isa: "",
-        threads: options.threads,
-        scenes: Vec::new(),
-    };
+    let mut isa = "";
     let is_scene = |path: &&PathBuf| !path.to_string_lossy().ends_with(".expect.ron");
-    let scenes: Vec<&PathBuf> = arguments.scenes.iter().filter(is_scene).collect();
+    let scenes: Vec<&Path> = arguments.scenes.iter().filter(is_scene).map(PathBuf::as_path).collect();
     if scenes.is_empty() {
         return Err(Failure::usage(
             "nothing to measure",
             "expectations (`*.expect.ron`) are no scenes; name the scene",
         ));
     }
-    for path in scenes {
+    let measured = each(&scenes, context, |path| {
         forget_peak_memory();
         let mut last = Instant::now();
         let mut lap = || {
@@ -120,7 +115,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let load_microseconds = lap();
         let renderer = Renderer::new(&plan, &options);
         let prepare_microseconds = lap();
-        document.isa = renderer.isa().name();
+        isa = renderer.isa().name();
         let (mut frames, statistics) = renderer.render();
         let shaded_pixels: u64 = statistics.shaded_pixels.iter().sum();
         lap();
@@ -132,8 +127,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             .collect();
         times.sort_by(f64::total_cmp);
         let frame_microseconds = Spread::of(&times);
-        document.scenes.push(Measured {
-            scene: path.display().to_string(),
+        Ok(Measured {
+            scene: shown::lossless(path),
             engine: renderer.engine().name(),
             shaded_pixels,
             frames: arguments.frames,
@@ -142,14 +137,24 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             frame_microseconds,
             ns_per_shaded_pixel: frame_microseconds.times(1e3 / (shaded_pixels.max(1) as f64)),
             peak_memory_bytes: peak_memory(),
-        });
-    }
-    let text = if arguments.json {
-        serde_json::to_string_pretty(&document).unwrap_or_default() + "\n"
-    } else {
-        text(&document)
+        })
+    });
+    let end = measured.end();
+    let document = Document {
+        format: "ninebit-bench-1",
+        version: env!("CARGO_PKG_VERSION"),
+        engine: options.engine.name(),
+        isa,
+        threads: threads::count(options.threads),
+        scenes: measured.made,
+        failed: measured.failed,
     };
-    Ok(write_stdout(text.as_bytes())?)
+    match arguments.format.get() {
+        _ if document.scenes.is_empty() => {}
+        Format::Text => write_text(&text(&document))?,
+        Format::Json => write_json(&serde_json::to_string_pretty(&document).unwrap_or_default())?,
+    }
+    end
 }
 
 /// Starts the peak of resident memory anew, where the system allows it; where not, earlier scenes count.
@@ -166,9 +171,17 @@ fn peak_memory() -> Option<u64> {
 
 fn text(document: &Document) -> String {
     let mut text = format!(
-        "engine {}, {}, {} thread(s); 0 is one a core. ns a shaded pixel: median (10 % of the frames below, 90 % below).\n\
+        "engine {}, {}, {} thread{}. ns a shaded pixel: median (10 % of the frames below, 90 % below).\n\
          {:>10} {:>10} {:>10} {:>10} {:>22}  scene\n",
-        document.engine, document.isa, document.threads, "pixels", "ms set-up", "MB peak", "ms a frame", "ns a pixel"
+        document.engine,
+        document.isa,
+        document.threads,
+        if document.threads == 1 { "" } else { "s" },
+        "pixels",
+        "ms set-up",
+        "MB peak",
+        "ms a frame",
+        "ns a pixel"
     );
     for measured in &document.scenes {
         let pixel = measured.ns_per_shaded_pixel;
@@ -184,7 +197,7 @@ fn text(document: &Document) -> String {
             peak,
             measured.frame_microseconds.median / 1e3,
             spread,
-            measured.scene
+            shown::name(&measured.scene)
         );
     }
     text

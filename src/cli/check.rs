@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
+use ninebit::shown;
 use ninebit::state::{Named, Scene};
 use serde_json::json;
 
@@ -25,14 +26,14 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, _) = arguments.scene.load(context)?;
     let cost = Cost::of(&scene);
-    let text = match arguments.format {
-        Format::Text => text(&scene, &cost),
+    match arguments.format {
+        Format::Text => write_text(&text(&scene, &cost))?,
         Format::Json => {
             let value = json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost });
-            format!("{value:#}\n")
+            write_json(&format!("{value:#}"))?;
         }
-    };
-    Ok(write_stdout(text.as_bytes())?)
+    }
+    Ok(())
 }
 
 /// The cost as a table.
@@ -46,7 +47,7 @@ fn text(scene: &Scene, cost: &Cost) -> String {
     for target in &scene.targets {
         let depth = target.depth.map_or(String::new(), |depth| format!(", depth {}", depth.format.name()));
         let (width, height, format) = (target.width, target.height, target.format.name());
-        row("target", format!("{}: {width} x {height}, {format}{depth}", target.name));
+        row("target", format!("{}: {width} x {height}, {format}{depth}", shown::name(&target.name)));
     }
     row("target pixels", cost.target_pixels.to_string());
     row("textures", format!("{} ({})", scene.textures.len(), bytes(cost.texture_bytes)));

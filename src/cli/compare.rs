@@ -1,16 +1,14 @@
 //! `ninebit compare`.
 
-use std::ffi::OsString;
-
 use clap::{Args, ValueEnum};
 use ninebit::compare::{
     ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
 };
-use ninebit::output::{Compression, Destination, encode_png, write_stdout};
+use ninebit::output::{Compression, Destination, encode_png, write_json, write_text};
 
 use super::exit::{Exit, Failure, Report};
-use super::scene::{SceneArguments, chosen_target, refuse_overwriting};
-use super::{Context, Format};
+use super::scene::{SceneArguments, chosen_target};
+use super::{Context, Format, FormatArguments, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -23,14 +21,10 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
     /// A picture of the errors with its scale, a PNG
-    #[arg(long, value_name = "DIFF.png")]
-    heatmap: Option<OsString>,
-    /// How to print the result
-    #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "json")]
-    format: Format,
-    /// The same as `--format json`
-    #[arg(long)]
-    json: bool,
+    #[arg(long, value_name = "DIFF.png", value_parser = picture::png())]
+    heatmap: Option<Destination>,
+    #[command(flatten)]
+    format: FormatArguments,
     /// Threads; 0 takes all cores
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = super::engine::threads)]
     threads: usize,
@@ -48,15 +42,12 @@ enum ModeArgument {
 
 /// Compares a scene with its ideal.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let destination = arguments.heatmap.as_deref().map(Destination::from);
-    if destination == Some(Destination::Stdout) {
+    let destination = arguments.heatmap.as_ref();
+    if destination == Some(&Destination::Stdout) {
         return Err(Failure::usage(
             "the picture and the report cannot both go to stdout",
             "write the picture to a file",
         ));
-    }
-    if let Some(destination) = &destination {
-        refuse_overwriting(&arguments.scene.scene, destination)?;
     }
     let mode = match arguments.mode {
         ModeArgument::Free => Mode::Free,
@@ -64,6 +55,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         ModeArgument::PerOp => Mode::PerOp,
     };
     let (scene, plan) = arguments.scene.load(context)?;
+    destination.map_or(Ok(()), Destination::check)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     let comparison =
         compare(&plan, &CompareOptions { mode, target, threads: arguments.threads, channels: ALL_CHANNELS });
@@ -71,11 +63,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let (width, height, pixels) = heat_map(&comparison).map_err(|error| no_picture(&error))?;
         destination.write(&encode_png(width, height, &pixels, Compression::Small)?)?;
     }
-    let text = match (arguments.json, arguments.format) {
-        (false, Format::Text) => comparison_text(&plan, &comparison),
-        (true, _) | (_, Format::Json) => comparison_json(&plan, &comparison),
-    };
-    write_stdout(text.as_bytes())?;
+    match arguments.format.get() {
+        Format::Text => write_text(&comparison_text(&plan, &comparison))?,
+        Format::Json => write_json(&comparison_json(&plan, &comparison))?,
+    }
     if comparison.rules.iter().any(|rule| rule.exceeds()) {
         return Err(Failure {
             exit: Exit::Difference,

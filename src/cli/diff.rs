@@ -2,19 +2,19 @@
 
 mod report;
 
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use ninebit::diff::{self, Difference, Options};
 use ninebit::engine::{self, PixelTrace, RenderOptions};
-use ninebit::output::{Compression, Destination, encode_png, write_stdout};
+use ninebit::output::{Compression, Destination, encode_png, write_json, write_text};
 use ninebit::plan::Plan;
 use ninebit::scene::image::{self, ImageLimits, Rgba};
+use ninebit::shown;
 
 use super::exit::Failure;
-use super::scene::{PolicyArguments, chosen_target, load, refuse_overwriting};
-use super::{Context, Format};
+use super::scene::{PolicyArguments, chosen_target, load};
+use super::{Context, Format, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -42,8 +42,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
     format: Format,
     /// Draw the difference: amplified where the pictures differ, a dark grey A where they do not
-    #[arg(short, long, value_name = "DIFF.png")]
-    output: Option<OsString>,
+    #[arg(short, long, value_name = "DIFF.png", value_parser = picture::png())]
+    output: Option<Destination>,
 }
 
 /// The most regions that can be asked for.
@@ -74,17 +74,12 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     if arguments.scene.is_none() && !arguments.policies.is_empty() {
         return Err(Failure::usage("a policy has no effect without a scene", "name the scene with `--scene SCENE`"));
     }
-    let destination = arguments.output.as_deref().map(Destination::from);
-    if destination == Some(Destination::Stdout) {
+    let destination = arguments.output.as_ref();
+    if destination == Some(&Destination::Stdout) {
         return Err(Failure::usage(
             "the picture and the report cannot both go to stdout",
             "write the picture to a file",
         ));
-    }
-    if let Some(destination) = &destination {
-        for input in [Some(&arguments.a), Some(&arguments.b), arguments.scene.as_ref()].into_iter().flatten() {
-            refuse_overwriting(input, destination)?;
-        }
     }
     let limits = ImageLimits::default();
     let (a, b) = (image::load(&arguments.a, &limits)?, image::load(&arguments.b, &limits)?);
@@ -94,16 +89,15 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         Some(path) => Some(scene(path, arguments, [&a, &b], &difference, context)?),
         None => None,
     };
-    let picture = match &destination {
+    let picture = match destination {
         Some(destination) => Some(draw(destination, arguments, &a, &b)?),
         None => None,
     };
     let findings = Findings { arguments, difference, scene, picture };
-    let text = match arguments.format {
-        Format::Text => report::text(&findings),
-        Format::Json => format!("{:#}\n", report::json(&findings)),
-    };
-    write_stdout(text.as_bytes())?;
+    match arguments.format {
+        Format::Text => write_text(&report::text(&findings))?,
+        Format::Json => write_json(&format!("{:#}", report::json(&findings)))?,
+    }
     if findings.difference.different == 0 { Ok(()) } else { Err(Failure::difference()) }
 }
 
@@ -122,7 +116,7 @@ fn scene<'a>(
     let other_size = || {
         let message = format!(
             "target `{name}` of `{}` is {width} x {height}, the pictures are {} x {}",
-            path.display(),
+            shown::path(path),
             difference.width,
             difference.height
         );
@@ -149,17 +143,16 @@ fn draw(destination: &Destination, arguments: &Arguments, a: &Rgba, b: &Rgba) ->
     let drawn = diff::highlight(a, b, arguments.ignore_alpha).map_err(|_| different_sizes(arguments, a, b))?;
     let picture = &drawn.picture;
     destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Fast)?)?;
-    let name = arguments.output.as_deref().map_or(String::new(), |name| Path::new(name).display().to_string());
-    Ok((name, drawn.scale))
+    Ok((destination.path().map_or(String::new(), shown::lossless), drawn.scale))
 }
 
 fn different_sizes(arguments: &Arguments, a: &Rgba, b: &Rgba) -> Failure {
     let message = format!(
         "the pictures differ in size: `{}` is {} x {}, `{}` is {} x {}",
-        arguments.a.display(),
+        shown::path(&arguments.a),
         a.width,
         a.height,
-        arguments.b.display(),
+        shown::path(&arguments.b),
         b.width,
         b.height
     );

@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use ninebit::guard::Panic;
 use ninebit::output::OutputError;
+use ninebit::scene::SceneError;
 use ninebit::scene::image::ImageError;
+use ninebit::shown;
 
 /// Exit status of the program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,11 +66,13 @@ pub(crate) enum Report {
     Silent,
     /// Finished text, ready to print.
     Text(String),
+    /// Everything that is wrong with a scene.
+    Scene(Box<SceneError>),
     /// A message, its code and what to do.
     Message {
         /// `NB` and four digits.
         code: Option<&'static str>,
-        /// One line.
+        /// One line, or more where that was made of [shown](ninebit::shown) ones.
         message: String,
         /// One line.
         help: Option<String>,
@@ -82,23 +87,45 @@ impl Failure {
 
     /// Something that was given is not valid.
     pub(crate) fn invalid(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
-        let report = Report::Message { code: Some(code), message: message.into(), help: Some(help.into()) };
-        Failure { exit: Exit::Invalid, report }
+        Failure { exit: Exit::Invalid, report: Report::message(Some(code), &message.into(), &help.into()) }
     }
 
     /// Nothing of a scene can be measured.
     pub(crate) fn unseen(scene: &Path) -> Self {
         Failure::invalid(
             "NB0395",
-            format!("no pixel of `{}` that has a truth is drawn", scene.display()),
+            format!("no pixel of `{}` that has a truth is drawn", shown::path(scene)),
             "look at the picture: is the mesh in view, and drawn into the first target?",
         )
     }
 
     /// The command line is wrong.
     pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
-        let report = Report::Message { code: None, message: message.into(), help: Some(help.into()) };
-        Failure { exit: Exit::Usage, report }
+        Failure { exit: Exit::Usage, report: Report::message(None, &message.into(), &help.into()) }
+    }
+}
+
+impl Report {
+    /// A message of one line, whatever names are in it.
+    pub(crate) fn message(code: Option<&'static str>, message: &str, help: &str) -> Self {
+        let help = Some(shown::name(help).into_owned());
+        Report::Message { code, message: shown::name(message).into_owned(), help }
+    }
+
+    /// The text without colour.
+    pub(crate) fn plain(&self) -> String {
+        match self {
+            Report::Silent => String::new(),
+            Report::Text(text) => text.clone(),
+            Report::Scene(error) => error.render(false),
+            Report::Message { code, message, .. } => code.map_or(String::new(), |code| format!("{code} ")) + message,
+        }
+    }
+}
+
+impl From<Panic> for Failure {
+    fn from(panic: Panic) -> Self {
+        Failure { exit: Exit::Internal, report: Report::message(Some(Panic::CODE), &panic.to_string(), Panic::HELP) }
     }
 }
 
@@ -108,7 +135,8 @@ impl From<OutputError> for Failure {
             // The reader has seen enough.
             return Failure { exit: Exit::Success, report: Report::Silent };
         }
-        Failure { exit: Exit::Output, report: message(error.code(), &error, error.help()) }
+        let exit = if error.is_refused() { Exit::Usage } else { Exit::Output };
+        Failure { exit, report: Report::message(Some(error.code()), &error.to_string(), error.help()) }
     }
 }
 
@@ -125,10 +153,6 @@ impl From<ImageError> for Failure {
         } else {
             error.help()
         };
-        Failure { exit, report: message(error.code(), &error, help) }
+        Failure { exit, report: Report::message(Some(error.code()), &error.to_string(), help) }
     }
-}
-
-fn message(code: &'static str, error: &dyn std::error::Error, help: &str) -> Report {
-    Report::Message { code: Some(code), message: error.to_string(), help: Some(help.to_owned()) }
 }

@@ -3,7 +3,7 @@
 use clap::Args;
 use ninebit::engine;
 use ninebit::explain::{explain, explanation_json, explanation_text};
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
 
 use super::exit::Failure;
 use super::scene::SceneArguments;
@@ -26,9 +26,9 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let (scene, plan) = arguments.scene.load(context)?;
     let draws = explain(&scene, &plan);
     let counted = arguments.count.then(|| engine::count(&plan));
-    let text = match arguments.format {
-        Format::Text => explanation_text(&plan, &draws, counted.as_deref()),
-        Format::Json => explanation_json(&plan, &draws, counted.as_deref()),
-    };
-    Ok(write_stdout(text.as_bytes())?)
+    match arguments.format {
+        Format::Text => write_text(&explanation_text(&plan, &draws, counted.as_deref()))?,
+        Format::Json => write_json(&explanation_json(&plan, &draws, counted.as_deref()))?,
+    }
+    Ok(())
 }

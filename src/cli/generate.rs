@@ -1,10 +1,10 @@
 //! `ninebit generate`.
 
-use std::ffi::OsString;
 use std::path::PathBuf;
 
 use clap::builder::RangedI64ValueParser;
 use clap::{Args, Subcommand, ValueEnum};
+use ninebit::files;
 use ninebit::generate::cube::{self, Content};
 use ninebit::generate::normal_map::{self, HeightChannel};
 use ninebit::generate::sky::{self, HemisphereLight};
@@ -13,7 +13,7 @@ use ninebit::output::{Compression, Destination, encode_png};
 use ninebit::scene::image::{self, ImageLimits, Rgba};
 
 use super::exit::Failure;
-use super::scene::refuse_overwriting;
+use super::picture;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
@@ -66,8 +66,8 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 pub(crate) struct HeightNoise {
     /// The height field, a grey PNG; `-` is stdout
-    #[arg(short, long, value_name = "HEIGHT.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "HEIGHT.png", value_parser = picture::png())]
+    output: Destination,
     /// Columns and rows
     #[arg(long, default_value_t = 128, value_parser = side())]
     size: u32,
@@ -87,8 +87,8 @@ pub(crate) struct Occlusion {
     #[command(flatten)]
     field: HeightField,
     /// The occlusion, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "OPEN.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "OPEN.png", value_parser = picture::png())]
+    output: Destination,
     /// Put it into the alpha of this normal map, which has the height field's size
     #[arg(long, value_name = "NORMAL.png")]
     normal_map: Option<PathBuf>,
@@ -97,8 +97,8 @@ pub(crate) struct Occlusion {
 #[derive(Debug, Args)]
 pub(crate) struct NormalisationCube {
     /// The cube map, a DDS file; `-` is stdout
-    #[arg(short, long, value_name = "CUBE.dds")]
-    output: OsString,
+    #[arg(short, long, value_name = "CUBE.dds", value_parser = picture::dds())]
+    output: Destination,
     /// Columns and rows of a face: a power of two
     #[arg(long, default_value_t = 32, value_parser = cube_side)]
     size: u32,
@@ -147,8 +147,8 @@ pub(crate) struct HalfComponent {
     /// The normal map, PNG or TGA
     normals: PathBuf,
     /// The half component, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "HALF.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "HALF.png", value_parser = picture::png())]
+    output: Destination,
     /// Which component
     #[arg(long, value_enum)]
     axis: Axis,
@@ -170,8 +170,8 @@ enum Axis {
 #[derive(Debug, Args)]
 pub(crate) struct PowerTable {
     /// The table, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "TABLE.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "TABLE.png", value_parser = picture::png())]
+    output: Destination,
     /// The power
     #[arg(long, value_parser = clap::value_parser!(u32).range(1..=65536))]
     exponent: u32,
@@ -188,8 +188,8 @@ pub(crate) struct NormalMap {
     #[command(flatten)]
     field: HeightField,
     /// The normal map, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "NORMAL.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "NORMAL.png", value_parser = picture::png())]
+    output: Destination,
 }
 
 /// A height field and how it is read.
@@ -222,8 +222,8 @@ enum Channel {
 #[derive(Debug, Args)]
 pub(crate) struct HeightRocks {
     /// The height field, a grey PNG; `-` is stdout
-    #[arg(short, long, value_name = "HEIGHT.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "HEIGHT.png", value_parser = picture::png())]
+    output: Destination,
     /// Columns and rows
     #[arg(long, default_value_t = 256, value_parser = side())]
     size: u32,
@@ -235,8 +235,8 @@ pub(crate) struct HeightRocks {
 #[derive(Debug, Args)]
 pub(crate) struct HemisphereNormals {
     /// The normal map, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "NORMAL.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "NORMAL.png", value_parser = picture::png())]
+    output: Destination,
     /// Columns and rows
     #[arg(long, default_value_t = 256, value_parser = side())]
     size: u32,
@@ -256,14 +256,14 @@ pub(crate) struct HemisphereNormals {
 pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::NormalMap(arguments) => {
-            let destination = Destination::from(arguments.output.as_os_str());
-            let (height, options) = arguments.field.load(&destination)?;
-            write(&normal_map::from_height(&height, &options), &destination)
+            let destination = &arguments.output;
+            let (height, options) = arguments.field.load(destination)?;
+            write(&normal_map::from_height(&height, &options), destination)
         }
         Command::HeightNoise(arguments) => {
-            let destination = Destination::from(arguments.output.as_os_str());
+            let destination = &arguments.output;
             let HeightNoise { size, cells, octaves, seed, .. } = arguments;
-            write(&height_field::noise_field(*size, *cells, *octaves, *seed), &destination)
+            write(&height_field::noise_field(*size, *cells, *octaves, *seed), destination)
         }
         Command::Occlusion(arguments) => occlude(arguments),
         Command::NormalisationCube(arguments) => write_cube(arguments, Content::Direction),
@@ -281,28 +281,27 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
             write_cube(&arguments.cube, Content::Sky(HemisphereLight { axis, sky, ground, integral }))
         }
         Command::HalfComponent(arguments) => {
-            let destination = Destination::from(arguments.output.as_os_str());
-            refuse_overwriting(&arguments.normals, &destination)?;
+            let destination = &arguments.output;
             let normals = image::load(&arguments.normals, &ImageLimits::default())?;
-            write(&half_components::of_normals(&normals, arguments.axis as usize, arguments.negative), &destination)
+            write(&half_components::of_normals(&normals, arguments.axis as usize, arguments.negative), destination)
         }
         Command::PowerTable(arguments) => {
-            let destination = Destination::from(arguments.output.as_os_str());
-            write(&power_table::table(arguments.width, arguments.height, arguments.exponent), &destination)
+            let destination = &arguments.output;
+            write(&power_table::table(arguments.width, arguments.height, arguments.exponent), destination)
         }
         Command::HeightRocks(arguments) => {
-            let destination = Destination::from(arguments.output.as_os_str());
-            write(&height_field::rocks(arguments.size, arguments.seed), &destination)
+            let destination = &arguments.output;
+            write(&height_field::rocks(arguments.size, arguments.seed), destination)
         }
         Command::HemisphereNormals(arguments) => {
-            let destination = Destination::from(arguments.output.as_os_str());
+            let destination = &arguments.output;
             let options = hemisphere::Options {
                 size: arguments.size,
                 noise: arguments.noise,
                 seed: arguments.seed,
                 zero_outside: arguments.zero_outside,
             };
-            write(&hemisphere::normals(&options), &destination)
+            write(&hemisphere::normals(&options), destination)
         }
     }
 }
@@ -310,7 +309,8 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
 impl HeightField {
     /// The picture, which must not be where the result goes, and how it is read.
     fn load(&self, destination: &Destination) -> Result<(Rgba, normal_map::Options), Failure> {
-        refuse_overwriting(&self.height, destination)?;
+        files::note(&self.height);
+        destination.check()?;
         let height = image::load(&self.height, &ImageLimits::default())?;
         let channel = match self.channel {
             Channel::Red => HeightChannel::Red,
@@ -321,11 +321,10 @@ impl HeightField {
 }
 
 fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
-    let destination = Destination::from(arguments.output.as_os_str());
-    let (height, options) = arguments.field.load(&destination)?;
+    let destination = &arguments.output;
+    let (height, options) = arguments.field.load(destination)?;
     let mut picture = occlusion::picture(&height, &options);
     if let Some(path) = &arguments.normal_map {
-        refuse_overwriting(path, &destination)?;
         let normals = image::load(path, &ImageLimits::default())?;
         if (normals.width, normals.height) != (picture.width, picture.height) {
             return Err(Failure::invalid(
@@ -341,11 +340,11 @@ fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
             *pixel = [*r, *g, *b, pixel[3]];
         }
     }
-    write(&picture, &destination)
+    write(&picture, destination)
 }
 
 fn write_cube(arguments: &NormalisationCube, content: Content) -> Result<(), Failure> {
-    let destination = Destination::from(arguments.output.as_os_str());
+    let destination = &arguments.output;
     Ok(destination.write(&dds::cube(&cube::faces(arguments.size, content)))?)
 }
 

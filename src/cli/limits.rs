@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use ninebit::limits::{Limits, table};
-use ninebit::output::write_stdout;
+use ninebit::output::write_text;
 
 use super::exit::Failure;
 
@@ -13,5 +13,5 @@ pub(crate) fn run() -> Result<(), Failure> {
     for (name, value, counted) in table(&Limits::default()) {
         let _ = writeln!(text, "{name:<22}{value:>12}  {counted}");
     }
-    Ok(write_stdout(text.as_bytes())?)
+    Ok(write_text(&text)?)
 }

@@ -1,9 +1,10 @@
 //! `ninebit lower`.
 
 use clap::{Args, ValueEnum};
-use ninebit::output::write_stdout;
+use ninebit::output::write_text;
 use ninebit::program::{registers, text};
 use ninebit::scene::register_words;
+use ninebit::shown;
 
 use super::Context;
 use super::exit::Failure;
@@ -39,7 +40,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             out.push('\n');
         }
         // The name could be anything: not in a comment that it would end.
-        let name: String = draw.name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let name = shown::name(&draw.name);
         out.push_str(&format!("// draw {number} `{name}`\n"));
         if let Some(program) = &draw.vertex_program {
             let counts = format!("{} instructions, {} slots", program.instructions, program.slots);
@@ -53,5 +54,5 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             }
         }
     }
-    Ok(write_stdout(out.as_bytes())?)
+    Ok(write_text(&out)?)
 }

@@ -1,19 +1,19 @@
 //! `ninebit measure`.
 
-use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
 use ninebit::accuracy::{accuracy_text, accuracy_value, measure};
 use ninebit::generate::byte;
-use ninebit::output::{Compression, Destination, encode_png, write_stdout};
+use ninebit::output::{Compression, Destination, encode_png, write_json, write_text};
 use ninebit::plan::Plan;
+use ninebit::shown;
 use ninebit::truth::{Truth, evaluate};
 use serde_json::json;
 
 use super::exit::Failure;
-use super::scene::{PolicyArguments, load_with_truth, refuse_overwriting};
-use super::{Context, Format};
+use super::scene::{PolicyArguments, each, load_with_truth};
+use super::{Context, Format, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -23,8 +23,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     policies: PolicyArguments,
     /// A picture of the truth itself, rounded, a PNG; of one scene
-    #[arg(long, value_name = "TRUTH.png")]
-    picture: Option<OsString>,
+    #[arg(long, value_name = "TRUTH.png", value_parser = picture::png())]
+    picture: Option<Destination>,
     /// How to print the result
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -32,51 +32,48 @@ pub(crate) struct Arguments {
 
 /// Measures scenes against their truths.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let picture = arguments.picture.as_deref().map(Destination::from);
-    match (&picture, &arguments.scenes[..]) {
-        (Some(Destination::Stdout), _) => {
-            return Err(Failure::usage(
-                "the picture and the report cannot both go to stdout",
-                "write the picture to a file",
-            ));
-        }
-        (Some(picture), [scene]) => refuse_overwriting(scene, picture)?,
-        (Some(_), _) => {
-            return Err(Failure::usage("one picture of several truths", "measure one scene, or leave `--picture` out"));
-        }
-        (None, _) => {}
+    let picture = arguments.picture.as_ref();
+    if picture == Some(&Destination::Stdout) {
+        return Err(Failure::usage(
+            "the picture and the report cannot both go to stdout",
+            "write the picture to a file",
+        ));
     }
-    let mut text = String::new();
-    let mut values = Vec::new();
-    for (number, path) in arguments.scenes.iter().enumerate() {
-        let (loaded, truth) = load_with_truth(path, &arguments.policies, context)?;
-        let (scene, plan) = loaded;
-        let Some(accuracy) = measure(&scene, &plan, &truth) else {
-            return Err(Failure::unseen(path));
-        };
-        if let Some(picture) = &picture {
+    if picture.is_some() && arguments.scenes.len() > 1 {
+        return Err(Failure::usage("one picture of several truths", "measure one scene, or leave `--picture` out"));
+    }
+    let scenes: Vec<&Path> = arguments.scenes.iter().map(PathBuf::as_path).collect();
+    let measured = each(&scenes, context, |path| {
+        let ((scene, plan), truth) = load_with_truth(path, &arguments.policies, context)?;
+        picture.map_or(Ok(()), Destination::check)?;
+        let accuracy = measure(&scene, &plan, &truth).ok_or_else(|| Failure::unseen(path))?;
+        if let Some(picture) = picture {
             write_truth(&plan, &truth, picture)?;
         }
-        match arguments.format {
-            Format::Text => {
-                if number > 0 {
-                    text.push('\n');
-                }
-                text.push_str(&format!("{}\n{}", path.display(), accuracy_text(&accuracy)));
-            }
-            Format::Json => values.push(entry(path, accuracy_value(&accuracy))),
+        Ok((path.to_path_buf(), accuracy))
+    });
+    match arguments.format {
+        _ if measured.made.is_empty() => {}
+        Format::Text => {
+            let text = |(path, accuracy): &(PathBuf, _)| format!("{}\n{}", shown::path(path), accuracy_text(accuracy));
+            write_text(&measured.made.iter().map(text).collect::<Vec<_>>().join("\n"))?;
+        }
+        Format::Json => {
+            let value = |(path, accuracy): &(PathBuf, _)| {
+                let mut value = accuracy_value(accuracy);
+                value["scene"] = shown::lossless(path).into();
+                value
+            };
+            let document = json!({
+                "format": "ninebit-accuracy-1",
+                "version": env!("CARGO_PKG_VERSION"),
+                "scenes": measured.made.iter().map(value).collect::<Vec<_>>(),
+                "failed": measured.failed,
+            });
+            write_json(&format!("{document:#}"))?;
         }
     }
-    if matches!(arguments.format, Format::Json) {
-        let value = json!({ "format": "ninebit-accuracy-1", "version": env!("CARGO_PKG_VERSION"), "scenes": values });
-        text = format!("{value:#}\n");
-    }
-    Ok(write_stdout(text.as_bytes())?)
-}
-
-fn entry(path: &Path, mut value: serde_json::Value) -> serde_json::Value {
-    value["scene"] = path.display().to_string().into();
-    value
+    measured.end()
 }
 
 /// The truth of the first target, rounded; black where there is none.

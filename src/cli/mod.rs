@@ -14,24 +14,29 @@ mod limits;
 mod lower;
 mod measure;
 mod op;
+mod picture;
 mod policies;
 mod registers;
 mod render;
 mod replay;
 mod scene;
+mod signals;
 mod terminal;
 mod texture;
 mod trace;
 mod vectors;
 
 use std::ffi::OsString;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
 
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use ninebit::guard::caught;
+use ninebit::output::OutputError;
+use ninebit::{files, shown};
 
-use exit::{Exit, Failure, Report};
+use exit::{Exit, Failure};
 use terminal::{ColorChoice, Level};
 
 /// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
@@ -83,7 +88,7 @@ enum Command {
     /// Replay scenes: draw each and compare it with the expectation beside it
     ///
     /// Exit status: that of the worst scene, the highest number. 0: all are as expected; 1: one differs; 3: one is invalid; 4: something is
-    /// missing, such as an expectation; 5: a limit; 7: a report or picture was not written.
+    /// missing, such as an expectation; 5: a limit; 6: an internal error in one; 7: a report or picture was not written.
     Replay(replay::Arguments),
     /// List the rules that have alternatives, and their values
     Policies,
@@ -110,6 +115,22 @@ enum Format {
     Json,
 }
 
+/// `--format`, where `--json` was once all that there was.
+#[derive(Debug, Args)]
+struct FormatArguments {
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "json")]
+    format: Format,
+    #[arg(long, hide = true)]
+    json: bool,
+}
+
+impl FormatArguments {
+    fn get(&self) -> Format {
+        if self.json { Format::Json } else { self.format }
+    }
+}
+
 /// What every command may use.
 #[derive(Clone, Copy, Debug)]
 struct Context {
@@ -121,6 +142,8 @@ struct Context {
 pub(crate) fn main() -> ExitCode {
     let arguments: Vec<OsString> = std::env::args_os().collect();
     let color = wanted_color(&arguments);
+    signals::install();
+    files::watch();
     let exit = guarded(color.on_stderr(), || start(&arguments, color));
     ExitCode::from(exit as u8)
 }
@@ -131,9 +154,8 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
     let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            // Help goes to stdout, complaints to stderr. A reader that is gone is no news.
-            let _ = error.print();
-            return if error.use_stderr() { Exit::Usage } else { Exit::Success };
+            let end = complain(&error, arguments);
+            return ended(end, color.on_stderr());
         }
     };
     let context = Context { color: cli.color.on_stderr() };
@@ -157,36 +179,45 @@ fn start(arguments: &[OsString], color: ColorChoice) -> Exit {
         Command::Chart(arguments) => chart::run(&arguments, context),
         Command::Generate(command) => generate::run(&command),
     };
+    ended(result, context.color)
+}
+
+/// The status of a command; what is left to say about it goes to stderr.
+fn ended(result: Result<(), Failure>, color: bool) -> Exit {
     match result {
         Ok(()) => Exit::Success,
         Err(Failure { exit, report }) => {
-            terminal::print(Level::Error, &report, context.color);
+            terminal::print(Level::Error, &report, color);
             exit
         }
     }
 }
 
+/// Prints what the parser has to say: help goes to stdout, complaints to stderr.
+fn complain(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> {
+    let plain = |argument: &OsString| *shown::path(Path::new(argument)) == *argument.as_os_str();
+    let printed = if arguments.iter().all(plain) {
+        error.print()
+    } else {
+        // Colour would go with what must not be printed.
+        let text = error.render().to_string();
+        let text = shown::lines(&text);
+        if error.use_stderr() {
+            std::io::stderr().write_all(text.as_bytes())
+        } else {
+            std::io::stdout().write_all(text.as_bytes())
+        }
+    };
+    if error.use_stderr() {
+        return Err(Failure { exit: Exit::Usage, report: exit::Report::Silent });
+    }
+    let flushed = printed.and_then(|()| std::io::stdout().flush());
+    Ok(flushed.map_err(|source| OutputError::Stdout { source })?)
+}
+
 /// Runs `work`; a panic becomes a message that says how to report it.
 fn guarded(color: bool, work: impl FnOnce() -> Exit) -> Exit {
-    let place = Arc::new(Mutex::new(None));
-    let seen = Arc::clone(&place);
-    // The first panic counts: workers' panics come here before they reach this thread.
-    std::panic::set_hook(Box::new(move |info| {
-        seen.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert_with(|| info.to_string());
-    }));
-    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|_| {
-        let place = place.lock().unwrap_or_else(PoisonError::into_inner).take().unwrap_or_default();
-        let report = Report::Message {
-            code: Some("NB0801"),
-            message: format!("internal error: {}", place.replace('\n', "\n  ")),
-            help: Some(format!(
-                "this is a fault of ninebit {}, not of your scene: please report it with this message, the command line and the scene",
-                env!("CARGO_PKG_VERSION")
-            )),
-        };
-        terminal::print(Level::Error, &report, color);
-        Exit::Internal
-    })
+    caught(work).unwrap_or_else(|panic| ended(Err(panic.into()), color))
 }
 
 /// The value of `--color`, found before the arguments are parsed because it also governs the parser's complaints.
@@ -222,7 +253,6 @@ mod tests {
             std::thread::scope(|scope| scope.spawn(|| panic!("a test")).join()).expect("the worker panicked");
             Exit::Success
         });
-        let _ = std::panic::take_hook();
         assert_eq!((exit, exit as u8), (Exit::Internal, 6));
     }
 

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use ninebit::output::write_stdout;
+use ninebit::output::write_text;
 use ninebit::state::POLICIES;
 
 use super::exit::Failure;
@@ -17,5 +17,5 @@ pub(crate) fn run() -> Result<(), Failure> {
             let _ = writeln!(text, "      {mark} {value:<8} {meaning}");
         }
     }
-    Ok(write_stdout(text.as_bytes())?)
+    Ok(write_text(&text)?)
 }

@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
 use ninebit::program::registers::{Description, describe, encode};
+use ninebit::shown;
 use ninebit::state::Named;
 use serde_json::{Value, json};
 
@@ -30,14 +31,14 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let draws = chosen_draws(&scene, arguments.draw)?;
     let words =
         draws.iter().map(|(number, draw)| (*number, &draw.name, describe(&encode(&draw.combiners, scene.profile))));
-    let text = match arguments.format {
+    match arguments.format {
         Format::Text => {
             let mut out = format!("profile {}\n", scene.profile.name());
             for (number, name, words) in words {
-                let _ = writeln!(out, "\ndraw {number} `{name}`");
+                let _ = writeln!(out, "\ndraw {number} `{}`", shown::name(name));
                 words.iter().for_each(|word| line(&mut out, word));
             }
-            out
+            write_text(&out)?;
         }
         Format::Json => {
             let draws: Vec<Value> = words
@@ -55,10 +56,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
                 })
                 .collect();
             let value = json!({ "format": "ninebit-registers-1", "profile": scene.profile.name(), "draws": draws });
-            format!("{value:#}\n")
+            write_json(&format!("{value:#}"))?;
         }
-    };
-    Ok(write_stdout(text.as_bytes())?)
+    }
+    Ok(())
 }
 
 fn line(out: &mut String, word: &Description) {

@@ -1,35 +1,36 @@
 //! `ninebit render`.
 
-use std::ffi::OsString;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use ninebit::engine;
-use ninebit::output::{Compression, Destination, encode_png, write_stdout};
+use ninebit::output::{Compression, Destination, encode_png, write_json};
 use ninebit::state::Named;
 use serde_json::json;
 
-use super::Context;
 use super::cost::Cost;
 use super::engine::EngineArguments;
 use super::exit::Failure;
-use super::scene::{SceneArguments, chosen_target, refuse_overwriting};
+use super::scene::{SceneArguments, chosen_target};
 use super::terminal::Progress;
+use super::{Context, Format, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// The picture, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "FRAME.png")]
-    output: OsString,
+    #[arg(short, long, value_name = "FRAME.png", value_parser = picture::png())]
+    output: Destination,
     /// Which render target to write [default: the scene's first]
     #[arg(long, value_name = "NAME")]
     target: Option<String>,
     #[command(flatten)]
     engine: EngineArguments,
-    /// Print statistics to stdout
-    #[arg(long, value_enum, value_name = "FORMAT")]
+    /// What stdout says: nothing, or statistics as one JSON document
+    #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "stats")]
+    format: Format,
+    #[arg(long, value_enum, hide = true)]
     stats: Option<Stats>,
 }
 
@@ -41,19 +42,18 @@ enum Stats {
 
 /// Renders a scene and writes one of its targets.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let destination = Destination::from(arguments.output.as_os_str());
-    if arguments.stats.is_some() && destination == Destination::Stdout {
+    let destination = &arguments.output;
+    let statistics_wanted = arguments.stats.is_some() || matches!(arguments.format, Format::Json);
+    if statistics_wanted && *destination == Destination::Stdout {
         return Err(Failure::usage(
             "the picture and the statistics cannot both go to stdout",
             "write the picture to a file",
         ));
     }
-    refuse_overwriting(&arguments.scene.scene, &destination)?;
-
     let options = arguments.engine.options()?;
-
     let mut clock = Clock::start();
     let (scene, plan) = arguments.scene.load(context)?;
+    destination.check()?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
     clock.lap("load");
     let (frames, statistics) = {
@@ -68,7 +68,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     destination.write(&encode_png(surface.width, surface.height, &pixels, Compression::Fast)?)?;
     clock.lap("write");
 
-    if let Some(Stats::Json) = arguments.stats {
+    if statistics_wanted {
         let targets: Vec<_> = scene
             .targets
             .iter()
@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             "targets": targets,
             "microseconds": clock.laps,
         });
-        write_stdout(format!("{value:#}\n").as_bytes())?;
+        write_json(&format!("{value:#}"))?;
     }
     Ok(())
 }

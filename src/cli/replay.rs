@@ -1,13 +1,14 @@
 //! `ninebit replay`.
 
-use std::ffi::OsString;
+use std::ffi::OsStr;
 use std::fs::OpenOptions;
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use ninebit::output::{Destination, OutputError, make_folder, write_stdout};
+use ninebit::files;
+use ninebit::output::{Destination, OutputError, make_folder, write_stdout, write_text};
 use ninebit::replay::{Entry, Filter, Options, Replayed, find, part, replay, report};
 use ninebit::shard::Shard;
 use ninebit::state::{Named, Policies, Profile};
@@ -59,7 +60,16 @@ enum Wanted {
     /// Annotations and a step summary.
     Github,
     /// A document.
-    File(Kind, OsString),
+    File(Kind, Destination),
+}
+
+impl Wanted {
+    fn path(&self) -> Option<&Path> {
+        match self {
+            Wanted::Github => None,
+            Wanted::File(_, destination) => destination.path(),
+        }
+    }
 }
 
 /// What a document is.
@@ -75,10 +85,16 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let options = options(arguments)?;
     let entries = entries(arguments)?;
     let stdout =
-        arguments.reports.iter().filter(|wanted| matches!(wanted, Wanted::File(_, name) if name == "-")).count();
+        arguments.reports.iter().filter(|wanted| matches!(wanted, Wanted::File(_, Destination::Stdout))).count();
     if stdout > 1 {
         return Err(Failure::usage("several reports cannot all go to stdout", "write all but one to files"));
     }
+    // Before anything is drawn or written. Expectations count as read even if they are yet to be written.
+    for entry in &entries {
+        files::note(&entry.path);
+        files::note(&entry.path.with_extension("expect.ron"));
+    }
+    files::check(arguments.reports.iter().filter_map(Wanted::path))?;
     // Reports may be meant to lie in them, also where nothing differs.
     let mut exit = Exit::Success;
     for folder in [&arguments.artifacts, &arguments.pictures].into_iter().flatten() {
@@ -97,7 +113,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         {
             text += "`--artifacts DIR` writes pictures and traces of what differs\n";
         }
-        write_stdout(text.as_bytes())?;
+        write_text(&text)?;
     }
     let exits = [exit, write_reports(&arguments.reports, &replayed, context)].map(|exit| exit as u8);
     let worst = replayed.iter().map(Replayed::exit_code).chain(exits).max().unwrap_or(0);
@@ -167,13 +183,13 @@ fn write_reports(reports: &[Wanted], replayed: &[Replayed], context: Context) ->
     for wanted in reports {
         let written = match wanted {
             Wanted::Github => github(replayed),
-            Wanted::File(kind, name) => {
+            Wanted::File(kind, destination) => {
                 let text = match kind {
                     Kind::Json => report::json(replayed),
                     Kind::Junit => report::junit(replayed),
                     Kind::Html => report::html(replayed),
                 };
-                Destination::from(name.as_os_str()).write(text.as_bytes())
+                destination.write(text.as_bytes())
             }
         };
         if let Err(error) = written {
@@ -196,6 +212,7 @@ fn github(replayed: &[Replayed]) -> Result<(), OutputError> {
     let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()).map(PathBuf::from) else {
         return Ok(());
     };
+    files::claim(&path)?;
     // Other commands of the same step write there as well.
     let file = OpenOptions::new().append(true).create(true).open(&path);
     file.and_then(|mut file| file.write_all(report::step_summary(replayed).as_bytes()))
@@ -216,7 +233,9 @@ fn wanted(text: &str) -> Result<Wanted, String> {
     };
     match text.split_once('=') {
         None if text == "github" => Some(Wanted::Github),
-        Some((name, file)) if !file.is_empty() => kind(name).map(|kind| Wanted::File(kind, file.into())),
+        Some((name, file)) if !file.is_empty() => {
+            kind(name).map(|kind| Wanted::File(kind, Destination::from(OsStr::new(file))))
+        }
         _ => None,
     }
     .ok_or_else(|| "not one of json=FILE, junit=FILE, html=FILE, github".to_owned())

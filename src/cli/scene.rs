@@ -3,12 +3,14 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use ninebit::guard::caught;
 use ninebit::limits::Limits;
-use ninebit::output::Destination;
 use ninebit::plan::Plan;
 use ninebit::scene::{self, ErrorKind, Loaded, SceneError};
+use ninebit::shown;
 use ninebit::state::{Draw, Policies, Scene};
 use ninebit::truth::Truth;
+use serde::Serialize;
 
 use super::Context;
 use super::exit::{Exit, Failure, Report};
@@ -54,7 +56,7 @@ pub(crate) fn load_with_truth(
     let Some(truth) = loaded.truth else {
         return Err(Failure::invalid(
             "NB0396",
-            format!("`{}` does not say what its picture ought to show", path.display()),
+            format!("`{}` does not say what its picture ought to show", shown::path(path)),
             "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it",
         ));
     };
@@ -63,7 +65,7 @@ pub(crate) fn load_with_truth(
 
 fn read(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Loaded, Policies), Failure> {
     let policies = policies.policies()?;
-    let loaded = scene::load(path, &Limits::default()).map_err(|error| refused(&error, context))?;
+    let loaded = scene::load(path, &Limits::default()).map_err(refused)?;
     if !loaded.warnings.is_empty() {
         terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
     }
@@ -89,13 +91,72 @@ impl PolicyArguments {
 }
 
 /// A scene that was not accepted.
-pub(crate) fn refused(error: &SceneError, context: Context) -> Failure {
+pub(crate) fn refused(error: SceneError) -> Failure {
     let exit = match error.kind() {
         ErrorKind::Invalid => Exit::Invalid,
         ErrorKind::Missing => Exit::Missing,
         ErrorKind::Limit => Exit::Limit,
     };
-    Failure { exit, report: Report::Text(error.render(context.color)) }
+    Failure { exit, report: Report::Scene(Box::new(error)) }
+}
+
+/// What became of several scenes.
+pub(crate) struct Each<T> {
+    /// What was made of those that are sound.
+    pub(crate) made: Vec<T>,
+    /// The others.
+    pub(crate) failed: Vec<Failed>,
+    exit: Exit,
+}
+
+/// A scene of which nothing was made.
+#[derive(Debug, Serialize)]
+pub(crate) struct Failed {
+    scene: String,
+    /// Exit status that goes with it.
+    exit: u8,
+    message: String,
+}
+
+/// Does `work` for each scene, apart from the others: what is wrong with one is said, and the others go on.
+pub(crate) fn each<T>(
+    scenes: &[&Path],
+    context: Context,
+    mut work: impl FnMut(&Path) -> Result<T, Failure>,
+) -> Each<T> {
+    let mut each = Each { made: Vec::new(), failed: Vec::new(), exit: Exit::Success };
+    for scene in scenes {
+        let failure = match apart(scene, || work(scene)) {
+            Ok(made) => {
+                each.made.push(made);
+                continue;
+            }
+            Err(failure) => failure,
+        };
+        terminal::print(Level::Error, &failure.report, context.color);
+        let (exit, message) = (failure.exit as u8, failure.report.plain());
+        each.failed.push(Failed { scene: shown::lossless(scene), exit, message });
+        each.exit = Exit::from_code(exit.max(each.exit as u8));
+    }
+    each
+}
+
+impl<T> Each<T> {
+    /// The end of the command, once everything is printed: the status of the worst scene.
+    pub(crate) fn end(&self) -> Result<(), Failure> {
+        match self.exit {
+            Exit::Success => Ok(()),
+            exit => Err(Failure { exit, report: Report::Silent }),
+        }
+    }
+}
+
+/// Runs `work`; a panic becomes a failure that names the scene.
+pub(crate) fn apart<T>(scene: &Path, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    caught(work).unwrap_or_else(|mut panic| {
+        panic.message = format!("{}, of `{}`", panic.message, shown::path(scene));
+        Err(panic.into())
+    })
 }
 
 /// Index of the target of that name, or of the first.
@@ -119,13 +180,23 @@ pub(crate) fn chosen_draws(scene: &Scene, number: Option<usize>) -> Result<Vec<(
     Ok(all.skip(number).take(1).collect())
 }
 
-/// Refuses to write over what is read.
-pub(crate) fn refuse_overwriting(input: &Path, output: &Destination) -> Result<(), Failure> {
-    let Destination::File(output) = output else { return Ok(()) };
-    match (input.canonicalize(), output.canonicalize()) {
-        (Ok(input), Ok(place)) if input == place => {
-            Err(Failure::usage(format!("`{}` is the input", output.display()), "write the output to another file"))
-        }
-        _ => Ok(()),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_scene_is_apart_from_the_others() {
+        let scenes = ["a.ron", "b.ron", "c.ron", "d.ron"].map(Path::new);
+        let each = each(&scenes, Context { color: false }, |scene| match scene.to_str() {
+            Some("b.ron") => panic!("a table of {} rows", 3),
+            Some("c.ron") => Err(Failure::unseen(scene)),
+            _ => Ok(scene.to_path_buf()),
+        });
+        assert_eq!(each.made, [Path::new("a.ron"), Path::new("d.ron")]);
+        let [b, c] = &each.failed[..] else { panic!("{:?}", each.failed) };
+        assert_eq!((b.scene.as_str(), b.exit, c.scene.as_str(), c.exit), ("b.ron", 6, "c.ron", 3));
+        assert!(b.message.starts_with("NB0801 internal error: src/cli/scene.rs:"), "{}", b.message);
+        assert!(b.message.ends_with(": a table of 3 rows, of `b.ron`"), "{}", b.message);
+        assert!(matches!(each.end(), Err(Failure { exit: Exit::Internal, report: Report::Silent })));
     }
 }

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use ninebit::shown;
 
 use super::exit::Report;
 
@@ -57,6 +58,7 @@ pub(crate) fn print(level: Level, report: &Report, color: bool) {
     let text = match report {
         Report::Silent => return,
         Report::Text(text) => format!("{}\n", text.trim_end()),
+        Report::Scene(error) => format!("{}\n", error.render(color).trim_end()),
         Report::Message { code, message, help } => {
             let (word, paint) = match level {
                 Level::Error => ("error", "\x1b[1;31m"),
@@ -65,7 +67,7 @@ pub(crate) fn print(level: Level, report: &Report, color: bool) {
             let code = code.map_or(String::new(), |code| format!("[{code}]"));
             let (paint, reset) = if color { (paint, "\x1b[0m") } else { ("", "") };
             let help = help.as_ref().map_or(String::new(), |help| format!("  help: {help}\n"));
-            format!("{paint}{word}{code}{reset}: {message}\n{help}")
+            format!("{paint}{word}{code}{reset}: {}\n{help}", shown::lines(message))
         }
     };
     let _ = stderr().lock().write_all(text.as_bytes());

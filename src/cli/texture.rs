@@ -6,13 +6,13 @@ mod source;
 use std::ffi::OsString;
 
 use clap::Args;
-use ninebit::output::{Compression, Destination, encode_png, write_stdout};
+use ninebit::output::{Compression, Destination, encode_png, write_text};
 use ninebit::scene::dds::FACES;
+use ninebit::shown;
 use ninebit::state::{BORDER_TEXELS, CUBE_FACES, Level, Named, Profile, TextureFormat, TextureKind};
 
-use super::Context;
 use super::exit::Failure;
-use super::scene::refuse_overwriting;
+use super::{Context, picture};
 use source::Opened;
 
 #[derive(Debug, Args)]
@@ -24,8 +24,8 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "output")]
     decode: bool,
     /// The picture, a PNG; `-` is stdout
-    #[arg(short, long, value_name = "OUT.png", requires = "decode")]
-    output: Option<OsString>,
+    #[arg(short, long, value_name = "OUT.png", requires = "decode", value_parser = picture::png())]
+    output: Option<Destination>,
     /// This level only [default: all, level 0 on the left]
     #[arg(long, value_name = "N", requires = "decode")]
     level: Option<u32>,
@@ -46,11 +46,9 @@ pub(crate) struct Arguments {
 /// Describes or decodes a texture.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let opened = source::open(arguments, context)?;
-    let Some(output) = &arguments.output else {
-        return Ok(write_stdout(describe(&opened).as_bytes())?);
+    let Some(destination) = &arguments.output else {
+        return Ok(write_text(&describe(&opened))?);
     };
-    let destination = Destination::from(output.as_os_str());
-    refuse_overwriting(&opened.file, &destination)?;
     if opened.format == TextureFormat::P8 && opened.palette.is_empty() {
         let message = format!("`{}` is of format P8, and no draw gives it a palette", opened.name);
         return Err(Failure::invalid("NB0234", message, "name one of the scene's palettes with `--palette`"));
@@ -82,7 +80,7 @@ fn describe(opened: &Opened) -> String {
     let unit = if format.is_compressed() { "block of 4 x 4 texels" } else { "texel" };
     let bytes = opened.faces() as usize * words * format.bytes().min(4) as usize;
     let counted = |n: u32, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
-    let mut text = format!("{}\n", opened.name);
+    let mut text = format!("{}\n", shown::name(&opened.name));
     let mut line = |name: &str, value: String| text.push_str(&format!("  {name:<9}{value}\n"));
     line("kind", opened.kind.name().to_owned());
     line("format", format!("{}, {} a {unit}", format.name(), counted(format.bytes(), "byte")));
@@ -97,7 +95,7 @@ fn describe(opened: &Opened) -> String {
         line("palette", format!("{} entries", opened.palette.len()));
     }
     if let Some(target) = &opened.target {
-        line("contents", format!("render target `{target}` after the last draw"));
+        line("contents", format!("render target `{}` after the last draw", shown::name(target)));
     }
     line("bytes", bytes.to_string());
     text

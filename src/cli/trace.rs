@@ -2,7 +2,7 @@
 
 use clap::Args;
 use ninebit::engine::{self, TraceError};
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
 use ninebit::report::{trace_json, trace_text};
 use ninebit::state::Scene;
 
@@ -34,11 +34,10 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let target = super::scene::chosen_target(&scene, arguments.target.as_deref())?;
     let trace =
         engine::trace(&plan, target, arguments.pixel, arguments.draw).map_err(|error| outside(&scene, &error))?;
-    let text = match arguments.format {
-        Format::Text => trace_text(&plan, &trace),
-        Format::Json => trace_json(&plan, &trace),
-    };
-    write_stdout(text.as_bytes())?;
+    match arguments.format {
+        Format::Text => write_text(&trace_text(&plan, &trace))?,
+        Format::Json => write_json(&trace_json(&plan, &trace))?,
+    }
     Ok(())
 }
 

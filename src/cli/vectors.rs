@@ -77,8 +77,7 @@ impl From<VectorError> for Failure {
             VectorError::Output(error) => return error.into(),
             _ => Exit::Invalid,
         };
-        let (code, message, help) = (Some(error.code()), error.to_string(), Some(error.help().to_owned()));
-        Failure { exit, report: Report::Message { code, message, help } }
+        Failure { exit, report: Report::message(Some(error.code()), &error.to_string(), error.help()) }
     }
 }
 

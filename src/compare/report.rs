@@ -20,6 +20,7 @@ pub fn comparison_text(plan: &Plan, comparison: &Comparison) -> String {
 
 fn write(out: &mut String, plan: &Plan, c: &Comparison) -> std::fmt::Result {
     let Comparison { target, width, height, drawn, .. } = c;
+    let target = crate::shown::name(target);
     writeln!(out, "target `{target}`, {width} x {height}, profile {}, mode {}", plan.profile.name(), c.mode.name())?;
     write!(out, "{}", policies_text(&plan.policies))?;
     writeln!(out, "errors are the model minus the ideal, in steps of 1/255; drawn: {drawn} pixels")?;

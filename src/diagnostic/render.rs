@@ -5,6 +5,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
 
 use super::{Diagnostic, Severity, Source, floor_boundary};
+use crate::shown;
 
 /// Longest excerpt of a line on either side of a mark, in bytes: scenes of one endless line stay readable.
 const MARGIN: usize = 200;
@@ -31,7 +32,7 @@ fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
-    let mut group = Group::with_title(level.primary_title(diagnostic.message.as_str()).id(diagnostic.code));
+    let mut group = Group::with_title(level.primary_title(shown::name(&diagnostic.message)).id(diagnostic.code));
     if let Some(span) = &diagnostic.span {
         let line = |place: &Range<usize>| source.position(place.start).0;
         let (beside, apart): (Vec<_>, Vec<_>) =
@@ -41,16 +42,16 @@ fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
             group = excerpt(group, source, (place, label), AnnotationKind::Context, &[]);
         }
     } else {
-        group = group.element(Origin::path(source.name.as_str()));
+        group = group.element(Origin::path(shown::name(&source.name)));
     }
     if let Some(rule) = diagnostic.rule {
         group = group.element(Level::NOTE.message(format!("rule {rule} in docs/numerics.md")));
     }
     for note in &diagnostic.notes {
-        group = group.element(Level::NOTE.message(note.as_str()));
+        group = group.element(Level::NOTE.message(shown::name(note)));
     }
     if let Some(help) = &diagnostic.help {
-        group = group.element(Level::HELP.message(help.as_str()));
+        group = group.element(Level::HELP.message(shown::name(help)));
     }
     group
 }
@@ -73,22 +74,22 @@ fn excerpt<'a>(
     let from = if whole { line_start } else { floor_boundary(text, start - MARGIN) };
     let last = beside.iter().map(|(place, _)| place.end).fold(span.end, usize::max).min(start + LONG_LINE);
     let to = floor_boundary(text, line_end.min(last + MARGIN));
-    let shown = text[from..to].trim_end_matches('\r');
+    let part = text[from..to].trim_end_matches('\r');
     let mark = |place: &Range<usize>| {
-        let begin = floor_boundary(shown, place.start.saturating_sub(from));
-        let end = floor_boundary(shown, place.end.saturating_sub(from)).max(begin);
-        begin..begin + shown[begin..end].trim_end().len()
+        let begin = floor_boundary(part, place.start.saturating_sub(from));
+        let end = floor_boundary(part, place.end.saturating_sub(from)).max(begin);
+        begin..begin + part[begin..end].trim_end().len()
     };
     let annotate = |kind: AnnotationKind, place: &Range<usize>, label: &'a str| {
-        kind.span(mark(place)).label((!label.is_empty()).then_some(label))
+        kind.span(mark(place)).label((!label.is_empty()).then(|| shown::name(label)))
     };
-    let snippet = Snippet::source(shown)
+    let snippet = Snippet::source(shown::excerpt(part))
         .line_start(line)
         .annotation(annotate(kind, span, label))
         .annotations(beside.iter().map(|(place, label)| annotate(AnnotationKind::Context, place, label)));
     if whole {
-        group.element(snippet.path(source.name.as_str()))
+        group.element(snippet.path(shown::name(&source.name)))
     } else {
-        group.element(Origin::path(source.name.as_str()).line(line).char_column(column)).element(snippet)
+        group.element(Origin::path(shown::name(&source.name)).line(line).char_column(column)).element(snippet)
     }
 }

@@ -3,6 +3,7 @@
 use super::{Cost, DrawExplanation};
 use crate::engine::DrawCounts;
 use crate::plan::Plan;
+use crate::shown;
 use crate::state::{Named, Profile};
 use crate::trace::Work;
 use serde_json::{Map, Value, json};
@@ -20,7 +21,7 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
     let plural = if draws.len() == 1 { "" } else { "s" };
     writeln!(out, "profile {}, {} draw{plural}", plan.profile.name(), draws.len())?;
     for (number, draw) in draws.iter().enumerate() {
-        writeln!(out, "\ndraw {number} `{}` to `{}`", draw.name, draw.target)?;
+        writeln!(out, "\ndraw {number} `{}` to `{}`", shown::name(&draw.name), shown::name(&draw.target))?;
         if let Some((program, vertices)) = &draw.vertex_program {
             let slots = format!("{} instructions, {} slots", program.instructions, program.slots);
             let who = match plan.profile {
@@ -29,30 +30,30 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
             };
             writeln!(out, "  vertex program: {slots}, for each of {vertices} vertices{who}")?;
             for line in program.text.lines() {
-                writeln!(out, "    {line}")?;
+                writeln!(out, "    {}", shown::lines(line))?;
             }
         }
         writeln!(out, "  program:")?;
         for line in draw.program.lines() {
-            writeln!(out, "    {line}")?;
+            writeln!(out, "    {}", shown::lines(line))?;
         }
         if !draw.program_origin.is_empty() {
             writeln!(out, "  written as:")?;
         }
         for (stage, origin) in draw.program_origin.iter().enumerate() {
-            writeln!(out, "    general stage {stage} rgb: {}", origin.rgb)?;
-            writeln!(out, "    general stage {stage} alpha: {}", origin.alpha)?;
+            writeln!(out, "    general stage {stage} rgb: {}", shown::name(&origin.rgb))?;
+            writeln!(out, "    general stage {stage} alpha: {}", shown::name(&origin.alpha))?;
         }
         if !draw.equations.is_empty() {
             writeln!(out, "  computed:")?;
         }
         for line in &draw.equations {
-            writeln!(out, "    {line}")?;
+            writeln!(out, "    {}", shown::name(line))?;
         }
         if !draw.dropped.is_empty() {
             writeln!(out, "  left out:")?;
             for line in &draw.dropped {
-                writeln!(out, "    {line}")?;
+                writeln!(out, "    {}", shown::name(line))?;
             }
         }
         let cost = &draw.cost;

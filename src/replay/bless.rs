@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
-use super::outcome::{Outcome, Problem};
+use super::outcome::{Outcome, Problem, ProblemKind};
 use crate::expectation::{Expectation, ExpectationError, masked_digest};
 use crate::frame::Surface;
-use crate::output::{Compression, OutputError, encode_png, write_file};
+use crate::output::{Compression, Destination, OutputError, encode_png, write_file};
 use crate::scene::path::resolve;
+use crate::shown;
 
 /// Whether `surface` may be written down as what is expected: a capture and an allowance are somebody else's picture.
 pub(super) fn allowed(expectation: &Expectation) -> bool {
@@ -38,7 +39,7 @@ pub(super) fn write(
             Err(error) if error.is_missing() => folder.join(picture),
             Err(error) => return Err(refused(path, &error.into())),
         };
-        write_file(&place, &png).map_err(unwritten)?;
+        Destination::File(place).write(&png).map_err(unwritten)?;
     }
     write_file(path, expectation.to_text().as_bytes()).map_err(unwritten)?;
     Ok(Outcome::Blessed { before: before.map(|before| before.sha256.clone()), after: expectation.sha256 })
@@ -46,12 +47,12 @@ pub(super) fn write(
 
 /// An expectation that cannot be used.
 pub(super) fn refused(path: &Path, error: &ExpectationError) -> Problem {
-    Problem::new(error.kind(), error.code(), format!("`{}`: {error}", path.display()), error.help())
+    Problem::new(error.kind(), error.code(), format!("`{}`: {error}", shown::path(path)), error.help())
 }
 
 /// An output that was not written.
 pub(super) fn unwritten(error: OutputError) -> Problem {
     let (code, message, help) = (error.code(), error.to_string(), error.help());
     let text = format!("error[{code}]: {message}\n  help: {help}");
-    Problem { kind: None, code, message, text, place: None }
+    Problem { kind: ProblemKind::Output, code, message, text, place: None }
 }

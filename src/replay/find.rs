@@ -1,6 +1,7 @@
 //! Which scenes are replayed: files, folders and what is below them, filters, shards.
 
 use std::collections::BTreeMap;
+use std::ffi::OsStr;
 use std::path::{Component, Path, PathBuf};
 
 use globset::{Glob, GlobSet, GlobSetBuilder};
@@ -9,12 +10,13 @@ use thiserror::Error;
 use walkdir::WalkDir;
 
 use crate::shard::Shard;
+use crate::shown;
 
-/// How the names of expectations end.
-const EXPECTATION: &str = ".expect.ron";
+/// What stands before `.ron` in the names of expectations.
+const EXPECTATION: &str = "expect";
 
-/// How the names of files end that scenes share.
-const FAMILY: &str = ".family.ron";
+/// The same of files that scenes share.
+const FAMILY: &str = "family";
 
 /// Something that was found where scenes were looked for.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,7 +42,12 @@ pub enum EntryKind {
 
 /// Scenes that cannot be told apart.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("`{}` and `{}` would both be called `{name}` in reports", first.display(), second.display())]
+#[error(
+    "`{}` and `{}` would both be called `{}` in reports",
+    shown::path(first),
+    shown::path(second),
+    shown::name(name)
+)]
 pub struct FindError {
     /// The common name.
     pub name: String,
@@ -76,10 +83,7 @@ pub fn find(places: &[PathBuf]) -> Result<Vec<Entry>, FindError> {
 
 /// What is below a folder.
 fn below(folder: &Path) -> Vec<Entry> {
-    let visible = |name: &std::ffi::OsStr| {
-        let name = name.to_string_lossy();
-        !name.starts_with('.') && !name.ends_with(FAMILY)
-    };
+    let visible = |name: &OsStr| !name.as_encoded_bytes().starts_with(b".") && before_extension(name).1 != Some(FAMILY);
     let walk = WalkDir::new(folder).follow_links(true).sort_by_file_name();
     walk.into_iter()
         .filter_entry(|entry| entry.depth() == 0 || visible(entry.file_name()))
@@ -103,20 +107,27 @@ fn below(folder: &Path) -> Vec<Entry> {
 /// What a file is; nothing for an expectation whose scene is there.
 fn file(path: &Path) -> Option<Entry> {
     let entry = |path: &Path, kind| Entry { name: name(path), path: path.to_path_buf(), kind };
-    let text = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    match text.strip_suffix(EXPECTATION) {
-        Some(scene) if path.is_file() => {
-            let scene = path.with_file_name(format!("{scene}.ron"));
+    match before_extension(path.file_name().unwrap_or_default()) {
+        (scene, Some(EXPECTATION)) if path.is_file() => {
+            let scene = path.with_file_name(scene).with_added_extension("ron");
             (!scene.exists()).then(|| Entry { path: path.to_path_buf(), ..entry(&scene, EntryKind::Orphan) })
         }
         _ => Some(entry(path, EntryKind::Scene)),
     }
 }
 
+/// Of `NAME.KIND.ron` the name, which need not be text, and the kind.
+fn before_extension(name: &OsStr) -> (&OsStr, Option<&str>) {
+    let name = Path::new(name);
+    let stem = Path::new(name.file_stem().unwrap_or_default());
+    let kind = stem.extension().and_then(OsStr::to_str).filter(|_| name.extension() == Some(OsStr::new("ron")));
+    (stem.file_stem().unwrap_or_default(), kind)
+}
+
 /// [`Entry::name`] of a path.
 fn name(path: &Path) -> String {
     let part = |component| match component {
-        Component::Normal(part) => Some(part.to_string_lossy().into_owned()),
+        Component::Normal(part) => Some(shown::lossless(Path::new(part))),
         _ => None,
     };
     let name = path.components().filter_map(part).collect::<Vec<_>>().join("/");

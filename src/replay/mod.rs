@@ -17,12 +17,13 @@ use std::path::PathBuf;
 use rayon::prelude::*;
 
 use crate::engine::RenderOptions;
+use crate::guard::caught;
 use crate::state::{Policies, Profile};
 use crate::threads::on_threads;
 
 pub use cause::Cause;
 pub use find::{Entry, EntryKind, Filter, FilterError, FindError, find, part};
-pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, Replayed, Summary, Traces};
+pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Summary, Traces};
 
 /// How scenes are replayed.
 #[derive(Clone, Debug, Default)]
@@ -44,12 +45,71 @@ pub struct Options {
 }
 
 /// Replays scenes; what became of each, in the order of `entries`. `progress` is told how many are done, from any thread.
+///
+/// A panic while one of them is replayed is what became of that one: [`ProblemKind::Internal`].
 pub fn replay(entries: &[Entry], options: &Options, progress: &(dyn Fn(usize) + Sync)) -> Vec<Replayed> {
+    each(entries, options.render.threads, progress, &|entry| scene::replay(entry, options))
+}
+
+/// Does `work` for each entry, apart from the others.
+fn each(
+    entries: &[Entry],
+    threads: usize,
+    progress: &(dyn Fn(usize) + Sync),
+    work: &(dyn Fn(&Entry) -> Replayed + Sync),
+) -> Vec<Replayed> {
     let done = std::sync::atomic::AtomicUsize::new(0);
     let one = |entry: &Entry| {
-        let replayed = scene::replay(entry, options);
+        let replayed = caught(|| work(entry)).unwrap_or_else(|panic| Replayed {
+            name: entry.name.clone(),
+            path: entry.path.clone(),
+            outcome: Outcome::Failed(Problem::internal(&panic)),
+            unwritten: Vec::new(),
+        });
         progress(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
         replayed
     };
-    on_threads(options.render.threads, || entries.par_iter().map(one).collect())
+    on_threads(threads, || entries.par_iter().map(one).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_what_became_of_one_scene() {
+        let entry =
+            |name: &str| Entry { name: name.into(), path: format!("{name}.ron").into(), kind: EntryKind::Scene };
+        let entries = ["a", "b", "c", "d"].map(entry);
+        let work = |entry: &Entry| {
+            assert!(entry.name != "b", "a table of {} rows", 3);
+            let Entry { name, path, .. } = entry.clone();
+            Replayed { name, path, outcome: Outcome::Match, unwritten: Vec::new() }
+        };
+        let done = std::sync::Mutex::new(Vec::new());
+        let progress = |count| done.lock().expect("no panic here").push(count);
+        for threads in [1, 3] {
+            let replayed = each(&entries, threads, &progress, &work);
+            let codes: Vec<u8> = replayed.iter().map(Replayed::exit_code).collect();
+            assert_eq!(codes, [0, 6, 0, 0]);
+            let Outcome::Failed(problem) = &replayed[1].outcome else { panic!("{replayed:?}") };
+            assert_eq!((problem.code, problem.kind), ("NB0801", ProblemKind::Internal));
+            assert!(
+                problem.text.contains("src/replay/mod.rs:") && problem.text.contains("a table of 3 rows"),
+                "{problem:?}"
+            );
+            let text = report::text(&replayed);
+            assert!(text.contains("failed   b.ron\n    error[NB0801]: internal error: src/replay/mod.rs:"), "{text}");
+            assert!(text.ends_with("4 scenes: 3 as expected, 1 failed\n"), "{text}");
+            for report in [
+                report::junit(&replayed),
+                report::json(&replayed),
+                report::html(&replayed),
+                report::annotations(&replayed),
+            ] {
+                assert!(report.contains("NB0801") && report.contains("a table of 3 rows"), "{report}");
+            }
+        }
+        assert_eq!(done.into_inner().expect("no panic here").len(), 8);
+    }
 }

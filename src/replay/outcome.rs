@@ -8,7 +8,9 @@ use super::cause::Cause;
 use crate::diagnostic::ErrorKind;
 use crate::diff::{self, CHANNELS, histogram_text, pixels, share};
 use crate::expectation::Mismatch;
+use crate::guard::Panic;
 use crate::report::BesideLine;
+use crate::shown;
 
 /// A scene that was replayed.
 #[derive(Clone, Debug)]
@@ -43,11 +45,22 @@ pub enum Outcome {
     Failed(Problem),
 }
 
+/// Whose problem it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ProblemKind {
+    /// The scene's, or that of a file of it.
+    Scene(ErrorKind),
+    /// An output's, which was not written.
+    Output,
+    /// This program's.
+    Internal,
+}
+
 /// Why something could not be done.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Problem {
-    /// What a caller does about it; `None`: an output was not written.
-    pub kind: Option<ErrorKind>,
+    /// What a caller does about it.
+    pub kind: ProblemKind,
     /// Stable code.
     pub code: &'static str,
     /// What is wrong, in one line.
@@ -63,12 +76,23 @@ impl Problem {
     pub(super) fn new(kind: ErrorKind, code: &'static str, message: impl Into<String>, help: &str) -> Self {
         let message = message.into();
         let text = format!("error[{code}]: {message}\n  help: {help}");
-        Problem { kind: Some(kind), code, message, text, place: None }
+        Problem { kind: ProblemKind::Scene(kind), code, message, text, place: None }
+    }
+
+    /// A fault of this program.
+    pub(super) fn internal(panic: &Panic) -> Self {
+        let (code, message) = (Panic::CODE, panic.to_string());
+        let text = format!("error[{code}]: {message}\n  help: {}", Panic::HELP);
+        Problem { kind: ProblemKind::Internal, code, message, text, place: None }
     }
 
     /// Exit status that goes with it.
     pub fn exit_code(&self) -> u8 {
-        self.kind.map_or(7, ErrorKind::exit_code)
+        match self.kind {
+            ProblemKind::Scene(kind) => kind.exit_code(),
+            ProblemKind::Internal => 6,
+            ProblemKind::Output => 7,
+        }
     }
 }
 
@@ -185,14 +209,19 @@ impl Difference {
     /// All there is to say, several lines.
     pub fn text(&self) -> String {
         let mut text = format!("{}\n\n", self.verdict());
-        text += &format!("target    {}\nexpected  {}\ndrawn     {}\n", self.target, self.expected, self.drawn);
+        text += &format!(
+            "target    {}\nexpected  {}\ndrawn     {}\n",
+            shown::name(&self.target),
+            shown::name(&self.expected),
+            self.drawn
+        );
         for remark in &self.remarks {
-            text += &format!("{remark}\n");
+            text += &format!("{}\n", shown::name(remark));
         }
         match &self.known {
             Some(known) => {
                 if let Origin::File(path) = &known.origin {
-                    text += &format!("the expected picture is {}\n", path.display());
+                    text += &format!("the expected picture is {}\n", shown::path(path));
                 }
                 let channels: Vec<_> = CHANNELS.into_iter().zip(&known.difference.channels).collect();
                 text += &format!("\ndrawn less expected, in pixels:\n{}", histogram_text("difference", &channels));
@@ -225,14 +254,14 @@ impl Replayed {
             Outcome::Blessed { .. } => "blessed",
             Outcome::Skipped(_) => "skipped",
             Outcome::Differs(_) => "differs",
-            Outcome::Failed(problem) if problem.kind == Some(ErrorKind::Missing) => "missing",
+            Outcome::Failed(problem) if problem.kind == ProblemKind::Scene(ErrorKind::Missing) => "missing",
             Outcome::Failed(_) => "failed",
         }
     }
 
-    /// What there is to say about it in one line; empty for a match.
+    /// What there is to say about it in one [shown](crate::shown) line; empty for a match.
     pub fn message(&self) -> String {
-        match &self.outcome {
+        let message = match &self.outcome {
             Outcome::Match => String::new(),
             Outcome::Blessed { before: None, after } => format!("digest {}, none before", short(after)),
             Outcome::Blessed { before: Some(before), after } => {
@@ -241,7 +270,8 @@ impl Replayed {
             Outcome::Skipped(reason) => reason.clone(),
             Outcome::Differs(difference) => difference.verdict(),
             Outcome::Failed(problem) => format!("{} {}", problem.code, problem.message),
-        }
+        };
+        shown::name(&message).into_owned()
     }
 
     /// Exit status that goes with it.

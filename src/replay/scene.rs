@@ -6,7 +6,7 @@ use super::Options;
 use super::bless::{self, refused, unwritten};
 use super::cause::{self, Found};
 use super::find::{Entry, EntryKind};
-use super::outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, Replayed, Traces};
+use super::outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
 use super::panels::panels;
 use crate::diagnostic::{ErrorKind, SceneError, Severity};
 use crate::diff;
@@ -19,6 +19,7 @@ use crate::plan::Plan;
 use crate::report::{beside, beside_text, trace_text, trace_value};
 use crate::scene;
 use crate::scene::image::{self, ImageLimits, Rgba};
+use crate::shown;
 use crate::state::Named;
 
 /// Replays one scene.
@@ -29,13 +30,13 @@ pub(super) fn replay(entry: &Entry, options: &Options) -> Replayed {
         EntryKind::Orphan => Outcome::Failed(Problem::new(
             ErrorKind::Missing,
             "NB1203",
-            format!("`{}` has no scene beside it", entry.path.display()),
+            format!("`{}` has no scene beside it", shown::path(&entry.path)),
             "remove it, or bring the scene back",
         )),
         EntryKind::Unreadable(reason) => Outcome::Failed(Problem::new(
             ErrorKind::Invalid,
             "NB1204",
-            format!("`{}` cannot be read: {reason}", entry.path.display()),
+            format!("`{}` cannot be read: {reason}", shown::path(&entry.path)),
             "check its permissions; whatever lies in it has not been replayed",
         )),
     };
@@ -54,7 +55,10 @@ fn place(folder: &Path, name: &str, extension: &str) -> PathBuf {
 /// Writes what is known of a difference.
 fn write_artifacts(replayed: &mut Replayed, folder: &Path) {
     let Outcome::Differs(difference) = &replayed.outcome else { return };
-    let mut files = vec![("drawn.png", difference.picture.clone()), ("txt", difference.text().into_bytes())];
+    let mut files = vec![
+        ("drawn.png", difference.picture.clone()),
+        ("txt", shown::lines(&difference.text()).into_owned().into_bytes()),
+    ];
     if let Some(known) = &difference.known {
         files.push(("difference.png", known.panels.clone()));
     }
@@ -73,7 +77,7 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
         let missing = expectation.missing(folder).map_err(|error| refused(&path, &error))?;
         if let Some(first) = missing.first() {
             let capture = if expectation.capture.is_some() { "captured frames: " } else { "" };
-            return Ok(Outcome::Skipped(format!("needs {capture}`{first}`, which is not here")));
+            return Ok(Outcome::Skipped(format!("needs {capture}`{}`, which is not here", shown::name(first))));
         }
     }
     let loaded = scene::load(&entry.path, &Limits::default()).map_err(|error| not_accepted(&error))?;
@@ -88,8 +92,8 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
     let plan = Plan { policies: options.policies, ..loaded.plan };
     let Some(name) = target.and_then(|target| plan.targets.get(target)).map(|target| target.name.clone()) else {
         let expected = expectation.map(|expectation| expectation.target).unwrap_or_default();
-        let message = format!("`{}`: the scene has no target `{expected}`", path.display());
-        let names: Vec<String> = plan.targets.iter().map(|target| format!("`{}`", target.name)).collect();
+        let message = format!("`{}`: the scene has no target `{}`", shown::path(&path), shown::name(&expected));
+        let names: Vec<String> = plan.targets.iter().map(|target| format!("`{}`", shown::name(&target.name))).collect();
         let help = format!("its targets: {}", names.join(", "));
         return Err(Problem::new(ErrorKind::Invalid, "NB1206", message, &help));
     };
@@ -106,7 +110,7 @@ fn draw(entry: &Entry, options: &Options, unwritten_files: &mut Vec<Problem>) ->
         if options.bless {
             return bless::write(&path, folder, &name, &surface, None);
         }
-        let message = format!("`{}` has no expectation beside it", entry.path.display());
+        let message = format!("`{}` has no expectation beside it", shown::path(&entry.path));
         return Err(Problem::new(
             ErrorKind::Missing,
             "NB1202",
@@ -135,7 +139,7 @@ fn not_accepted(error: &SceneError) -> Problem {
     let more = error.diagnostics.len() + error.suppressed;
     let message = first.map_or(String::new(), |finding| finding.message.clone());
     Problem {
-        kind: Some(error.kind()),
+        kind: ProblemKind::Scene(error.kind()),
         code: first.map_or("NB0101", |finding| finding.code),
         message: if more > 1 { format!("{message}, and {} more", more - 1) } else { message },
         text: error.render(false).trim_end().to_owned(),
@@ -223,9 +227,9 @@ impl Subject<'_> {
                     if self.masked(&mut picture, compared) == expectation.sha256 {
                         return Some((picture, Origin::File(path)));
                     }
-                    remarks.push(format!("{} is another picture than the expected one", path.display()));
+                    remarks.push(format!("{} is another picture than the expected one", shown::path(&path)));
                 }
-                Ok(_) => remarks.push(format!("{} has another size than the expected picture", path.display())),
+                Ok(_) => remarks.push(format!("{} has another size than the expected picture", shown::path(&path))),
                 Err(error) => remarks.push(error),
             }
         }

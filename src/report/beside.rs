@@ -6,6 +6,7 @@ use similar::{Algorithm, DiffOp, capture_diff_slices};
 
 use super::text::{expression, integer};
 use crate::engine::{DrawTrace, PixelTrace};
+use crate::shown;
 use crate::trace::Step;
 
 /// A line of two traces: what one of them, or both, computed.
@@ -104,7 +105,7 @@ fn write(out: &mut String, titles: [&str; 2], lines: &[BesideLine]) -> std::fmt:
     writeln!(out, "    {:name$}  {:>a$}  {:>b$}  {:8}how", "what", titles[0], titles[1], "rule")?;
     for line in lines {
         if let Some(heading) = &line.heading {
-            writeln!(out, "  {heading}")?;
+            writeln!(out, "  {}", shown::name(heading))?;
         }
         let mark = if line.differs() { '>' } else { ' ' };
         let how = match (&line.first, &line.second) {

@@ -2,6 +2,7 @@
 
 use crate::engine::{DrawTrace, PixelTrace};
 use crate::plan::Plan;
+use crate::shown;
 use crate::state::{Named, POLICIES, Policies};
 use crate::texture::cube::Face;
 use crate::trace::{Operand, SINGLE, Step};
@@ -17,7 +18,8 @@ pub fn trace_text(plan: &Plan, trace: &PixelTrace) -> String {
 
 fn write(out: &mut String, plan: &Plan, trace: &PixelTrace) -> std::fmt::Result {
     let [r, g, b, a] = trace.cleared;
-    writeln!(out, "pixel {},{} of target `{}`, profile {}", trace.x, trace.y, trace.target, plan.profile.name())?;
+    let target = shown::name(&trace.target);
+    writeln!(out, "pixel {},{} of target `{target}`, profile {}", trace.x, trace.y, plan.profile.name())?;
     write!(out, "{}", policies_text(&plan.policies))?;
     writeln!(out, "cleared to R {r} G {g} B {b} A {a}")?;
     if trace.draws.is_empty() {
@@ -51,7 +53,7 @@ pub fn steps_text(steps: &[Step]) -> String {
 }
 
 fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
-    writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, draw.name, draw.triangle)?;
+    writeln!(out, "\ndraw {} `{}`, triangle {}", draw.draw, shown::name(&draw.name), draw.triangle)?;
     write_steps(out, &draw.steps, |block| draw.origin(block))?;
     let [r, g, b, a] = draw.shown;
     let outcome = if draw.stored { "stored" } else { "dropped; the surface still shows" };
@@ -75,7 +77,7 @@ fn write_steps<'o>(out: &mut String, steps: &[Step], origin: impl Fn(&str) -> Op
         if step.block != block {
             block = &step.block;
             match origin(block) {
-                Some(origin) => writeln!(out, "  {block}: {origin}")?,
+                Some(origin) => writeln!(out, "  {block}: {}", shown::name(origin))?,
                 None => writeln!(out, "  {block}")?,
             }
         }

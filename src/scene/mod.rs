@@ -25,6 +25,7 @@ pub use crate::diagnostic::{Diagnostic, ErrorKind, SceneError, Severity, Source,
 use crate::limits::{FileLimit, Limits};
 use crate::plan::Plan;
 use crate::read::{self, Kind, ReadError};
+use crate::shown;
 use crate::state::Scene;
 use crate::truth::Truth;
 pub use lower::{DrawSpans, VertexSpans};
@@ -59,7 +60,7 @@ impl Loaded {
 /// # Errors
 /// The file is missing, too large or not UTF-8; the scene is not one; a file that it names cannot be used.
 pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
-    let name = path.display().to_string();
+    let name = shown::lossless(path);
     let fail = |finding: Diagnostic, text: String| SceneError {
         diagnostics: vec![finding],
         suppressed: 0,
@@ -103,7 +104,7 @@ fn too_large(limit: FileLimit) -> Diagnostic {
 /// Everything that is wrong with it.
 pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let source = Source { name: origin.display().to_string(), text: text.to_owned() };
+    let source = Source { name: shown::lossless(origin), text: text.to_owned() };
     if text.len() as u64 > limits.scene_bytes {
         let source = Source { text: String::new(), ..source };
         return Err(SceneError { diagnostics: vec![too_large(limits.scene_file())], suppressed: 0, source });

@@ -20,7 +20,7 @@ pub enum PathError {
         reason: &'static str,
     },
     /// There is no such file.
-    #[error("`{name}` does not exist in `{}`", folder.display())]
+    #[error("`{name}` does not exist in `{}`", crate::shown::path(folder))]
     Missing {
         /// As given.
         name: String,
@@ -28,7 +28,7 @@ pub enum PathError {
         folder: PathBuf,
     },
     /// A link leads out of the folder.
-    #[error("`{name}` leads out of `{}`", folder.display())]
+    #[error("`{name}` leads out of `{}`", crate::shown::path(folder))]
     Escape {
         /// As given.
         name: String,

@@ -12,7 +12,7 @@ use crate::read::{self, Kind, ReadError};
 #[derive(Debug, Error)]
 pub enum VectorError {
     /// A file is not there.
-    #[error("`{}` does not exist", path.display())]
+    #[error("`{}` does not exist", crate::shown::path(path))]
     Missing {
         /// The file.
         path: PathBuf,
@@ -20,7 +20,7 @@ pub enum VectorError {
         help: &'static str,
     },
     /// A file cannot be read.
-    #[error("`{}` cannot be read: {reason}", path.display())]
+    #[error("`{}` cannot be read: {reason}", crate::shown::path(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -28,7 +28,7 @@ pub enum VectorError {
         reason: String,
     },
     /// A file has more bytes than it may.
-    #[error("`{}` is larger than {limit}", path.display())]
+    #[error("`{}` is larger than {limit}", crate::shown::path(path))]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -55,7 +55,11 @@ pub enum VectorError {
 }
 
 fn place(path: &Path, line: usize) -> String {
-    if line == 0 { format!("`{}`", path.display()) } else { format!("`{}`, line {line}", path.display()) }
+    if line == 0 {
+        format!("`{}`", crate::shown::path(path))
+    } else {
+        format!("`{}`, line {line}", crate::shown::path(path))
+    }
 }
 
 impl VectorError {

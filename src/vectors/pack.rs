@@ -24,7 +24,7 @@ use super::table::{Contents, Writer};
 use super::view::{Content, Layout, TABLE, View};
 use super::{BEHAVIOUR, Unit};
 use crate::limits::{self, FileLimit};
-use crate::output::{OutputError, PendingFile, make_folder, write_file};
+use crate::output::{OutputError, PendingFile, is_leftover, make_folder, remove_leftovers, write_file};
 use crate::picture::hexadecimal;
 use crate::read::{self, Kind, ReadError};
 use crate::state::{Named, Profile};
@@ -155,7 +155,9 @@ fn sums(files: &[File]) -> String {
 pub fn export(folder: &Path, options: &Options) -> Result<Manifest, VectorError> {
     for part in FOLDERS {
         make_folder(&folder.join(part))?;
+        remove_leftovers(&folder.join(part))?;
     }
+    remove_leftovers(folder)?;
     let manifest_path = folder.join(MANIFEST);
     if manifest_path.exists() {
         // What an earlier export left is no pack from now on.
@@ -298,7 +300,8 @@ pub fn open(folder: &Path) -> Result<(Manifest, Vec<Table>), VectorError> {
             path: part.clone(),
             help: "the manifest lists files in it: the pack is not whole",
         })?;
-        others.extend(entries.flatten().map(|entry| entry.path()).filter(|path| !listed.contains(path)));
+        let entries = entries.flatten().filter(|entry| !is_leftover(&entry.file_name()));
+        others.extend(entries.map(|entry| entry.path()).filter(|path| !listed.contains(path)));
     }
     others.sort();
     if let Some(path) = others.first() {

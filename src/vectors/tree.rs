@@ -183,7 +183,7 @@ pub fn merge(folders: &[PathBuf]) -> Result<Tree, VectorError> {
             return Err(invalid(&path, "NB1020", format!("there is no leaf {}", leaf.index), "remove it"));
         }
         if let Some((_, other)) = found.get(&leaf.index) {
-            let message = format!("leaf {} is in `{}` already", leaf.index, other.display());
+            let message = format!("leaf {} is in `{}` already", leaf.index, crate::shown::path(other));
             return Err(invalid(&path, "NB1022", message, "name each folder once, and give each shard to one worker"));
         }
         found.insert(leaf.index, (leaf, path));

@@ -26,7 +26,7 @@ cp vectors/scenes/deciding/CMB-3-expand.ron vectors/scenes/dot3/{constant-light.
     unset CI
     "$ninebit" replay --bless scenes
     # What is expected of one scene is what it shows under another value; of the other it is nothing that can be drawn; a third one is broken.
-    digest=$("$ninebit" render scenes/constant-light.ron --policy CMB-8=each -o theirs.png --stats json | grep -o '[0-9a-f]\{64\}' | head -n 1)
+    digest=$("$ninebit" render scenes/constant-light.ron --policy CMB-8=each -o theirs.png --format json | grep -o '[0-9a-f]\{64\}' | head -n 1)
     sed -i "s/sha256: \"[0-9a-f]*\"/sha256: \"$digest\"/" scenes/constant-light.expect.ron
     sed -i 's/sha256: "[0-9a-f]*"/sha256: "'"$(printf '0%.0s' {1..64})"'"/' scenes/hemisphere.expect.ron
     echo '(version: 1, profile: Nv11)' >scenes/broken.ron

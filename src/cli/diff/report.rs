@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use ninebit::diff::{CHANNELS, Difference, Histogram, Region, histogram_text, pixels, share};
 use ninebit::report::{trace_text, trace_value};
+use ninebit::shown;
 use serde_json::{Value, json};
 
 use super::{Findings, SceneFindings};
@@ -25,8 +26,8 @@ pub(super) fn text(findings: &Findings<'_>) -> String {
 fn write_text(out: &mut String, findings: &Findings<'_>) -> std::fmt::Result {
     let (arguments, difference) = (findings.arguments, &findings.difference);
     let without = if arguments.ignore_alpha { ", alpha not compared" } else { "" };
-    writeln!(out, "A {}", arguments.a.display())?;
-    writeln!(out, "B {}", arguments.b.display())?;
+    writeln!(out, "A {}", shown::path(&arguments.a))?;
+    writeln!(out, "B {}", shown::path(&arguments.b))?;
     writeln!(out, "{} x {} pixels{without}", difference.width, difference.height)?;
     if let Some(scene) = &findings.scene {
         write_scene(out, scene)?;
@@ -37,13 +38,13 @@ fn write_text(out: &mut String, findings: &Findings<'_>) -> std::fmt::Result {
         write_difference(out, findings)?;
     }
     if let Some((path, scale)) = &findings.picture {
-        writeln!(out, "\n{path}: |B - A| times {scale} where they differ, a dark grey A elsewhere")?;
+        writeln!(out, "\n{}: |B - A| times {scale} where they differ, a dark grey A elsewhere", shown::name(path))?;
     }
     Ok(())
 }
 
 fn write_scene(out: &mut String, scene: &SceneFindings<'_>) -> std::fmt::Result {
-    writeln!(out, "\nframe of {}, target `{}`:", scene.path.display(), scene.target)?;
+    writeln!(out, "\nframe of {}, target `{}`:", shown::path(scene.path), shown::name(&scene.target))?;
     for (name, different) in ["A", "B"].into_iter().zip(scene.different) {
         match different {
             0 => writeln!(out, "  {name} equals it")?,
@@ -120,13 +121,13 @@ pub(super) fn json(findings: &Findings<'_>) -> Value {
         .collect();
     let scene = findings.scene.as_ref().map(|scene| {
         let [a, b] = scene.different;
-        json!({ "path": scene.path.display().to_string(), "target": scene.target, "a_differs": a, "b_differs": b })
+        json!({ "path": shown::lossless(scene.path), "target": scene.target, "a_differs": a, "b_differs": b })
     });
     let picture = findings.picture.as_ref().map(|(path, scale)| json!({ "path": path, "scale": scale }));
     json!({
         "format": "ninebit-diff-1",
-        "a": arguments.a.display().to_string(),
-        "b": arguments.b.display().to_string(),
+        "a": shown::lossless(&arguments.a),
+        "b": shown::lossless(&arguments.b),
         "width": difference.width,
         "height": difference.height,
         "ignore_alpha": arguments.ignore_alpha,

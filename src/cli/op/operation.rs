@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use ninebit::number::{Lane, Paired};
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
 use ninebit::report::{policies_text, policies_value, steps_text, steps_value};
 use ninebit::state::{Named, Policies, Profile};
 use ninebit::trace::{Observer, Recorder, Step};
@@ -24,7 +24,7 @@ pub(super) struct Common {
     /// How to print it
     #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text, conflicts_with = "inputs")]
     format: Format,
-    /// Many cases: a table whose header names inputs and whose lines are cases; printed with the results
+    /// Many cases: a table whose header names inputs and whose lines are cases, `-` for stdin; printed with the results
     #[arg(long, value_name = "FILE.tsv")]
     inputs: Option<PathBuf>,
     /// Where the table of results goes [default: stdout]
@@ -80,7 +80,13 @@ pub(super) trait Operation {
 pub(super) fn drive(operation: &impl Operation, common: &Common) -> Result<(), Failure> {
     match &common.inputs {
         Some(path) => table::run(operation, path, common.output.as_deref()),
-        None => Ok(write_stdout(one(operation, common.format)?.as_bytes())?),
+        None => {
+            let text = one(operation, common.format)?;
+            Ok(match common.format {
+                Format::Text => write_text(&text)?,
+                Format::Json => write_json(&text)?,
+            })
+        }
     }
 }
 

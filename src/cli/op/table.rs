@@ -7,11 +7,11 @@ use std::path::Path;
 use ninebit::limits::OPERATION_TABLE;
 use ninebit::output::{Destination, write_stdout};
 use ninebit::read::{self, Kind, ReadError};
+use ninebit::shown;
 use ninebit::trace::Silent;
 
 use super::super::exit::{Exit, Failure, Report};
-use super::super::scene::refuse_overwriting;
-use super::operation::{Operation, shown};
+use super::operation::{Operation, shown as written};
 
 /// Broken rows that are named.
 const MOST_ERRORS: usize = 16;
@@ -19,9 +19,6 @@ const MOST_ERRORS: usize = 16;
 /// Runs an operation on each line of a table.
 pub(super) fn run(operation: &impl Operation, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
     let destination = output.map(Destination::from);
-    if let Some(destination) = &destination {
-        refuse_overwriting(path, destination)?;
-    }
     let text = read(path)?;
     let results = evaluate(operation, path, text.strip_prefix('\u{feff}').unwrap_or(&text))?;
     match destination {
@@ -32,17 +29,21 @@ pub(super) fn run(operation: &impl Operation, path: &Path, output: Option<&OsStr
 
 fn read(path: &Path) -> Result<String, Failure> {
     let unreadable = |reason: &str| {
-        let message = format!("table `{}` cannot be read: {reason}", path.display());
+        let message = format!("table `{}` cannot be read: {reason}", shown::path(path));
         Failure::invalid("NB0531", message, "name a text file of tab-separated values, in UTF-8")
     };
-    let bytes = read::bytes(path, Kind::Stream, OPERATION_TABLE).map_err(|error| match error {
+    let bytes = match path == Path::new("-") {
+        true => read::all(std::io::stdin(), OPERATION_TABLE),
+        false => read::bytes(path, Kind::Stream, OPERATION_TABLE),
+    };
+    let bytes = bytes.map_err(|error| match error {
         ReadError::Missing => {
-            let message = format!("table `{}` does not exist", path.display());
+            let message = format!("table `{}` does not exist", shown::path(path));
             let help = "check the spelling and the folder; upper and lower case count";
             Failure { exit: Exit::Missing, ..Failure::invalid("NB0530", message, help) }
         }
         ReadError::TooLarge(limit) => {
-            let message = format!("table `{}` is larger than {limit}", path.display());
+            let message = format!("table `{}` is larger than {limit}", shown::path(path));
             Failure { exit: Exit::Limit, ..Failure::invalid("NB0534", message, "split the table") }
         }
         error => unreadable(&error.to_string()),
@@ -58,7 +59,7 @@ fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<Strin
         .map(|(number, line)| (number, line.trim_end_matches('\r')))
         .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
     let Some((number, header)) = lines.next() else {
-        let message = format!("table `{}` has no header", path.display());
+        let message = format!("table `{}` has no header", shown::path(path));
         return Err(Failure::invalid("NB0532", message, columns_help(operation)));
     };
     let names: Vec<&str> = header.split('\t').map(str::trim).collect();
@@ -80,7 +81,7 @@ fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<Strin
                 }
                 out.push_str(&fields.join("\t"));
                 for (_, value) in &results {
-                    let _ = write!(out, "\t{}", shown(value));
+                    let _ = write!(out, "\t{}", written(value));
                 }
                 out.push('\n');
             }
@@ -91,7 +92,7 @@ fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<Strin
         return Err(errors.failure(path));
     }
     if out.is_empty() {
-        let message = format!("table `{}` has a header and no cases", path.display());
+        let message = format!("table `{}` has a header and no cases", shown::path(path));
         return Err(Failure::invalid("NB0533", message, "write one case a line, its values apart by tabs"));
     }
     Ok(out)
@@ -100,14 +101,14 @@ fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<Strin
 /// The operation's column behind each column of the table.
 fn header_columns(operation: &impl Operation, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
     let wrong = |column: usize, what: String| {
-        let message = format!("table `{}`, line {line}, column {}: {what}", path.display(), column + 1);
+        let message = format!("table `{}`, line {line}, column {}: {what}", shown::path(path), column + 1);
         Failure::invalid("NB0532", message, columns_help(operation))
     };
     let mut columns = Vec::with_capacity(names.len());
     for (index, name) in names.iter().enumerate() {
         let Some(column) = operation.find(name) else {
             let short: String = name.chars().take(40).collect();
-            return Err(wrong(index, format!("there is no input `{short}`")));
+            return Err(wrong(index, format!("there is no input `{}`", shown::name(&short))));
         };
         if let Some(first) = columns.iter().position(|known| *known == column) {
             return Err(wrong(index, format!("`{name}` is the same input as column {}", first + 1)));
@@ -116,7 +117,7 @@ fn header_columns(operation: &impl Operation, path: &Path, line: usize, names: &
     }
     let missing = (0..).zip(operation.columns()).find(|(n, column)| column.value.is_none() && !columns.contains(n));
     if let Some((_, column)) = missing {
-        let message = format!("table `{}` has no column `{}`", path.display(), column.name);
+        let message = format!("table `{}` has no column `{}`", shown::path(path), column.name);
         return Err(Failure::invalid("NB0532", message, operation.how_to_give(column)));
     }
     Ok(columns)
@@ -143,7 +144,12 @@ fn row(
         let value = field.parse::<i64>().ok().filter(|value| wanted.contains(value)).ok_or_else(|| {
             let field: String = field.chars().take(40).collect();
             let range = format!("{} to {}", wanted.start(), wanted.end());
-            format!("column {} (`{}`): `{field}` is not a whole number from {range}", index + 1, names[index])
+            format!(
+                "column {} (`{}`): `{}` is not a whole number from {range}",
+                index + 1,
+                names[index],
+                shown::name(&field)
+            )
         })?;
         values[*column] = value;
     }
@@ -166,7 +172,7 @@ impl Errors {
 
     fn failure(self, path: &Path) -> Failure {
         let count = if self.rows == 1 { "1 line".to_owned() } else { format!("{} lines", self.rows) };
-        let mut message = format!("table `{}`: {count} cannot be used\n{}", path.display(), self.shown.join("\n"));
+        let mut message = format!("table `{}`: {count} cannot be used\n{}", shown::path(path), self.shown.join("\n"));
         if self.rows > self.shown.len() {
             let _ = write!(message, "\n  ... and {} more", self.rows - self.shown.len());
         }

@@ -36,11 +36,9 @@ impl Template {
         match scene::parse(&text, Path::new("what is asked for, as a scene"), &Limits::default()) {
             Ok(loaded) => Ok((loaded.scene, loaded.plan)),
             Err(error) => {
-                let mut failure = refused(&error, context);
-                if let Report::Text(text) = &mut failure.report {
-                    text.push_str("\nthe lines above are this command's options as a scene writes them; `--profile nv2a` chooses the other chip\n");
-                }
-                Err(failure)
+                let text = error.render(context.color)
+                    + "\nthe lines above are this command's options as a scene writes them; `--profile nv2a` chooses the other chip\n";
+                Err(Failure { report: Report::Text(text), ..refused(error) })
             }
         }
     }

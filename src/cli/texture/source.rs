@@ -1,11 +1,12 @@
 //! The texture that the command line names: a file, or one of a scene.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 use ninebit::engine::{self, RenderOptions};
 use ninebit::scene::image::{self, Contents, ImageLimits};
 use ninebit::scene::texels;
+use ninebit::shown;
 use ninebit::state::{CUBE_FACES, Named, Profile, Scene, Texels, TextureFormat, TextureImage, TextureKind};
 
 use super::Arguments;
@@ -17,8 +18,6 @@ use crate::cli::scene::{PolicyArguments, load};
 pub(super) struct Opened {
     /// As the command line has it.
     pub(super) name: String,
-    /// The file that was read first.
-    pub(super) file: PathBuf,
     pub(super) kind: TextureKind,
     pub(super) format: TextureFormat,
     pub(super) texels: Texels,
@@ -39,7 +38,7 @@ impl Opened {
 
 /// Reads the texture.
 pub(super) fn open(arguments: &Arguments, context: Context) -> Result<Opened, Failure> {
-    let name = arguments.texture.to_string_lossy().into_owned();
+    let name = shown::lossless(Path::new(&arguments.texture));
     if let Some(end) = name.find(".ron:") {
         let (scene, texture) = (&name[..end + 4], &name[end + 5..]);
         return of_scene(arguments, Path::new(scene), texture, name.clone(), context);
@@ -87,7 +86,7 @@ fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, F
         }
     };
     let palette = palette.unwrap_or_default().into();
-    Ok(Opened { name, file: path.to_path_buf(), kind, format, texels, palette, dithered, target: None })
+    Ok(Opened { name, kind, format, texels, palette, dithered, target: None })
 }
 
 /// Any sides make a rectangle.
@@ -112,7 +111,7 @@ fn of_scene(
     let (scene, plan) = load(path, &PolicyArguments::default(), context)?;
     let Some(index) = scene.textures.iter().position(|known| known.name == texture) else {
         let message = format!("the scene has no texture `{texture}`");
-        return Err(Failure::usage(message, known(&scene, &path.display().to_string())));
+        return Err(Failure::usage(message, known(&scene, &shown::path(path))));
     };
     let texture = &scene.textures[index];
     let (texels, target) = match &texture.image {
@@ -127,7 +126,6 @@ fn of_scene(
     };
     Ok(Opened {
         name,
-        file: path.to_path_buf(),
         kind: texture.kind,
         format: texture.format,
         texels,

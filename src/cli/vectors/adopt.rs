@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::write_text;
+use ninebit::shown;
 use ninebit::vectors::results::{self, adopt, compare};
 use ninebit::vectors::{BEHAVIOUR, pack};
 
@@ -38,7 +39,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         let (confirmed, contradicted) = (unit.confirmed, unit.contradicted);
         let _ = writeln!(text, "{:<24}{confirmed:>8} rows confirmed{contradicted:>8} contradicted", unit.unit);
     }
-    let _ = writeln!(text, "{}: {} {}", place.display(), adopted.grade, adopted.renderer);
+    let _ = writeln!(text, "{}: {} {}", shown::path(&place), adopted.grade, shown::name(&adopted.renderer));
     if adopted.behaviour_rev > BEHAVIOUR {
         let _ = writeln!(
             text,
@@ -46,5 +47,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             adopted.behaviour_rev
         );
     }
-    Ok(write_stdout(text.as_bytes())?)
+    Ok(write_text(&text)?)
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::write_text;
 use ninebit::vectors::read::{Difference, Table};
 use ninebit::vectors::{BEHAVIOUR, pack};
 use rayon::prelude::*;
@@ -63,6 +63,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             manifest.behaviour_rev
         );
     }
-    write_stdout(text.as_bytes())?;
+    write_text(&text)?;
     if differing > 0 { Err(Failure::difference()) } else { Ok(()) }
 }

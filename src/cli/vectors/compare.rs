@@ -4,7 +4,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
+use ninebit::shown;
 use ninebit::vectors::pack::{self, Manifest};
 use ninebit::vectors::results::compare::{self, Comparison, UnitComparison};
 use ninebit::vectors::results::{self, Device, waiver};
@@ -38,8 +39,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (manifest, tables) = pack::open(&arguments.pack)?;
     let results = results::open(&arguments.results, &manifest)?;
     let comparison = compare::compare(&tables, &results, &waivers, arguments.rows)?;
-    let text = match arguments.format {
-        Format::Text => text(&manifest, &results.device, &comparison),
+    match arguments.format {
+        Format::Text => write_text(&text(&manifest, &results.device, &comparison))?,
         Format::Json => {
             let value = json!({
                 "format": "ninebit-comparison-1",
@@ -50,16 +51,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
                 "device": results.device,
                 "comparison": comparison,
             });
-            format!("{value:#}\n")
+            write_json(&format!("{value:#}"))?;
         }
-    };
-    write_stdout(text.as_bytes())?;
+    }
     if comparison.is_clean() { Ok(()) } else { Err(Failure::difference()) }
 }
 
 /// The comparison for people.
 fn text(manifest: &Manifest, device: &Device, comparison: &Comparison) -> String {
-    let mut text = format!("{}, {}, {}\n", device.vendor, device.renderer, device.version);
+    let mut text = [&device.vendor, &device.renderer, &device.version].map(|name| shown::name(name)).join(", ") + "\n";
     let (profile, level, revision) = (&manifest.profile, &manifest.level, manifest.behaviour_rev);
     let _ = writeln!(text, "{profile} {level}, behaviour {revision}, pack {:.12}\n", manifest.root);
     let _ = writeln!(
@@ -100,7 +100,7 @@ fn details(unit: &UnitComparison, text: &mut String) {
     let _ = writeln!(text, "\n{}: {differing} of {} rows differ, by {} at most", unit.unit, unit.asked, unit.largest);
     if let Some(reason) = &unit.reason {
         let word = if unit.waived > 0 { "waived" } else { "beyond the waiver" };
-        let _ = writeln!(text, "  {word}: {reason}");
+        let _ = writeln!(text, "  {word}: {}", shown::name(reason));
     }
     let tags = unit.tags.iter().filter(|(_, share)| share.differ > 0);
     let tags: Vec<String> = tags.map(|(tag, share)| format!("{tag} {} of {}", share.differ, share.asked)).collect();
@@ -116,7 +116,7 @@ fn details(unit: &UnitComparison, text: &mut String) {
         if differences.is_empty() {
             differences.push_str("the draw failed");
         }
-        let _ = writeln!(text, "  row {} (line {}): {differences}", row.id, row.line);
+        let _ = writeln!(text, "  row {} (line {}): {}", shown::name(&row.id), row.line, shown::name(&differences));
         let _ = writeln!(text, "    {}", row.row.join(" "));
     }
 }

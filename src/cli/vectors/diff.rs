@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::write_text;
 use ninebit::vectors::pack;
 use ninebit::vectors::read::{Table, TableRow};
 
@@ -76,6 +76,6 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     if !differs {
         text.push_str("the same rows\n");
     }
-    write_stdout(text.as_bytes())?;
+    write_text(&text)?;
     if differs { Err(Failure::difference()) } else { Ok(()) }
 }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::write_text;
 use ninebit::state::Profile;
 use ninebit::vectors::cases::Level;
 use ninebit::vectors::gpu::write::BATCHES;
@@ -78,5 +78,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         };
     }
     let _ = writeln!(text, "root {}", manifest.root);
-    Ok(write_stdout(text.as_bytes())?)
+    Ok(write_text(&text)?)
 }

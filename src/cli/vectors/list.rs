@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use clap::Args;
-use ninebit::output::write_stdout;
+use ninebit::output::{write_json, write_text};
 use ninebit::state::Named;
 use ninebit::vectors::{cases, handbook, units};
 use serde_json::json;
@@ -42,9 +42,9 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "results": results.iter().map(column).collect::<Vec<_>>(),
         }));
     }
-    let text = match arguments.format {
-        Format::Text => text,
-        Format::Json => format!("{:#}\n", json!({ "format": "ninebit-units-1", "units": list })),
-    };
-    Ok(write_stdout(text.as_bytes())?)
+    match arguments.format {
+        Format::Text => write_text(&text)?,
+        Format::Json => write_json(&format!("{:#}", json!({ "format": "ninebit-units-1", "units": list })))?,
+    }
+    Ok(())
 }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use ninebit::output::{Destination, make_folder, write_stdout};
+use ninebit::output::{Destination, make_folder, write_text};
 use ninebit::shard::Shard;
 use ninebit::state::{Named, Profile};
 use ninebit::threads::on_threads;
@@ -82,7 +82,7 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         done.computed,
         done.kept
     );
-    Ok(write_stdout(text.as_bytes())?)
+    Ok(write_text(&text)?)
 }
 
 #[derive(Debug, Args)]
@@ -107,7 +107,7 @@ pub(crate) fn merge(arguments: &MergeArguments) -> Result<(), Failure> {
     }
     let Tree { of: of @ Of { profile, leaves, .. }, rows, root, .. } = &tree;
     let text = format!("{} {profile}: {rows} rows in {leaves} leaves\nroot {root}\n", of.name());
-    Ok(write_stdout(text.as_bytes())?)
+    Ok(write_text(&text)?)
 }
 
 #[derive(Debug, Args)]
@@ -155,7 +155,7 @@ pub(crate) fn digest(arguments: &DigestArguments) -> Result<(), Failure> {
                 let _ = writeln!(text, "  the tree is of behaviour {behaviour_rev}, the model of {BEHAVIOUR}");
             }
         }
-        write_stdout(text.as_bytes())?;
+        write_text(&text)?;
     }
     if differs { Err(Failure::difference()) } else { Ok(()) }
 }

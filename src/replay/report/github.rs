@@ -1,6 +1,7 @@
 //! The report for GitHub Actions: annotations on the files, and a summary of the step.
 
 use crate::replay::{Outcome, Replayed, Summary};
+use crate::shown;
 
 /// Annotations of one kind that GitHub keeps of a step.
 const MOST: usize = 10;
@@ -26,9 +27,10 @@ fn annotation(one: &Replayed) -> String {
         _ => String::new(),
     };
     let (file, title) =
-        (property(&one.path.display().to_string()), property(&format!("{} {}", one.name, one.status())));
-    let messages: Vec<String> =
-        std::iter::once(one.message()).chain(one.unwritten.iter().map(|problem| problem.message.clone())).collect();
+        (property(&shown::path(&one.path)), property(&format!("{} {}", shown::name(&one.name), one.status())));
+    let messages: Vec<String> = std::iter::once(one.message())
+        .chain(one.unwritten.iter().map(|problem| shown::name(&problem.message).into_owned()))
+        .collect();
     let message = messages.into_iter().filter(|message| !message.is_empty()).collect::<Vec<_>>().join("\n");
     format!("::error file={file}{place},title={title}::{}\n", data(&message))
 }
@@ -46,13 +48,6 @@ fn property(text: &str) -> String {
 /// What a step's summary shows, as Markdown: the counts, and a table of the scenes that are not as expected.
 pub fn step_summary(all: &[Replayed]) -> String {
     let mut out = format!("### ninebit replay\n\n{}\n", Summary::of(all));
-    let cell = |text: &str| {
-        text.replace('\\', "\\\\")
-            .replace('|', "\\|")
-            .replace('`', "\\`")
-            .replace('<', "&lt;")
-            .replace(['\n', '\r'], " ")
-    };
     let mut rows = all.iter().filter(|one| one.exit_code() != 0).peekable();
     if rows.peek().is_some() {
         out += "\n| scene | | what |\n|---|---|---|\n";
@@ -61,4 +56,34 @@ pub fn step_summary(all: &[Replayed]) -> String {
         out += &format!("| {} | {} | {} |\n", cell(&one.name), one.status(), cell(&one.message()));
     }
     out
+}
+
+/// A name or message in a table of Markdown. What Markdown gives a meaning to is escaped, and so is what GitHub makes links and mentions of.
+fn cell(text: &str) -> String {
+    let mut out = String::new();
+    for c in shown::name(text).chars() {
+        match c {
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '&' => out += "&amp;",
+            '\\' | '`' | '*' | '_' | '[' | ']' | '(' | ')' | '#' | '!' | '|' | '~' | ':' | '@' | '^' | '$' | '.' => {
+                out.extend(['\\', c]);
+            }
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_has_no_links_mentions_or_markup() {
+        assert_eq!(cell("vectors/lit-stone"), "vectors/lit-stone");
+        assert_eq!(cell("[a](http://b.c)"), r"\[a\]\(http\://b\.c\)");
+        assert_eq!(cell("www.b.c @someone <b>|`"), r"www\.b\.c \@someone &lt;b&gt;\|\`");
+        assert_eq!(cell("a\nb"), r"a\\nb");
+    }
 }

@@ -7,6 +7,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::diff::{CHANNELS, Histogram, ranges};
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
 use crate::report::BesideLine;
+use crate::shown;
 
 const STYLE: &str = include_str!("style.css");
 
@@ -27,7 +28,7 @@ pub fn html(all: &[Replayed]) -> String {
                 h1 { "ninebit replay" }
                 p { (summary) }
                 @if !wrong.is_empty() {
-                    ul { @for one in &wrong { li { a href={ "#" (one.name) } { (one.name) } ": " (one.message()) } } }
+                    ul { @for one in &wrong { li { a href={ "#" (shown::name(&one.name)) } { (shown::name(&one.name)) } ": " (one.message()) } } }
                 }
                 @for one in &wrong { (scene(one)) }
                 h2 { "All scenes" }
@@ -35,7 +36,7 @@ pub fn html(all: &[Replayed]) -> String {
                     @for one in all {
                         tr {
                             td { (status(one)) }
-                            td { code { (one.path.display()) } }
+                            td { code { (shown::path(&one.path)) } }
                             td { @if matches!(one.outcome, Outcome::Skipped(_) | Outcome::Blessed { .. }) { (one.message()) } }
                         }
                     }
@@ -52,14 +53,14 @@ fn status(one: &Replayed) -> Markup {
 
 fn scene(one: &Replayed) -> Markup {
     html! {
-        section id=(one.name) {
-            h2 { (one.name) " " (status(one)) }
+        section id=(shown::name(&one.name)) {
+            h2 { (shown::name(&one.name)) " " (status(one)) }
             @match &one.outcome {
                 Outcome::Differs(difference) => (self::difference(difference)),
-                Outcome::Failed(problem) => pre { (problem.text) },
+                Outcome::Failed(problem) => pre { (shown::lines(&problem.text)) },
                 _ => {}
             }
-            @for problem in &one.unwritten { pre { (problem.text) } }
+            @for problem in &one.unwritten { pre { (shown::lines(&problem.text)) } }
         }
     }
 }
@@ -70,7 +71,7 @@ fn image(png: &[u8], class: &str, text: &str) -> Markup {
 
 fn difference(difference: &Difference) -> Markup {
     html! {
-        p { strong { (difference.verdict()) } }
+        p { strong { (shown::name(&difference.verdict())) } }
         @match &difference.known {
             Some(known) => (pictures(known)),
             None => {
@@ -79,14 +80,14 @@ fn difference(difference: &Difference) -> Markup {
             }
         }
         table {
-            tr { th { "target" } td { code { (difference.target) } } }
-            tr { th { "expected" } td { code { (difference.expected) } } }
+            tr { th { "target" } td { code { (shown::name(&difference.target)) } } }
+            tr { th { "expected" } td { code { (shown::name(&difference.expected)) } } }
             tr { th { "drawn" } td { code { (difference.drawn) } } }
             @if let Some(Known { origin: Origin::File(path), .. }) = &difference.known {
-                tr { th { "expected picture" } td { code { (path.display()) } } }
+                tr { th { "expected picture" } td { code { (shown::path(path)) } } }
             }
         }
-        @for remark in &difference.remarks { p { (remark) } }
+        @for remark in &difference.remarks { p { (shown::name(remark)) } }
         @if let Some(known) = &difference.known {
             h3 { "Drawn less expected, in pixels" }
             (histogram(known))
@@ -129,7 +130,7 @@ fn traces(known: &Known, traces: &Traces) -> Markup {
         details open[!traces.lines.is_empty()] {
             summary { "How the first differing pixel, " (first.x) "," (first.y) ", came to be" }
             @if traces.lines.is_empty() {
-                pre { (traces.text) }
+                pre { (shown::lines(&traces.text)) }
             } @else {
                 @let (before, after) = traces.lines.split_at(begin);
                 @if !before.is_empty() {
@@ -146,9 +147,9 @@ fn table(lines: &[BesideLine]) -> Markup {
         div.scroll { table.trace {
             tr { th { "what" } th.number { "expected" } th.number { "drawn" } th { "rule" } th { "how" } }
             @for line in lines {
-                @if let Some(heading) = &line.heading { tr.heading { td colspan="5" { (heading) } } }
+                @if let Some(heading) = &line.heading { tr.heading { td colspan="5" { (shown::name(heading)) } } }
                 tr.other[line.differs()] {
-                    td { (line.name) }
+                    td { (shown::name(&line.name)) }
                     @for side in [&line.first, &line.second] {
                         td.number { @if let Some((_, integer)) = side { (integer) } }
                     }
@@ -165,8 +166,8 @@ fn how(first: Option<&(String, String)>, second: Option<&(String, String)>) -> M
     let (first, second) = (first.map(|(how, _)| how), second.map(|(how, _)| how));
     html! {
         @match (first, second) {
-            (Some(a), Some(b)) if a != b => { (a) br; (b) }
-            (Some(how), _) | (None, Some(how)) => (how),
+            (Some(a), Some(b)) if a != b => { (shown::name(a)) br; (shown::name(b)) }
+            (Some(how), _) | (None, Some(how)) => (shown::name(how)),
             (None, None) => {}
         }
     }

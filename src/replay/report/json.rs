@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use crate::diff::CHANNELS;
 use crate::replay::{Cause, Difference, Known, Origin, Outcome, Problem, Replayed, Summary};
+use crate::shown;
 
 /// One JSON document; `docs/replay.md` describes it.
 pub fn json(all: &[Replayed]) -> String {
@@ -17,7 +18,7 @@ pub fn json(all: &[Replayed]) -> String {
         },
         "scenes": all.iter().map(scene).collect::<Vec<_>>(),
     });
-    format!("{document:#}\n")
+    format!("{}\n", shown::json(&format!("{document:#}")))
 }
 
 fn scene(one: &Replayed) -> Value {
@@ -28,7 +29,7 @@ fn scene(one: &Replayed) -> Value {
     };
     json!({
         "name": one.name,
-        "path": one.path.display().to_string(),
+        "path": shown::lossless(&one.path),
         "status": one.status(),
         "message": one.message(),
         "difference": difference,
@@ -76,7 +77,7 @@ fn known(known: &Known) -> Value {
     let first = &known.first;
     json!({
         "picture": match &known.origin {
-            Origin::File(path) => Some(path.display().to_string()),
+            Origin::File(path) => Some(shown::lossless(path)),
             Origin::Cause => None,
         },
         "pixels": difference.pixels(),

@@ -6,6 +6,7 @@ use quick_xml::Writer;
 use quick_xml::events::{BytesDecl, BytesText, Event};
 
 use crate::replay::{Outcome, Replayed, Summary};
+use crate::shown;
 
 /// One test case for each scene: its folder is the class, its verdict the message. Empty if the writer fails, which it does not in
 /// memory.
@@ -23,7 +24,8 @@ fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
             .map(|(name, count)| (name, count.to_string()));
     let counts = || counts.iter().map(|(name, count)| (*name, count.as_str()));
     writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("utf-8"), None)))?;
-    let suites = writer.create_element("testsuites").with_attributes(counts());
+    // The schema of Jenkins has no `skipped` here.
+    let suites = writer.create_element("testsuites").with_attributes(counts().filter(|(name, _)| *name != "skipped"));
     suites.write_inner_content(|writer| {
         let suite =
             writer.create_element("testsuite").with_attribute(("name", "ninebit replay")).with_attributes(counts());
@@ -35,10 +37,13 @@ fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
 
 fn case(writer: &mut Writer<Vec<u8>>, one: &Replayed) -> io::Result<()> {
     let (folder, name) = one.name.rsplit_once('/').unwrap_or(("", &one.name));
-    let path = one.path.display().to_string();
-    let (message, code) = (printable(&one.message()), one.exit_code().to_string());
-    let case =
-        writer.create_element("testcase").with_attributes([("classname", folder), ("name", name), ("file", &path)]);
+    let (folder, name, path) = (shown::name(folder), shown::name(name), shown::path(&one.path));
+    let (message, code) = (one.message(), one.exit_code().to_string());
+    let case = writer.create_element("testcase").with_attributes([
+        ("classname", &*folder),
+        ("name", &*name),
+        ("file", &*path),
+    ]);
     match &one.outcome {
         Outcome::Match | Outcome::Blessed { .. } => case.write_empty()?,
         Outcome::Skipped(_) => case.write_inner_content(|writer| {
@@ -48,20 +53,17 @@ fn case(writer: &mut Writer<Vec<u8>>, one: &Replayed) -> io::Result<()> {
         Outcome::Differs(difference) => case.write_inner_content(|writer| {
             let failure = writer.create_element("failure");
             let attributes = [("message", &*message), ("type", "difference")];
-            failure.with_attributes(attributes).write_text_content(BytesText::new(&printable(&difference.text())))?;
+            failure
+                .with_attributes(attributes)
+                .write_text_content(BytesText::new(&shown::lines(&difference.text())))?;
             Ok(())
         })?,
         Outcome::Failed(problem) => case.write_inner_content(|writer| {
             let error = writer.create_element("error");
             let attributes = [("message", &*message), ("type", &*format!("exit {code}"))];
-            error.with_attributes(attributes).write_text_content(BytesText::new(&printable(&problem.text)))?;
+            error.with_attributes(attributes).write_text_content(BytesText::new(&shown::lines(&problem.text)))?;
             Ok(())
         })?,
     };
     Ok(())
-}
-
-/// Control characters, which XML 1.0 cannot hold, replaced.
-fn printable(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() && !matches!(c, '\n' | '\t') { '\u{fffd}' } else { c }).collect()
 }

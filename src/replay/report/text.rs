@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use crate::replay::{Outcome, Replayed, Summary};
+use crate::shown;
 
 /// One line for each scene that is not as expected, all that is wrong with those that could not be drawn, and the counts.
 pub fn text(all: &[Replayed]) -> String {
@@ -17,15 +18,15 @@ fn write(out: &mut String, all: &[Replayed]) -> std::fmt::Result {
         match &one.outcome {
             Outcome::Match => {}
             Outcome::Failed(problem) => {
-                writeln!(out, "{:8} {}", one.status(), one.path.display())?;
-                for line in problem.text.lines() {
+                writeln!(out, "{:8} {}", one.status(), shown::path(&one.path))?;
+                for line in shown::lines(&problem.text).lines() {
                     writeln!(out, "{}", format!("    {line}").trim_end())?;
                 }
             }
-            _ => writeln!(out, "{:8} {}: {}", one.status(), one.path.display(), one.message())?,
+            _ => writeln!(out, "{:8} {}: {}", one.status(), shown::path(&one.path), one.message())?,
         }
         for problem in &one.unwritten {
-            writeln!(out, "{:8} {}", "", problem.message)?;
+            writeln!(out, "{:8} {}", "", shown::name(&problem.message))?;
         }
     }
     writeln!(out, "{}", Summary::of(all))

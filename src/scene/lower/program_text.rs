@@ -218,7 +218,7 @@ pub(super) fn text_file<'a>(
         return None;
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
-    let source = Source { name: folder.join(&name).display().to_string(), text };
+    let source = Source { name: crate::shown::lossless(&folder.join(&name)), text };
     Some(Arc::new(diagnostic::File { source, named }))
 }
 

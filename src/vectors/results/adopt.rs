@@ -14,7 +14,7 @@ use sha2::{Digest, Sha256};
 use super::compare::Comparison;
 use super::{DEVICE, Results};
 use crate::limits;
-use crate::output::{OutputError, write_file};
+use crate::output::{PendingFolder, write_file};
 use crate::picture::hexadecimal;
 use crate::read::{self, Kind};
 use crate::vectors::error::{VectorError, unread};
@@ -109,11 +109,7 @@ pub fn adopt(
         let help = "take the record away first, or give the device another name";
         return Err(VectorError::invalid("NB1036", &place, 0, "the device has a record already", help));
     }
-    let written = |error: std::io::Error| {
-        VectorError::Output(OutputError::Write { path: place.clone(), source: error.kind().into() })
-    };
-    std::fs::create_dir_all(folder).map_err(written)?;
-    let part = tempfile::Builder::new().prefix(".ninebit-").suffix(".part").tempdir_in(folder).map_err(written)?;
+    let part = PendingFolder::create(&place)?;
     let mut units = Vec::new();
     for (unit, compared) in results.units.iter().zip(&comparison.units).filter(|(_, compared)| compared.asked > 0) {
         let sha256 = copy(&unit.path, &part.path().join(format!("{}.tsv", unit.unit.name())))?;
@@ -136,8 +132,7 @@ pub fn adopt(
     };
     let text = serde_json::to_string_pretty(&adopted).unwrap_or_default() + "\n";
     write_file(&part.path().join(RECORD), text.as_bytes())?;
-    // From here on the folder is no temporary one.
-    std::fs::rename(part.keep(), &place).map_err(written)?;
+    part.commit()?;
     Ok((place, adopted))
 }
 

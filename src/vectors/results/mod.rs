@@ -23,6 +23,7 @@ use super::error::{VectorError, read_text};
 use super::pack::Manifest;
 use super::unit::Unit;
 use crate::limits;
+use crate::output::is_leftover;
 use crate::read::Kind;
 
 /// `format` of a device file.
@@ -142,6 +143,7 @@ pub fn open(folder: &Path, manifest: &Manifest) -> Result<Results, VectorError> 
     let entries = std::fs::read_dir(folder)
         .map_err(|error| VectorError::Unreadable { path: folder.to_path_buf(), reason: error.to_string() })?;
     let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    paths.retain(|path| !path.file_name().is_some_and(is_leftover));
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "tsv" || extension == "part"));
     paths.sort();
     if let Some(part) = paths.iter().find(|path| path.extension().is_some_and(|extension| extension == "part")) {

@@ -107,7 +107,7 @@ pub(in crate::scene::lower) fn read_file<'a, T>(
         Ok(contents) => Some(contents),
         Err(error) => {
             // The name as the scene has it: where the folder lies does not matter here.
-            let message = error.to_string().replace(&path.display().to_string(), &name);
+            let message = error.to_string().replace(&crate::shown::path(&path), &name);
             reader.push(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()));
             None
         }
