@@ -226,7 +226,7 @@ fn engines_agree_on_textures_that_states_share() {
                 );
                 let one = draw(unit(third), "stages: [()], final_combiner: (d: Texture0)");
                 let text = format!(
-                    "(profile: Nv2a, targets: [(name: \"a\", width: 96, height: 96), (name: \"b\", width: 96, height: 96)], textures: {{ {texture} }},
+                    "(version: 1, profile: Nv2a, targets: [(name: \"a\", width: 96, height: 96), (name: \"b\", width: 96, height: 96)], textures: {{ {texture} }},
                       draws: [{both}, {}])",
                     one.replacen('(', "(target: \"b\", ", 1)
                 );

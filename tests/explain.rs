@@ -194,7 +194,7 @@ fn fog_is_a_function_of_what_it_says() {
     }
 }
 
-/// Three dot products of five operations each, and a reflection of eighteen.
+/// Three dot products of five operations each, and a reflection of twenty.
 #[test]
 fn the_dot_unit_is_counted() {
     let text = "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 4, height: 4)], textures: { \
@@ -208,5 +208,5 @@ fn the_dot_unit_is_counted() {
          program: Combiners(stages: [()], final_combiner: (d: Texture3)))])";
     let loaded = scene::parse(text, Path::new("sky.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
     check("sky", &loaded.scene, &loaded.plan);
-    assert_eq!(count(&loaded.plan)[0].work[Work::Dots as usize], 16 * (3 * 5 + 18));
+    assert_eq!(count(&loaded.plan)[0].work[Work::Dots as usize], 16 * (3 * 5 + 20));
 }

@@ -38,6 +38,8 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 => None,
         // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
         Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
+        // A quotient by q magnifies what weights are off, as in TEX-15.
+        Rule::Tsh7 if projects(plan) => None,
         Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
         Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
         Rule::Tsh9 => {
@@ -146,6 +148,14 @@ fn number_slack(plan: &Plan) -> f64 {
         spans.map(move |(low, high)| 2.0 * relative * (high - low) * 255.0)
     });
     slack.fold(1e-6, f64::max)
+}
+
+/// Whether some unit divides by a q other than 1.
+fn projects(plan: &Plan) -> bool {
+    triangles(plan).any(|(draw, vertices)| {
+        let q = |unit: &PlannedUnit| vertices.coordinates(unit.stage.coordinate_set).map(|set| set[3]);
+        draw.units.iter().any(|unit| q(unit) != [1.0; 3])
+    })
 }
 
 fn any_unit(plan: &Plan, is: impl Fn(&PlannedUnit) -> bool) -> bool {

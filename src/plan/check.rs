@@ -210,13 +210,10 @@ impl Check<'_> {
     }
 
     fn of_draw(&mut self, draw: &Draw) {
-        let (count, nv10) = (draw.vertices.len(), self.scene.profile == Profile::Nv10);
+        let count = draw.vertices.len();
         if let Some(at) = draw.indices.iter().position(|index| *index as usize >= count) {
             let message = format!("index {at} is {}, and the draw has {count} vertices", draw.indices[at]);
             self.refuse("RAS-4", message, "indices count vertices from 0");
-        }
-        if nv10 && draw.fog.function.is_some() {
-            self.only_nv2a("INT-5n", true, "fog function of each pixel");
         }
         self.combiners(draw);
         self.units(draw);

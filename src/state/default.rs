@@ -2,8 +2,8 @@
 
 use super::{
     Combiners, Component, Cull, Draw, FinalCombiner, FinalInput, FinalRegister, Fog, FrontFace, GeneralStage,
-    MuxSelect, Portion, Positions, Profile, ProvokingVertex, Scene, ShadeModel, ShaderStage, SurfaceFormat,
-    TEXTURE_UNITS, Target, Topology, Vertices,
+    MuxSelect, Positions, Profile, ProvokingVertex, Scene, ShadeModel, ShaderStage, SurfaceFormat, TEXTURE_UNITS,
+    Target, Topology, Vertices,
 };
 use std::sync::Arc;
 
@@ -64,11 +64,7 @@ impl Default for Fog {
 impl Default for GeneralStage {
     /// A stage that writes nothing.
     fn default() -> Self {
-        GeneralStage {
-            rgb: Portion::idle(Component::Rgb),
-            alpha: Portion::idle(Component::Alpha),
-            constants: [[0; 4]; 2],
-        }
+        GeneralStage::idle([[0; 4]; 2])
     }
 }
 

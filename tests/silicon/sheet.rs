@@ -2,6 +2,7 @@
 
 use crate::build::{draw, target, vertex};
 use ninebit::engine::{RenderOptions, render};
+use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
 
@@ -66,7 +67,9 @@ impl Sheet {
 
     /// Renders; the first `count` pixels of a target.
     pub fn show(&self, target: usize, count: usize) -> Vec<[u8; 4]> {
-        let plan = Plan::compile(&self.scene, &PlanOptions::default()).unwrap();
+        // A cell is a texture: more than a scene may bring from a file.
+        let limits = Limits { textures: self.scene.textures.len(), ..Limits::default() };
+        let plan = Plan::compile_within(&self.scene, &PlanOptions::default(), &limits).unwrap();
         let mut pixels = render(&plan, &RenderOptions::default()).surfaces[target].rgba8();
         pixels.truncate(count);
         pixels

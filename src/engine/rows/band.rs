@@ -397,6 +397,8 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
         if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(n)) {
             let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
             fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
+            // Its entries took the place of the others.
+            found = None;
             continue;
         }
         let at = sampler.shares.unwrap_or(n);

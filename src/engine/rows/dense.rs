@@ -300,7 +300,7 @@ fn rows_interpolate_what_the_definition_does() {
     let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let mut random = Random(crate::random::Random::seeded(0x9e37_79b9_7f4a_7c15));
     let (mut pixels, mut patches, mut fours, mut round) = (0, 0, 0, 0_u64);
-    let mut patch = Patch::default();
+    let (mut patch, mut reasons) = (Patch::default(), Reasons::default());
     while pixels < wanted || patches < 20_000 {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
@@ -377,9 +377,11 @@ fn rows_interpolate_what_the_definition_does() {
                     }
                 }
             }
-            planes = setup.given_back(&mut Reasons::default());
+            planes = setup.given_back(&mut reasons);
         }
     }
     assert!(fours > patches / 2);
-    println!("{pixels} pixels, {patches} boxes of small triangles, {fours} of them set up four quotients at a time");
+    println!(
+        "{pixels} pixels, {patches} boxes of small triangles, {fours} of them set up four quotients at a time; definition: {reasons:?}"
+    );
 }
