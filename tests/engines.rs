@@ -222,7 +222,7 @@ fn engines_agree_on_textures_that_states_share() {
                 let both = draw(
                     format!("{}, {}", unit(first), unit(second)),
                     "stages: [(rgb: (a: SignedIdentity(Texture0), b: UnsignedInvert(Zero), c: Texture1, d: UnsignedInvert(Zero),
-                     sum: Spare0))], final_combiner: (d: Spare0, g: Alpha(Texture1))",
+                     sum: Spare0))], final_combiner: (d: Spare0, g: (Texture1, Alpha))",
                 );
                 let one = draw(unit(third), "stages: [()], final_combiner: (d: Texture0)");
                 let text = format!(

@@ -92,10 +92,10 @@ fn fog_comes_from_the_program() {
     let written = "mov oFog.x, c0.x";
     assert_eq!(loaded(&fog("Nv2a", linear, written)).scene.draws[0].vertices.at(0).fog, 12.0);
     assert_eq!(loaded(&fog("Nv10", linear, written)).scene.draws[0].vertices.at(0).fog, 1.5);
-    let beyond = "rcp oFog.x, c1.x";
+    let beyond = "rcp oFog.x, c0.y";
     assert_eq!(loaded(&fog("Nv2a", linear, beyond)).scene.draws[0].vertices.at(0).fog, f32::INFINITY);
     assert_eq!(loaded(&fog("Nv2a", "(color: (9, 9, 9))", beyond)).scene.draws[0].vertices.at(0).fog, 1.0);
-    let nothing = "rcp r0.x, c1.x \\n mul oFog.x, r0.x, c1.x";
+    let nothing = "rcp r0.x, c0.y \\n add oFog.x, r0.x, -r0.x";
     assert!(loaded(&fog("Nv2a", linear, nothing)).scene.draws[0].vertices.at(0).fog.is_nan());
     assert_eq!(refused(&fog("Nv2a", "(color: (9, 9, 9))", nothing)), ["NB0207"]);
     assert_eq!(loaded(&fog("Nv2a", "(color: (9, 9, 9))", written)).scene.draws[0].vertices.at(0).fog, 1.0);

@@ -250,7 +250,8 @@ impl Corpus {
             }
             13 | 14 => {
                 add("compare --mode");
-                add(*pick(random, &["chain", "steps", "follow"]));
+                let mode = *pick(random, &["chain", "steps", "follow"]);
+                add(mode);
                 true
             }
             15 => {
@@ -279,7 +280,8 @@ impl Corpus {
         };
         if takes_policy && random.once_in(4) {
             add("--policy");
-            add(*pick(random, &POLICIES[..]));
+            let policy = *pick(random, &POLICIES[..]);
+            add(policy);
         }
         words.push(name);
         words

@@ -201,7 +201,7 @@ fn work(from: u64, place_of: u64, options: &Options) -> ExitCode {
     for run in (from..options.runs).filter(|run| run % options.workers == place_of) {
         let case = corpus.case(&mut random(options, run));
         fs::write(folder.with_extension("run"), format!("{run} {}", case.arguments.join(" "))).unwrap();
-        let alone = run / options.workers % PROCESSES == 0;
+        let alone = (run / options.workers).is_multiple_of(PROCESSES);
         let outcome = if alone { outside(&folder, &case.arguments) } else { inside(&case.arguments) };
         let found =
             finding(&outcome, &folder, &case).map_or(String::new(), |found| format!(" {}", found.replace('\n', " ")));

@@ -264,7 +264,7 @@ impl PlannedPortion {
         // More than is needed: everything that comes before the outputs.
         let mut sites = 0;
         for n in (0..3).filter(|n| outputs[*n] != Register::Zero) {
-            sites |= (1 << 28) - 1 | 15 << (28 + 4 * n) | 15 << (40 + 4 * n);
+            sites |= ((1 << 28) - 1) | (15 << (28 + 4 * n)) | (15 << (40 + 4 * n));
         }
         sites = (sites | 3 << 52) & Site::of_channels(if channels & 7 == 0 { 8 } else { 7 });
         PlannedPortion {

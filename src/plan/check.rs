@@ -215,6 +215,17 @@ impl Check<'_> {
             let message = format!("index {at} is {}, and the draw has {count} vertices", draw.indices[at]);
             self.refuse("RAS-4", message, "indices count vertices from 0");
         }
+        if draw.fog.enabled
+            && draw.fog.function.is_none()
+            && let Some(at) = (0..count).find(|at| draw.vertices.fog(*at).is_nan())
+        {
+            let message = format!("the fog factor of vertex {at} is no number");
+            self.refuse(
+                "INT-5n",
+                message,
+                "factors run from 0, all fog, to 1; with a fog function coordinates may be anything",
+            );
+        }
         self.combiners(draw);
         self.units(draw);
         match self.scene.targets.get(draw.target) {

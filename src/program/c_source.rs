@@ -1,4 +1,5 @@
 //! Programs as they stand in C: texts between quotes, line by line, and `#define` of names.
+#![allow(clippy::result_large_err, reason = "the first error ends the text: it is made once")]
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -266,6 +267,7 @@ impl<'t> Walk<'t> {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
     use proptest::prelude::*;

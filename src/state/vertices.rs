@@ -117,6 +117,12 @@ impl Vertices {
         self.specular.at(index)
     }
 
+    /// Fog factor, or d' or e, of vertex `index`, which must be one of these.
+    pub fn fog(&self, index: usize) -> f32 {
+        debug_assert!(index < self.count);
+        self.fog.at(index)
+    }
+
     /// The vertices `indices`, which must be of these, as the vertices of a triangle.
     #[inline(always)]
     pub fn triangle(&self, indices: [u32; 3]) -> TriangleVertices<'_> {

@@ -82,10 +82,11 @@ pub(super) fn drive(operation: &impl Operation, common: &Common) -> Result<(), F
         Some(path) => table::run(operation, path, common.output.as_deref()),
         None => {
             let text = one(operation, common.format)?;
-            Ok(match common.format {
+            match common.format {
                 Format::Text => write_text(&text)?,
                 Format::Json => write_json(&text)?,
-            })
+            }
+            Ok(())
         }
     }
 }

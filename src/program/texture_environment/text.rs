@@ -138,13 +138,12 @@ impl<'t> Parser<'t> {
         }
         match arguments {
             [target, parameter, value] => self.environment(function, target, parameter, value),
-            [parameter, value] => {
-                if bare(self.reader.word(&parameter.place), &[]) == "LIGHT_MODEL_COLOR_CONTROL" {
-                    let table = [("SEPARATE_SPECULAR_COLOR", true), ("SINGLE_COLOR", false)];
-                    let control = choose(value, "colour control", &table, &mut self.reader.findings);
-                    self.program.color_sum = control.unwrap_or(self.program.color_sum);
-                }
+            [parameter, value] if bare(self.reader.word(&parameter.place), &[]) == "LIGHT_MODEL_COLOR_CONTROL" => {
+                let table = [("SEPARATE_SPECULAR_COLOR", true), ("SINGLE_COLOR", false)];
+                let control = choose(value, "colour control", &table, &mut self.reader.findings);
+                self.program.color_sum = control.unwrap_or(self.program.color_sum);
             }
+            [_, _] => {}
             // Which set of coordinates of the vertices is meant.
             [_] if function.contains("ClientActive") => {}
             [unit] if function.contains("ActiveTexture") => {
