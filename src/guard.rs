@@ -2,7 +2,7 @@
 //!
 //! A panic is a fault of this program, and one scene's fault is no reason to say nothing of the others: [`caught`] turns it into a
 //! [`Panic`] that reports show. Decoders of other people's files panic now and then on bytes nobody thought of; a scene with such a file is an
-//! ordinary error, not a crash, so decoders run under [`quietly`].
+//! ordinary error, not a crash, so decoders run under `quietly`.
 //!
 //! Shipped binaries must therefore unwind: `panic = "abort"` would undo it. Not everything can be caught: where memory cannot be had or the
 //! stack is full, the process ends.

@@ -134,7 +134,7 @@ pub fn not_finite(mode: FogMode) -> u8 {
 
 /// FOG-4: the byte of q, steps of 1/4096 by which e lies above 3/2. The mode is not a linear one.
 #[inline]
-pub const fn exponential(mode: FogMode, q: i64) -> u8 {
+pub fn exponential(mode: FogMode, q: i64) -> u8 {
     if matches!(mode, FogMode::Exp) && q >= 0 {
         return 255;
     }

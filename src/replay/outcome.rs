@@ -259,7 +259,7 @@ impl Replayed {
         }
     }
 
-    /// What there is to say about it in one [shown](crate::shown) line; empty for a match.
+    /// What there is to say about it in one [shown] line; empty for a match.
     pub fn message(&self) -> String {
         let message = match &self.outcome {
             Outcome::Match => String::new(),

@@ -1,6 +1,8 @@
 //! NUM-6, FOG-2 and FOG-4 on rows.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use std::sync::LazyLock;
+
 use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
@@ -47,18 +49,12 @@ type Bytes = [u8; (2 * TABLE_END + 1) as usize];
 /// The least q that is looked up: all below it have this one's byte, as all above the table's last have that one's.
 const FIRST: i64 = -TABLE_END;
 
-static EXP: Bytes = bytes(FogMode::Exp);
-static EXP_ABS: Bytes = bytes(FogMode::ExpAbs);
-static EXP2: Bytes = bytes(FogMode::Exp2);
+static EXP: LazyLock<Bytes> = LazyLock::new(|| bytes(FogMode::Exp));
+static EXP_ABS: LazyLock<Bytes> = LazyLock::new(|| bytes(FogMode::ExpAbs));
+static EXP2: LazyLock<Bytes> = LazyLock::new(|| bytes(FogMode::Exp2));
 
-const fn bytes(mode: FogMode) -> Bytes {
-    let mut bytes = [0; (2 * TABLE_END + 1) as usize];
-    let mut n = 0;
-    while n < bytes.len() {
-        bytes[n] = exponential(mode, FIRST + n as i64);
-        n += 1;
-    }
-    bytes
+fn bytes(mode: FogMode) -> Bytes {
+    std::array::from_fn(|n| exponential(mode, FIRST + n as i64))
 }
 
 /// How far linear arguments are off, relative to themselves: a coordinate keeps 24 bits, toward zero.
