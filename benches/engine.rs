@@ -3,10 +3,10 @@
 #![allow(missing_docs, clippy::float_arithmetic, clippy::unwrap_used, reason = "a benchmark")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use ninebit::compare::{ALL_CHANNELS, CompareOptions, Mode, compare};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::*;
+use ninebit_report::compare::{ALL_CHANNELS, CompareOptions, Mode, compare};
 use std::hint::black_box;
 
 const WIDTH: u32 = 640;

@@ -3,9 +3,9 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use ninebit::state::Profile;
-use ninebit::vectors::sweep::Sweep;
-use ninebit::vectors::tree::Tree;
-use ninebit::vectors::units;
+use ninebit_vectors::sweep::Sweep;
+use ninebit_vectors::tree::Tree;
+use ninebit_vectors::units;
 
 fn digests(c: &mut Criterion) {
     let mut group = c.benchmark_group("sweep");

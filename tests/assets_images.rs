@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ninebit::output::{Compression, encode_png};
-use ninebit::scene::image::{ImageError, ImageLimits, Rgba, decode, load};
+use ninebit_files::output::{Compression, encode_png};
+use ninebit_scene::image::{ImageError, ImageLimits, Rgba, decode, load};
 use proptest::prelude::*;
 
 /// The checksum that ends every chunk of a PNG.

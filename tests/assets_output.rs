@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
-use ninebit::output::{Compression, Destination, encode_png, write_file};
+use ninebit_files::output::{Compression, Destination, encode_png, write_file};
 
 /// Names in a folder, sorted.
 fn listing(folder: &Path) -> Vec<String> {
@@ -103,7 +103,7 @@ mod unix {
 /// A folder that cannot be put in its place leaves nothing, as one that is given up.
 #[test]
 fn folders_arrive_whole_or_not_at_all() {
-    use ninebit::output::PendingFolder;
+    use ninebit_files::output::PendingFolder;
     let folder = tempfile::tempdir().unwrap();
     let place = folder.path().join("around/made");
     let begin = || {
@@ -123,7 +123,7 @@ fn folders_arrive_whole_or_not_at_all() {
 
 #[test]
 fn leftovers_are_known_by_their_names() {
-    use ninebit::output::{is_leftover, remove_leftovers};
+    use ninebit_files::output::{is_leftover, remove_leftovers};
     let folder = tempfile::tempdir().unwrap();
     for name in [".ninebit-a1B2c3.part", "ninebit-a.part", ".ninebit-a.png", "a.part"] {
         write_file(&folder.path().join(name), b"x").unwrap();

@@ -3,8 +3,8 @@
 
 use std::path::{Path, PathBuf};
 
-use ninebit::generate::{height_field, hemisphere, normal_map};
-use ninebit::scene::image::{ImageLimits, load};
+use ninebit_scene::generate::{height_field, hemisphere, normal_map};
+use ninebit_scene::image::{ImageLimits, load};
 
 fn scenes_folder() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes")

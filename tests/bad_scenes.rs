@@ -8,7 +8,7 @@ use std::fs;
 use std::path::Path;
 
 use ninebit::limits::Limits;
-use ninebit::scene::{self, ErrorKind};
+use ninebit_scene::{self as scene, ErrorKind};
 
 #[test]
 fn every_broken_scene_says_what_is_wrong() {

@@ -289,8 +289,8 @@ fn scenes_are_rendered() {
     let bench = Bench::new();
     bench.write("scene.ron", SCENE);
     bench.run("render scene.ron -o frame.png").data();
-    let limits = ninebit::scene::image::ImageLimits::default();
-    let picture = ninebit::scene::image::load(&bench.path("frame.png"), &limits).unwrap();
+    let limits = ninebit_scene::image::ImageLimits::default();
+    let picture = ninebit_scene::image::load(&bench.path("frame.png"), &limits).unwrap();
     assert_eq!((picture.width, picture.height, picture.pixels[3 * 8]), (8, 4, [255, 0, 0, 255]));
 
     let bytes = fs::read(bench.path("frame.png")).unwrap();

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::Stdio;
 
-use ninebit::output::{Compression, encode_png};
+use ninebit_files::output::{Compression, encode_png};
 
 use crate::bench::{Bench, Run};
 

@@ -6,7 +6,7 @@ use crate::dds;
 
 use bench::Bench;
 use dds::File;
-use ninebit::output::{Compression, encode_png};
+use ninebit_files::output::{Compression, encode_png};
 use snapbox::{assert_data_eq, file};
 
 /// A cube map of one row of blocks a face: red 0, 8, 16 and so on by face.

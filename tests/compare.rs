@@ -3,13 +3,13 @@
 
 use crate::random_scene;
 
-use ninebit::compare::{ALL_CHANNELS, CompareOptions, Comparison, Mode, compare};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::scene;
 use ninebit::state::*;
 use ninebit::trace::{Decision, Rule};
+use ninebit_report::compare::{ALL_CHANNELS, CompareOptions, Comparison, Mode, compare};
+use ninebit_scene as scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use std::path::{Path, PathBuf};
@@ -159,7 +159,10 @@ fn what_is_exact_has_no_error() {
         assert_eq!((comparison.drawn, comparison.diverged), (16, 0));
         assert!(comparison.channels.iter().all(|c| c.errors.max() == 0.0 && c.errors.psnr().is_infinite()));
         assert!(comparison.worst.is_empty());
-        assert_eq!(ninebit::compare::heat_map(&comparison), Err(ninebit::compare::HeatError::NoDifference));
+        assert_eq!(
+            ninebit_report::compare::heat_map(&comparison),
+            Err(ninebit_report::compare::HeatError::NoDifference)
+        );
     }
 }
 

@@ -4,9 +4,9 @@
 use crate::dds;
 
 use dds::*;
-use ninebit::scene::dds::{Dds, decode};
-use ninebit::scene::image::{Contents, ImageError, ImageLimits, open};
 use ninebit::state::TextureFormat;
+use ninebit_scene::dds::{Dds, decode};
+use ninebit_scene::image::{Contents, ImageError, ImageLimits, open};
 use proptest::prelude::*;
 use std::path::Path;
 

@@ -3,15 +3,15 @@
 
 use std::path::{Path, PathBuf};
 
-use ninebit::diff::{self, compare};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;
-use ninebit::output::{Compression, encode_png};
 use ninebit::plan::Plan;
-use ninebit::replay::{Options, find, replay};
-use ninebit::scene;
-use ninebit::scene::image::Rgba;
 use ninebit::state::{POLICIES, Policies, Policy};
+use ninebit_cli::diff::{self, compare};
+use ninebit_cli::replay::{Options, find, replay};
+use ninebit_files::output::{Compression, encode_png};
+use ninebit_scene as scene;
+use ninebit_scene::image::Rgba;
 
 /// Levels by which two pictures must differ, and in how many pixels that touch.
 const LEVELS: u8 = 32;

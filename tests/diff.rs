@@ -4,9 +4,9 @@
 use crate::bench;
 
 use bench::{Bench, Run};
-use ninebit::diff::{Options, compare};
-use ninebit::output::{Compression, encode_png};
-use ninebit::scene::image::{ImageLimits, Rgba, load};
+use ninebit_cli::diff::{Options, compare};
+use ninebit_files::output::{Compression, encode_png};
+use ninebit_scene::image::{ImageLimits, Rgba, load};
 use proptest::prelude::*;
 use serde_json::Value;
 

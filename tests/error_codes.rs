@@ -1,8 +1,8 @@
 //! `docs/errors.md` and the sources have the same codes, with the same meanings and exit codes.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use ninebit::scene::code::CODES;
-use ninebit::scene::{Diagnostic, Severity};
+use ninebit_scene::code::CODES;
+use ninebit_scene::{Diagnostic, Severity};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 

@@ -4,12 +4,12 @@
 use crate::random_scene;
 
 use ninebit::engine::{RenderOptions, count, render};
-use ninebit::explain::explain;
 use ninebit::limits::Limits;
 use ninebit::plan::{Invisible, Plan, PlanOptions};
-use ninebit::scene;
 use ninebit::state::*;
 use ninebit::trace::Work;
+use ninebit_report::explain::explain;
+use ninebit_scene as scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use std::path::Path;

@@ -9,12 +9,12 @@ use crate::settings;
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::report::trace_text;
 use ninebit::state::{
     AddressMode, DotMapping, Filter, FogFunction, FogMode, Named, POLICIES, Policies, Profile, Scene, TextureFormat,
     TextureKind,
 };
 use ninebit::vertex::fog::passed;
+use ninebit_report::trace_text;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::{Config, RngAlgorithm, TestCaseError, TestError, TestRng, TestRunner};

@@ -4,8 +4,8 @@
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::report::trace_text;
-use ninebit::scene;
+use ninebit_report::trace_text;
+use ninebit_scene as scene;
 use std::path::Path;
 
 fn plan(name: &str) -> Plan {

@@ -6,9 +6,9 @@ use crate::random_scene;
 use std::path::Path;
 
 use ninebit::limits::Limits;
-use ninebit::program::registers::{RegisterWords, Word, decode, describe, encode, refusal, stored};
-use ninebit::scene;
 use ninebit::state::*;
+use ninebit_program::registers::{RegisterWords, Word, decode, describe, encode, refusal, stored};
+use ninebit_scene as scene;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;

@@ -7,15 +7,15 @@ use std::fs;
 use std::path::Path;
 
 use ninebit::engine::{RenderOptions, render};
-use ninebit::expectation::{Allowance, Expectation};
 use ninebit::limits::Limits;
-use ninebit::output::{Compression, encode_png};
 use ninebit::plan::Plan;
-use ninebit::replay::{Options, Outcome, find, replay, report};
-use ninebit::scene;
-use ninebit::scene::image::{ImageLimits, load};
-use ninebit::shard::Shard;
 use ninebit::state::Policies;
+use ninebit_cli::expectation::{Allowance, Expectation};
+use ninebit_cli::replay::{Options, Outcome, find, replay, report};
+use ninebit_cli::shard::Shard;
+use ninebit_files::output::{Compression, encode_png};
+use ninebit_scene as scene;
+use ninebit_scene::image::{ImageLimits, load};
 use snapbox::{assert_data_eq, file};
 
 use bench::{Bench, Run};

@@ -6,16 +6,16 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use ninebit::state::{Policies, Profile};
-use ninebit::vectors::BEHAVIOUR;
-use ninebit::vectors::cases::Level;
-use ninebit::vectors::pack::{self, Manifest, Options};
-use ninebit::vectors::read::Table;
-use ninebit::vectors::results::adopt::Adopted;
-use ninebit::vectors::results::compare::{Comparison, compare};
-use ninebit::vectors::results::waiver::Waiver;
-use ninebit::vectors::results::{self, parse};
-use ninebit::vectors::unit::Conditions;
-use ninebit::vectors::units;
+use ninebit_vectors::BEHAVIOUR;
+use ninebit_vectors::cases::Level;
+use ninebit_vectors::pack::{self, Manifest, Options};
+use ninebit_vectors::read::Table;
+use ninebit_vectors::results::adopt::Adopted;
+use ninebit_vectors::results::compare::{Comparison, compare};
+use ninebit_vectors::results::waiver::Waiver;
+use ninebit_vectors::results::{self, parse};
+use ninebit_vectors::unit::Conditions;
+use ninebit_vectors::units;
 
 const UNITS: [&str; 3] = ["product", "scale-bias", "input-mapping"];
 

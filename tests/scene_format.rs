@@ -7,11 +7,11 @@ use std::path::Path;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::{self, Limits};
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::scene::{self, Loaded, VertexSpans};
 use ninebit::state::{
     AddressMode, Blend, BlendEquation, BlendFactor, Component, Cull, DepthBuffer, DepthFormat, Filter, FinalRegister,
     InputMapping, Positions, Profile, Register, SurfaceFormat, TextureFormat, TextureImage, Topology, VertexColor,
 };
+use ninebit_scene::{self as scene, Loaded, VertexSpans};
 
 fn parse(text: &str) -> Loaded {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use ninebit::limits::Limits;
-use ninebit::scene::{self, SceneError};
+use ninebit_scene::{self as scene, SceneError};
 use proptest::prelude::*;
 
 /// What parsing says; rendering is part of the test.

@@ -3,8 +3,8 @@
 
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::scene;
 use ninebit::state::{Level, Named, TextureFormat, TextureImage};
+use ninebit_scene as scene;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -6,9 +6,9 @@ use crate::dds;
 use dds::File;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
-use ninebit::scene::{self, Loaded, SceneError};
 use ninebit::state::{Level, Texels, TextureFormat, TextureImage, TextureKind};
 use ninebit::texture::compressed::decode;
+use ninebit_scene::{self as scene, Loaded, SceneError};
 use std::fs;
 use std::path::PathBuf;
 

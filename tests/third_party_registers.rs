@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use ninebit::engine::{RenderOptions, render};
+use ninebit::legality::check;
 use ninebit::limits::Limits;
-use ninebit::program::Places;
-use ninebit::program::legality::check;
-use ninebit::program::registers::{RegisterWords, Word, decode, encode, refusal, stored};
-use ninebit::program::text::words::Words;
-use ninebit::program::text::{print, read};
-use ninebit::scene;
 use ninebit::state::*;
+use ninebit_program::Places;
+use ninebit_program::registers::{RegisterWords, Word, decode, encode, refusal, stored};
+use ninebit_program::text::words::Words;
+use ninebit_program::text::{print, read};
+use ninebit_scene as scene;
 
 /// The rows of a table, by column.
 fn rows(name: &str) -> Vec<Vec<String>> {

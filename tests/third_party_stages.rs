@@ -6,8 +6,8 @@
 
 use crate::third_party;
 
-use ninebit::program::texture_environment::{EnvironmentSource, Function, Mode};
-use ninebit::program::texture_stages::{ArgumentSource, Operation};
+use ninebit_program::texture_environment::{EnvironmentSource, Function, Mode};
+use ninebit_program::texture_stages::{ArgumentSource, Operation};
 use serde_json::Value;
 use third_party::{Kind, blend_factor, bytes, cleared, color, differs, floats, named, pixel, run};
 

@@ -9,7 +9,7 @@ use ninebit::engine::{self, RenderOptions, TraceError};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
-use ninebit::report::{trace_json, trace_text};
+use ninebit_report::{trace_json, trace_text};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use serde_json::Value;
@@ -102,7 +102,7 @@ fn a_long_trace_keeps_the_last_fragments_and_says_what_it_leaves_out() {
 fn what_is_streamed_is_what_is_kept() {
     let bench = Bench::new();
     bench.write("piled.ron", piled(300));
-    let loaded = ninebit::scene::load(&bench.path("piled.ron"), &Limits::default()).unwrap();
+    let loaded = ninebit_scene::load(&bench.path("piled.ron"), &Limits::default()).unwrap();
     {
         let pixel = (0, 0);
         let kept = engine::trace(&loaded.plan, 0, pixel, None).unwrap();
@@ -125,7 +125,7 @@ fn long_names_and_formulas_do_not_move_the_numbers() {
         Step::given("block", "CMB-1", long, 345).by("given", Vec::new()),
         Step::given("block", "CMB-1", "sum", 6789).by("operation", operands),
     ];
-    let text = ninebit::report::steps_text(&steps);
+    let text = ninebit_report::steps_text(&steps);
     let ends: Vec<usize> =
         ["12", "345", "6789"].iter().map(|number| line_with(&text, &format!(" {number} ")).1 + number.len()).collect();
     assert!(ends.iter().all(|end| *end == ends[0]), "{text}");

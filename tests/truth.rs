@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use ninebit::accuracy::{Accuracy, accuracy_text, accuracy_value, measure};
 use ninebit::limits::Limits;
-use ninebit::scene::{self, Loaded};
-use ninebit::truth::{Pixel, evaluate};
+use ninebit_lab::accuracy::{Accuracy, accuracy_text, accuracy_value, measure};
+use ninebit_scene::truth::{Pixel, evaluate};
+use ninebit_scene::{self as scene, Loaded};
 
 fn parse(text: &str) -> Loaded {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))

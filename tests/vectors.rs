@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 use ninebit::state::{Policies, Profile};
-use ninebit::vectors::cases::{self, Level};
-use ninebit::vectors::pack::{self, Options};
-use ninebit::vectors::read::parse;
-use ninebit::vectors::table::{Contents, Writer};
-use ninebit::vectors::unit::{Conditions, alternatives};
-use ninebit::vectors::units;
-use ninebit::vectors::view::View;
+use ninebit_vectors::cases::{self, Level};
+use ninebit_vectors::pack::{self, Options};
+use ninebit_vectors::read::parse;
+use ninebit_vectors::table::{Contents, Writer};
+use ninebit_vectors::unit::{Conditions, alternatives};
+use ninebit_vectors::units;
+use ninebit_vectors::view::View;
 
 fn options(units: &[&str]) -> Options {
     let units = units.iter().map(|name| units::by_name(name).unwrap()).collect();
@@ -331,7 +331,7 @@ fn the_command_line_tells_packs_apart() {
 /// The packed view has the bits of the table.
 #[test]
 fn packed_rows_are_the_rows() {
-    use ninebit::vectors::view::{Layout, packed};
+    use ninebit_vectors::view::{Layout, packed};
     for name in ["input-mapping", "general-stage", "shader-remap"] {
         let unit = units::by_name(name).unwrap();
         let writer = Writer::new(Contents { unit, profile: Profile::Nv2a, level: Level::L0, seed: 1 });

@@ -5,11 +5,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use ninebit::state::{Named, Policies, Profile};
-use ninebit::vectors::cases::{self, Level};
-use ninebit::vectors::pack::{self, Options};
-use ninebit::vectors::unit::Conditions;
-use ninebit::vectors::view::View;
-use ninebit::vectors::{sweep::Sweep, tree, units};
+use ninebit_vectors::cases::{self, Level};
+use ninebit_vectors::pack::{self, Options};
+use ninebit_vectors::unit::Conditions;
+use ninebit_vectors::view::View;
+use ninebit_vectors::{sweep::Sweep, tree, units};
 use serde_json::Value;
 
 fn json(path: impl AsRef<Path>) -> Value {
@@ -45,7 +45,7 @@ fn committed_packs_are_what_the_model_says() {
 }
 
 /// Inputs and results of a chip.
-fn rows(profile: Profile, unit: &'static dyn ninebit::vectors::Unit) -> Vec<Vec<i64>> {
+fn rows(profile: Profile, unit: &'static dyn ninebit_vectors::Unit) -> Vec<Vec<i64>> {
     let conditions = Conditions { profile, policies: Policies::DEFAULT };
     let (columns, mut rows) = (unit.results().len(), Vec::new());
     cases::visit(unit, profile, Level::L0, 1, |inputs, _| {
@@ -144,7 +144,7 @@ fn mutations_are_of_texts_that_occur_once() {
         let text = std::fs::read_to_string(file).unwrap();
         assert_eq!(text.matches(old).count(), 1, "{file}: {old}");
         assert!(old != new && numerics.contains(&format!("### {rule} ")), "{what}");
-        let row = format!("| {rule} | `{}` | {what} | ", file.strip_prefix("src/").unwrap());
+        let row = format!("| {rule} | `{}` | {what} | ", file.strip_prefix("src/model/").unwrap());
         assert!(page.contains(&row), "run vectors/mutation/run: docs/mutations.md has no {row}");
     }
 }

@@ -8,11 +8,11 @@ use std::path::{Path, PathBuf};
 use ninebit::random::Random;
 use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, Profile, TextureFormat};
 use ninebit::texture::compressed;
-use ninebit::vectors::column::{Column, Kind};
-use ninebit::vectors::sweep::Sweep;
-use ninebit::vectors::tree::Tree;
-use ninebit::vectors::unit::{Conditions, Unit};
-use ninebit::vectors::units;
+use ninebit_vectors::column::{Column, Kind};
+use ninebit_vectors::sweep::Sweep;
+use ninebit_vectors::tree::Tree;
+use ninebit_vectors::unit::{Conditions, Unit};
+use ninebit_vectors::units;
 
 /// A row of the table.
 struct Row {

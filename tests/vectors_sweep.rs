@@ -9,11 +9,11 @@ use std::sync::LazyLock;
 
 use ninebit::random::Random;
 use ninebit::state::{Policies, Profile};
-use ninebit::vectors::part::Part;
-use ninebit::vectors::sweep::Sweep;
-use ninebit::vectors::tree::{self, Tree};
-use ninebit::vectors::unit::{Conditions, Unit};
-use ninebit::vectors::{cases, units};
+use ninebit_vectors::part::Part;
+use ninebit_vectors::sweep::Sweep;
+use ninebit_vectors::tree::{self, Tree};
+use ninebit_vectors::unit::{Conditions, Unit};
+use ninebit_vectors::{cases, units};
 use rayon::prelude::*;
 
 fn sweep(unit: &str) -> Sweep {

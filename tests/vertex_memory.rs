@@ -3,7 +3,7 @@
 use super::bench::Bench;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::scene;
+use ninebit_scene as scene;
 use std::path::Path;
 
 /// A mesh over a frame: its vertices differ in x, y, s, t and two channels of the diffuse colour.

@@ -4,9 +4,9 @@
 use crate::random_vertex_program;
 
 use ninebit::diagnostic::Diagnostic;
-use ninebit::program::vertex_shader::{parse, print, read};
 use ninebit::random::Random;
 use ninebit::vertex::shader::*;
+use ninebit_program::vertex_shader::{parse, print, read};
 use proptest::prelude::*;
 use random_vertex_program::{instruction, shader};
 use sha2::{Digest, Sha256};

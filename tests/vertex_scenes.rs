@@ -2,10 +2,10 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use ninebit::engine::{RenderOptions, render, trace};
-use ninebit::explain::{explain, explanation_json, explanation_text};
 use ninebit::limits::Limits;
-use ninebit::scene::{Loaded, parse};
 use ninebit::state::{Vertex, VertexColor, Vertices};
+use ninebit_report::explain::{explain, explanation_json, explanation_text};
+use ninebit_scene::{Loaded, parse};
 use std::path::Path;
 
 #[track_caller]

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use ninebit::random::Random;
-use ninebit::vectors::pack;
+use ninebit_vectors::pack;
 use sha2::{Digest, Sha256};
 
 use super::mutate::mutated;

@@ -4,7 +4,7 @@
 //! for the test suite.
 //!
 //! A run is a finding if it panics (NB0801), if a signal or a failed allocation ends it, if it takes more than 1 GB, or if it takes more than ten
-//! seconds which its shaded pixels do not explain at 500 ns each. Workers run the program's own text in their process (`src/cli`), one run after the other, so that
+//! seconds which its shaded pixels do not explain at 500 ns each. Workers run commands in their own process, one after the other, so that
 //! thousands of runs a minute are possible; one run in a hundred is a process of its own. A worker that dies is replaced and its run is a finding.
 #![allow(
     clippy::unwrap_used,
@@ -13,10 +13,6 @@
     unreachable_pub,
     reason = "a driver fails by panicking, and prints times"
 )]
-
-#[path = "../../src/cli/mod.rs"]
-#[allow(dead_code, unused_imports, reason = "the program begins elsewhere")]
-mod cli;
 
 mod cases;
 mod mutate;
@@ -124,7 +120,7 @@ fn inside(arguments: &[String]) -> Outcome {
     // The peak of resident memory begins anew, where the system allows it.
     let _ = fs::write("/proc/self/clear_refs", "5");
     let begin = Instant::now();
-    let exit = catch_unwind(AssertUnwindSafe(|| cli::run(&arguments) as u8)).ok();
+    let exit = catch_unwind(AssertUnwindSafe(|| ninebit_cli::run(&arguments))).ok();
     Outcome { exit, panic: PANIC.lock().unwrap().take(), time: begin.elapsed(), peak: status("VmHWM:") }
 }
 
@@ -148,7 +144,7 @@ fn outside(folder: &Path, arguments: &[String]) -> Outcome {
 /// How long the shaded pixels of a scene may take.
 fn explained(folder: &Path, case: &Case) -> Duration {
     let Some(scene) = &case.scene else { return Duration::ZERO };
-    let Ok(loaded) = ninebit::scene::load(&folder.join(scene), &Limits::default()) else { return Duration::ZERO };
+    let Ok(loaded) = ninebit_scene::load(&folder.join(scene), &Limits::default()) else { return Duration::ZERO };
     let pixels: u64 = loaded.plan.draws.iter().map(|draw| fragments(&loaded.plan, draw)).sum();
     PIXEL.saturating_mul(u32::try_from(pixels).unwrap_or(u32::MAX))
 }

@@ -2,10 +2,10 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::program::c_source::{Style, expand};
-use ninebit::program::combiner_calls::{self, Words};
-use ninebit::program::legality::check;
-use ninebit::program::texture_environment::{BaseFormat, Context, lower, parse};
+use ninebit_program::c_source::{Style, expand};
+use ninebit_program::combiner_calls::{self, Words};
+use ninebit::legality::check;
+use ninebit_program::texture_environment::{BaseFormat, Context, lower, parse};
 use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {

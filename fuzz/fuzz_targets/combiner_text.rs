@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::program::registers::{decode, encode};
-use ninebit::program::text::{parse, print, read};
+use ninebit_program::registers::{decode, encode};
+use ninebit_program::text::{parse, print, read};
 use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {

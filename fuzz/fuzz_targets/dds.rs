@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::scene::dds::{SIGNATURE, decode};
-use ninebit::scene::image::ImageLimits;
+use ninebit_scene::dds::{SIGNATURE, decode};
+use ninebit_scene::image::ImageLimits;
 use ninebit::state::{CUBE_FACES, Level, Texels};
 use ninebit::texture::show;
 use std::path::Path;

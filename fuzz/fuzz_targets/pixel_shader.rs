@@ -4,10 +4,10 @@
 
 use libfuzzer_sys::fuzz_target;
 use ninebit::diagnostic::Severity;
-use ninebit::program::legality::check;
-use ninebit::program::pixel_shader::{Bump, Context, lower, parse, print};
-use ninebit::program::text::words::Words;
-use ninebit::program::Places;
+use ninebit::legality::check;
+use ninebit_program::pixel_shader::{Bump, Context, lower, parse, print};
+use ninebit_program::text::words::Words;
+use ninebit_program::Places;
 use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {

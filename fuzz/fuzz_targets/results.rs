@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::vectors::results::parse;
+use ninebit_vectors::results::parse;
 use std::path::Path;
 
 fuzz_target!(|text: &str| {

@@ -9,7 +9,7 @@ use std::path::Path;
 
 fuzz_target!(|text: &str| {
     let origin = Path::new("scenes/fuzzed.ron");
-    match ninebit::scene::parse(text, origin, &Limits::default()) {
+    match ninebit_scene::parse(text, origin, &Limits::default()) {
         Err(error) => assert!(!error.render(false).is_empty()),
         Ok(loaded) => {
             let pixels: u64 = loaded.scene.targets.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum();

@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::program::Pasted;
-use ninebit::program::texture_stages::{Context, lower, parse};
+use ninebit_program::Pasted;
+use ninebit_program::texture_stages::{Context, lower, parse};
 use ninebit::state::Profile;
 
 fuzz_target!(|text: &str| {

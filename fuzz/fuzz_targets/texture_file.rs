@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::scene::image::{ImageLimits, decode};
+use ninebit_scene::image::{ImageLimits, decode};
 use std::path::Path;
 
 fuzz_target!(|bytes: &[u8]| {

@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::vectors::{pack, tree};
+use ninebit_vectors::{pack, tree};
 use std::path::PathBuf;
 use std::sync::LazyLock;
 

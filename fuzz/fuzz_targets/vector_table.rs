@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::vectors::read::parse;
+use ninebit_vectors::read::parse;
 use std::path::Path;
 
 fuzz_target!(|text: &str| match parse(text, Path::new("fuzzed.tsv")) {

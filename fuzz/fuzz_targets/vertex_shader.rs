@@ -2,7 +2,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use ninebit::program::vertex_shader::{parse, print, read};
+use ninebit_program::vertex_shader::{parse, print, read};
 use ninebit::vertex::shader::{CONSTANTS, INPUTS, evaluate};
 
 fuzz_target!(|text: &str| {

@@ -6,7 +6,7 @@ use std::ops::Range;
 
 use super::finding::finding;
 use super::lexer::length;
-use crate::diagnostic::{Diagnostic, shorten};
+use ninebit::diagnostic::{Diagnostic, shorten};
 
 /// Names within names.
 const MOST_NESTED: usize = 16;

@@ -6,8 +6,8 @@
 use std::ops::Range;
 
 use super::finding::finding;
-use crate::diagnostic::Diagnostic;
-use crate::state::{
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
     MuxSelect, Portion, Profile, Register, Scale, StageOrigin,
 };

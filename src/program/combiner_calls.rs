@@ -1,7 +1,7 @@
 //! Register combiners as the calls of OpenGL that set them, pasted: NV_register_combiners and NV_register_combiners2.
 //!
 //! ```
-//! use ninebit::program::combiner_calls::parse;
+//! use ninebit_program::combiner_calls::parse;
 //! use ninebit::state::FinalRegister;
 //!
 //! let text = "glFinalCombinerInputNV(GL_VARIABLE_D_NV, GL_PRIMARY_COLOR_NV, GL_UNSIGNED_IDENTITY_NV, GL_RGB);";
@@ -14,10 +14,10 @@ use std::ops::Range;
 use super::calls::opengl::{self, bare, capability, choose, color, flag, is_vector, numbered, whole};
 use super::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
 use super::finding::finding;
-use super::legality::{Help, Notation, only_final};
 use super::{Part, Place, Places};
-use crate::diagnostic::Diagnostic;
-use crate::state::{
+use ninebit::diagnostic::Diagnostic;
+use ninebit::legality::{Help, Notation, only_final};
+use ninebit::state::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, InputMapping,
     MuxSelect, Portion, Profile, Register, Scale,
 };
@@ -51,7 +51,7 @@ pub struct Program {
     pub places: Places,
 }
 
-/// Reads the text over the API's initial state. What a chip allows of it is for [`legality::check`](super::legality::check) to say.
+/// Reads the text over the API's initial state. What a chip allows of it is for [`legality::check`](ninebit::legality::check) to say.
 ///
 /// # Errors
 /// Everything that is not a statement, or sets something that the API does not have.
@@ -264,7 +264,7 @@ impl<'t> Parser<'t> {
             self.reader.findings.push(finding);
             return None;
         }
-        Some(crate::combiner::final_combiner::general(register))
+        Some(ninebit::combiner::final_combiner::general(register))
     }
 
     fn input(

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::Diagnostic;
+use ninebit::diagnostic::Diagnostic;
 
 /// A value and the bytes of the program's text that gave it.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -5,9 +5,9 @@ use std::fmt::Write;
 use similar::{Algorithm, DiffOp, capture_diff_slices};
 
 use super::text::{expression, integer};
-use crate::engine::{DrawTrace, PixelTrace};
-use crate::shown;
-use crate::trace::Step;
+use ninebit::engine::{DrawTrace, PixelTrace};
+use ninebit::shown;
+use ninebit::trace::Step;
 
 /// A line of two traces: what one of them, or both, computed.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,12 +1,12 @@
 //! A trace as one JSON document; `docs/trace-format.md` describes it.
 
 use super::text::integer;
-use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
-use crate::plan::Plan;
-use crate::raster::project::ClipPlane;
-use crate::shown;
-use crate::state::{Named, POLICIES, Policies, Policy, StageOrigin};
-use crate::trace::{Operand, SINGLE, Step};
+use ninebit::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
+use ninebit::plan::Plan;
+use ninebit::raster::project::ClipPlane;
+use ninebit::shown;
+use ninebit::state::{Named, POLICIES, Policies, Policy, StageOrigin};
+use ninebit::trace::{Operand, SINGLE, Step};
 use serde_json::{Value, json};
 use std::io;
 
@@ -103,7 +103,7 @@ fn draw(draw: &DrawTrace) -> Value {
 }
 
 /// What each general stage was written as.
-pub(crate) fn origins(origins: &[StageOrigin]) -> Value {
+pub fn origins(origins: &[StageOrigin]) -> Value {
     origins.iter().map(|origin| json!({ "rgb": origin.rgb, "alpha": origin.alpha })).collect()
 }
 

@@ -1,12 +1,12 @@
 //! A trace as text: one line a step, the integer, its real value, the ideal and the rule.
 
-use crate::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
-use crate::plan::Plan;
-use crate::raster::project::ClipPlane;
-use crate::shown;
-use crate::state::{Named, POLICIES, Policies};
-use crate::texture::cube::Face;
-use crate::trace::{Operand, SINGLE, Step};
+use ninebit::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
+use ninebit::plan::Plan;
+use ninebit::raster::project::ClipPlane;
+use ninebit::shown;
+use ninebit::state::{Named, POLICIES, Policies};
+use ninebit::texture::cube::Face;
+use ninebit::trace::{Operand, SINGLE, Step};
 use std::fmt::Write;
 use std::io;
 
@@ -107,7 +107,7 @@ fn write_draw(out: &mut String, draw: &DrawTrace) -> std::fmt::Result {
 }
 
 /// The names of planes, as a list.
-pub(crate) fn planes(set: u8) -> String {
+pub fn planes(set: u8) -> String {
     ClipPlane::of(set).map(|plane| plane.name()).collect::<Vec<_>>().join(", ")
 }
 

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::image::{ImageError, ImageLimits};
 use super::texels;
-use crate::state::{CUBE_FACES, Level, TextureFormat};
+use ninebit::state::{CUBE_FACES, Level, TextureFormat};
 
 mod pixel_format;
 
@@ -44,7 +44,7 @@ pub struct Dds {
     pub height: u32,
     /// Levels, at least 1, at most as many as the sides can be halved.
     pub levels: u32,
-    /// Face after face, in it level after level, as in [`Texels::words`](crate::state::Texels::words).
+    /// Face after face, in it level after level, as in [`Texels::words`](ninebit::state::Texels::words).
     pub words: Vec<u32>,
     /// 256 words A8R8G8B8 where the format is [`TextureFormat::P8`].
     pub palette: Option<Vec<u32>>,

@@ -11,8 +11,8 @@ use super::lower::{DrawSpans, VertexSpans, shared_text};
 use super::raw::Raw;
 use super::reader::Reader;
 use super::source;
-use crate::diagnostic::{Diagnostic, File, Source};
-use crate::limits::Limits;
+use ninebit::diagnostic::{Diagnostic, File, Source};
+use ninebit::limits::Limits;
 
 /// A family that has been read and is well formed.
 pub(super) struct Family {

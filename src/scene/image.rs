@@ -11,9 +11,9 @@ use image::{DynamicImage, ImageFormat};
 use thiserror::Error;
 
 use super::dds::{self, Dds};
-use crate::guard;
-use crate::limits::{FileLimit, Limits};
-use crate::read::{self, Kind, ReadError};
+use ninebit::limits::{FileLimit, Limits};
+use ninebit_files::guard;
+use ninebit_files::read::{self, Kind, ReadError};
 
 mod png;
 
@@ -64,19 +64,19 @@ pub enum Contents {
 #[derive(Debug, Error)]
 pub enum ImageError {
     /// There is no such file.
-    #[error("image `{}` does not exist", crate::shown::path(path))]
+    #[error("image `{}` does not exist", ninebit::shown::path(path))]
     Missing {
         /// The file.
         path: PathBuf,
     },
     /// A folder, a device, a pipe.
-    #[error("image `{}` is not a regular file", crate::shown::path(path))]
+    #[error("image `{}` is not a regular file", ninebit::shown::path(path))]
     NotAFile {
         /// The file.
         path: PathBuf,
     },
     /// The file system refused.
-    #[error("image `{}` cannot be read: {source}", crate::shown::path(path))]
+    #[error("image `{}` cannot be read: {source}", ninebit::shown::path(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -84,7 +84,7 @@ pub enum ImageError {
         source: io::Error,
     },
     /// None of the kinds that are read.
-    #[error("image `{}` is {known}", crate::shown::path(path))]
+    #[error("image `{}` is {known}", ninebit::shown::path(path))]
     Format {
         /// The file.
         path: PathBuf,
@@ -92,7 +92,7 @@ pub enum ImageError {
         known: &'static str,
     },
     /// More bytes than allowed.
-    #[error("image `{}` is larger than {limit}", crate::shown::path(path))]
+    #[error("image `{}` is larger than {limit}", ninebit::shown::path(path))]
     FileBytes {
         /// The file.
         path: PathBuf,
@@ -100,7 +100,7 @@ pub enum ImageError {
         limit: FileLimit,
     },
     /// More columns or rows than allowed.
-    #[error("image `{}` is {width} x {height}; a side may have {limit} pixels at most", crate::shown::path(path))]
+    #[error("image `{}` is {width} x {height}; a side may have {limit} pixels at most", ninebit::shown::path(path))]
     Side {
         /// The file.
         path: PathBuf,
@@ -112,7 +112,7 @@ pub enum ImageError {
         limit: u32,
     },
     /// More pixels than allowed.
-    #[error("image `{}` decodes to {bytes} bytes; {limit} are allowed", crate::shown::path(path))]
+    #[error("image `{}` decodes to {bytes} bytes; {limit} are allowed", ninebit::shown::path(path))]
     DecodedBytes {
         /// The file.
         path: PathBuf,
@@ -122,7 +122,7 @@ pub enum ImageError {
         limit: u64,
     },
     /// The contents make no sense.
-    #[error("image `{}` is damaged: {reason}", crate::shown::path(path))]
+    #[error("image `{}` is damaged: {reason}", ninebit::shown::path(path))]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -130,7 +130,7 @@ pub enum ImageError {
         reason: String,
     },
     /// A DDS file of what no texture unit of the model reads.
-    #[error("image `{}` holds {what}, which this program does not read", crate::shown::path(path))]
+    #[error("image `{}` holds {what}, which this program does not read", ninebit::shown::path(path))]
     Unsupported {
         /// The file.
         path: PathBuf,
@@ -138,7 +138,7 @@ pub enum ImageError {
         what: String,
     },
     /// A cube map of less than six faces.
-    #[error("image `{}` is a cube map without {}", crate::shown::path(path), missing.join(", "))]
+    #[error("image `{}` is a cube map without {}", ninebit::shown::path(path), missing.join(", "))]
     MissingFaces {
         /// The file.
         path: PathBuf,
@@ -146,7 +146,7 @@ pub enum ImageError {
         missing: Vec<&'static str>,
     },
     /// Sixteen bits a channel.
-    #[error("image `{}` has {bits} bits a channel; 8 are the most", crate::shown::path(path))]
+    #[error("image `{}` has {bits} bits a channel; 8 are the most", ninebit::shown::path(path))]
     Depth {
         /// The file.
         path: PathBuf,

@@ -20,7 +20,7 @@ pub enum PathError {
         reason: &'static str,
     },
     /// There is no such file.
-    #[error("`{name}` does not exist in `{}`", crate::shown::path(folder))]
+    #[error("`{name}` does not exist in `{}`", ninebit::shown::path(folder))]
     Missing {
         /// As given.
         name: String,
@@ -28,7 +28,7 @@ pub enum PathError {
         folder: PathBuf,
     },
     /// A link leads out of the folder.
-    #[error("`{name}` leads out of `{}`", crate::shown::path(folder))]
+    #[error("`{name}` leads out of `{}`", ninebit::shown::path(folder))]
     Escape {
         /// As given.
         name: String,

@@ -12,8 +12,8 @@ use super::diagnostic::Diagnostic;
 use super::raw::{Entries, Numbers, Raw, Reserved, Tuple, trim};
 use super::source::Expected;
 use super::wording::{closest, describe, offset, shorten, twice, unclosed, words};
-use crate::limits::Limits;
-use crate::state::{Named, Profile};
+use ninebit::limits::Limits;
+use ninebit::state::{Named, Profile};
 
 /// Findings beyond this many are only counted.
 const MOST_DIAGNOSTICS: usize = 64;

@@ -8,11 +8,11 @@ use serde::Deserialize;
 use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
 use super::reader::Name;
 use super::split;
-use crate::program::texture_environment;
-use crate::program::texture_stages::{Operation, ResultArgument};
-use crate::state;
 use crate::truth;
-use crate::vertex::fog::{FogEvaluation, FogSource};
+use ninebit::state;
+use ninebit::vertex::fog::{FogEvaluation, FogSource};
+use ninebit_program::texture_environment;
+use ninebit_program::texture_stages::{Operation, ResultArgument};
 
 /// What a value of a type looks like, for "expected ...".
 pub(super) trait Expected<'a>: Sized {

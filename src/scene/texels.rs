@@ -1,7 +1,7 @@
 //! Texels on their way into the state: pixels packed into a format, bytes of memory as words, the next smaller level.
 
-use crate::state::TextureFormat;
-use crate::texture::format::expand;
+use ninebit::state::TextureFormat;
+use ninebit::texture::format::expand;
 
 /// Bits of a word that mean something. The others are zero in the state.
 pub fn used_bits(format: TextureFormat) -> u32 {
@@ -86,7 +86,7 @@ fn mean(texels: [u32; 4], format: TextureFormat) -> u32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::state::Named;
+    use ninebit::state::Named;
 
     /// What is read of a packed pixel packs into the same word.
     #[test]

@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::diagnostic::Diagnostic;
 pub(super) use super::diagnostic::shorten;
 use super::raw::trim;
-pub(super) use crate::spelling::closest;
+pub(super) use ninebit_program::spelling::closest;
 
 /// The finding that a name is taken.
 pub(super) fn twice(what: &str, name: &str, place: Range<usize>, first: Range<usize>) -> Diagnostic {

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
-use crate::program::registers::{RegisterWords, Word};
-use crate::state::{Named, Profile};
+use ninebit::state::{Named, Profile};
+use ninebit_program::registers::{RegisterWords, Word};
 
 /// Register words as a pixel program: `RegisterWords(nv10: (...))`. Words of 0 at the end of a list are left out.
 pub fn register_words(words: &RegisterWords) -> String {

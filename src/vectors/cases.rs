@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use super::column::{Column, Domain};
 use super::unit::Unit;
-use crate::random::{Random, mix};
-use crate::state::{Profile, named};
+use ninebit::random::{Random, mix};
+use ninebit::state::{Profile, named};
 
 named! {
     /// How many rows a table has.

@@ -1,6 +1,6 @@
 //! What stands in a column of a table of vectors: its name, how its numbers are written, which numbers it takes.
 
-use crate::state::Named;
+use ninebit::state::Named;
 
 /// How the numbers of a column are written, and how many bits they take in the packed view.
 #[derive(Clone, Debug, PartialEq, Eq)]

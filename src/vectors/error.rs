@@ -4,15 +4,15 @@ use std::path::{Path, PathBuf};
 
 use thiserror::Error;
 
-use crate::limits::FileLimit;
-use crate::output::OutputError;
-use crate::read::{self, Kind, ReadError};
+use ninebit::limits::FileLimit;
+use ninebit_files::output::OutputError;
+use ninebit_files::read::{self, Kind, ReadError};
 
 /// Why a table or a pack cannot be used.
 #[derive(Debug, Error)]
 pub enum VectorError {
     /// A file is not there.
-    #[error("`{}` does not exist", crate::shown::path(path))]
+    #[error("`{}` does not exist", ninebit::shown::path(path))]
     Missing {
         /// The file.
         path: PathBuf,
@@ -20,7 +20,7 @@ pub enum VectorError {
         help: &'static str,
     },
     /// A file cannot be read.
-    #[error("`{}` cannot be read: {reason}", crate::shown::path(path))]
+    #[error("`{}` cannot be read: {reason}", ninebit::shown::path(path))]
     Unreadable {
         /// The file.
         path: PathBuf,
@@ -28,7 +28,7 @@ pub enum VectorError {
         reason: String,
     },
     /// A file has more bytes than it may.
-    #[error("`{}` is larger than {limit}", crate::shown::path(path))]
+    #[error("`{}` is larger than {limit}", ninebit::shown::path(path))]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -56,9 +56,9 @@ pub enum VectorError {
 
 fn place(path: &Path, line: usize) -> String {
     if line == 0 {
-        format!("`{}`", crate::shown::path(path))
+        format!("`{}`", ninebit::shown::path(path))
     } else {
-        format!("`{}`, line {line}", crate::shown::path(path))
+        format!("`{}`, line {line}", ninebit::shown::path(path))
     }
 }
 

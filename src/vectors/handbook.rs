@@ -27,7 +27,7 @@ pub fn weakest(rules: &[&str]) -> &'static str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vectors::units;
+    use crate::units;
 
     #[test]
     fn every_rule_of_a_unit_has_an_entry() {

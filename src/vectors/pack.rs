@@ -23,11 +23,11 @@ use super::read::{Table, parse};
 use super::table::{Contents, Writer};
 use super::view::{Content, Layout, TABLE, View};
 use super::{BEHAVIOUR, Unit};
-use crate::limits::{self, FileLimit};
-use crate::output::{OutputError, PendingFile, is_leftover, make_folder, remove_leftovers, write_file};
-use crate::picture::hexadecimal;
-use crate::read::{self, Kind, ReadError};
-use crate::state::{Named, Profile};
+use ninebit::limits::{self, FileLimit};
+use ninebit::state::{Named, Profile};
+use ninebit_files::output::{OutputError, PendingFile, is_leftover, make_folder, remove_leftovers, write_file};
+use ninebit_files::picture::hexadecimal;
+use ninebit_files::read::{self, Kind, ReadError};
 
 /// `format` of a manifest.
 pub const FORMAT: &str = "ninebit-vectors-1";

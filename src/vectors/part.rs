@@ -146,7 +146,7 @@ fn takes(column: &Column) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vectors::{cases, units};
+    use crate::{cases, units};
 
     fn part(unit: &str, texts: &[&str]) -> Result<Part, String> {
         Part::new(units::by_name(unit).expect("a unit"), texts)

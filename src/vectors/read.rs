@@ -9,7 +9,7 @@ use super::error::VectorError;
 use super::table::{Contents, FORMAT, LAST, Row, Writer};
 use super::unit::Conditions;
 use super::{BEHAVIOUR, lanes, units};
-use crate::state::{Named, Policies, Profile};
+use ninebit::state::{Named, Policies, Profile};
 
 const AGAIN: &str = "export the pack again";
 
@@ -265,8 +265,8 @@ impl Table {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vectors::column::Kind;
-    use crate::vectors::unit::Unit;
+    use crate::column::Kind;
+    use crate::unit::Unit;
 
     /// Twice a number; in lanes 9 becomes 19.
     #[derive(Debug)]

@@ -13,8 +13,8 @@ use super::cases;
 use super::column::Column;
 use super::part::Part;
 use super::unit::{Conditions, Unit};
-use crate::picture::hexadecimal;
-use crate::state::{Policies, Profile};
+use ninebit::state::{Policies, Profile};
+use ninebit_files::picture::hexadecimal;
 
 /// Rows of a leaf, unless the sweep has more than [`MOST_LEAVES`] times as many.
 const LEAF_ROWS: u64 = 1 << 23;
@@ -246,8 +246,8 @@ impl<'s> Digesting<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Random;
-    use crate::vectors::units;
+    use crate::units;
+    use ninebit::random::Random;
 
     #[test]
     fn leaves_cover_all_rows_once() {
@@ -291,13 +291,13 @@ mod tests {
     /// Every committed tree of a part is swept as it is here: in lanes where there are some.
     #[test]
     fn committed_parts_in_blocks_are_the_definition() {
-        let digests = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/digests");
+        let digests = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../vectors/digests");
         let list =
             |folder: &std::path::Path| std::fs::read_dir(folder).expect("trees").flatten().map(|entry| entry.path());
         let parts: Vec<_> = list(&digests).filter(|path| path.is_dir()).flat_map(|folder| list(&folder)).collect();
         assert!(parts.len() > 50);
         for path in parts {
-            compare(&crate::vectors::tree::Tree::read(&path).expect("a tree").1, 3);
+            compare(&crate::tree::Tree::read(&path).expect("a tree").1, 3);
         }
     }
 }

@@ -21,8 +21,8 @@ use super::cases::{self, Level, Origin};
 use super::column::Column;
 use super::unit::{self, Conditions, Unit};
 use super::{BEHAVIOUR, handbook};
-use crate::picture::hexadecimal;
-use crate::state::{Named, Policies, Profile};
+use ninebit::state::{Named, Policies, Profile};
+use ninebit_files::picture::hexadecimal;
 
 /// First line of a table.
 pub const FORMAT: &str = "# ninebit-vectors 1";

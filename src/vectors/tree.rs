@@ -13,11 +13,11 @@ use super::error::{VectorError, read_text};
 use super::part::Part;
 use super::sweep::{Leaf, Sweep};
 use super::{BEHAVIOUR, units};
-use crate::limits;
-use crate::output::write_file;
-use crate::picture::hexadecimal;
-use crate::read::Kind;
-use crate::state::{Named, Profile};
+use ninebit::limits;
+use ninebit::state::{Named, Profile};
+use ninebit_files::output::write_file;
+use ninebit_files::picture::hexadecimal;
+use ninebit_files::read::Kind;
 
 /// `format` of a leaf file.
 const LEAF_FORMAT: &str = "ninebit-leaf-1";
@@ -183,7 +183,7 @@ pub fn merge(folders: &[PathBuf]) -> Result<Tree, VectorError> {
             return Err(invalid(&path, "NB1020", format!("there is no leaf {}", leaf.index), "remove it"));
         }
         if let Some((_, other)) = found.get(&leaf.index) {
-            let message = format!("leaf {} is in `{}` already", leaf.index, crate::shown::path(other));
+            let message = format!("leaf {} is in `{}` already", leaf.index, ninebit::shown::path(other));
             return Err(invalid(&path, "NB1022", message, "name each folder once, and give each shard to one worker"));
         }
         found.insert(leaf.index, (leaf, path));

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::column::Column;
 use super::sweep::Digesting;
-use crate::state::{POLICIES, Policies, Profile};
+use ninebit::state::{POLICIES, Policies, Profile};
 
 /// What holds besides a row's own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

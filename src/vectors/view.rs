@@ -9,7 +9,7 @@ use serde_json::{Map, Value, json};
 
 use super::column::{Column, Kind};
 use super::table::{LAST, Row, Writer};
-use crate::state::named;
+use ninebit::state::named;
 
 named! {
     /// What is written beside a table.

@@ -1,11 +1,11 @@
 //! OpenGL's calls as pasted text: register combiners and the texture environment.
 
 use ninebit::diagnostic::Severity;
-use ninebit::program::legality::check;
-use ninebit::program::texture_environment::{self as environment, Function, Mode, Operand, TextureEnvironment, Unit};
-use ninebit::program::texture_environment::{EnvironmentSource as Source, parse as parse_environment};
-use ninebit::program::{combiner_calls, text};
+use ninebit::legality::check;
 use ninebit::state::*;
+use ninebit_program::texture_environment::{self as environment, Function, Mode, Operand, TextureEnvironment, Unit};
+use ninebit_program::texture_environment::{EnvironmentSource as Source, parse as parse_environment};
+use ninebit_program::{combiner_calls, text};
 use proptest::prelude::*;
 
 fn combiners(text: &str) -> Combiners {

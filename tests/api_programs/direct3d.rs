@@ -2,11 +2,11 @@
 
 use super::Choices;
 use super::run::{Pixel, agrees, run};
-use ninebit::program::At;
-use ninebit::program::texture_stages::{
+use ninebit::state::{Combiners, Named, Profile, ShaderOperation};
+use ninebit_program::At;
+use ninebit_program::texture_stages::{
     ArgumentSource, Context, Half, Operation, ResultArgument, STAGES, StageArgument, TextureStage, TextureStages, lower,
 };
-use ninebit::state::{Combiners, Named, Profile, ShaderOperation};
 use proptest::prelude::*;
 
 /// A random argument of a stage, which has a texture or not.

@@ -3,11 +3,11 @@
 use super::Choices;
 use super::direct3d::{finish, told_apart};
 use super::run::{Pixel, agrees};
-use ninebit::program::At;
-use ninebit::program::texture_environment::{
+use ninebit::state::{Named, Profile, Scale};
+use ninebit_program::At;
+use ninebit_program::texture_environment::{
     BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit, lower,
 };
-use ninebit::state::{Named, Profile, Scale};
 use proptest::prelude::*;
 
 fn half(choices: &mut Choices, mode: Mode, alpha: bool) -> Half {

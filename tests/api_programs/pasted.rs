@@ -2,10 +2,8 @@
 
 use super::Choices;
 use super::direct3d::stages;
-use ninebit::program::texture_stages::{
-    ArgumentSource, Operation, ResultArgument, StageArgument, TextureStages, parse,
-};
 use ninebit::state::Named;
+use ninebit_program::texture_stages::{ArgumentSource, Operation, ResultArgument, StageArgument, TextureStages, parse};
 use proptest::prelude::*;
 use std::fmt::Write;
 

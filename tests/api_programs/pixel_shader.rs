@@ -4,12 +4,12 @@ use super::Choices;
 use super::direct3d::told_apart;
 use super::run::{Pixel, bound, run};
 use ninebit::diagnostic::Severity;
-use ninebit::program::At;
-use ninebit::program::pixel_shader::{
+use ninebit::state::{Named, Profile, Register, Scale, ShaderOperation};
+use ninebit_program::At;
+use ninebit_program::pixel_shader::{
     Arithmetic, Bank, Bump, CONSTANTS, Context, Definition, Lowered, Mask, Modifier, Operation, PixelShader, Selector,
     ShaderRegister, Source, Target, TextureInstruction, TextureOperation, TextureSource, Version, lower, parse, print,
 };
-use ninebit::state::{Named, Profile, Register, Scale, ShaderOperation};
 use proptest::prelude::*;
 
 /// A number in 255ths, as a constant's.

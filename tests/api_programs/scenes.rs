@@ -1,11 +1,11 @@
 //! Scenes with programs of APIs.
 
 use ninebit::engine::{self, RenderOptions};
-use ninebit::explain::{explain, explanation_text};
 use ninebit::limits::Limits;
-use ninebit::report::{trace_json, trace_text};
-use ninebit::scene::{self, Loaded};
 use ninebit::state::TextureImage;
+use ninebit_report::explain::{explain, explanation_text};
+use ninebit_report::{trace_json, trace_text};
+use ninebit_scene::{self as scene, Loaded};
 use std::path::Path;
 
 fn load(name: &str) -> Loaded {

@@ -13,7 +13,7 @@ pub use unix::trials;
 #[cfg(unix)]
 mod unix {
     use super::Trial;
-    use ninebit::output::write_file;
+    use ninebit_files::output::write_file;
     use std::fs::{self, Permissions};
     use std::os::unix::fs::PermissionsExt;
     use std::path::Path;

@@ -1,11 +1,11 @@
 //! Random programs of the languages of pixel programs, as a draw takes them.
 
 use super::super::Choices;
-use ninebit::program::pixel_shader::{self, Bump};
-use ninebit::program::registers::{Word, decode, encode};
-use ninebit::program::texture_environment::{self as environment, BaseFormat};
-use ninebit::program::texture_stages::{self as stages, ArgumentSource, ResultArgument, StageArgument};
 use ninebit::state::*;
+use ninebit_program::pixel_shader::{self, Bump};
+use ninebit_program::registers::{Word, decode, encode};
+use ninebit_program::texture_environment::{self as environment, BaseFormat};
+use ninebit_program::texture_stages::{self as stages, ArgumentSource, ResultArgument, StageArgument};
 use std::fmt::Write;
 
 /// Gives a draw a program of another language, as far as the language takes what comes out.

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use ninebit::expectation::Expectation;
-use ninebit::replay::find;
+use ninebit_cli::expectation::Expectation;
+use ninebit_cli::replay::find;
 
 /// The folder of images that are not part of the repository, beside the scenes that need them.
 pub const CAPTURED: &str = "captured/";

@@ -13,8 +13,8 @@
 
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
-use ninebit::scene::{self, Loaded};
 use ninebit::state::Named;
+use ninebit_scene::{self as scene, Loaded};
 use serde_json::Value;
 use std::fs;
 use std::panic::{AssertUnwindSafe, catch_unwind};

@@ -1,10 +1,10 @@
 //! The handbook against the sources: ids, grades, counts, policies, files, tests and vectors.
 
 use crate::handbook::{ENTRIES, Entry, built, declares, files, id_literals, ids, read, root};
-use ninebit::compare::bound;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Named, POLICIES, Profile, Scene};
 use ninebit::trace::Rule;
+use ninebit_report::compare::bound;
 use std::collections::{BTreeMap, BTreeSet};
 
 const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];

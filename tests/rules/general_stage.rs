@@ -139,7 +139,7 @@ fn examples_of_the_general_stage() {
             "(version: 1, profile: {profile}, draws: [(vertices: Window([(position: (0, 0)), (position: (0, 9)), \
              (position: (9, 9))]), program: Combiners{program})])"
         );
-        let read = ninebit::scene::parse(&text, Path::new("test.ron"), &Limits::default());
+        let read = ninebit_scene::parse(&text, Path::new("test.ron"), &Limits::default());
         read.err().map(|e| e.diagnostics.iter().map(|d| (d.code, d.rule)).collect::<Vec<_>>())
     };
     cmb12.gives("Nv10", refused("Nv10"), Some(vec![("NB0301", Some("CMB-12"))])).gives("Nv2a", refused("Nv2a"), None);

@@ -6,9 +6,9 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::{Sample, Settled, color};
 use ninebit::raster::setup::Triangle;
-use ninebit::scene;
 use ninebit::state::Profile;
 use ninebit::texture::filter;
+use ninebit_scene as scene;
 use std::path::Path;
 
 /// (0, 0), (side, 0), (0, side) in pixels.

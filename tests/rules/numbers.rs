@@ -8,9 +8,9 @@ use ninebit::limits::Limits;
 use ninebit::number::{Factor, Register as _, Sum, convert};
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
-use ninebit::scene;
 use ninebit::state::{Component, MuxSelect, Policies, Portion, Profile, Register};
 use ninebit::trace::{Silent, report};
+use ninebit_scene as scene;
 use std::path::Path;
 
 #[test]

@@ -95,7 +95,7 @@ fn anisotropy_is_refused() {
             "(version: 1, profile: Nv2a, textures: {{\"t\": (source: Solid(width: 1, height: 1, color: (1, 2, 3)))}}, \
              draws: [(vertices: Window([]), textures: [(texture: \"t\", anisotropy: {taps})])])"
         );
-        let read = ninebit::scene::parse(&text, &root(), &Limits::default());
+        let read = ninebit_scene::parse(&text, &root(), &Limits::default());
         read.err().map(|refused| format!("{refused:?}").contains("NB0402"))
     };
     tex17.gives("2", findings(2), Some(true)).gives("1", findings(1), None);

@@ -3,11 +3,11 @@
 use crate::handbook::example;
 use ninebit::limits::Limits;
 use ninebit::number::convert::vertex_color;
-use ninebit::program::vertex_shader::read;
-use ninebit::scene::mesh::{Surface, mesh};
-use ninebit::scene::parse;
 use ninebit::state::VertexColor;
 use ninebit::vertex::shader::{Constants, Inputs, evaluate, exponential, logarithm};
+use ninebit_program::vertex_shader::read;
+use ninebit_scene::mesh::{Surface, mesh};
+use ninebit_scene::parse;
 use std::path::Path;
 
 /// oT0 of an instruction that writes it; v0 and the constants from c0 on are given.

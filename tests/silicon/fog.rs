@@ -8,7 +8,7 @@ use ninebit::engine::{RenderOptions, render};
 use ninebit::frame::Surface;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::scene;
+use ninebit_scene as scene;
 use std::collections::BTreeMap;
 use std::path::Path;
 

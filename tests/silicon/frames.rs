@@ -8,7 +8,7 @@ use crate::picture::{Expectation, Values, digest};
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::report::trace_text;
+use ninebit_report::trace_text;
 use std::path::{Path, PathBuf};
 
 /// A case, rendered.

@@ -2,7 +2,7 @@
 //!
 //! The two texels of a block that are farthest apart give the end points; each texel takes the nearest of the four colours.
 
-use ninebit::scene::image::Rgba;
+use ninebit_scene::image::Rgba;
 
 /// Blocks of an image whose sides are multiples of four; `code` is `DXT1`, `DXT3` or `DXT5`.
 pub fn encode(image: &Rgba, code: &[u8; 4]) -> Vec<u8> {

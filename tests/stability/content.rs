@@ -2,9 +2,9 @@
 
 use super::blocks;
 use super::view::FOLDER;
-use ninebit::generate::{height_field, normal_map};
-use ninebit::output::{Compression, encode_png};
-use ninebit::scene::image::Rgba;
+use ninebit_files::output::{Compression, encode_png};
+use ninebit_scene::generate::{height_field, normal_map};
+use ninebit_scene::image::Rgba;
 use std::path::Path;
 use std::sync::Once;
 

@@ -3,11 +3,11 @@
 use super::content::{directions, dot, unit};
 use super::page::{Section, cells};
 use super::view::{Picture, draw, plan, scene, visit};
-use ninebit::generate::normal_map::encode;
 use ninebit::plan::Plan;
 use ninebit::state::{Scene, Texture, TextureImage};
 use ninebit::texture::cube::Face;
 use ninebit::texture::place::Coordinates;
+use ninebit_scene::generate::normal_map::encode;
 
 pub fn section() -> Section {
     let scene = scene("cube-edge.ron");

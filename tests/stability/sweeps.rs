@@ -1,7 +1,7 @@
 //! Where methods fail: each threshold is held from both sides, and the page is what the sweeps yield.
 
-use ninebit::chart::page::{plain, replace_section};
-use ninebit::sweep::{self, Sweep, Threshold, sweeps};
+use ninebit_lab::chart::page::{plain, replace_section};
+use ninebit_lab::experiments::{self, Sweep, Threshold, sweeps};
 use std::fs;
 
 /// A method works at the first value and fails at the second; `None`: it does not fail where it ought to.
@@ -46,7 +46,7 @@ const PINNED: [(&str, &str, f64, Option<f64>); 38] = [
     ("mirrored-bases", "one basis for both sides of the seam", 1.7, Some(1.87)),
 ];
 
-fn find<'a>(sweeps: &'a [Sweep], name: &str, method: &str) -> (&'a Sweep, &'a sweep::Method) {
+fn find<'a>(sweeps: &'a [Sweep], name: &str, method: &str) -> (&'a Sweep, &'a experiments::Method) {
     let sweep = sweeps.iter().find(|sweep| sweep.name == name).unwrap_or_else(|| panic!("no sweep {name}"));
     let method = sweep.methods.iter().find(|known| known.name == method).unwrap_or_else(|| panic!("no {method}"));
     (sweep, method)
@@ -69,13 +69,13 @@ pub fn both_sides() {
 }
 
 pub fn page() {
-    let measured = sweep::page::measure(&|_, _| {}).unwrap_or_else(|error| panic!("{}", error.render(false)));
+    let measured = experiments::page::measure(&|_, _| {}).unwrap_or_else(|error| panic!("{}", error.render(false)));
     for one in &measured {
         assert!(!one.thresholds.contains(&Threshold::Fails), "{}: a method works nowhere", one.sweep.name);
         let fails = one.thresholds.iter().any(|threshold| matches!(threshold, Threshold::Between { .. }));
         assert!(fails, "{}: nothing fails", one.sweep.name);
     }
-    let (section, files) = sweep::page::files(&measured).unwrap();
+    let (section, files) = experiments::page::files(&measured).unwrap();
     assert!(!section.contains("{{"), "a place of the template was not filled");
     let page = fs::read_to_string("docs/stability.md").unwrap();
     let made = replace_section(&page, "sweeps", &section).unwrap();

@@ -5,11 +5,11 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::Sample;
 use ninebit::raster::setup::Triangle;
-use ninebit::scene;
 use ninebit::state::{Scene, TriangleVertices};
 use ninebit::texture::lod;
 use ninebit::texture::place::{Coordinates, Interpolated, Place};
 use ninebit::texture::unit::PlannedUnit;
+use ninebit_scene as scene;
 use std::path::Path;
 
 /// Where the scenes are.

@@ -9,9 +9,9 @@ mod per_pixel_lighting;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use ninebit::accuracy::measure;
 use ninebit::limits::Limits;
-use ninebit::scene;
+use ninebit_lab::accuracy::measure;
+use ninebit_scene as scene;
 use rayon::prelude::*;
 
 use crate::bench::Bench;

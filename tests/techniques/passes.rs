@@ -1,9 +1,9 @@
 //! Passes of orthogonal illumination mapping: which of them are left out, and what that changes.
 
 use ninebit::engine::{RenderOptions, render};
-use ninebit::explain::explain;
 use ninebit::limits::Limits;
-use ninebit::scene::{self, Loaded};
+use ninebit_report::explain::explain;
+use ninebit_scene::{self as scene, Loaded};
 
 fn load(name: &str) -> Loaded {
     let path = super::folder().join("orthogonal-illumination-mapping").join(name).with_extension("ron");

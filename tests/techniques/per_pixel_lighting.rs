@@ -8,7 +8,7 @@ use std::path::Path;
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
-use ninebit::scene;
+use ninebit_scene as scene;
 
 use super::folder;
 

@@ -162,7 +162,7 @@ fn lit(inputs: &Value) -> String {
         "(0.5, 0.5)",
         &format!(
             "color_op: {}, bump_luminance: ({:?}, {:?})",
-            super::third_party::named::<ninebit::program::texture_stages::Operation>(inputs["op"].as_str().unwrap()),
+            super::third_party::named::<ninebit_program::texture_stages::Operation>(inputs["op"].as_str().unwrap()),
             number(&inputs["lscale"]),
             number(&inputs["loffset"])
         ),

@@ -10,9 +10,9 @@ use std::time::Duration;
 
 use ninebit::mutant;
 use ninebit::state::{Named, Policies};
-use ninebit::vectors::pack;
-use ninebit::vectors::read::{Table, TableRow};
-use ninebit::vectors::unit::Conditions;
+use ninebit_vectors::pack;
+use ninebit_vectors::read::{Table, TableRow};
+use ninebit_vectors::unit::Conditions;
 
 /// A loop that should settle something in a step or two, and does not: that is noticed, too.
 const PATIENCE: Duration = Duration::from_secs(300);

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use super::finding::finding;
 use super::lexer::{Kind, Language, Token, tokens};
-use crate::diagnostic::{Diagnostic, shorten};
+use ninebit::diagnostic::{Diagnostic, shorten};
 pub(super) use value::{Part, PartKind, Value, integer, known, one, out_of_range, without_prefix, wrong_kind};
 
 /// Findings beyond this many are not gathered.

@@ -3,19 +3,19 @@
 use std::ops::Range;
 
 use super::{Part, PartKind, Reader, Value, known, wrong_kind};
-use crate::diagnostic::{Diagnostic, shorten};
-use crate::number::convert::constant;
-use crate::program::finding::finding;
+use crate::finding::finding;
+use ninebit::diagnostic::{Diagnostic, shorten};
+use ninebit::number::convert::constant;
 
 /// A name without what only decorates it: `GL_COMBINE_RGB_ARB` is `COMBINE_RGB`. `keep`: endings that matter.
-pub(in crate::program) fn bare<'w>(word: &'w str, keep: &[&str]) -> &'w str {
+pub(crate) fn bare<'w>(word: &'w str, keep: &[&str]) -> &'w str {
     let word = word.strip_prefix("GL_").unwrap_or(word);
     let end = ["_NV", "_ARB", "_EXT"].into_iter().filter(|end| !keep.contains(end));
     end.into_iter().find_map(|end| word.strip_suffix(end)).unwrap_or(word)
 }
 
 /// The entry of `table` that a value names.
-pub(in crate::program) fn choose<T: Copy>(
+pub(crate) fn choose<T: Copy>(
     value: &Value<'_>,
     what: &str,
     table: &[(&str, T)],
@@ -41,7 +41,7 @@ pub(in crate::program) fn choose<T: Copy>(
 }
 
 /// n of `GL_TEXTURE0 + n`, `GL_TEXTUREn_ARB`, and likewise of other names: below `count`.
-pub(in crate::program) fn numbered(
+pub(crate) fn numbered(
     value: &Value<'_>,
     name: &str,
     count: usize,
@@ -75,7 +75,7 @@ pub(in crate::program) fn numbered(
 }
 
 /// TRUE, FALSE or a number.
-pub(in crate::program) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<bool> {
+pub(crate) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<bool> {
     match &value.parts[..] {
         [Part { kind: PartKind::Integer(number), .. }] => Some(*number != 0),
         [Part { kind: PartKind::Float(number), .. }] => Some(*number != 0.0),
@@ -84,7 +84,7 @@ pub(in crate::program) fn flag(value: &Value<'_>, findings: &mut Vec<Diagnostic>
 }
 
 /// A whole number, also written as a fraction.
-pub(in crate::program) fn whole(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
+pub(crate) fn whole(value: &Value<'_>, findings: &mut Vec<Diagnostic>) -> Option<u32> {
     let found = match &value.parts[..] {
         [Part { kind: PartKind::Integer(number), .. }] => Some(*number),
         [Part { kind: PartKind::Float(number), .. }] => (0..=64u8).find(|n| f32::from(*n) == *number).map(u32::from),
@@ -97,7 +97,7 @@ pub(in crate::program) fn whole(value: &Value<'_>, findings: &mut Vec<Diagnostic
 }
 
 /// Whether a call takes a pointer to its values: its name ends with `v`, perhaps before that of its vendor.
-pub(in crate::program) fn is_vector(function: &str) -> bool {
+pub(crate) fn is_vector(function: &str) -> bool {
     bare_call(function).ends_with('v')
 }
 
@@ -112,7 +112,7 @@ fn bare_call(function: &str) -> &str {
 
 /// A colour of four values, R, G, B, A, as bytes: the fractions limited to 0..1 (NUM-0), the integers of `iv` by the API's table, the
 /// greatest being 1.
-pub(in crate::program) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) -> Option<[u8; 4]> {
+pub(crate) fn color(reader: &mut Reader<'_>, value: &Value<'_>, function: &str) -> Option<[u8; 4]> {
     const HELP: &str =
         "define it in the text, `GLfloat color[4] = { 1, 0.5, 0, 1 };`, or write `{ 1, 0.5, 0, 1 }` here";
     let Some(values) = reader.list(value) else {
@@ -164,12 +164,7 @@ const CAPABILITIES: &[(&str, &str, &str)] = &[
 ];
 
 /// `glEnable` and `glDisable` of something that is no part of the program.
-pub(in crate::program) fn capability<'t>(
-    reader: &mut Reader<'t>,
-    name: &Range<usize>,
-    value: &Value<'t>,
-    enable: bool,
-) {
+pub(crate) fn capability<'t>(reader: &mut Reader<'t>, name: &Range<usize>, value: &Value<'t>, enable: bool) {
     let written = reader.word(&value.place);
     let capability = bare(written, &[]);
     if capability.starts_with("TEXTURE_") && capability != "TEXTURE_SHADER" {
@@ -192,7 +187,7 @@ pub(in crate::program) fn capability<'t>(
 }
 
 /// Calls that a scene's draw has in its fields, for [`Vocabulary::instead`](super::Vocabulary).
-pub(in crate::program) const INSTEAD: &[(&str, &str)] = &[
+pub(crate) const INSTEAD: &[(&str, &str)] = &[
     ("BlendFunc", "write `blend: (source: ..., destination: ...)` in the draw"),
     ("AlphaFunc", "write `alpha_test: (function: ..., reference: ...)` in the draw"),
     ("DepthFunc", "write `depth_test: (function: ...)` in the draw"),

@@ -3,23 +3,23 @@
 use std::ops::Range;
 
 use super::{Kind, Reader};
-use crate::diagnostic::{Diagnostic, shorten};
-use crate::program::finding::finding;
+use crate::finding::finding;
 use crate::spelling::closest;
+use ninebit::diagnostic::{Diagnostic, shorten};
 
 /// Brackets and casts around one value.
 const MOST_BRACKETS: usize = 8;
 
 /// One part of a value.
 #[derive(Clone, Debug)]
-pub(in crate::program) struct Part<'t> {
-    pub(in crate::program) text: &'t str,
-    pub(in crate::program) place: Range<usize>,
-    pub(in crate::program) kind: PartKind<'t>,
+pub(crate) struct Part<'t> {
+    pub(crate) text: &'t str,
+    pub(crate) place: Range<usize>,
+    pub(crate) kind: PartKind<'t>,
 }
 
 #[derive(Clone, Debug)]
-pub(in crate::program) enum PartKind<'t> {
+pub(crate) enum PartKind<'t> {
     /// A name, which may be a variable's.
     Name,
     Integer(u32),
@@ -32,9 +32,9 @@ pub(in crate::program) enum PartKind<'t> {
 
 /// Parts joined by `|` or `+`.
 #[derive(Clone, Debug)]
-pub(in crate::program) struct Value<'t> {
-    pub(in crate::program) parts: Vec<Part<'t>>,
-    pub(in crate::program) place: Range<usize>,
+pub(crate) struct Value<'t> {
+    pub(crate) parts: Vec<Part<'t>>,
+    pub(crate) place: Range<usize>,
 }
 
 impl<'t> Reader<'t> {
@@ -220,7 +220,7 @@ fn is_type(word: &str) -> bool {
 }
 
 /// A whole number, decimal or hexadecimal, with C's suffixes.
-pub(in crate::program) fn integer(text: &str) -> Option<u32> {
+pub(crate) fn integer(text: &str) -> Option<u32> {
     let text = text.trim_end_matches(['u', 'U', 'l', 'L']);
     match text.strip_prefix("0x").or_else(|| text.strip_prefix("0X")) {
         Some(digits) => u32::from_str_radix(digits, 16).ok(),
@@ -229,7 +229,7 @@ pub(in crate::program) fn integer(text: &str) -> Option<u32> {
 }
 
 /// A word without the first of the prefixes that it has, whatever the case: the prefix and the rest.
-pub(in crate::program) fn without_prefix<'w>(word: &'w str, prefixes: &[&str]) -> (&'w str, &'w str) {
+pub(crate) fn without_prefix<'w>(word: &'w str, prefixes: &[&str]) -> (&'w str, &'w str) {
     for prefix in prefixes {
         if let (Some(head), Some(rest)) = (word.get(..prefix.len()), word.get(prefix.len()..))
             && head.eq_ignore_ascii_case(prefix)
@@ -247,7 +247,7 @@ fn folded(word: &str) -> String {
 
 /// The entry of `known` that a name means; says what was probably meant otherwise. `bare`: the name as the entries have it, `spelled`: an entry
 /// as the text would have it.
-pub(in crate::program) fn known<T: Copy>(
+pub(crate) fn known<T: Copy>(
     part: &Part<'_>,
     what: &str,
     bare: &str,
@@ -271,11 +271,7 @@ pub(in crate::program) fn known<T: Copy>(
 }
 
 /// The only part of a value.
-pub(in crate::program) fn one<'v, 't>(
-    value: &'v Value<'t>,
-    what: &str,
-    findings: &mut Vec<Diagnostic>,
-) -> Option<&'v Part<'t>> {
+pub(crate) fn one<'v, 't>(value: &'v Value<'t>, what: &str, findings: &mut Vec<Diagnostic>) -> Option<&'v Part<'t>> {
     if let [part] = &value.parts[..] {
         return Some(part);
     }
@@ -285,18 +281,12 @@ pub(in crate::program) fn one<'v, 't>(
 }
 
 /// Records that there is no such number.
-pub(in crate::program) fn out_of_range(
-    place: &Range<usize>,
-    what: &str,
-    value: u32,
-    help: &str,
-    findings: &mut Vec<Diagnostic>,
-) {
+pub(crate) fn out_of_range(place: &Range<usize>, what: &str, value: u32, help: &str, findings: &mut Vec<Diagnostic>) {
     let message = format!("there is no {what} {value}");
     findings.push(finding("NB0206", place.clone(), message, "out of range", help));
 }
 
 /// Records that another kind of value stands here.
-pub(in crate::program) fn wrong_kind(place: &Range<usize>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) {
+pub(crate) fn wrong_kind(place: &Range<usize>, what: &str, help: &str, findings: &mut Vec<Diagnostic>) {
     findings.push(finding("NB0205", place.clone(), format!("expected {what}"), "wrong kind of value", help));
 }

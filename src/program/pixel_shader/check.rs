@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::*;
-use crate::program::finding::finding;
+use crate::finding::finding;
 
 /// Arithmetic instructions, or pairs of them, that a shader can have.
 const MOST_ARITHMETIC: usize = 8;

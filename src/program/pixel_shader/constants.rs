@@ -1,8 +1,8 @@
 //! Constants of the language in the constant registers of a stage: bytes without signs.
 
 use super::{CONSTANTS, PixelShader};
-use crate::number::convert::constant;
-use crate::state::{Component, Register};
+use ninebit::number::convert::constant;
+use ninebit::state::{Component, Register};
 
 /// Constants in 255ths, R, G, B, A, limited to -1..1.
 pub(super) type Signed = [[i16; 4]; CONSTANTS];

@@ -4,7 +4,7 @@ use super::constants::Pool;
 use super::lower::Lowering;
 use super::scratch::hardware;
 use super::{Bank, Modifier, Selector, Source};
-use crate::state::{CombinerInput, Component, InputMapping, Register};
+use ninebit::state::{CombinerInput, Component, InputMapping, Register};
 
 /// What has to happen in a stage before, so that an instruction fits one stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,9 +5,9 @@ use std::ops::Range;
 use super::constants::{Pool, Signed, signed, values};
 use super::scratch::{Set, contains, hardware, live};
 use super::*;
-use crate::program::cascade::{End, final_combiner, too_many_stages};
-use crate::program::finding::finding;
-use crate::state::{
+use crate::cascade::{End, final_combiner, too_many_stages};
+use crate::finding::finding;
+use ninebit::state::{
     Combiners, DotMapping, GeneralStage, MuxSelect, Portion, Profile, Register, ShaderOperation, StageOrigin,
     TEXTURE_UNITS,
 };

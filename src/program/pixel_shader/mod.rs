@@ -1,7 +1,7 @@
 //! Direct3D pixel shaders, version 1.1: read, held against the language's rules, lowered to register combiners and a texture shader, printed.
 //!
 //! ```
-//! use ninebit::program::pixel_shader::{Context, lower, parse, print};
+//! use ninebit_program::pixel_shader::{Context, lower, parse, print};
 //! use ninebit::state::Profile;
 //!
 //! let text = "ps.1.1\ntex t0 // normals\ntex t1\ndp3_sat r1, t0_bx2, v0_bx2\nmul r0, t1, r1";
@@ -29,8 +29,8 @@ mod words;
 use std::ops::Range;
 
 use super::At;
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::state::{Named, Scale, named};
+use ninebit::diagnostic::{Diagnostic, Severity};
+use ninebit::state::{Named, Scale, named};
 
 pub use lower::{Bump, Context, Lowered, UnitUse, lower};
 pub use print::{instruction, print};

@@ -5,8 +5,8 @@ use std::ops::Range;
 use super::parser::{Parser, Pieces};
 use super::words;
 use super::*;
-use crate::diagnostic::shorten;
-use crate::program::lexer::Kind;
+use crate::lexer::Kind;
+use ninebit::diagnostic::shorten;
 
 impl Parser<'_> {
     fn register(&mut self, word: &str, place: Range<usize>) -> Option<ShaderRegister> {

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::words::{self, Word};
 use super::*;
-use crate::diagnostic::shorten;
-use crate::program::finding::{finding, foreign, header};
-use crate::program::lexer::{Kind, Language, Token, tokens};
+use crate::finding::{finding, foreign, header};
+use crate::lexer::{Kind, Language, Token, tokens};
 use crate::spelling::closest;
+use ninebit::diagnostic::shorten;
 
 /// Findings beyond this many are not gathered.
 const MOST_FINDINGS: usize = 32;

@@ -5,7 +5,7 @@ use super::factor::{Factor, Need, Part, product};
 use super::lower::{Lowering, Written};
 use super::scratch::hardware;
 use super::{Arithmetic, Mask, Modifier, Operation, Target};
-use crate::state::{Component, InputMapping, Portion, Profile, Register};
+use ninebit::state::{Component, InputMapping, Portion, Profile, Register};
 
 impl Lowering {
     /// The portions of an instruction or pair.

@@ -8,9 +8,9 @@ use super::lower::{Lowering, TEXTURES, Written};
 use super::print;
 use super::scratch::{Set, free};
 use super::{Arithmetic, Operation};
-use crate::program::cascade::{one, too_many_constants};
-use crate::program::finding::finding;
-use crate::state::{CombinerInput, Component, InputMapping, Portion, Profile, Register, Scale, StageOrigin};
+use crate::cascade::{one, too_many_constants};
+use crate::finding::finding;
+use ninebit::state::{CombinerInput, Component, InputMapping, Portion, Profile, Register, Scale, StageOrigin};
 
 impl Lowering {
     /// A stage before the instruction. `None` once the reason has been recorded that nothing helps.

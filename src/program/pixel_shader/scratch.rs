@@ -1,7 +1,7 @@
 //! Which registers still hold something that is read later, and which are free to hold something in between.
 
 use super::{Arithmetic, Bank, PixelShader, ShaderRegister};
-use crate::state::{Profile, Register};
+use ninebit::state::{Profile, Register};
 
 /// The combiners' register of a register of the language; constants have none.
 pub(super) fn hardware(register: ShaderRegister) -> Option<Register> {

@@ -3,9 +3,9 @@
 use super::constants::values;
 use super::lower::{Context, UnitUse};
 use super::{PixelShader, TextureInstruction, TextureOperation};
-use crate::diagnostic::Diagnostic;
-use crate::program::finding::finding;
-use crate::state::{DotMapping, Named, Profile, ShaderOperation, TEXTURE_UNITS};
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{DotMapping, Named, Profile, ShaderOperation, TEXTURE_UNITS};
 
 /// What each texture unit does.
 pub(super) fn units(

@@ -1,7 +1,7 @@
 //! The words of the language, and those of its later versions that are refused by name.
 
 use super::{Bank, Mask, Modifier, Operation, Selector, ShaderRegister, TextureOperation, Version};
-use crate::state::{Named, Scale};
+use ninebit::state::{Named, Scale};
 
 /// What an instruction's name stands for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

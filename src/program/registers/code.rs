@@ -1,7 +1,7 @@
 //! Fields of single words: codes of registers, mappings and operations, and what a chip takes.
 
 use super::{Refusal, Word};
-use crate::state::{
+use ninebit::state::{
     Bias, CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Portion, Profile, Register, Scale,
 };
 
@@ -35,7 +35,7 @@ pub(super) fn final_register(code: u32) -> FinalRegister {
 }
 
 fn general_register(code: u32) -> Register {
-    crate::combiner::final_combiner::general(final_register(code))
+    ninebit::combiner::final_combiner::general(final_register(code))
 }
 
 /// A byte of an input word: mapping, component, register.

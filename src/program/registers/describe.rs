@@ -2,8 +2,8 @@
 
 use super::code::{final_of, input_of, portion_of};
 use super::{RegisterWords, Word};
-use crate::program::text::words::{final_operand, operand, register};
-use crate::state::{Bias, Named, Profile, Register, Scale};
+use crate::text::words::{final_operand, operand, register};
+use ninebit::state::{Bias, Named, Profile, Register, Scale};
 
 /// A word and what it says.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,13 +1,13 @@
 //! The combiners as words of the chips' registers: NV10 (Celsius) and NV20 (Kelvin, which the NV2A is).
 //!
 //! Layouts and codes are in `docs/registers.md`. A word is checked as the chip checks it when it is written: [`refusal`]. What a
-//! program means, and whether this model takes it, is decided afterwards ([`legality`](super::legality)).
+//! program means, and whether this model takes it, is decided afterwards ([`legality`](ninebit::legality)).
 
 mod code;
 mod describe;
 mod program;
 
-use crate::state::{Named, Profile, named};
+use ninebit::state::{Named, Profile, named};
 
 pub use code::{refusal, stored};
 pub use describe::{Description, describe};

@@ -2,8 +2,8 @@
 
 use super::code::{final_byte, final_of, input_byte, output_word, portion_of, refusal};
 use super::{Refusal, RegisterWords, Word};
-use crate::program::{Part, Place};
-use crate::state::{Combiners, FinalCombiner, GeneralStage, MuxSelect, Profile};
+use crate::{Part, Place};
+use ninebit::state::{Combiners, FinalCombiner, GeneralStage, MuxSelect, Profile};
 
 /// The program that the words are. Words of stages that are not used are checked and have no part in it.
 ///

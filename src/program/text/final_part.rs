@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::parser::{GivenUp, Parser, Source};
 use super::words::{REGISTERS, find};
-use crate::diagnostic::Diagnostic;
-use crate::program::Place;
-use crate::state::{Component, FinalCombiner, FinalInput, FinalRegister};
+use crate::Place;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{Component, FinalCombiner, FinalInput, FinalRegister};
 
 /// What the statements have said so far, each with its place.
 #[derive(Default)]

@@ -1,7 +1,7 @@
 //! The combiner language: general stages and final combiner as statements.
 //!
 //! ```
-//! use ninebit::program::text::{parse, print};
+//! use ninebit_program::text::{parse, print};
 //! use ninebit::state::Profile;
 //!
 //! let text = "{ rgb { spare0 = expand(tex0) . expand(col0); } } out.rgb = unsigned(spare0); out.a = tex0.a;";
@@ -20,9 +20,9 @@ mod print;
 pub mod words;
 
 use super::Places;
-use super::legality::check;
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::state::{Combiners, Profile};
+use ninebit::diagnostic::{Diagnostic, Severity};
+use ninebit::legality::check;
+use ninebit::state::{Combiners, Profile};
 use words::Words;
 
 pub use print::print;

@@ -6,13 +6,13 @@ use super::Program;
 use super::final_part::Final;
 use super::portion::PortionReader;
 use super::words::{REGISTERS, find};
-use crate::diagnostic::{Diagnostic, Severity, shorten};
-use crate::number::convert::constant;
-use crate::program::finding::{foreign, header};
-use crate::program::lexer::{Kind, Language, Token, tokens};
-use crate::program::{Place, Places};
+use crate::finding::{foreign, header};
+use crate::lexer::{Kind, Language, Token, tokens};
 use crate::spelling::closest;
-use crate::state::{Combiners, Component, FinalRegister, GeneralStage, MuxSelect, Portion};
+use crate::{Place, Places};
+use ninebit::diagnostic::{Diagnostic, Severity, shorten};
+use ninebit::number::convert::constant;
+use ninebit::state::{Combiners, Component, FinalRegister, GeneralStage, MuxSelect, Portion};
 
 /// Findings beyond this many are not looked for.
 const MOST_FINDINGS: usize = 64;

@@ -4,10 +4,10 @@ use std::ops::Range;
 
 use super::parser::{Parser, Read, Source};
 use super::words::{MAPPINGS, REGISTERS, find};
-use crate::diagnostic::Diagnostic;
-use crate::program::legality::only_final;
-use crate::program::{Part, Place};
-use crate::state::{Bias, CombinerInput, Component, FinalRegister, InputMapping, Portion, Register, Scale};
+use crate::{Part, Place};
+use ninebit::diagnostic::Diagnostic;
+use ninebit::legality::only_final;
+use ninebit::state::{Bias, CombinerInput, Component, FinalRegister, InputMapping, Portion, Register, Scale};
 
 /// A portion while its statements are read.
 pub(super) struct PortionReader {
@@ -231,6 +231,6 @@ impl PortionReader {
 fn general(register: FinalRegister) -> Option<Register> {
     match register {
         FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF => None,
-        other => Some(crate::combiner::final_combiner::general(other)),
+        other => Some(ninebit::combiner::final_combiner::general(other)),
     }
 }

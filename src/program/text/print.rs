@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::words::{final_operand, operand, register, scale};
-use crate::state::{
+use ninebit::state::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalInput, GeneralStage, MuxSelect, Portion, Register,
 };
 

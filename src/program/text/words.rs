@@ -1,7 +1,7 @@
 //! The words of the language: registers, components, mappings.
 
-use crate::program::legality::{Help, Notation};
-use crate::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Scale};
+use ninebit::legality::{Help, Notation};
+use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Scale};
 
 /// Registers by name. The last two exist in the final combiner only.
 pub const REGISTERS: &[(&str, FinalRegister)] = &[

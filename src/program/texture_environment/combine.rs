@@ -2,10 +2,10 @@
 
 use super::lower::Own;
 use super::{BaseFormat, EnvironmentSource, Function, Half, Mode, Operand, Unit};
-use crate::diagnostic::Diagnostic;
-use crate::program::cascade::{Alpha, Argument, Cascade, Destination, Equation, Source};
-use crate::program::finding::finding;
-use crate::state::{Named, Scale, StageOrigin, TEXTURE_UNITS};
+use crate::cascade::{Alpha, Argument, Cascade, Destination, Equation, Source};
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{Named, Scale, StageOrigin, TEXTURE_UNITS};
 
 impl Function {
     /// Whether it is a dot product.

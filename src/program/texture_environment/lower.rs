@@ -2,10 +2,10 @@
 
 use super::combine;
 use super::{BaseFormat, Mode, TextureEnvironment, Unit};
-use crate::diagnostic::Diagnostic;
-use crate::program::cascade::{Alpha, Argument, Cascade, Channel, Destination, End, Equation, Lowered, Source};
-use crate::program::finding::finding;
-use crate::state::{Named, Profile, StageOrigin, TEXTURE_UNITS};
+use crate::cascade::{Alpha, Argument, Cascade, Channel, Destination, End, Equation, Lowered, Source};
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{Named, Profile, StageOrigin, TEXTURE_UNITS};
 
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -8,8 +8,8 @@ mod text;
 
 use std::ops::Range;
 
-use crate::program::At;
-use crate::state::{Scale, TextureFormat, named};
+use crate::At;
+use ninebit::state::{Scale, TextureFormat, named};
 
 pub use lower::{Context, lower};
 pub use text::parse;

@@ -3,12 +3,12 @@
 use std::ops::Range;
 
 use super::{EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit};
-use crate::diagnostic::Diagnostic;
-use crate::program::At;
-use crate::program::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, whole};
-use crate::program::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
-use crate::program::finding::finding;
-use crate::state::{Scale, TEXTURE_UNITS};
+use crate::At;
+use crate::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, whole};
+use crate::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{Scale, TEXTURE_UNITS};
 
 /// What is read of OpenGL for the texture environment.
 static ENVIRONMENT: Vocabulary = Vocabulary {

@@ -6,12 +6,12 @@ use super::operation::Surroundings;
 use super::{
     ArgumentSource, Generation, Half, Operation, PROJECTED, ResultArgument, StageArgument, TextureStage, TextureStages,
 };
-use crate::diagnostic::Diagnostic;
-use crate::program::At;
-use crate::program::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
-use crate::program::finding::finding;
-use crate::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
-use crate::vertex::texgen::StageTransform;
+use crate::At;
+use crate::cascade::{Alpha, Argument, Cascade, Destination, End, Source};
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{Combiners, Named, Profile, ShaderOperation, StageOrigin, TEXTURE_UNITS};
+use ninebit::vertex::texgen::StageTransform;
 
 /// What of the draw the lowering depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -115,7 +115,7 @@ struct Walk<'p> {
 
 impl Walk<'_> {
     /// The equation of the colour or the alpha of a stage.
-    fn half(&mut self, index: usize, half: &Half, alpha: bool) -> crate::program::cascade::Equation {
+    fn half(&mut self, index: usize, half: &Half, alpha: bool) -> crate::cascade::Equation {
         let operation = half.operation.value;
         let stage = &self.program.stages[index];
         let place = written([&half.operation.place, &stage.color.operation.place, &stage.place]);

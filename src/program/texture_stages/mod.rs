@@ -9,8 +9,8 @@ mod text;
 
 use std::ops::Range;
 
-use crate::program::At;
-use crate::state::named;
+use crate::At;
+use ninebit::state::named;
 
 pub use lower::{Context, Lowered, UnitChange, lower};
 pub use operation::Operation;
@@ -70,7 +70,7 @@ impl StageArgument {
 
     /// The argument of a D3DTA value; `None` if there is no such value.
     pub fn from_value(value: u32) -> Option<StageArgument> {
-        use crate::state::Named;
+        use ninebit::state::Named;
         let source = ArgumentSource::ALL.get(value as usize & 15)?;
         (value < 64).then_some(StageArgument {
             source: *source,

@@ -1,7 +1,7 @@
 //! D3DTEXTUREOP.
 
-use crate::program::cascade::{Argument, Equation};
-use crate::state::{Named, Scale, named};
+use crate::cascade::{Argument, Equation};
+use ninebit::state::{Named, Scale, named};
 
 named! {
     /// D3DTEXTUREOP, in the order of its values 1 to 26. a0, a1, a2 are the arguments; results are limited to 0..1.

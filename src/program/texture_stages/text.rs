@@ -6,12 +6,12 @@ mod value;
 use std::ops::Range;
 
 use super::{CoordinateIndex, STAGES, TextureStages};
-use crate::diagnostic::Diagnostic;
-use crate::program::At;
-use crate::program::calls::{self, Pasted, Reader, Statement, Value, Vocabulary};
-use crate::program::finding::finding;
+use crate::At;
+use crate::calls::{self, Pasted, Reader, Statement, Value, Vocabulary};
+use crate::finding::finding;
 use crate::spelling::closest;
 use draw_state::{DrawStates, OTHER_STATES};
+use ninebit::diagnostic::Diagnostic;
 
 /// What is read of Direct3D.
 static DIRECT3D: Vocabulary = Vocabulary {

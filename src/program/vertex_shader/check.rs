@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::print::{letters, name};
 use super::{InstructionPlaces, Written, flow};
-use crate::diagnostic::Diagnostic;
-use crate::program::finding::finding;
-use crate::vertex::shader::{
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::vertex::shader::{
     CONSTANTS, DestinationRegister, INPUTS, Instruction, Opcode, SLOTS, SourceRegister, TEMPORARIES,
 };
 

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::Written;
 use super::print::letters;
-use crate::diagnostic::Diagnostic;
-use crate::program::finding::finding;
-use crate::vertex::shader::{CONSTANTS, DestinationRegister, INPUTS, Instruction, SourceRegister, TEMPORARIES};
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
+use ninebit::vertex::shader::{CONSTANTS, DestinationRegister, INPUTS, Instruction, SourceRegister, TEMPORARIES};
 
 /// Components of each result that something later depends on, in the order of the instructions.
 fn needed(instructions: &[Instruction]) -> Vec<u8> {

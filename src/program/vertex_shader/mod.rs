@@ -1,6 +1,6 @@
 //! Vertex programs in the assembler language vs.1.1 of Direct3D 8, read and printed (`docs/vertex-shader.md`).
 //!
-//! A program becomes [`VertexShader`]; what that computes stands in [`crate::vertex::shader`].
+//! A program becomes [`VertexShader`]; what that computes stands in [`ninebit::vertex::shader`].
 
 mod check;
 mod flow;
@@ -11,8 +11,8 @@ mod scanner;
 
 use std::ops::Range;
 
-use crate::diagnostic::{Diagnostic, Severity};
-use crate::vertex::shader::VertexShader;
+use ninebit::diagnostic::{Diagnostic, Severity};
+use ninebit::vertex::shader::VertexShader;
 pub use parser::parse;
 pub use print::print;
 

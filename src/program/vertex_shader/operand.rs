@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use super::parser::{GivenUp, Parser, Read};
 use super::scanner::Scanner;
-use crate::diagnostic::shorten;
 use crate::spelling::closest;
-use crate::vertex::shader::{
+use ninebit::diagnostic::shorten;
+use ninebit::vertex::shader::{
     CONSTANTS, COORDINATES, Destination, DestinationRegister, INPUTS, Source, SourceRegister, TEMPORARIES,
 };
 

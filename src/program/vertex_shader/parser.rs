@@ -5,10 +5,10 @@ use std::ops::Range;
 use super::check::natural;
 use super::scanner::{Scanner, uncomment};
 use super::{InstructionPlaces, Written, operand};
-use crate::diagnostic::{Diagnostic, shorten};
-use crate::program::finding::{finding, foreign, header};
+use crate::finding::{finding, foreign, header};
 use crate::spelling::closest;
-use crate::vertex::shader::{Instruction, Opcode, SourceRegister, VertexShader};
+use ninebit::diagnostic::{Diagnostic, shorten};
+use ninebit::vertex::shader::{Instruction, Opcode, SourceRegister, VertexShader};
 
 /// Findings beyond this many are not looked for.
 const MOST_FINDINGS: usize = 64;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::vertex::shader::{Destination, DestinationRegister, Source, SourceRegister, VertexShader};
+use ninebit::vertex::shader::{Destination, DestinationRegister, Source, SourceRegister, VertexShader};
 
 /// Prints the program, one instruction in a line.
 pub fn print(shader: &VertexShader) -> String {

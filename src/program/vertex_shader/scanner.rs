@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::Diagnostic;
-use crate::program::finding::finding;
+use crate::finding::finding;
+use ninebit::diagnostic::Diagnostic;
 
 /// Comments and line ends of a text.
 pub(super) struct Uncommented {

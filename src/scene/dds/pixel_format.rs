@@ -1,6 +1,6 @@
 //! Which texture format the pixel format of a DDS file is: by its masks, bit by bit.
 
-use crate::state::TextureFormat;
+use ninebit::state::TextureFormat;
 
 const ALPHA_BESIDE: u32 = 0x1;
 const ALPHA_ALONE: u32 = 0x2;

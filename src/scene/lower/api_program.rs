@@ -5,13 +5,13 @@ use super::program_text::ProgramText;
 use super::texture::Textures;
 use super::unit::Units;
 use super::*;
-use crate::program::At;
-use crate::program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};
-use crate::program::texture_stages::{self as stages, TextureStages};
-use crate::state::{
+use ninebit::state::{
     Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS, TextureKind, TextureUnit,
 };
-use crate::vertex::texgen::CoordinateSet;
+use ninebit::vertex::texgen::CoordinateSet;
+use ninebit_program::At;
+use ninebit_program::texture_environment::{self as environment, BaseFormat, TextureEnvironment};
+use ninebit_program::texture_stages::{self as stages, TextureStages};
 
 /// A program of an API.
 pub(super) enum ApiProgram {
@@ -186,9 +186,9 @@ fn objection(
 }
 
 /// A name with its place; the default without one if nothing is written.
-pub(super) fn name_at<'a, T: crate::state::Named>(
+pub(super) fn name_at<'a, T: ninebit::state::Named>(
     reader: &mut Reader<'a>,
-    raw: &Option<Raw<'a, crate::scene::reader::Name<T>>>,
+    raw: &Option<Raw<'a, crate::reader::Name<T>>>,
     slot: &mut At<T>,
 ) {
     if let Some(raw) = raw

@@ -7,9 +7,9 @@
 use super::matrix::{dot, normalize, subtract};
 use super::names::Names;
 use super::*;
-use crate::scene::mesh::Mesh;
-use crate::scene::raw::Numbers;
-use crate::state::{Vertex, VertexColor, Vertices};
+use crate::mesh::Mesh;
+use crate::raw::Numbers;
+use ninebit::state::{Vertex, VertexColor, Vertices};
 
 /// What of a mesh goes into one output of its vertices.
 pub(super) enum Source {

@@ -3,8 +3,8 @@
 
 use super::names::Names;
 use super::*;
-use crate::scene::raw::{Few, Numbers, Tuple};
-use crate::state::VertexColor;
+use crate::raw::{Few, Numbers, Tuple};
+use ninebit::state::VertexColor;
 
 /// A colour that stays as it was given. `None` once the reason has been recorded.
 pub(super) fn vertex_color<'a>(

@@ -3,13 +3,13 @@
 use super::input::{final_input, general_input};
 use super::names::Names;
 use super::*;
-use crate::program::legality::{Help, Notation, stage_count};
-use crate::program::{Part, Place, Places};
-use crate::scene::raw::Tuple;
-use crate::state::{
+use crate::raw::Tuple;
+use ninebit::legality::{Help, Notation, stage_count};
+use ninebit::state::{
     Bias, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, MuxSelect, Named, Portion,
     Register, Scale,
 };
+use ninebit_program::{Part, Place, Places};
 
 /// The words of scene files.
 pub(super) struct Fields;

@@ -10,8 +10,8 @@ use super::program::{Form, Program};
 use super::target::Targets;
 use super::texture::Textures;
 use super::*;
-use crate::scene::mesh::Mesh;
-use crate::state::{
+use crate::mesh::Mesh;
+use ninebit::state::{
     Combiners, Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture,
     TextureImage, Topology, Vertices,
 };
@@ -60,7 +60,7 @@ pub(super) fn draws<'a>(
             place = reader.span(raw);
             if let Some(first) = seen.get(&given) {
                 let first = first.clone();
-                reader.push(crate::scene::wording::twice("draw", &given, place.clone(), first));
+                reader.push(crate::wording::twice("draw", &given, place.clone(), first));
             }
             seen.insert(given.clone(), place.clone());
             name = given;
@@ -113,7 +113,7 @@ fn draw<'a>(
     let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
     let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
     let viewer =
-        fields.viewer.as_ref().and_then(|raw| texgen::viewer(reader, raw)).unwrap_or(crate::vertex::Viewer::Local);
+        fields.viewer.as_ref().and_then(|raw| texgen::viewer(reader, raw)).unwrap_or(ninebit::vertex::Viewer::Local);
     let fog = fog::fog(reader, names, &fields.fog);
     let mut units = unit::units(reader, names, textures, &fields.textures);
     shader::shader(reader, textures, &mut units, &fields.texture_shader);

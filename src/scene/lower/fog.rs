@@ -2,8 +2,8 @@
 
 use super::names::Names;
 use super::*;
-use crate::state::{Fog, FogFunction, FogMode, Named};
-use crate::vertex::fog::{FogEvaluation, FogSource, exponential, linear};
+use ninebit::state::{Fog, FogFunction, FogMode, Named};
+use ninebit::vertex::fog::{FogEvaluation, FogSource, exponential, linear};
 
 /// Fog as it was written.
 pub(super) struct FogFields {

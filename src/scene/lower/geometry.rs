@@ -8,11 +8,11 @@ use super::names::Names;
 use super::target::Targets;
 use super::vertex::VertexData;
 use super::*;
-use crate::scene::mesh::Mesh;
-use crate::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
-use crate::vertex::fog::{self as vertex_fog, FogSource};
-use crate::vertex::texgen::CoordinateSet;
-use crate::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
+use crate::mesh::Mesh;
+use ninebit::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
+use ninebit::vertex::fog::{self as vertex_fog, FogSource};
+use ninebit::vertex::texgen::CoordinateSet;
+use ninebit::vertex::{EyeVertex, ModelView, ObjectVertex, Rows, Viewer};
 
 /// The vertices of a draw as they were described.
 pub(super) struct Geometry {
@@ -200,7 +200,7 @@ pub(super) fn geometry<'a>(
     let (kind, rest) = reader.variant(raw, "vertex source", SOURCES)?;
     match kind {
         0 => {
-            let list = Raw::<crate::scene::raw::Tuple<'a, source::VertexList>>::new(rest);
+            let list = Raw::<crate::raw::Tuple<'a, source::VertexList>>::new(rest);
             let parts = reader.read(&list)?.0;
             let [list] = parts[..] else {
                 reader.push(
@@ -274,7 +274,7 @@ fn matrix_geometry<'a>(
         }
     };
     let (matrix, model_view) = (matrix?, model_view?);
-    vertices.map_positions(|position| crate::vertex::transform(&matrix, position));
+    vertices.map_positions(|position| ninebit::vertex::transform(&matrix, position));
     let finite = |vertex: usize| vertices.position(vertex).iter().all(|value| value.is_finite());
     if let Some(bad) = (0..vertices.len()).find(|vertex| !finite(*vertex)) {
         let spans = DrawSpans { draw: opening, vertices: spans };

@@ -6,8 +6,8 @@
 
 use super::names::Table;
 use super::*;
-use crate::scene::raw::{Numbers, Tuple};
-use crate::vertex::Rows;
+use crate::raw::{Numbers, Tuple};
+use ninebit::vertex::Rows;
 
 pub(super) const IDENTITY: Rows =
     [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];

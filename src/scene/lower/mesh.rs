@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::names::Names;
 use super::program_text::ProgramText;
 use super::*;
-use crate::scene::mesh::{self, Mesh, MeshError, Surface};
-use crate::scene::raw::Numbers;
+use crate::mesh::{self, Mesh, MeshError, Surface};
+use crate::raw::Numbers;
 
 const KINDS: &[&str] = &["Grid", "Sphere", "Torus", "Cylinder", "Triangles", "Wavefront"];
 

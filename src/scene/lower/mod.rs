@@ -41,11 +41,11 @@ use super::raw::Raw;
 use super::reader::{Reader, too_many, unknown_name};
 use super::source;
 use super::wording::shorten;
-use crate::diagnostic::File;
-use crate::plan::{Plan, PlanOptions};
-use crate::state::{Profile, Scene};
 use crate::truth::Truth;
 use names::Names;
+use ninebit::diagnostic::File;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::{Profile, Scene};
 
 /// Where the draws of a scene stand in its text, for errors that are found later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -156,7 +156,7 @@ pub(super) fn scene<'a>(
 fn opening(text: &str, start: usize) -> Range<usize> {
     let mut rest = &text[start..];
     while rest.starts_with("#!") {
-        rest = rest.find(']').map_or("", |end| crate::scene::raw::trim(&rest[end + 1..]));
+        rest = rest.find(']').map_or("", |end| crate::raw::trim(&rest[end + 1..]));
     }
     let start = text.len() - rest.len();
     rest.find('(').map_or(start..start, |at| start + at..start + at + 1)

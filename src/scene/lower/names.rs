@@ -9,11 +9,11 @@ use std::sync::Arc;
 use super::program::Program;
 use super::vertex::VertexData;
 use super::*;
-use crate::scene::mesh::Mesh;
-use crate::scene::raw::{Entries, Numbers};
-use crate::scene::reader::{Entry, NamedVector};
-use crate::state::{Blend, VertexColor};
-use crate::vertex::Rows;
+use crate::mesh::Mesh;
+use crate::raw::{Entries, Numbers};
+use crate::reader::{Entry, NamedVector};
+use ninebit::state::{Blend, VertexColor};
+use ninebit::vertex::Rows;
 
 /// Longest chain of names that stand for names.
 const LONGEST_CHAIN: usize = 32;

@@ -3,8 +3,8 @@
 use std::collections::HashMap;
 
 use super::*;
-use crate::scene::raw::Entries;
-use crate::state::{Named, Palette, TextureFormat};
+use crate::raw::Entries;
+use ninebit::state::{Named, Palette, TextureFormat};
 
 /// The palettes, and where they were named. A palette with errors keeps its name but has no index.
 pub(super) struct Palettes {

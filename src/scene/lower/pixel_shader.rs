@@ -6,9 +6,9 @@ use super::program_text::ProgramText;
 use super::texture::Textures;
 use super::unit::Units;
 use super::*;
-use crate::program::c_source::Style;
-use crate::program::pixel_shader::{self, Bump, CONSTANTS, Context, PixelShader, UnitUse};
-use crate::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS};
+use ninebit::state::{Combiners, Named, ShaderOperation, ShaderStage, StageOrigin, TEXTURE_UNITS};
+use ninebit_program::c_source::Style;
+use ninebit_program::pixel_shader::{self, Bump, CONSTANTS, Context, PixelShader, UnitUse};
 
 /// A shader, where its bytes stand, and what the API sets beside it.
 pub(super) struct ShaderProgram {
@@ -21,7 +21,7 @@ pub(super) struct ShaderProgram {
 /// Reads the text, or the fields, in the parentheses.
 pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
     let (mut constants, mut bumps) = ([None; CONSTANTS], [Bump::default(); TEXTURE_UNITS]);
-    let inside = crate::scene::raw::trim(text.strip_prefix('(').unwrap_or(text));
+    let inside = crate::raw::trim(text.strip_prefix('(').unwrap_or(text));
     let errors = reader.errors;
     let text = if Raw::<String>::new(inside).is_text() {
         ProgramText::read(reader, names, text)?

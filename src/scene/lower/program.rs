@@ -4,12 +4,12 @@ use super::api_program::ApiProgram;
 use super::names::Names;
 use super::program_text::ProgramText;
 use super::*;
-use crate::program::c_source::Style;
-use crate::program::combiner_calls;
-use crate::program::legality::{Notation, check};
-use crate::program::text::{self, words::Words};
-use crate::program::{Aside, Pasted, Places};
-use crate::state::Combiners;
+use ninebit::legality::{Notation, check};
+use ninebit::state::Combiners;
+use ninebit_program::c_source::Style;
+use ninebit_program::combiner_calls;
+use ninebit_program::text::{self, words::Words};
+use ninebit_program::{Aside, Pasted, Places};
 
 /// A program as a draw takes it.
 pub(super) struct Program {

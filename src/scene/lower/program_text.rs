@@ -4,12 +4,12 @@ use std::sync::Arc;
 
 use super::names::Names;
 use super::*;
-use crate::diagnostic::{self, Source};
-use crate::limits::FileLimit;
-use crate::program::c_source::{Expanded, Style, expand};
-use crate::read::{self, Kind, ReadError};
-use crate::scene::path;
-use crate::scene::raw::Tuple;
+use crate::path;
+use crate::raw::Tuple;
+use ninebit::diagnostic::{self, Source};
+use ninebit::limits::FileLimit;
+use ninebit_files::read::{self, Kind, ReadError};
+use ninebit_program::c_source::{Expanded, Style, expand};
 
 /// A text and its places.
 pub(super) struct ProgramText {
@@ -30,7 +30,7 @@ enum Origin {
 impl ProgramText {
     /// Reads `("...")` or `(file: "...")`. `None` once the reason has been recorded.
     pub(super) fn read<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Self> {
-        let inside = crate::scene::raw::trim(text.strip_prefix('(').unwrap_or(text));
+        let inside = crate::raw::trim(text.strip_prefix('(').unwrap_or(text));
         let program =
             if Raw::<String>::new(inside).is_text() { inline(reader, text)? } else { from_file(reader, names, text)? };
         program.within_limit(reader)
@@ -248,7 +248,7 @@ pub(super) fn text_file<'a>(
         return None;
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
-    let source = Source { name: crate::shown::lossless(&folder.join(&name)), text };
+    let source = Source { name: ninebit::shown::lossless(&folder.join(&name)), text };
     Some(Arc::new(diagnostic::File { source, named }))
 }
 

@@ -3,10 +3,10 @@
 use super::names::Names;
 use super::target::Targets;
 use super::*;
-use crate::number::convert::constant;
-use crate::rop::surface;
-use crate::scene::raw::{Numbers, Tuple};
-use crate::state::{AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle};
+use crate::raw::{Numbers, Tuple};
+use ninebit::number::convert::constant;
+use ninebit::rop::surface;
+use ninebit::state::{AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle};
 
 /// Reads a blend function.
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {

@@ -1,9 +1,9 @@
 //! `RegisterWords(...)`: the combiners as the words of a chip's registers.
 
 use super::*;
-use crate::program::registers::{RegisterWords, Word, decode, word_of};
-use crate::program::{Part, Place, Places};
-use crate::state::{Combiners, Named};
+use ninebit::state::{Combiners, Named};
+use ninebit_program::registers::{RegisterWords, Word, decode, word_of};
+use ninebit_program::{Part, Place, Places};
 
 /// The program of the words, and where its parts stand. `None` once the reason has been recorded.
 pub(super) fn register_words<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<(Combiners, Places)> {

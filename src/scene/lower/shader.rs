@@ -3,7 +3,7 @@
 use super::texture::Textures;
 use super::unit::Units;
 use super::*;
-use crate::state::{DotMapping, Named, ShaderOperation, ShaderStage, TEXTURE_UNITS};
+use ninebit::state::{DotMapping, Named, ShaderOperation, ShaderStage, TEXTURE_UNITS};
 
 /// Operations as they are written; the last three are refused by name.
 const OPERATIONS: &[&str] = &[

@@ -5,8 +5,8 @@ use std::collections::HashMap;
 
 use super::names::Names;
 use super::*;
-pub(super) use crate::diagnostic::only_nv2a;
-use crate::state::{DepthBuffer, DepthFormat, SurfaceFormat, Target};
+pub(super) use ninebit::diagnostic::only_nv2a;
+use ninebit::state::{DepthBuffer, DepthFormat, SurfaceFormat, Target};
 
 /// The targets, and where they were named.
 pub(super) struct Targets {
@@ -82,7 +82,7 @@ pub(super) fn targets<'a>(
         let Some(name) = name else { continue };
         if let Some(first) = targets.by_name.get(&name) {
             let first = targets.place(*first);
-            reader.push(crate::scene::wording::twice("target", &name, place, first));
+            reader.push(crate::wording::twice("target", &name, place, first));
             continue;
         }
         let target = target(reader, names, &fields, name.clone());

@@ -2,11 +2,11 @@
 
 use super::names::Names;
 use super::*;
-use crate::program::texture_stages::Generation;
-use crate::scene::raw::Numbers;
-use crate::state::TEXTURE_UNITS;
-use crate::vertex::Viewer;
-use crate::vertex::texgen::{CoordinateSet, Emboss, Generator};
+use crate::raw::Numbers;
+use ninebit::state::TEXTURE_UNITS;
+use ninebit::vertex::Viewer;
+use ninebit::vertex::texgen::{CoordinateSet, Emboss, Generator};
+use ninebit_program::texture_stages::Generation;
 
 /// Words for whole sets, as Direct3D 7 has them.
 const WHOLE: [&str; 3] = ["CameraSpacePosition", "CameraSpaceNormal", "CameraSpaceReflectionVector"];

@@ -9,8 +9,8 @@ use super::texture_legal as legal;
 use super::texture_levels::{self, Wanted};
 use super::texture_source::{Given, Request, Sources, Variant, only};
 use super::*;
-use crate::scene::reader::Entry;
-use crate::state::{CUBE_FACES, Named, Texels, Texture, TextureFormat, TextureImage, TextureKind};
+use crate::reader::Entry;
+use ninebit::state::{CUBE_FACES, Named, Texels, Texture, TextureFormat, TextureImage, TextureKind};
 
 /// The textures, and where they were named. A texture with errors keeps its name but has no index.
 pub(super) struct Textures {
@@ -198,10 +198,7 @@ fn kind<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Text
     reader.name(&raw.as_other())
 }
 
-fn format<'a>(
-    reader: &mut Reader<'a>,
-    raw: &Raw<'a, crate::scene::reader::Name<TextureFormat>>,
-) -> Option<TextureFormat> {
+fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<TextureFormat>>) -> Option<TextureFormat> {
     if let (name @ ("YUY2" | "UYVY"), "") = raw.split() {
         reader.push(
             Diagnostic::error("NB0402", reader.span(raw), format!("how {name} texels are rounded is not known"))

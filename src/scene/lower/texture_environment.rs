@@ -5,12 +5,12 @@ use super::names::Names;
 use super::program::{Asides, once, pasted};
 use super::program_text::ProgramText;
 use super::*;
-use crate::program::At;
-use crate::program::c_source::Style;
-use crate::program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
-use crate::scene::reader::Name;
-use crate::scene::source::List;
-use crate::state::{Named, Scale};
+use crate::reader::Name;
+use crate::source::List;
+use ninebit::state::{Named, Scale};
+use ninebit_program::At;
+use ninebit_program::c_source::Style;
+use ninebit_program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
 
 /// Reads the fields in the parentheses.
 pub(super) fn texture_environment<'a>(

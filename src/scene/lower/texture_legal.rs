@@ -1,7 +1,7 @@
 //! What the chips take: formats, sides, levels and border texels by kind of texture.
 
 use super::*;
-use crate::state::{Named, TextureFormat, TextureKind};
+use ninebit::state::{Named, TextureFormat, TextureKind};
 
 /// The largest side of a texture of any kind.
 pub(super) fn largest_side(reader: &Reader<'_>) -> u32 {

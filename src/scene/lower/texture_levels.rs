@@ -2,8 +2,8 @@
 
 use super::texture_source::{Given, Request, Sources};
 use super::*;
-use crate::scene::texels;
-use crate::state::{BORDER_TEXELS, Level, Named, TextureKind};
+use crate::texels;
+use ninebit::state::{BORDER_TEXELS, Level, Named, TextureKind};
 
 /// `levels` of a texture.
 #[derive(Clone, Copy, PartialEq, Eq)]

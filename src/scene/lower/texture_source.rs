@@ -4,9 +4,9 @@ use super::names::Names;
 use super::texture_legal as legal;
 use super::texture_levels::{self, Wanted};
 use super::*;
-use crate::scene::raw::Tuple;
-use crate::scene::texels;
-use crate::state::{CUBE_FACES, Named, TextureFormat};
+use crate::raw::Tuple;
+use crate::texels;
+use ninebit::state::{CUBE_FACES, Named, TextureFormat};
 
 mod made;
 mod stored;
@@ -41,7 +41,7 @@ pub(super) struct Request {
     pub(super) border: bool,
 }
 
-crate::state::named! {
+ninebit::state::named! {
     /// A kind of source.
     pub(super) enum Variant {
         /// A PNG, TGA or DDS file.

@@ -5,14 +5,14 @@ use super::names::Names;
 use super::program::{Asides, once, pasted};
 use super::program_text::ProgramText;
 use super::*;
-use crate::program::At;
-use crate::program::c_source::Style;
-use crate::program::texture_stages::{
+use crate::raw::Tuple;
+use ninebit::state::Named;
+use ninebit_program::At;
+use ninebit_program::c_source::Style;
+use ninebit_program::texture_stages::{
     self, ArgumentSource, CoordinateIndex, Generation, Half, PROJECTED, STAGES, StageArgument, TextureStage,
     TextureStages,
 };
-use crate::scene::raw::Tuple;
-use crate::state::Named;
 
 /// Reads the fields in the parentheses.
 pub(super) fn texture_stages<'a>(

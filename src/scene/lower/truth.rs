@@ -10,15 +10,15 @@ use super::texture_source::only;
 use super::*;
 use crate::generate::normal_map::{self, HeightChannel};
 use crate::generate::{hemisphere, occlusion};
-use crate::scene::image::{self, ImageLimits, Rgba};
-use crate::scene::raw::{Numbers, Tuple};
-use crate::scene::reader::Name;
-use crate::state::{Named, Register};
+use crate::image::{self, ImageLimits, Rgba};
+use crate::raw::{Numbers, Tuple};
+use crate::reader::Name;
 use crate::truth::{
     Equation, Eye, Field, HemisphereLight, Integral, Interpolated, Light, Material, Model, NormalSource, ShadingNormal,
     Space, Truth, real_color,
 };
 use crate::vector::wide;
+use ninebit::state::{Named, Register};
 
 /// The largest exponent of a highlight.
 const LARGEST_EXPONENT: u32 = 65_536;
@@ -106,7 +106,7 @@ fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
 }
 
 /// The mesh of a draw that takes part.
-fn mesh(reader: &mut Reader<'_>, drawn: &Drawn) -> Option<Arc<crate::scene::mesh::Mesh>> {
+fn mesh(reader: &mut Reader<'_>, drawn: &Drawn) -> Option<Arc<crate::mesh::Mesh>> {
     let wanted = drawn.truth.as_ref().is_none_or(|(wanted, _)| *wanted);
     if !wanted || drawn.draw.target != 0 {
         return None;

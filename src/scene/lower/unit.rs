@@ -3,7 +3,7 @@
 use super::names::Names;
 use super::texture::Textures;
 use super::*;
-use crate::state::{AddressMode, Filter, MipFilter, ShaderStage, TEXTURE_UNITS, TextureUnit};
+use ninebit::state::{AddressMode, Filter, MipFilter, ShaderStage, TEXTURE_UNITS, TextureUnit};
 
 /// The units of a draw.
 pub(super) struct Units {

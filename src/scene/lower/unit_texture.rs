@@ -2,7 +2,7 @@
 
 use super::texture::Textures;
 use super::*;
-use crate::state::{AddressMode, Named, TextureFormat, TextureKind, TextureUnit};
+use ninebit::state::{AddressMode, Named, TextureFormat, TextureKind, TextureUnit};
 
 /// Gives the unit its palette, and holds it against its texture. `fields` is `None` where only the texture's name is written, which
 /// stands at `place`.

@@ -2,8 +2,8 @@
 
 use super::names::Names;
 use super::*;
-use crate::scene::raw::Numbers;
-use crate::state::{Vertex, VertexColor, Vertices};
+use crate::raw::Numbers;
+use ninebit::state::{Vertex, VertexColor, Vertices};
 
 /// Vertices and where each stands.
 pub(super) struct VertexData {

@@ -10,11 +10,11 @@ use super::program_text::ProgramText;
 use super::target::Targets;
 use super::vertex::VertexData;
 use super::*;
-use crate::program::c_source::Style;
-use crate::program::vertex_shader::{self, Written, print};
-use crate::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
-use crate::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
 use inputs::{Given, Input};
+use ninebit::state::{ClipDepth, Positions, Vertex, VertexColor, VertexProgram, Vertices, Viewport};
+use ninebit::vertex::shader::{Constants, DestinationRegister, Inputs, Outputs, VertexShader, evaluate};
+use ninebit_program::c_source::Style;
+use ninebit_program::vertex_shader::{self, Written, print};
 
 /// Runs the program over the vertices. `None` once the reason that it cannot be run has been recorded.
 pub(super) fn geometry<'a>(
@@ -153,7 +153,7 @@ fn run(
     let count = given.count();
     let mut fog_coordinates = Vec::with_capacity(count);
     let vertices = (0..count).map(|index| {
-        let mut registers: Inputs = [[0.0; 4]; crate::vertex::shader::INPUTS];
+        let mut registers: Inputs = [[0.0; 4]; ninebit::vertex::shader::INPUTS];
         for (register, source) in registers.iter_mut().zip(sources) {
             *register = inputs::value(source, given, index);
         }

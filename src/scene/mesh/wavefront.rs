@@ -8,8 +8,8 @@ use std::collections::HashMap;
 use obj::{IndexTuple, ObjData, ObjError};
 
 use super::Surface;
-use crate::diagnostic::{Diagnostic, shorten};
-use crate::guard;
+use ninebit::diagnostic::{Diagnostic, shorten};
+use ninebit_files::guard;
 
 /// Findings beyond this many are not looked for.
 const MOST_FINDINGS: usize = 16;

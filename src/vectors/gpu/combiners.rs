@@ -4,7 +4,7 @@
 //! shows 0 to 255: a second draw shows it negated, and a third tells -256 from -255.
 
 use super::{Draw, Path, Placement, Read};
-use crate::state::{
+use ninebit::state::{
     Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, InputMapping, MuxSelect,
     Portion, Profile, Register, Scale,
 };

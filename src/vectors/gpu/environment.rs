@@ -2,8 +2,8 @@
 
 use super::fixed::{COMBINE, color, colors, drawn};
 use super::{Case, Path, Placement};
-use crate::program::texture_environment::{BaseFormat, Function, Mode, Operand};
-use crate::state::Scale;
+use ninebit::state::Scale;
+use ninebit_program::texture_environment::{BaseFormat, Function, Mode, Operand};
 
 /// The sources of both units: texture and primary colour, and the constant where it is read.
 fn sources(case: &Case, reads_constant: bool) -> Option<Vec<(&'static str, Vec<u8>)>> {

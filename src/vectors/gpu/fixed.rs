@@ -1,7 +1,7 @@
 //! Recipes that ask what OpenGL has without register combiners: the texture environment, texels and coordinates, colours, alpha test, blending.
 
 use super::{Case, Draw, Path, Placement, Read, byte};
-use crate::state::{AddressMode, Bias, BlendEquation, BlendFactor, CompareFunction, Scale, TextureFormat};
+use ninebit::state::{AddressMode, Bias, BlendEquation, BlendFactor, CompareFunction, Scale, TextureFormat};
 
 /// A placement with one draw.
 pub(super) fn drawn(

@@ -13,7 +13,7 @@ mod fixed;
 mod stages;
 pub mod write;
 
-use crate::state::{Combiners, Named, Profile};
+use ninebit::state::{Combiners, Named, Profile};
 
 use super::column::Column;
 use super::table::Row;

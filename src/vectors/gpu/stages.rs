@@ -2,11 +2,11 @@
 
 use super::combiners::{Output, Program, input, load, one, rgb_stage, sign, stage};
 use super::{Case, Placement, Read, byte};
-use crate::state::{
+use crate::units::final_combiner::OWN;
+use ninebit::state::{
     Bias, CombinerInput, Component, FinalCombiner, FinalInput, FinalRegister, InputMapping, MuxSelect, Portion,
     Profile, Register, Scale,
 };
-use crate::vectors::units::final_combiner::OWN;
 
 const IDENTITY: InputMapping = InputMapping::UnsignedIdentity;
 const SIGNED: InputMapping = InputMapping::SignedIdentity;

@@ -2,15 +2,15 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::*;
-use crate::combiner::final_combiner::{self, PlannedFinal};
-use crate::combiner::general::{self, PlannedPortion, PlannedStage};
-use crate::combiner::registers::Registers;
-use crate::state::{Policies, Register};
-use crate::trace::Silent;
-use crate::vectors::cases::{self, Level};
-use crate::vectors::table::{Contents, Writer};
-use crate::vectors::unit::Conditions;
-use crate::vectors::units;
+use crate::cases::{self, Level};
+use crate::table::{Contents, Writer};
+use crate::unit::Conditions;
+use crate::units;
+use ninebit::combiner::final_combiner::{self, PlannedFinal};
+use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
+use ninebit::combiner::registers::Registers;
+use ninebit::state::{Policies, Register};
+use ninebit::trace::Silent;
 
 /// The bytes of a pixel drawn by the model.
 fn pixel(placement: &Placement, combiners: &Combiners, profile: Profile) -> [i32; 4] {

@@ -27,9 +27,9 @@
 use std::collections::BTreeMap;
 
 use super::{Case, Placement, recipes};
-use crate::state::Named;
-use crate::vectors::BEHAVIOUR;
-use crate::vectors::table::{Contents, Row, Writer};
+use crate::BEHAVIOUR;
+use crate::table::{Contents, Row, Writer};
+use ninebit::state::Named;
 
 /// Rows of a batch: a draw of 256 by 256 pixels.
 pub const ROWS: usize = 65_536;

@@ -13,12 +13,12 @@ use sha2::{Digest, Sha256};
 
 use super::compare::Comparison;
 use super::{DEVICE, Results};
-use crate::limits;
-use crate::output::{PendingFolder, write_file};
-use crate::picture::hexadecimal;
-use crate::read::{self, Kind};
-use crate::vectors::error::{VectorError, unread};
-use crate::vectors::pack::Manifest;
+use crate::error::{VectorError, unread};
+use crate::pack::Manifest;
+use ninebit::limits;
+use ninebit_files::output::{PendingFolder, write_file};
+use ninebit_files::picture::hexadecimal;
+use ninebit_files::read::{self, Kind};
 
 /// `format` of the record.
 pub const FORMAT: &str = "ninebit-adopted-1";

@@ -6,12 +6,12 @@ use serde::Serialize;
 
 use super::waiver::Waiver;
 use super::{Observed, ResultRow, Results, UnitResults};
-use crate::state::{POLICIES, Policies, Profile};
-use crate::vectors::column::Kind;
-use crate::vectors::error::VectorError;
-use crate::vectors::read::{Table, TableRow};
-use crate::vectors::table::LAST;
-use crate::vectors::unit::Conditions;
+use crate::column::Kind;
+use crate::error::VectorError;
+use crate::read::{Table, TableRow};
+use crate::table::LAST;
+use crate::unit::Conditions;
+use ninebit::state::{POLICIES, Policies, Profile};
 
 /// How results and a pack differ.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]

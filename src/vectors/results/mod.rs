@@ -23,9 +23,9 @@ pub use read::parse;
 use super::error::{VectorError, read_text};
 use super::pack::Manifest;
 use super::unit::Unit;
-use crate::limits;
-use crate::output::is_leftover;
-use crate::read::Kind;
+use ninebit::limits;
+use ninebit_files::output::is_leftover;
+use ninebit_files::read::Kind;
 
 /// `format` of a device file.
 pub const DEVICE_FORMAT: &str = "ninebit-device-1";

@@ -4,9 +4,9 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use super::{Observed, ResultRow, UnitResults};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::error::VectorError;
-use crate::vectors::units;
+use crate::column::{Column, Kind};
+use crate::error::VectorError;
+use crate::units;
 
 /// First line of a table of results.
 const FORMAT: &str = "# ninebit-results 1";

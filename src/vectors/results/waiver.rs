@@ -4,10 +4,10 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::limits;
-use crate::read::Kind;
-use crate::vectors::error::{VectorError, read_text};
-use crate::vectors::units;
+use crate::error::{VectorError, read_text};
+use crate::units;
+use ninebit::limits;
+use ninebit_files::read::Kind;
 
 /// A difference that is known.
 #[derive(Clone, Debug, PartialEq, Eq, Deserialize)]

@@ -2,9 +2,9 @@
 
 use multiversion::multiversion;
 
-use crate::combiner::output::finished;
-use crate::number::{EACH, Each, Factor, Sum};
-use crate::state::{Bias, RegisterFloor, Scale};
+use ninebit::combiner::output::finished;
+use ninebit::number::{EACH, Each, Factor, Sum};
+use ninebit::state::{Bias, RegisterFloor, Scale};
 
 /// `sum` + `c` d, rounded and saturated, for d from `first` on; low byte first. Returns how many results are -256, and how many are 255.
 ///

@@ -1,21 +1,21 @@
 //! The parts of a general combiner stage, one channel at a time.
 
 use super::{block, named, scale_takes_bias};
-use crate::algebra::Algebra;
-use crate::combiner::direct::Direct;
-use crate::combiner::{general, mapping, output};
-use crate::number::{Factor, Lane};
-use crate::state::{self, Bias, Component, MuxSelect, Portion, Scale};
-use crate::trace::{Observer, Rule, Silent, Step};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::algebra::Algebra;
+use ninebit::combiner::direct::Direct;
+use ninebit::combiner::{general, mapping, output};
+use ninebit::number::{Factor, Lane};
+use ninebit::state::{self, Bias, Component, MuxSelect, Portion, Scale};
+use ninebit::trace::{Observer, Rule, Silent, Step};
 
 /// A product sum as the tables write it: in 1/65025.
 const WIDE: Kind = Kind::Signed(19);
 
 /// A factor in steps of 1/255 as the combiner holds it.
 fn factor(value: i64) -> <i32 as Lane>::Mapped {
-    crate::number::Register::factor(value as i32)
+    ninebit::number::Register::factor(value as i32)
 }
 
 /// A full-width sum in 1/65025; whole, because no input has half a step.
@@ -25,8 +25,8 @@ fn wide(sum: <i32 as Lane>::Full) -> i64 {
 
 /// Rounded and saturated, neither biased nor scaled.
 fn written(raw: <i32 as Lane>::Full, conditions: &Conditions) -> i64 {
-    let rounded: i32 = crate::number::Sum::rounded(raw);
-    crate::number::Register::saturated(rounded, conditions.policies.register_floor).into()
+    let rounded: i32 = ninebit::number::Sum::rounded(raw);
+    ninebit::number::Register::saturated(rounded, conditions.policies.register_floor).into()
 }
 
 /// A register through a mapping.

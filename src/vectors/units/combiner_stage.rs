@@ -2,13 +2,13 @@
 
 use super::block::{self, Sixteen};
 use super::{named, scale_takes_bias, step};
-use crate::combiner::general::{self, PlannedPortion, PlannedStage};
-use crate::combiner::registers::Registers;
-use crate::number::Lane;
-use crate::state::{Bias, CombinerInput, Component, InputMapping, MuxSelect, Portion, Profile, Register, Scale};
-use crate::trace::{Observer, Recorder, Silent};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
+use ninebit::combiner::registers::Registers;
+use ninebit::number::Lane;
+use ninebit::state::{Bias, CombinerInput, Component, InputMapping, MuxSelect, Portion, Profile, Register, Scale};
+use ninebit::trace::{Observer, Recorder, Silent};
 
 const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
 
@@ -120,11 +120,12 @@ impl Unit for GeneralStage {
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let file = general_file(|n| inputs[n] as i32);
-        let takes_cd = crate::combiner::output::mux_takes_cd(inputs[22] as i32, named(inputs[7]), &conditions.policies);
+        let takes_cd =
+            ninebit::combiner::output::mux_takes_cd(inputs[22] as i32, named(inputs[7]), &conditions.policies);
         // The factors by themselves: a trace of each row would be far slower.
         for (n, input) in portion(Component::Rgb, &inputs[..4]).inputs.iter().enumerate() {
             let x: [i32; 3] = std::array::from_fn(|channel| file.read(input.register, channel));
-            let factors = crate::combiner::mapping::map(x, input.mapping, &conditions.policies);
+            let factors = ninebit::combiner::mapping::map(x, input.mapping, &conditions.policies);
             for (channel, factor) in factors.into_iter().enumerate() {
                 results[3 * n + channel] = <i32 as Lane>::observe_factor(factor).0;
             }
@@ -219,7 +220,7 @@ impl Unit for AlphaPortion {
         let file = alpha_file(|n| inputs[n] as i32);
         for (n, input) in alpha_inputs(inputs).inputs.iter().enumerate() {
             let x = file.read(input.register, general::source_channel(input, 3));
-            let [factor] = crate::combiner::mapping::map([x], input.mapping, &conditions.policies);
+            let [factor] = ninebit::combiner::mapping::map([x], input.mapping, &conditions.policies);
             results[n] = <i32 as Lane>::observe_factor(factor).0;
         }
         for (result, value) in results[4..].iter_mut().zip(alpha_portion(inputs, file, conditions)) {

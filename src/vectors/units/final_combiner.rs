@@ -1,13 +1,13 @@
 //! The final combiner, one colour channel and alpha.
 
 use super::{block, named, step};
-use crate::combiner::final_combiner::{self, PlannedFinal};
-use crate::combiner::registers::Registers;
-use crate::number::{Each, Lane};
-use crate::state::{self, Component, FinalInput, FinalRegister, Register, named as enumeration};
-use crate::trace::{Recorder, Silent};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::combiner::final_combiner::{self, PlannedFinal};
+use ninebit::combiner::registers::Registers;
+use ninebit::number::{Each, Lane};
+use ninebit::state::{self, Component, FinalInput, FinalRegister, Register, named as enumeration};
+use ninebit::trace::{Recorder, Silent};
 
 enumeration! {
     /// What an input of A to D reads in these vectors.
@@ -26,7 +26,7 @@ enumeration! {
 pub(super) struct FinalCombiner;
 
 /// What A, B, C, D, E, F read where it is a register of their own.
-pub(in crate::vectors) const OWN: [FinalRegister; 6] = [
+pub(crate) const OWN: [FinalRegister; 6] = [
     FinalRegister::Texture0,
     FinalRegister::Texture1,
     FinalRegister::PrimaryColor,

@@ -1,14 +1,14 @@
 //! Fog: the light unit's words, the table of the exponentials, and the factor of a coordinate.
 
 use super::named;
-use crate::number::light;
-use crate::raster::fog::{FogPlane, FogStep, exponential};
-use crate::raster::interpolate::Sample;
-use crate::raster::setup::Triangle;
-use crate::state::{FogFunction, FogMode, Profile};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
-use crate::vertex::fog::passed;
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::number::light;
+use ninebit::raster::fog::{FogPlane, FogStep, exponential};
+use ninebit::raster::interpolate::Sample;
+use ninebit::raster::setup::Triangle;
+use ninebit::state::{FogFunction, FogMode, Profile};
+use ninebit::vertex::fog::passed;
 
 /// The modes that look up a table, in the order of the column.
 const CURVES: [FogMode; 4] = [FogMode::Exp, FogMode::Exp2, FogMode::ExpAbs, FogMode::Exp2Abs];

@@ -17,8 +17,8 @@ mod texture_environment;
 mod texture_stage;
 
 use super::unit::Unit;
-use crate::state::{Bias, Named, Scale};
-use crate::trace::Step;
+use ninebit::state::{Bias, Named, Scale};
+use ninebit::trace::Step;
 
 /// All units.
 pub fn all() -> Vec<&'static dyn Unit> {

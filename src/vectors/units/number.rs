@@ -1,8 +1,8 @@
 //! Where floats enter: colours, positions and depths.
 
-use crate::number::convert;
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::number::convert;
 
 fn float(bits: i64) -> f32 {
     f32::from_bits(bits as u32)

@@ -2,14 +2,14 @@
 
 use super::named;
 use super::program::{self, CHANNELS, Through};
-use crate::program::At;
-use crate::program::pixel_shader::{
+use crate::column::Column;
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::state::{Combiners, Profile, Register, Scale};
+use ninebit_program::At;
+use ninebit_program::pixel_shader::{
     Arithmetic, Bank, Context, Mask, Modifier, Operation, PixelShader, Selector, ShaderRegister, Source, Target,
     TextureInstruction, TextureOperation, Version, lower,
 };
-use crate::state::{Combiners, Profile, Register, Scale};
-use crate::vectors::column::Column;
-use crate::vectors::unit::{Conditions, Reach, Unit};
 
 /// `mov r0, t3`, then the instruction: from t0, t1 and v0 to r0.
 #[derive(Debug)]

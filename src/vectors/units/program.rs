@@ -1,14 +1,14 @@
 //! Programs of APIs as tables: one stage, unit or instruction, lowered to combiners as for a draw, and run on the registers of one pixel.
 
 use super::block;
-use crate::combiner::final_combiner::{self, PlannedFinal};
-use crate::combiner::general::{self, PlannedPortion, PlannedStage};
-use crate::combiner::registers::Registers;
-use crate::number::{Each, Lane};
-use crate::state::{Combiners, FinalRegister, MuxSelect, Register};
-use crate::trace::Silent;
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::Conditions;
+use crate::column::{Column, Kind};
+use crate::unit::Conditions;
+use ninebit::combiner::final_combiner::{self, PlannedFinal};
+use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
+use ninebit::combiner::registers::Registers;
+use ninebit::number::{Each, Lane};
+use ninebit::state::{Combiners, FinalRegister, MuxSelect, Register};
+use ninebit::trace::Silent;
 
 pub(super) const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
 

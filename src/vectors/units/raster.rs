@@ -1,10 +1,10 @@
 //! Triangles: which pixels they cover, and what the pixels get from the vertices.
 
-use crate::raster::interpolate::{self, Sample};
-use crate::raster::setup::Triangle;
-use crate::state::Profile;
-use crate::vectors::column::{Column, Domain, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Domain, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::raster::interpolate::{self, Sample};
+use ninebit::raster::setup::Triangle;
+use ninebit::state::Profile;
 
 const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
 const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];

@@ -1,13 +1,13 @@
 //! Alpha test, blending, surfaces.
 
 use super::{block, named};
-use crate::combiner::direct::Direct;
-use crate::number::Each;
-use crate::rop::{blend, surface};
-use crate::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
-use crate::trace::Silent;
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::combiner::direct::Direct;
+use ninebit::number::Each;
+use ninebit::rop::{blend, surface};
+use ninebit::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
+use ninebit::trace::Silent;
 
 const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
 

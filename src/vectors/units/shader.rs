@@ -1,11 +1,11 @@
 //! The texture shader's arithmetic.
 
 use super::named;
-use crate::number::convert::split;
-use crate::state::{DotMapping, Profile};
-use crate::texture::{dot, shader};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::number::convert::split;
+use ninebit::state::{DotMapping, Profile};
+use ninebit::texture::{dot, shader};
 
 const NV2A: &[Profile] = &[Profile::Nv2a];
 

@@ -1,10 +1,10 @@
 //! Texels: words and blocks to bytes.
 
 use super::named;
-use crate::state::{Named, Profile, TextureFormat};
-use crate::texture::{compressed, format};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::state::{Named, Profile, TextureFormat};
+use ninebit::texture::{compressed, format};
 
 fn channels() -> Vec<Column> {
     ["out.r", "out.g", "out.b", "out.a"].map(|name| Column::result(name, Kind::Unsigned(8))).to_vec()

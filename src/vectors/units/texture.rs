@@ -1,14 +1,14 @@
 //! Where a texture unit looks, and how it mixes what it finds.
 
 use super::named;
-use crate::state::{
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::state::{
     AddressMode, Filter, Level, MipFilter, Named, Profile, ShaderStage, TextureFormat, TextureKind, TextureUnit,
 };
-use crate::texture::cube::Face;
-use crate::texture::unit::PlannedUnit;
-use crate::texture::{address, filter, lod, shader};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
+use ninebit::texture::cube::Face;
+use ninebit::texture::unit::PlannedUnit;
+use ninebit::texture::{address, filter, lod, shader};
 
 const SIZES: [i64; 9] = [1, 2, 3, 4, 17, 64, 100, 256, 4096];
 

@@ -2,14 +2,14 @@
 
 use super::named;
 use super::program::{self, RULES, Through, bytes, colors};
-use crate::program::At;
-use crate::program::texture_environment::{
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::state::{Combiners, Named, Profile, Register, Scale};
+use ninebit_program::At;
+use ninebit_program::texture_environment::{
     BaseFormat, Context, EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit as Environment,
     lower,
 };
-use crate::state::{Combiners, Named, Profile, Register, Scale};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
 
 /// The numbers of the variants for which `wanted` holds.
 fn numbers<T: Named>(wanted: impl Fn(T) -> bool) -> Vec<i64> {

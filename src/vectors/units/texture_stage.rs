@@ -2,13 +2,13 @@
 
 use super::named;
 use super::program::{self, RULES, Through, bytes, colors};
-use crate::program::At;
-use crate::program::texture_stages::{
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::state::{Combiners, Named, Profile, Register};
+use ninebit_program::At;
+use ninebit_program::texture_stages::{
     ArgumentSource, Context, Half, Operation, StageArgument, TextureStage, TextureStages, lower,
 };
-use crate::state::{Combiners, Named, Profile, Register};
-use crate::vectors::column::{Column, Kind};
-use crate::vectors::unit::{Conditions, Reach, Unit};
 
 /// D3DTOP with the arguments Texture and Current.
 #[derive(Debug)]

@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use crate::diagnostic::Diagnostic;
-use crate::program::Aside;
-use crate::program::calls::{Part, PartKind, Value, without_prefix};
+use crate::Aside;
+use crate::calls::{Part, PartKind, Value, without_prefix};
+use ninebit::diagnostic::Diagnostic;
 
 /// A field of the draw, and the states that it holds: name and D3DRS value.
 struct Group {

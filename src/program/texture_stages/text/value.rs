@@ -1,10 +1,10 @@
 //! Values of texture stage states and render states.
 
-use crate::diagnostic::Diagnostic;
-use crate::number::convert::constant;
-use crate::program::calls::{self, Part, PartKind, Value, one, out_of_range, without_prefix, wrong_kind};
-use crate::program::texture_stages::{ArgumentSource, Operation, ResultArgument, StageArgument};
-use crate::state::Named;
+use crate::calls::{self, Part, PartKind, Value, one, out_of_range, without_prefix, wrong_kind};
+use crate::texture_stages::{ArgumentSource, Operation, ResultArgument, StageArgument};
+use ninebit::diagnostic::Diagnostic;
+use ninebit::number::convert::constant;
+use ninebit::state::Named;
 
 /// The entry of `known` that a name means, spelled as calls do, or as effect files.
 fn known<T: Copy>(

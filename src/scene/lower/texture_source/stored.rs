@@ -1,9 +1,9 @@
 //! Texels out of files.
 
 use super::*;
-use crate::scene::image::{self, Contents, ImageError, ImageLimits};
-use crate::scene::path;
-use crate::state::Level;
+use crate::image::{self, Contents, ImageError, ImageLimits};
+use crate::path;
+use ninebit::state::Level;
 
 impl<'a> Sources<'_, 'a> {
     /// A picture, or a DDS file with its levels and faces.
@@ -87,7 +87,7 @@ impl<'a> Sources<'_, 'a> {
 }
 
 /// Finds the file of that name and does something with it.
-pub(in crate::scene::lower) fn read_file<'a, T>(
+pub(in crate::lower) fn read_file<'a, T>(
     reader: &mut Reader<'a>,
     folder: &Path,
     raw: &Raw<'a, String>,
@@ -107,7 +107,7 @@ pub(in crate::scene::lower) fn read_file<'a, T>(
         Ok(contents) => Some(contents),
         Err(error) => {
             // The name as the scene has it: where the folder lies does not matter here.
-            let message = error.to_string().replace(&crate::shown::path(&path), &name);
+            let message = error.to_string().replace(&ninebit::shown::path(&path), &name);
             reader.push(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()));
             None
         }

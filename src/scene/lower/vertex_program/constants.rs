@@ -1,8 +1,8 @@
 //! Constants of a vertex program: `{ c0: Matrix(...), c12: (0, 0, 1) }`.
 
 use super::*;
-use crate::scene::raw::{Entries, Numbers, Tuple};
-use crate::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
+use crate::raw::{Entries, Numbers, Tuple};
+use ninebit::vertex::shader::{CONSTANTS, Opcode, SourceRegister};
 
 /// A constant's value as the scene gives it: one register or the four rows of a matrix.
 enum Value {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 
 use super::super::attribute::{self, Source};
 use super::*;
-use crate::scene::mesh::Mesh;
-use crate::vertex::shader::INPUTS;
+use crate::mesh::Mesh;
+use ninebit::vertex::shader::INPUTS;
 
 /// The vertices that a program takes: of a mesh, or listed.
 pub(super) struct Given {

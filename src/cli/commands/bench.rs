@@ -1,0 +1,220 @@
+//! `ninebit bench`.
+#![allow(clippy::float_arithmetic, reason = "times")]
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Args;
+use ninebit::engine::{Reason, Renderer};
+use ninebit::shown;
+use ninebit::state::Named;
+use ninebit::threads;
+use ninebit_files::output::{write_json, write_text};
+use ninebit_files::read::page;
+use serde::Serialize;
+
+use super::engine::EngineArguments;
+use super::exit::Failure;
+use super::scene::{Failed, PolicyArguments, each, load};
+use super::{Context, Format, FormatArguments};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The scene files; expectations (`*.expect.ron`) among them are passed over
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    policies: PolicyArguments,
+    #[command(flatten)]
+    engine: EngineArguments,
+    /// Frames that are timed of each scene
+    #[arg(long, value_name = "N", default_value_t = 60, value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    frames: u32,
+    #[command(flatten)]
+    format: FormatArguments,
+}
+
+/// What was measured of a scene.
+#[derive(Debug, Serialize)]
+struct Measured {
+    scene: String,
+    /// What drew it.
+    engine: &'static str,
+    /// Covered pixels of all draws.
+    shaded_pixels: u64,
+    frames: u32,
+    /// Reading, checking and planning.
+    load_microseconds: f64,
+    /// Decoding textures, compiling draws, starting threads.
+    prepare_microseconds: f64,
+    /// The draws of a frame, without the clear.
+    frame_microseconds: Spread,
+    /// The same for a shaded pixel: a pixel counts once for each draw that shades it.
+    ns_per_shaded_pixel: Spread,
+    /// Of the fast engine: the share of the pixels of which the definition computed something, by the reason.
+    defined_share: Vec<Defined>,
+    /// The most memory that the process held resident while the scene was measured, where the system tells.
+    peak_memory_bytes: Option<u64>,
+}
+
+/// What the fast engine left to the definition.
+#[derive(Debug, Serialize)]
+struct Defined {
+    reason: &'static str,
+    /// Of all shaded pixels; above 1 where several things of a pixel were computed so.
+    share: f64,
+}
+
+/// How some times are spread.
+#[derive(Clone, Copy, Debug, Serialize)]
+struct Spread {
+    least: f64,
+    p10: f64,
+    median: f64,
+    p90: f64,
+}
+
+impl Spread {
+    /// Of times in ascending order, at least one.
+    fn of(times: &[f64]) -> Spread {
+        let at = |tenths: usize| times[(times.len() - 1) * tenths / 10];
+        Spread { least: times[0], p10: at(1), median: at(5), p90: at(9) }
+    }
+
+    /// Everything times a factor.
+    fn times(self, by: f64) -> Spread {
+        Spread { least: self.least * by, p10: self.p10 * by, median: self.median * by, p90: self.p90 * by }
+    }
+}
+
+#[derive(Debug, Serialize)]
+struct Document {
+    format: &'static str,
+    version: &'static str,
+    /// What was asked for.
+    engine: &'static str,
+    isa: &'static str,
+    threads: usize,
+    scenes: Vec<Measured>,
+    failed: Vec<Failed>,
+}
+
+/// Draws each scene many times and prints how long that takes.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let options = arguments.engine.options()?;
+    let mut isa = "";
+    let is_scene = |path: &&PathBuf| !path.to_string_lossy().ends_with(".expect.ron");
+    let scenes: Vec<&Path> = arguments.scenes.iter().filter(is_scene).map(PathBuf::as_path).collect();
+    if scenes.is_empty() {
+        return Err(Failure::usage(
+            "nothing to measure",
+            "expectations (`*.expect.ron`) are no scenes; name the scene",
+        ));
+    }
+    let measured = each(&scenes, context, |path| {
+        forget_peak_memory();
+        let mut last = Instant::now();
+        let mut lap = || {
+            let now = Instant::now();
+            let spent = now.duration_since(last).as_secs_f64() * 1e6;
+            last = now;
+            spent
+        };
+        let (_, plan) = load(path, &arguments.policies, context)?;
+        let load_microseconds = lap();
+        let renderer = Renderer::new(&plan, &options);
+        let prepare_microseconds = lap();
+        isa = renderer.isa().name();
+        let (mut frames, statistics) = renderer.render();
+        let shaded_pixels: u64 = statistics.shaded_pixels.iter().sum();
+        lap();
+        let mut times: Vec<f64> = (0..arguments.frames)
+            .map(|_| {
+                renderer.redraw(&mut frames);
+                lap()
+            })
+            .collect();
+        times.sort_by(f64::total_cmp);
+        let frame_microseconds = Spread::of(&times);
+        let share = |(reason, count): &(Reason, u64)| Defined {
+            reason: reason.name(),
+            share: *count as f64 / (shaded_pixels.max(1) as f64),
+        };
+        Ok(Measured {
+            scene: shown::lossless(path),
+            engine: renderer.engine().name(),
+            shaded_pixels,
+            frames: arguments.frames,
+            load_microseconds,
+            prepare_microseconds,
+            frame_microseconds,
+            ns_per_shaded_pixel: frame_microseconds.times(1e3 / (shaded_pixels.max(1) as f64)),
+            defined_share: statistics.defined_pixels.iter().map(share).collect(),
+            peak_memory_bytes: peak_memory(),
+        })
+    });
+    let end = measured.end();
+    let document = Document {
+        format: "ninebit-bench-1",
+        version: env!("CARGO_PKG_VERSION"),
+        engine: options.engine.name(),
+        isa,
+        threads: threads::count(options.threads),
+        scenes: measured.made,
+        failed: measured.failed,
+    };
+    match arguments.format.get() {
+        _ if document.scenes.is_empty() => {}
+        Format::Text => write_text(&text(&document))?,
+        Format::Json => write_json(&serde_json::to_string_pretty(&document).unwrap_or_default())?,
+    }
+    end
+}
+
+/// Starts the peak of resident memory anew, where the system allows it; where not, earlier scenes count.
+fn forget_peak_memory() {
+    let _ = std::fs::write("/proc/self/clear_refs", "5");
+}
+
+/// The most memory resident so far, in bytes.
+fn peak_memory() -> Option<u64> {
+    let status = page(Path::new("/proc/self/status"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(1024 * line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?)
+}
+
+fn text(document: &Document) -> String {
+    let mut text = format!(
+        "engine {}, {}, {} thread{}. ns a shaded pixel: median (10 % of the frames below, 90 % below).\n\
+         {:>10} {:>10} {:>10} {:>10} {:>22}  scene\n",
+        document.engine,
+        document.isa,
+        document.threads,
+        if document.threads == 1 { "" } else { "s" },
+        "pixels",
+        "ms set-up",
+        "MB peak",
+        "ms a frame",
+        "ns a pixel"
+    );
+    for measured in &document.scenes {
+        let pixel = measured.ns_per_shaded_pixel;
+        let spread = format!("{:.3} ({:.3}, {:.3})", pixel.median, pixel.p10, pixel.p90);
+        let peak = measured.peak_memory_bytes.map_or_else(|| "-".to_owned(), |n| format!("{:.1}", n as f64 / 1e6));
+        let _ = writeln!(
+            text,
+            "{:>10} {:>10.3} {:>10} {:>10.3} {:>22}  {}",
+            measured.shaded_pixels,
+            (measured.load_microseconds + measured.prepare_microseconds) / 1e3,
+            peak,
+            measured.frame_microseconds.median / 1e3,
+            spread,
+            shown::name(&measured.scene)
+        );
+        for Defined { reason, share } in &measured.defined_share {
+            let _ = writeln!(text, "{:>66}  pixel by pixel: {:.3} %, {reason}", "", 100.0 * share);
+        }
+    }
+    text
+}

@@ -1,0 +1,225 @@
+//! `ninebit chart`.
+
+use std::cell::Cell;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use ninebit::shown;
+use ninebit_files::output::{OutputError, make_folder, write_below, write_file};
+use ninebit_files::read;
+use ninebit_lab::chart::page::{File, replace_section};
+use ninebit_lab::chart::report::Measured;
+use ninebit_lab::chart::techniques::{self, TechniqueError};
+use ninebit_lab::chart::timing::Effort;
+use ninebit_lab::chart::{curves, evaluators, surfaces};
+use ninebit_lab::experiments;
+use ninebit_scene::SceneError;
+
+use super::Context;
+use super::exit::{Exit, Failure, Report};
+use super::scene::{apart, refused};
+use super::terminal::{self, Level, Progress};
+
+/// The page that sweeps share with what is not made here, and the markers of their section in it.
+const STABILITY: &str = "stability.md";
+const SECTION: &str = "sweeps";
+
+/// Where everything goes if nobody says otherwise. What is in it keeps it out of version control.
+const FOLDER: &str = "ninebit-chart";
+const IGNORE: (&str, &str) = (".gitignore", "*\n");
+
+/// What marks the topmost folder of what is under version control.
+const VERSIONED: [&str; 5] = [".git", ".hg", ".jj", ".svn", ".bzr"];
+
+/// Pixels along the sides of the surfaces that evaluators are timed on.
+const SIDE: usize = 256;
+const QUICK_SIDE: usize = 16;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The folder of the scenes that are measured; each folder in it is a family
+    #[arg(value_name = "SCENES", default_value = "vectors/scenes/techniques")]
+    scenes: PathBuf,
+    /// The folder that pages and pictures are written to
+    #[arg(long, value_name = "DIR", default_value = FOLDER)]
+    out: PathBuf,
+    /// Write over pages that are there in a folder under version control
+    #[arg(long)]
+    overwrite: bool,
+    /// Time few frames: shows that everything works, the times mean little
+    #[arg(long)]
+    quick: bool,
+    /// Make one page alone
+    #[arg(long, value_enum, value_name = "PAGE")]
+    only: Option<Page>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Page {
+    /// Speed against accuracy, in `speed-accuracy.md`
+    Speed,
+    /// Where methods fail, a section of `stability.md`
+    Stability,
+}
+
+impl Page {
+    /// The page, and the folder beside it.
+    fn names(self) -> [&'static str; 2] {
+        match self {
+            Page::Speed => ["speed-accuracy.md", "speed-accuracy"],
+            Page::Stability => [STABILITY, "stability"],
+        }
+    }
+}
+
+/// Measures everything afresh and writes pages, pictures and data.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let wanted = |page| arguments.only.is_none_or(|only| only == page);
+    for page in [Page::Speed, Page::Stability].into_iter().filter(|page| wanted(*page) && !arguments.overwrite) {
+        keep_versioned(&arguments.out, page)?;
+    }
+    let (mut files, mut page) = (Vec::new(), None);
+    let mut failed = 0;
+    if wanted(Page::Speed) {
+        let measured = speed(arguments, context)?;
+        failed += measured.failed.len();
+        files.extend(measured.files()?);
+    }
+    if wanted(Page::Stability) {
+        let progress = Progress::new("where methods fail", context.color);
+        let report = |done: usize, total: usize| progress.report(done as u64, total as u64);
+        let measured = experiments::page::measure(&report).map_err(|error| refused(*error))?;
+        let (section, pictures) = experiments::page::files(&measured)?;
+        page = Some(stability_page(&arguments.out.join(STABILITY), &section));
+        files.extend(pictures);
+    }
+    make_folder(&arguments.out)?;
+    if arguments.out == Path::new(FOLDER) {
+        write_file(&arguments.out.join(IGNORE.0), IGNORE.1.as_bytes())?;
+    }
+    for file in &files {
+        write_below(&arguments.out.join(&file.path), &file.bytes)?;
+    }
+    if let Some(page) = page {
+        // What else is on it was read and is kept.
+        write_file(&arguments.out.join(&page.path), &page.bytes)?;
+    }
+    if failed > 0 { Err(Failure { exit: Exit::Internal, report: Report::Silent }) } else { Ok(()) }
+}
+
+/// Refuses to write over a page that is under version control, before anything is measured.
+fn keep_versioned(folder: &Path, page: Page) -> Result<(), Failure> {
+    let Some(path) = page.names().into_iter().map(|name| folder.join(name)).find(|path| path.exists()) else {
+        return Ok(());
+    };
+    let ours = read::page(&folder.join(IGNORE.0)).is_some_and(|text| text == IGNORE.1);
+    let place = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
+    let versioned = place.ancestors().any(|folder| VERSIONED.iter().any(|name| folder.join(name).exists()));
+    if versioned && !ours { Err(OutputError::Versioned { path }.into()) } else { Ok(()) }
+}
+
+fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
+    let fault = |error: Box<SceneError>| refused(*error);
+    let entries = techniques::find(&arguments.scenes).map_err(technique_failure)?;
+    let (effort, side) = if arguments.quick { (Effort::QUICK, QUICK_SIDE) } else { (Effort::FULL, SIDE) };
+    let surfaces = surfaces::surfaces();
+    let curves = curves::scenes(arguments.quick);
+    let points: usize = curves.iter().map(|(_, scenes)| scenes.len()).sum();
+    let total = (entries.len() + evaluators::count() + surfaces.len() + points) as u64;
+    let progress = Progress::new("measuring", context.color);
+    let done = Cell::new(0);
+    let step = || {
+        done.set(done.get() + 1);
+        progress.report(done.get(), total);
+    };
+    let mut measured = Measured { quick: arguments.quick, ..Measured::default() };
+    for entry in &entries {
+        let technique = apart(&entry.path, || techniques::measure(entry, &effort).map_err(technique_failure));
+        if let Some(technique) = unless_internal(technique, entry.name(), &mut measured.failed, context)?.flatten() {
+            let title = || techniques::title(&arguments.scenes, &entry.family);
+            measured.titles.entry(entry.family.clone()).or_insert_with(title);
+            measured.techniques.push(technique);
+        }
+        step();
+    }
+    if measured.techniques.is_empty() {
+        return Err(Failure::invalid(
+            "NB0396",
+            format!("no scene in `{}` says what its picture ought to show", shown::path(&arguments.scenes)),
+            "give scenes a `truth: (lights: [...])`; docs/scene-format.md describes it",
+        ));
+    }
+    for (name, surface) in &surfaces {
+        let cost = apart(Path::new(name), || surface.cost(name, side, &effort).map_err(fault));
+        measured.surfaces.extend(unless_internal(cost, (*name).to_owned(), &mut measured.failed, context)?);
+        step();
+    }
+    for (mut curve, scenes) in curves {
+        for scene in scenes {
+            let point = apart(Path::new(curve.counted), || scene.point(curve.counted, &effort).map_err(fault));
+            let name = format!("a point of {}", curve.counted);
+            curve.points.extend(unless_internal(point, name, &mut measured.failed, context)?);
+            step();
+        }
+        measured.curves.push(curve);
+    }
+    let evaluators = apart(Path::new("evaluators"), || evaluators::measure(side, &effort, &step).map_err(fault));
+    let evaluators = unless_internal(evaluators, "evaluators".to_owned(), &mut measured.failed, context)?;
+    measured.evaluators = evaluators.unwrap_or_default();
+    Ok(measured)
+}
+
+/// What was measured; nothing if this program failed on it, which is said, and the rest goes on.
+fn unless_internal<T>(
+    measured: Result<T, Failure>,
+    name: String,
+    failed: &mut Vec<String>,
+    context: Context,
+) -> Result<Option<T>, Failure> {
+    match measured {
+        Err(Failure { exit: Exit::Internal, report }) => {
+            terminal::print(Level::Error, &report, context.color);
+            failed.push(name);
+            Ok(None)
+        }
+        other => other.map(Some),
+    }
+}
+
+/// The page with its section; without such a page, the section alone.
+fn stability_page(path: &Path, section: &str) -> File {
+    let page = read::page(path).and_then(|page| replace_section(&page, SECTION, section));
+    File::text(STABILITY, page.unwrap_or_else(|| section.to_owned()))
+}
+
+fn technique_failure(error: TechniqueError) -> Failure {
+    match error {
+        TechniqueError::Scene(error) => refused(*error),
+        TechniqueError::Unseen(path) => Failure::unseen(&path),
+        TechniqueError::Folder(folder, error) => Failure {
+            exit: Exit::Missing,
+            report: Report::message(
+                None,
+                &format!("the folder `{}` cannot be read: {error}", shown::path(&folder)),
+                "name a folder of scenes, or run this in the folder of the repository",
+            ),
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_said_and_the_rest_goes_on() {
+        let (context, mut failed) = (Context { color: false }, Vec::new());
+        let panicked = apart(Path::new("a.ron"), || -> Result<u32, Failure> { panic!("a table") });
+        assert!(matches!(unless_internal(panicked, "a".to_owned(), &mut failed, context), Ok(None)));
+        assert!(matches!(unless_internal(Ok(7), "b".to_owned(), &mut failed, context), Ok(Some(7))));
+        let refused = Err::<u32, _>(Failure::unseen(Path::new("c.ron")));
+        let refused = unless_internal(refused, "c".to_owned(), &mut failed, context);
+        assert!(matches!(refused, Err(Failure { exit: Exit::Invalid, .. })));
+        assert_eq!(failed, ["a"]);
+    }
+}

@@ -1,0 +1,70 @@
+//! `ninebit check`.
+
+use std::fmt::Write;
+
+use clap::Args;
+use ninebit::shown;
+use ninebit::state::{Named, Scene};
+use ninebit_files::output::{write_json, write_text};
+use serde_json::json;
+
+use super::cost::Cost;
+use super::exit::Failure;
+use super::scene::SceneArguments;
+use super::{Context, Format};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Checks and plans a scene and prints its cost.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let (scene, _) = arguments.scene.load(context)?;
+    let cost = Cost::of(&scene);
+    match arguments.format {
+        Format::Text => write_text(&text(&scene, &cost))?,
+        Format::Json => {
+            let value = json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost });
+            write_json(&format!("{value:#}"))?;
+        }
+    }
+    Ok(())
+}
+
+/// The cost as a table.
+fn text(scene: &Scene, cost: &Cost) -> String {
+    let mut text = String::new();
+    let mut row = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<16}{value}");
+    };
+    row("profile", scene.profile.name().to_owned());
+    row("draws", format!("{} ({}, {} vertices)", cost.draws, count(cost.triangles, "triangle"), cost.vertices));
+    for target in &scene.targets {
+        let depth = target.depth.map_or(String::new(), |depth| format!(", depth {}", depth.format.name()));
+        let (width, height, format) = (target.width, target.height, target.format.name());
+        row("target", format!("{}: {width} x {height}, {format}{depth}", shown::name(&target.name)));
+    }
+    row("target pixels", cost.target_pixels.to_string());
+    row("textures", format!("{} ({})", scene.textures.len(), bytes(cost.texture_bytes)));
+    row("memory", format!("about {}", bytes(cost.memory_bytes)));
+    text
+}
+
+/// A number of things.
+fn count(number: u64, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
+}
+
+/// A number of bytes for people, rounded up.
+fn bytes(count: u64) -> String {
+    match count {
+        0..=9_999 => format!("{count} bytes"),
+        10_000..=10_239_999 => format!("{} KiB", count.div_ceil(1 << 10)),
+        _ => format!("{} MiB", count.div_ceil(1 << 20)),
+    }
+}

@@ -1,0 +1,97 @@
+//! `ninebit compare`.
+
+use clap::{Args, ValueEnum};
+use ninebit_files::output::{Compression, Destination, encode_png, write_json, write_text};
+use ninebit_report::compare::{
+    ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
+};
+
+use super::exit::{Exit, Failure, Report};
+use super::scene::{SceneArguments, chosen_target};
+use super::{Context, Format, FormatArguments, picture};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// What the ideal decides by itself
+    #[arg(long, value_enum, value_name = "MODE", default_value_t = ModeArgument::Free)]
+    mode: ModeArgument,
+    /// Which render target to compare [default: the scene's first]
+    #[arg(long, value_name = "NAME")]
+    target: Option<String>,
+    /// A picture of the errors with its scale, a PNG
+    #[arg(long, value_name = "DIFF.png", value_parser = picture::png())]
+    heatmap: Option<Destination>,
+    #[command(flatten)]
+    format: FormatArguments,
+    /// Threads; 0 takes all cores
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = super::engine::threads)]
+    threads: usize,
+}
+
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum ModeArgument {
+    /// Everything, end to end; pixels where it decides differently are left out
+    Free,
+    /// Nothing: accumulated quantisation alone, told apart by its origin
+    Follow,
+    /// Nothing, and it starts from the model's integers at each rule: the error of each rule
+    PerOp,
+}
+
+/// Compares a scene with its ideal.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let destination = arguments.heatmap.as_ref();
+    if destination == Some(&Destination::Stdout) {
+        return Err(Failure::usage(
+            "the picture and the report cannot both go to stdout",
+            "write the picture to a file",
+        ));
+    }
+    let mode = match arguments.mode {
+        ModeArgument::Free => Mode::Free,
+        ModeArgument::Follow => Mode::Follow,
+        ModeArgument::PerOp => Mode::PerOp,
+    };
+    let (scene, plan) = arguments.scene.load(context)?;
+    destination.map_or(Ok(()), Destination::check)?;
+    let target = chosen_target(&scene, arguments.target.as_deref())?;
+    let comparison =
+        compare(&plan, &CompareOptions { mode, target, threads: arguments.threads, channels: ALL_CHANNELS });
+    if let Some(destination) = destination {
+        let (width, height, pixels) = heat_map(&comparison).map_err(|error| no_picture(&error))?;
+        destination.write(&encode_png(width, height, &pixels, Compression::Small)?)?;
+    }
+    match arguments.format.get() {
+        Format::Text => write_text(&comparison_text(&plan, &comparison))?,
+        Format::Json => write_json(&comparison_json(&plan, &comparison))?,
+    }
+    if comparison.rules.iter().any(|rule| rule.exceeds()) {
+        return Err(Failure {
+            exit: Exit::Difference,
+            report: Report::Message {
+                code: None,
+                message: "a rule is further from the ideal than docs/numerics.md says".to_owned(),
+                help: Some("the table above names it: please report it with the scene".to_owned()),
+            },
+        });
+    }
+    Ok(())
+}
+
+fn no_picture(error: &HeatError) -> Failure {
+    match error {
+        HeatError::NoDifference => Failure {
+            exit: Exit::Invalid,
+            report: Report::Message {
+                code: Some("NB0523"),
+                message: error.to_string(),
+                help: Some("leave out `--heatmap`; `ninebit compare` reports the frame as exact".to_owned()),
+            },
+        },
+        HeatError::NoPixels => {
+            Failure::usage(error.to_string(), "`--heatmap` goes with `--mode free` and `--mode follow`")
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! `ninebit diff`.
+
+mod report;
+
+use std::path::{Path, PathBuf};
+
+use crate::diff::{self, Difference, Options};
+use clap::Args;
+use ninebit::engine::{self, FRAGMENTS, PixelTrace, RenderOptions};
+use ninebit::plan::Plan;
+use ninebit::shown;
+use ninebit_files::output::{Compression, Destination, encode_png, write_json, write_text};
+use ninebit_scene::image::{self, ImageLimits, Rgba};
+
+use super::exit::Failure;
+use super::scene::{PolicyArguments, chosen_target, load};
+use super::{Context, Format, picture};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The first picture, PNG or TGA
+    #[arg(value_name = "A.png")]
+    a: PathBuf,
+    /// The second picture; differences are B - A
+    #[arg(value_name = "B.png")]
+    b: PathBuf,
+    /// Compare red, green and blue only: screenshots often have no alpha, which counts as 255
+    #[arg(long)]
+    ignore_alpha: bool,
+    /// The most regions to list, the largest ones
+    #[arg(long, value_name = "N", default_value_t = 8, value_parser = regions)]
+    regions: usize,
+    /// The scene that the pictures show: compare both with its frame, trace the first pixel of each listed region
+    #[arg(long, value_name = "SCENE")]
+    scene: Option<PathBuf>,
+    /// Which render target of the scene [default: the scene's first]
+    #[arg(long, value_name = "NAME", requires = "scene")]
+    target: Option<String>,
+    #[command(flatten)]
+    policies: PolicyArguments,
+    /// How to print the result
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
+    format: Format,
+    /// Draw the difference: amplified where the pictures differ, a dark grey A where they do not
+    #[arg(short, long, value_name = "DIFF.png", value_parser = picture::png())]
+    output: Option<Destination>,
+}
+
+/// The most regions that can be asked for.
+const MAXIMUM_REGIONS: usize = 1000;
+
+/// Everything that the report says.
+struct Findings<'a> {
+    arguments: &'a Arguments,
+    difference: Difference,
+    scene: Option<SceneFindings<'a>>,
+    /// The picture of the difference: where it was written, and its scale.
+    picture: Option<(String, u8)>,
+}
+
+/// What the scene has to say.
+struct SceneFindings<'a> {
+    path: &'a Path,
+    plan: Plan,
+    target: String,
+    /// Pixels in which A and B differ from the scene's frame.
+    different: [u64; 2],
+    /// The first pixel of each listed region.
+    traces: Vec<PixelTrace>,
+}
+
+/// Compares two pictures.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    if arguments.scene.is_none() && !arguments.policies.is_empty() {
+        return Err(Failure::usage("a policy has no effect without a scene", "name the scene with `--scene SCENE`"));
+    }
+    let destination = arguments.output.as_ref();
+    if destination == Some(&Destination::Stdout) {
+        return Err(Failure::usage(
+            "the picture and the report cannot both go to stdout",
+            "write the picture to a file",
+        ));
+    }
+    let limits = ImageLimits::default();
+    let (a, b) = (image::load(&arguments.a, &limits)?, image::load(&arguments.b, &limits)?);
+    let options = Options { ignore_alpha: arguments.ignore_alpha, regions: arguments.regions };
+    let difference = diff::compare(&a, &b, &options).map_err(|_| different_sizes(arguments, &a, &b))?;
+    let scene = match &arguments.scene {
+        Some(path) => Some(scene(path, arguments, [&a, &b], &difference, context)?),
+        None => None,
+    };
+    let picture = match destination {
+        Some(destination) => Some(draw(destination, arguments, &a, &b)?),
+        None => None,
+    };
+    let findings = Findings { arguments, difference, scene, picture };
+    match arguments.format {
+        Format::Text => write_text(&report::text(&findings))?,
+        Format::Json => write_json(&format!("{:#}", report::json(&findings)))?,
+    }
+    if findings.difference.different == 0 { Ok(()) } else { Err(Failure::difference()) }
+}
+
+/// Renders the scene, holds both pictures against its frame, traces the first pixels.
+fn scene<'a>(
+    path: &'a Path,
+    arguments: &Arguments,
+    pictures: [&Rgba; 2],
+    difference: &Difference,
+    context: Context,
+) -> Result<SceneFindings<'a>, Failure> {
+    let (scene, plan) = load(path, &arguments.policies, context)?;
+    let target = chosen_target(&scene, arguments.target.as_deref())?;
+    let name = scene.targets[target].name.clone();
+    let (width, height) = (scene.targets[target].width, scene.targets[target].height);
+    let other_size = || {
+        let message = format!(
+            "target `{name}` of `{}` is {width} x {height}, the pictures are {} x {}",
+            shown::path(path),
+            difference.width,
+            difference.height
+        );
+        Failure::invalid("NB0522", message, "choose the target that they show with `--target`, or change its size")
+    };
+    if (width, height) != (difference.width, difference.height) {
+        return Err(other_size());
+    }
+    let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
+    let surface = frames.surfaces.swap_remove(target);
+    let frame = Rgba { width, height, pixels: surface.rgba8() };
+    let mut different = [0; 2];
+    for (count, picture) in different.iter_mut().zip(pictures) {
+        *count = diff::count(picture, &frame, arguments.ignore_alpha).map_err(|_| other_size())?;
+    }
+    // The pixels lie within the target, whose size is the pictures'.
+    // All of them together are no longer than one may be.
+    let fragments = (FRAGMENTS / difference.regions.len().max(1) as u64).max(1);
+    let trace = |first| engine::trace_last(&plan, target, first, None, fragments).ok();
+    let traces = difference.regions.iter().filter_map(|region| trace(region.first)).collect();
+    Ok(SceneFindings { path, plan, target: name, different, traces })
+}
+
+/// Writes the picture of the difference.
+fn draw(destination: &Destination, arguments: &Arguments, a: &Rgba, b: &Rgba) -> Result<(String, u8), Failure> {
+    let drawn = diff::highlight(a, b, arguments.ignore_alpha).map_err(|_| different_sizes(arguments, a, b))?;
+    let picture = &drawn.picture;
+    destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Fast)?)?;
+    Ok((destination.path().map_or(String::new(), shown::lossless), drawn.scale))
+}
+
+fn different_sizes(arguments: &Arguments, a: &Rgba, b: &Rgba) -> Failure {
+    let message = format!(
+        "the pictures differ in size: `{}` is {} x {}, `{}` is {} x {}",
+        shown::path(&arguments.a),
+        a.width,
+        a.height,
+        shown::path(&arguments.b),
+        b.width,
+        b.height
+    );
+    Failure::invalid("NB0521", message, "compare pictures of one size: take the screenshot unscaled, or crop it")
+}
+
+fn regions(text: &str) -> Result<usize, String> {
+    text.parse()
+        .ok()
+        .filter(|count| *count <= MAXIMUM_REGIONS)
+        .ok_or_else(|| format!("not a number from 0 to {MAXIMUM_REGIONS}"))
+}

@@ -1,0 +1,158 @@
+//! How commands end.
+
+use std::path::Path;
+
+use ninebit::shown;
+use ninebit_files::guard::Panic;
+use ninebit_files::output::OutputError;
+use ninebit_scene::SceneError;
+use ninebit_scene::image::ImageError;
+
+/// Exit status of the program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub(crate) enum Exit {
+    /// Everything is as expected.
+    Success = 0,
+    /// A comparison found a difference.
+    Difference = 1,
+    /// The command line is wrong.
+    Usage = 2,
+    /// A scene or one of its assets is invalid.
+    Invalid = 3,
+    /// A file that is needed does not exist.
+    Missing = 4,
+    /// A limit was exceeded.
+    Limit = 5,
+    /// A fault of this program.
+    Internal = 6,
+    /// The output was not written.
+    Output = 7,
+}
+
+impl Exit {
+    /// The exit of that status; [`Exit::Internal`] if there is none.
+    pub(crate) fn from_code(code: u8) -> Self {
+        use Exit::{Difference, Internal, Invalid, Limit, Missing, Output, Success, Usage};
+        let all = [Success, Difference, Usage, Invalid, Missing, Limit, Output];
+        all.into_iter().find(|exit| *exit as u8 == code).unwrap_or(Internal)
+    }
+}
+
+/// The exit statuses as help tells them.
+pub(crate) const HELP: &str = "Exit status:
+  0  as expected
+  1  a difference was found
+  2  the command line is wrong
+  3  a scene or an asset is invalid
+  4  a needed file is missing
+  5  a limit was exceeded (see `ninebit limits`)
+  6  internal error
+  7  the output was not written";
+
+/// Why a command stopped: everything that stderr is to say, and the exit status.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    /// Status.
+    pub(crate) exit: Exit,
+    /// What happened.
+    pub(crate) report: Report,
+}
+
+/// What stderr says.
+#[derive(Debug)]
+pub(crate) enum Report {
+    /// Nothing.
+    Silent,
+    /// Finished text, ready to print.
+    Text(String),
+    /// Everything that is wrong with a scene.
+    Scene(Box<SceneError>),
+    /// A message, its code and what to do.
+    Message {
+        /// `NB` and four digits.
+        code: Option<&'static str>,
+        /// One line, or more where that was made of [shown] ones.
+        message: String,
+        /// One line.
+        help: Option<String>,
+    },
+}
+
+impl Failure {
+    /// Two things that were compared differ; what there is to say about it is on stdout.
+    pub(crate) fn difference() -> Self {
+        Failure { exit: Exit::Difference, report: Report::Silent }
+    }
+
+    /// Something that was given is not valid.
+    pub(crate) fn invalid(code: &'static str, message: impl Into<String>, help: impl Into<String>) -> Self {
+        Failure { exit: Exit::Invalid, report: Report::message(Some(code), &message.into(), &help.into()) }
+    }
+
+    /// Nothing of a scene can be measured.
+    pub(crate) fn unseen(scene: &Path) -> Self {
+        Failure::invalid(
+            "NB0395",
+            format!("no pixel of `{}` that has a truth is drawn", shown::path(scene)),
+            "look at the picture: is the mesh in view, and drawn into the first target?",
+        )
+    }
+
+    /// The command line is wrong.
+    pub(crate) fn usage(message: impl Into<String>, help: impl Into<String>) -> Self {
+        Failure { exit: Exit::Usage, report: Report::message(None, &message.into(), &help.into()) }
+    }
+}
+
+impl Report {
+    /// A message of one line, whatever names are in it.
+    pub(crate) fn message(code: Option<&'static str>, message: &str, help: &str) -> Self {
+        let help = Some(shown::name(help).into_owned());
+        Report::Message { code, message: shown::name(message).into_owned(), help }
+    }
+
+    /// The text without colour.
+    pub(crate) fn plain(&self) -> String {
+        match self {
+            Report::Silent => String::new(),
+            Report::Text(text) => text.clone(),
+            Report::Scene(error) => error.render(false),
+            Report::Message { code, message, .. } => code.map_or(String::new(), |code| format!("{code} ")) + message,
+        }
+    }
+}
+
+impl From<Panic> for Failure {
+    fn from(panic: Panic) -> Self {
+        Failure { exit: Exit::Internal, report: Report::message(Some(Panic::CODE), &panic.to_string(), Panic::HELP) }
+    }
+}
+
+impl From<OutputError> for Failure {
+    fn from(error: OutputError) -> Self {
+        if error.is_broken_pipe() {
+            // The reader has seen enough.
+            return Failure { exit: Exit::Success, report: Report::Silent };
+        }
+        let exit = if error.is_refused() { Exit::Usage } else { Exit::Output };
+        Failure { exit, report: Report::message(Some(error.code()), &error.to_string(), error.help()) }
+    }
+}
+
+impl From<ImageError> for Failure {
+    fn from(error: ImageError) -> Self {
+        let exit = match &error {
+            e if e.is_limit() => Exit::Limit,
+            e if e.is_missing() => Exit::Missing,
+            _ => Exit::Invalid,
+        };
+        // The library speaks of images that scenes name; here the command line names them.
+        let help = if error.is_missing() {
+            "check the spelling and the folder; upper and lower case count"
+        } else {
+            error.help()
+        };
+        Failure { exit, report: Report::message(Some(error.code()), &error.to_string(), help) }
+    }
+}

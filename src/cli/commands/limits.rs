@@ -1,0 +1,17 @@
+//! `ninebit limits`.
+
+use std::fmt::Write;
+
+use ninebit::limits::{Limits, table};
+use ninebit_files::output::write_text;
+
+use super::exit::Failure;
+
+/// Prints the limits, one a line: name, value, what is counted.
+pub(crate) fn run() -> Result<(), Failure> {
+    let mut text = String::new();
+    for (name, value, counted) in table(&Limits::default()) {
+        let _ = writeln!(text, "{name:<22}{value:>12}  {counted}");
+    }
+    Ok(write_text(&text)?)
+}

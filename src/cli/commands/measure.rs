@@ -1,0 +1,91 @@
+//! `ninebit measure`.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use ninebit::plan::Plan;
+use ninebit::shown;
+use ninebit_files::output::{Compression, Destination, encode_png, write_json, write_text};
+use ninebit_lab::accuracy::{accuracy_text, accuracy_value, measure};
+use ninebit_scene::generate::byte;
+use ninebit_scene::truth::{Truth, evaluate};
+use serde_json::json;
+
+use super::exit::Failure;
+use super::scene::{PolicyArguments, each, load_with_truth};
+use super::{Context, Format, picture};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The scene files; each says in `truth` what its picture ought to show
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    #[command(flatten)]
+    policies: PolicyArguments,
+    /// A picture of the truth itself, rounded, a PNG; of one scene
+    #[arg(long, value_name = "TRUTH.png", value_parser = picture::png())]
+    picture: Option<Destination>,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Measures scenes against their truths.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let picture = arguments.picture.as_ref();
+    if picture == Some(&Destination::Stdout) {
+        return Err(Failure::usage(
+            "the picture and the report cannot both go to stdout",
+            "write the picture to a file",
+        ));
+    }
+    if picture.is_some() && arguments.scenes.len() > 1 {
+        return Err(Failure::usage("one picture of several truths", "measure one scene, or leave `--picture` out"));
+    }
+    let scenes: Vec<&Path> = arguments.scenes.iter().map(PathBuf::as_path).collect();
+    let measured = each(&scenes, context, |path| {
+        let ((scene, plan), truth) = load_with_truth(path, &arguments.policies, context)?;
+        picture.map_or(Ok(()), Destination::check)?;
+        let accuracy = measure(&scene, &plan, &truth).ok_or_else(|| Failure::unseen(path))?;
+        if let Some(picture) = picture {
+            write_truth(&plan, &truth, picture)?;
+        }
+        Ok((path.to_path_buf(), accuracy))
+    });
+    match arguments.format {
+        _ if measured.made.is_empty() => {}
+        Format::Text => {
+            let text = |(path, accuracy): &(PathBuf, _)| format!("{}\n{}", shown::path(path), accuracy_text(accuracy));
+            write_text(&measured.made.iter().map(text).collect::<Vec<_>>().join("\n"))?;
+        }
+        Format::Json => {
+            let value = |(path, accuracy): &(PathBuf, _)| {
+                let mut value = accuracy_value(accuracy);
+                value["scene"] = shown::lossless(path).into();
+                value
+            };
+            let document = json!({
+                "format": "ninebit-accuracy-1",
+                "version": env!("CARGO_PKG_VERSION"),
+                "scenes": measured.made.iter().map(value).collect::<Vec<_>>(),
+                "failed": measured.failed,
+            });
+            write_json(&format!("{document:#}"))?;
+        }
+    }
+    measured.end()
+}
+
+/// The truth of the first target, rounded; black where there is none.
+fn write_truth(plan: &Plan, truth: &Truth, destination: &Destination) -> Result<(), Failure> {
+    let frame = evaluate(plan, truth, 0);
+    let pixels: Vec<[u8; 4]> = frame
+        .pixels
+        .iter()
+        .map(|pixel| {
+            let [r, g, b] = pixel.as_ref().map_or([0; 3], |pixel| pixel.color.map(byte));
+            [r, g, b, 255]
+        })
+        .collect();
+    Ok(destination.write(&encode_png(frame.width, frame.height, &pixels, Compression::Small)?)?)
+}

@@ -1,0 +1,269 @@
+//! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
+
+mod bench;
+mod chart;
+mod check;
+mod compare;
+mod cost;
+mod diff;
+mod engine;
+mod exit;
+mod explain;
+mod generate;
+mod limits;
+mod lower;
+mod measure;
+mod op;
+mod picture;
+mod policies;
+mod registers;
+mod render;
+mod replay;
+mod scene;
+mod signals;
+mod terminal;
+mod texture;
+mod trace;
+mod vectors;
+
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use ninebit::shown;
+use ninebit_files::files;
+use ninebit_files::guard::caught;
+use ninebit_files::output::OutputError;
+
+use exit::{Exit, Failure};
+use terminal::{ColorChoice, Level};
+
+/// A deterministic, bit-accurate fixed-point model of GeForce-256-class texture units and register combiners
+#[derive(Debug, Parser)]
+#[command(name = "ninebit", version, after_help = exit::HELP, max_term_width = 100)]
+struct Cli {
+    /// Colour on stderr: on a terminal unless NO_COLOR is set, or always, or never
+    #[arg(long, global = true, value_enum, default_value_t = ColorChoice::Auto, hide_possible_values = true, display_order = 900, value_name = "auto|always|never")]
+    color: ColorChoice,
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Check a scene without rendering it, and print what it costs
+    Check(check::Arguments),
+    /// Render a scene to a PNG
+    Render(render::Arguments),
+    /// Print how one pixel came to be, integer by integer
+    Trace(trace::Arguments),
+    /// Compare a scene with float64 arithmetic of the vendor's real-number text
+    Compare(compare::Arguments),
+    /// Measure how far pictures are from what they ought to show, why, and what they cost the chip
+    ///
+    /// Each scene says in its `truth` which light, eye, material and surface are meant; the truth is the lighting equation in float64, per pixel.
+    Measure(measure::Arguments),
+    /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
+    Explain(explain::Arguments),
+    /// Print the pixel programs of a scene in another form
+    Lower(lower::Arguments),
+    /// Print the pixel programs of a scene as register words, each with its meaning
+    Registers(registers::Arguments),
+    /// Compare two pictures: where they differ, by how much, and how those pixels came to be
+    ///
+    /// The comparison is exact. Differing pixels that touch, corners included, are one region. With a scene, it is also said which of
+    /// the pictures equals the scene's frame, and the first pixel of each listed region is traced.
+    ///
+    /// Exit status 0: the pictures are equal; 1: they differ.
+    Diff(diff::Arguments),
+    /// Run one operation of the chip on given integers, without a scene
+    #[command(subcommand)]
+    Op(op::Command),
+    /// Describe a texture, or write what a texture unit reads of it
+    Texture(texture::Arguments),
+    /// Conformance vectors: tables of what the units of the chip yield
+    #[command(subcommand)]
+    Vectors(vectors::Command),
+    /// Replay scenes: draw each and compare it with the expectation beside it
+    ///
+    /// Exit status: that of the worst scene, the highest number. 0: all are as expected; 1: one differs; 3: one is invalid; 4: something is
+    /// missing, such as an expectation; 5: a limit; 6: an internal error in one; 7: a report or picture was not written.
+    Replay(replay::Arguments),
+    /// List the rules that have alternatives, and their values
+    Policies,
+    /// List the limits that scenes are held to
+    Limits,
+    /// Time how long scenes take to draw
+    Bench(bench::Arguments),
+    /// Measure every technique afresh: pages and charts of speed, accuracy, and where methods fail
+    ///
+    /// Scenes are those with a truth in folders, each of which is a family; a number at the end of a file's name is the technique's
+    /// parameter. Written are `speed-accuracy.md`, its pictures and data, and the section of `stability.md` on where methods fail.
+    Chart(chart::Arguments),
+    /// Make textures: height fields, normal maps, cube maps of vectors, tables of powers
+    #[command(subcommand)]
+    Generate(generate::Command),
+}
+
+/// How a command prints its data.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Format {
+    /// For people
+    Text,
+    /// For programs: one JSON document
+    Json,
+}
+
+/// `--format`, where `--json` was once all that there was.
+#[derive(Debug, Args)]
+struct FormatArguments {
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "json")]
+    format: Format,
+    #[arg(long, hide = true)]
+    json: bool,
+}
+
+impl FormatArguments {
+    fn get(&self) -> Format {
+        if self.json { Format::Json } else { self.format }
+    }
+}
+
+/// What every command may use.
+#[derive(Clone, Copy, Debug)]
+struct Context {
+    /// Messages on stderr are coloured.
+    color: bool,
+}
+
+/// Runs the program.
+pub fn main() -> ExitCode {
+    let arguments: Vec<OsString> = std::env::args_os().collect();
+    signals::install();
+    files::watch();
+    let exit = guarded(wanted_color(&arguments).on_stderr(), || run(&arguments));
+    ExitCode::from(exit as u8)
+}
+
+/// Parses the arguments and runs the command. A panic is the caller's.
+pub(crate) fn run(arguments: &[OsString]) -> Exit {
+    let color = wanted_color(arguments);
+    let matches = Cli::command().color(color.for_clap()).try_get_matches_from(arguments);
+    let cli = match matches.and_then(|matches| Cli::from_arg_matches(&matches)) {
+        Ok(cli) => cli,
+        Err(error) => {
+            let end = complain(&error, arguments);
+            return ended(end, color.on_stderr());
+        }
+    };
+    let context = Context { color: cli.color.on_stderr() };
+    let result = match cli.command {
+        Command::Check(arguments) => check::run(&arguments, context),
+        Command::Render(arguments) => render::run(&arguments, context),
+        Command::Trace(arguments) => trace::run(&arguments, context),
+        Command::Compare(arguments) => compare::run(&arguments, context),
+        Command::Measure(arguments) => measure::run(&arguments, context),
+        Command::Explain(arguments) => explain::run(&arguments, context),
+        Command::Lower(arguments) => lower::run(&arguments, context),
+        Command::Registers(arguments) => registers::run(&arguments, context),
+        Command::Diff(arguments) => diff::run(&arguments, context),
+        Command::Op(command) => op::run(&command, context),
+        Command::Texture(arguments) => texture::run(&arguments, context),
+        Command::Vectors(command) => vectors::run(&command),
+        Command::Replay(arguments) => replay::run(&arguments, context),
+        Command::Policies => policies::run(),
+        Command::Limits => limits::run(),
+        Command::Bench(arguments) => bench::run(&arguments, context),
+        Command::Chart(arguments) => chart::run(&arguments, context),
+        Command::Generate(command) => generate::run(&command),
+    };
+    ended(result, context.color)
+}
+
+/// The status of a command; what is left to say about it goes to stderr.
+fn ended(result: Result<(), Failure>, color: bool) -> Exit {
+    match result {
+        Ok(()) => Exit::Success,
+        Err(Failure { exit, report }) => {
+            terminal::print(Level::Error, &report, color);
+            exit
+        }
+    }
+}
+
+/// Prints what the parser has to say: help goes to stdout, complaints to stderr.
+fn complain(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> {
+    let plain = |argument: &OsString| *shown::path(Path::new(argument)) == *argument.as_os_str();
+    let printed = if arguments.iter().all(plain) {
+        error.print()
+    } else {
+        // Colour would go with what must not be printed.
+        let text = error.render().to_string();
+        let text = shown::lines(&text);
+        if error.use_stderr() {
+            std::io::stderr().write_all(text.as_bytes())
+        } else {
+            std::io::stdout().write_all(text.as_bytes())
+        }
+    };
+    if error.use_stderr() {
+        return Err(Failure { exit: Exit::Usage, report: exit::Report::Silent });
+    }
+    let flushed = printed.and_then(|()| std::io::stdout().flush());
+    Ok(flushed.map_err(|source| OutputError::Stdout { source })?)
+}
+
+/// Runs `work`; a panic becomes a message that says how to report it.
+fn guarded(color: bool, work: impl FnOnce() -> Exit) -> Exit {
+    caught(work).unwrap_or_else(|panic| ended(Err(panic.into()), color))
+}
+
+/// The value of `--color`, found before the arguments are parsed because it also governs the parser's complaints.
+fn wanted_color(arguments: &[OsString]) -> ColorChoice {
+    let mut choice = ColorChoice::Auto;
+    let mut texts = arguments.iter().skip(1).map(|argument| argument.to_string_lossy());
+    while let Some(text) = texts.next() {
+        let value = match text.strip_prefix("--color") {
+            _ if text == "--" => break,
+            Some("") => texts.next(),
+            Some(rest) => rest.strip_prefix('=').map(|value| value.to_owned().into()),
+            None => None,
+        };
+        if let Some(Ok(given)) = value.map(|value| ColorChoice::from_str(&value, false)) {
+            choice = given;
+        }
+    }
+    choice
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn a_panic_is_an_internal_error() {
+        let exit = guarded(false, || {
+            std::thread::scope(|scope| scope.spawn(|| panic!("a test")).join()).expect("the worker panicked");
+            Exit::Success
+        });
+        assert_eq!((exit, exit as u8), (Exit::Internal, 6));
+    }
+
+    #[test]
+    fn colour_is_known_before_parsing() {
+        let choice = |texts: &[&str]| wanted_color(&texts.iter().map(OsString::from).collect::<Vec<_>>());
+        assert_eq!(choice(&["ninebit", "check", "--color", "never"]), ColorChoice::Never);
+        assert_eq!(choice(&["ninebit", "--color=always", "check"]), ColorChoice::Always);
+        assert_eq!(choice(&["ninebit", "check", "--color=sometimes"]), ColorChoice::Auto);
+        assert_eq!(choice(&["ninebit", "check", "--", "--color=always"]), ColorChoice::Auto);
+        assert_eq!(choice(&["ninebit", "--colors=always", "--color"]), ColorChoice::Auto);
+    }
+}

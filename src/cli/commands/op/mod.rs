@@ -1,0 +1,71 @@
+//! `ninebit op`: one operation of the chip on given integers, without a scene.
+//!
+//! Nothing of a rule stands here. What an operation is set to is written down as a scene and read by the scene front end, whose checks
+//! are thus the checks of this command; the model's own functions then run on the given integers.
+
+mod address;
+mod blend;
+mod combiner;
+mod cube;
+mod filter;
+mod final_combiner;
+mod inputs;
+mod operation;
+mod table;
+mod template;
+mod words;
+
+use clap::{Args, Subcommand};
+use ninebit::state::Profile;
+
+use super::Context;
+use super::exit::Failure;
+
+#[derive(Debug, Subcommand)]
+#[allow(rustdoc::broken_intra_doc_links, reason = "help texts have brackets that are no links")]
+pub(crate) enum Command {
+    /// One general combiner stage on given register contents
+    ///
+    /// An input is written REGISTER[.COMPONENT][:MAPPING], for example tex0:expand, tex0.a or zero:invert.
+    ///
+    /// Registers: tex0 to tex3, primary, secondary, spare0, spare1, const0, const1, fog, zero. Components: rgb, a; b in the alpha portion.
+    /// Mappings: identity, invert, expand, expand_negate, half_bias, half_bias_negate, signed, negate. The names of
+    /// NV_register_combiners are known, too.
+    ///
+    /// Without --ab, --cd and --sum, AB goes to spare0; with C or D the sum (or the mux) does; with a dot product, AB goes to spare0 and CD
+    /// to spare1.
+    Combiner(combiner::Arguments),
+    /// The final combiner on given register contents: A B + (1 - A) C + D, and G
+    ///
+    /// Inputs are written as for `ninebit op combiner`, with the mappings identity and invert; A to D may be ef (E times F) and
+    /// spare0_plus_secondary (short: sum).
+    Final(final_combiner::Arguments),
+    /// One pixel's blend and store
+    Blend(blend::Arguments),
+    /// The bilinear mix of four texels
+    Filter(filter::Arguments),
+    /// A texel index brought inside the image
+    Address(address::Arguments),
+    /// A look-up in a cube map: face, coordinates, texels
+    Cube(cube::Arguments),
+}
+
+/// The chip.
+#[derive(Debug, Args)]
+struct ProfileArgument {
+    /// The chip: nv10 or nv2a
+    #[arg(long, value_name = "PROFILE", default_value = "nv10", value_parser = words::profile)]
+    profile: Profile,
+}
+
+/// Runs one operation.
+pub(crate) fn run(command: &Command, context: Context) -> Result<(), Failure> {
+    match command {
+        Command::Combiner(arguments) => combiner::run(arguments, context),
+        Command::Final(arguments) => final_combiner::run(arguments, context),
+        Command::Blend(arguments) => blend::run(arguments, context),
+        Command::Filter(arguments) => filter::run(arguments),
+        Command::Address(arguments) => address::run(arguments, context),
+        Command::Cube(arguments) => cube::run(arguments, context),
+    }
+}

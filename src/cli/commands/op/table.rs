@@ -1,0 +1,182 @@
+//! Many cases: tab-separated values in, the same with the results out.
+
+use std::ffi::OsStr;
+use std::fmt::Write;
+use std::path::Path;
+
+use ninebit::limits::OPERATION_TABLE;
+use ninebit::shown;
+use ninebit::trace::Silent;
+use ninebit_files::output::{Destination, write_stdout};
+use ninebit_files::read::{self, Kind, ReadError};
+
+use super::super::exit::{Exit, Failure, Report};
+use super::operation::{Operation, shown as written};
+
+/// Broken rows that are named.
+const MOST_ERRORS: usize = 16;
+
+/// Runs an operation on each line of a table.
+pub(super) fn run(operation: &impl Operation, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
+    let destination = output.map(Destination::from);
+    let text = read(path)?;
+    let results = evaluate(operation, path, text.strip_prefix('\u{feff}').unwrap_or(&text))?;
+    match destination {
+        Some(destination) => Ok(destination.write(results.as_bytes())?),
+        None => Ok(write_stdout(results.as_bytes())?),
+    }
+}
+
+fn read(path: &Path) -> Result<String, Failure> {
+    let unreadable = |reason: &str| {
+        let message = format!("table `{}` cannot be read: {reason}", shown::path(path));
+        Failure::invalid("NB0531", message, "name a text file of tab-separated values, in UTF-8")
+    };
+    let bytes = match path == Path::new("-") {
+        true => read::all(std::io::stdin(), OPERATION_TABLE),
+        false => read::bytes(path, Kind::Stream, OPERATION_TABLE),
+    };
+    let bytes = bytes.map_err(|error| match error {
+        ReadError::Missing => {
+            let message = format!("table `{}` does not exist", shown::path(path));
+            let help = "check the spelling and the folder; upper and lower case count";
+            Failure { exit: Exit::Missing, ..Failure::invalid("NB0530", message, help) }
+        }
+        ReadError::TooLarge(limit) => {
+            let message = format!("table `{}` is larger than {limit}", shown::path(path));
+            Failure { exit: Exit::Limit, ..Failure::invalid("NB0534", message, "split the table") }
+        }
+        error => unreadable(&error.to_string()),
+    })?;
+    String::from_utf8(bytes).map_err(|_| unreadable("it is not UTF-8 text"))
+}
+
+/// The table with its results.
+fn evaluate(operation: &impl Operation, path: &Path, text: &str) -> Result<String, Failure> {
+    // Lines that are empty or begin with # are no cases.
+    let mut lines = (1_usize..)
+        .zip(text.lines())
+        .map(|(number, line)| (number, line.trim_end_matches('\r')))
+        .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with('#'));
+    let Some((number, header)) = lines.next() else {
+        let message = format!("table `{}` has no header", shown::path(path));
+        return Err(Failure::invalid("NB0532", message, columns_help(operation)));
+    };
+    let names: Vec<&str> = header.split('\t').map(str::trim).collect();
+    let columns = header_columns(operation, path, number, &names)?;
+    let given: Vec<i64> = operation.columns().iter().map(|column| column.value.unwrap_or(0)).collect();
+    let mut out = String::new();
+    let mut errors = Errors { shown: Vec::new(), rows: 0 };
+    for (number, line) in lines {
+        let fields: Vec<&str> = line.split('\t').map(str::trim).collect();
+        let mut values = given.clone();
+        match row(operation, &columns, &names, &fields, &mut values) {
+            Ok(()) if errors.rows > 0 => {}
+            Ok(()) => {
+                let results = operation.run(&values, &mut Silent);
+                if out.is_empty() {
+                    let results = results.iter().map(|(name, _)| format!("result.{name}"));
+                    let all: Vec<String> = names.iter().map(|name| (*name).to_owned()).chain(results).collect();
+                    out = all.join("\t") + "\n";
+                }
+                out.push_str(&fields.join("\t"));
+                for (_, value) in &results {
+                    let _ = write!(out, "\t{}", written(value));
+                }
+                out.push('\n');
+            }
+            Err(reason) => errors.push(number, &reason),
+        }
+    }
+    if errors.rows > 0 {
+        return Err(errors.failure(path));
+    }
+    if out.is_empty() {
+        let message = format!("table `{}` has a header and no cases", shown::path(path));
+        return Err(Failure::invalid("NB0533", message, "write one case a line, its values apart by tabs"));
+    }
+    Ok(out)
+}
+
+/// The operation's column behind each column of the table.
+fn header_columns(operation: &impl Operation, path: &Path, line: usize, names: &[&str]) -> Result<Vec<usize>, Failure> {
+    let wrong = |column: usize, what: String| {
+        let message = format!("table `{}`, line {line}, column {}: {what}", shown::path(path), column + 1);
+        Failure::invalid("NB0532", message, columns_help(operation))
+    };
+    let mut columns = Vec::with_capacity(names.len());
+    for (index, name) in names.iter().enumerate() {
+        let Some(column) = operation.find(name) else {
+            let short: String = name.chars().take(40).collect();
+            return Err(wrong(index, format!("there is no input `{}`", shown::name(&short))));
+        };
+        if let Some(first) = columns.iter().position(|known| *known == column) {
+            return Err(wrong(index, format!("`{name}` is the same input as column {}", first + 1)));
+        }
+        columns.push(column);
+    }
+    let missing = (0..).zip(operation.columns()).find(|(n, column)| column.value.is_none() && !columns.contains(n));
+    if let Some((_, column)) = missing {
+        let message = format!("table `{}` has no column `{}`", shown::path(path), column.name);
+        return Err(Failure::invalid("NB0532", message, operation.how_to_give(column)));
+    }
+    Ok(columns)
+}
+
+fn columns_help(operation: &impl Operation) -> String {
+    format!("the first line names the inputs, apart by tabs: {}", operation.known())
+}
+
+/// Puts the values of one line in their places.
+fn row(
+    operation: &impl Operation,
+    columns: &[usize],
+    names: &[&str],
+    fields: &[&str],
+    values: &mut [i64],
+) -> Result<(), String> {
+    if fields.len() != columns.len() {
+        let plural = if fields.len() == 1 { "value" } else { "values" };
+        return Err(format!("{} {plural}, the header has {}", fields.len(), columns.len()));
+    }
+    for (index, (field, column)) in fields.iter().zip(columns).enumerate() {
+        let wanted = &operation.columns()[*column].range;
+        let value = super::inputs::number(field).filter(|value| wanted.contains(value)).ok_or_else(|| {
+            let field: String = field.chars().take(40).collect();
+            let range = format!("{} to {}", wanted.start(), wanted.end());
+            format!(
+                "column {} (`{}`): `{}` is not a whole number from {range}",
+                index + 1,
+                names[index],
+                shown::name(&field)
+            )
+        })?;
+        values[*column] = value;
+    }
+    Ok(())
+}
+
+/// Broken rows.
+struct Errors {
+    shown: Vec<String>,
+    rows: usize,
+}
+
+impl Errors {
+    fn push(&mut self, line: usize, reason: &str) {
+        self.rows += 1;
+        if self.shown.len() < MOST_ERRORS {
+            self.shown.push(format!("  line {line}: {reason}"));
+        }
+    }
+
+    fn failure(self, path: &Path) -> Failure {
+        let count = if self.rows == 1 { "1 line".to_owned() } else { format!("{} lines", self.rows) };
+        let mut message = format!("table `{}`: {count} cannot be used\n{}", shown::path(path), self.shown.join("\n"));
+        if self.rows > self.shown.len() {
+            let _ = write!(message, "\n  ... and {} more", self.rows - self.shown.len());
+        }
+        let help = Some("nothing was written; correct these lines, or put # before them".to_owned());
+        Failure { exit: Exit::Invalid, report: Report::Message { code: Some("NB0533"), message, help } }
+    }
+}

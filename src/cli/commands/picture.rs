@@ -1,0 +1,58 @@
+//! Outputs of one format.
+
+use std::ffi::OsString;
+use std::path::Path;
+
+use clap::builder::{OsStringValueParser, TypedValueParser};
+use ninebit::shown;
+use ninebit_files::output::Destination;
+
+/// Endings that promise another format than the one that is written.
+const FORMATS: [&str; 27] = [
+    "png", "apng", "jpg", "jpeg", "jpe", "jfif", "gif", "bmp", "dib", "tga", "tif", "tiff", "webp", "avif", "heic",
+    "jxl", "ppm", "pgm", "pnm", "pam", "dds", "ktx", "ktx2", "hdr", "exr", "qoi", "svg",
+];
+
+/// Reads the name of a PNG to be written; `-` is stdout.
+pub(crate) fn png() -> impl TypedValueParser<Value = Destination> {
+    OsStringValueParser::new().try_map(|name| of(name, "png"))
+}
+
+/// Reads the name of a DDS file to be written; `-` is stdout.
+pub(crate) fn dds() -> impl TypedValueParser<Value = Destination> {
+    OsStringValueParser::new().try_map(|name| of(name, "dds"))
+}
+
+/// A name may end as it likes, but not like another format.
+fn of(name: OsString, format: &'static str) -> Result<Destination, String> {
+    let path = Path::new(&name);
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
+    if ending != format && FORMATS.contains(&ending.as_str()) {
+        let other = shown::path(&path.with_extension(format));
+        return Err(format!(
+            "this command writes {}: write to `{other}` and convert that",
+            format.to_ascii_uppercase()
+        ));
+    }
+    Ok(Destination::from(name.as_os_str()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_formats_are_refused() {
+        for name in ["a.png", "a.PNG", "a", "-", "/dev/null", "tmp.Xy12", "a.jpg.part"] {
+            assert!(of(name.into(), "png").is_ok(), "{name}");
+        }
+        for name in ["a.jpg", "b/a.JPEG", "a.b.webp", "a.dds"] {
+            assert!(of(name.into(), "png").is_err(), "{name}");
+        }
+        assert!(of("a.dds".into(), "dds").is_ok());
+        assert_eq!(
+            of("b/a.png".into(), "dds"),
+            Err("this command writes DDS: write to `b/a.dds` and convert that".to_owned())
+        );
+    }
+}

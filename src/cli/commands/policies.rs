@@ -1,0 +1,21 @@
+//! `ninebit policies`.
+
+use std::fmt::Write;
+
+use ninebit::state::POLICIES;
+use ninebit_files::output::write_text;
+
+use super::exit::Failure;
+
+/// Prints every rule with alternatives; the default value is marked by a star.
+pub(crate) fn run() -> Result<(), Failure> {
+    let mut text = String::from("Rules with alternatives. Choose with `--policy RULE=VALUE`; * is the default.\n");
+    for policy in POLICIES {
+        let _ = write!(text, "\n{:<8}{}\n", policy.rule, policy.question);
+        for (index, (value, meaning)) in policy.values.iter().enumerate() {
+            let mark = if index == 0 { '*' } else { ' ' };
+            let _ = writeln!(text, "      {mark} {value:<8} {meaning}");
+        }
+    }
+    Ok(write_text(&text)?)
+}

@@ -1,0 +1,68 @@
+//! `ninebit registers`.
+
+use std::fmt::Write;
+
+use clap::Args;
+use ninebit::shown;
+use ninebit::state::Named;
+use ninebit_files::output::{write_json, write_text};
+use ninebit_program::registers::{Description, describe, encode};
+use serde_json::{Value, json};
+
+use super::exit::Failure;
+use super::scene::{SceneArguments, chosen_draws};
+use super::{Context, Format};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    scene: SceneArguments,
+    /// Only this draw, numbered from 0
+    #[arg(long, value_name = "N")]
+    draw: Option<usize>,
+    /// How to print the result
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Prints the programs of a scene as register words.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let (scene, _) = arguments.scene.load(context)?;
+    let draws = chosen_draws(&scene, arguments.draw)?;
+    let words =
+        draws.iter().map(|(number, draw)| (*number, &draw.name, describe(&encode(&draw.combiners, scene.profile))));
+    match arguments.format {
+        Format::Text => {
+            let mut out = format!("profile {}\n", scene.profile.name());
+            for (number, name, words) in words {
+                let _ = writeln!(out, "\ndraw {number} `{}`", shown::name(name));
+                words.iter().for_each(|word| line(&mut out, word));
+            }
+            write_text(&out)?;
+        }
+        Format::Json => {
+            let draws: Vec<Value> = words
+                .map(|(number, name, words)| {
+                    let words: Vec<Value> = words
+                        .iter()
+                        .map(|word| {
+                            json!({
+                                "method": format!("{:04x}", word.method), "name": word.name,
+                                "value": format!("{:08x}", word.value), "meaning": word.meaning,
+                            })
+                        })
+                        .collect();
+                    json!({ "draw": number, "name": name, "words": words })
+                })
+                .collect();
+            let value = json!({ "format": "ninebit-registers-1", "profile": scene.profile.name(), "draws": draws });
+            write_json(&format!("{value:#}"))?;
+        }
+    }
+    Ok(())
+}
+
+fn line(out: &mut String, word: &Description) {
+    // Writing to a string cannot fail.
+    let _ = writeln!(out, "  {:04x}  {:<22}{:08x}  {}", word.method, word.name, word.value, word.meaning);
+}

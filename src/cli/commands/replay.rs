@@ -1,0 +1,242 @@
+//! `ninebit replay`.
+
+use std::ffi::OsStr;
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use crate::replay::{Entry, Filter, Options, Replayed, find, part, replay, report};
+use crate::shard::Shard;
+use clap::Args;
+use clap::builder::PossibleValuesParser;
+use ninebit::state::{Named, Policies, Profile};
+use ninebit_files::files;
+use ninebit_files::output::{Destination, OutputError, make_folder, write_stdout, write_text};
+
+use super::Context;
+use super::engine::EngineArguments;
+use super::exit::{Exit, Failure, Report};
+use super::scene::PolicyArguments;
+use super::terminal::{self, Level, Progress};
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Scene files, and folders of which every scene is taken
+    #[arg(required = true, value_name = "DIR|SCENE")]
+    places: Vec<PathBuf>,
+    /// Write expectations that are missing or not met anew, from what is drawn; refused where CI is set. Digests of captures stay
+    #[arg(long)]
+    bless: bool,
+    /// Only scenes whose name matches; with `!` in front, those that do not. May be given several times
+    #[arg(long = "filter", value_name = "GLOB")]
+    filters: Vec<String>,
+    /// Only one of N parts of the scenes: 1/4 to 4/4 are all
+    #[arg(long, value_name = "I/N", value_parser = str::parse::<Shard>)]
+    shard: Option<Shard>,
+    /// Only scenes of this chip
+    #[arg(long, value_name = "PROFILE", value_parser = PossibleValuesParser::new(Profile::NAMES))]
+    profile: Option<String>,
+    #[command(flatten)]
+    engine: EngineArguments,
+    #[command(flatten)]
+    policies: PolicyArguments,
+    /// Write reports, `-` for stdout: json=FILE, junit=FILE, html=FILE; github prints annotations. Separated by commas
+    #[arg(long = "report", value_name = "REPORT", value_delimiter = ',', value_parser = wanted)]
+    reports: Vec<Wanted>,
+    /// Write what is known of each difference here: NAME.difference.png, NAME.drawn.png, NAME.txt
+    #[arg(long, value_name = "DIR")]
+    artifacts: Option<PathBuf>,
+    /// Write the picture of every scene here, for `--expected` of later runs
+    #[arg(long, value_name = "DIR")]
+    pictures: Option<PathBuf>,
+    /// Pictures of an earlier run: they show where a picture differs whose digest does
+    #[arg(long, value_name = "DIR")]
+    expected: Option<PathBuf>,
+}
+
+/// A report that is to be written.
+#[derive(Clone, Debug)]
+enum Wanted {
+    /// Annotations and a step summary.
+    Github,
+    /// A document.
+    File(Kind, Destination),
+}
+
+impl Wanted {
+    fn path(&self) -> Option<&Path> {
+        match self {
+            Wanted::Github => None,
+            Wanted::File(_, destination) => destination.path(),
+        }
+    }
+}
+
+/// What a document is.
+#[derive(Clone, Copy, Debug)]
+enum Kind {
+    Json,
+    Junit,
+    Html,
+}
+
+/// Replays scenes, writes reports, and ends with what is wrong with the worst of them.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let options = options(arguments)?;
+    let entries = entries(arguments)?;
+    let stdout =
+        arguments.reports.iter().filter(|wanted| matches!(wanted, Wanted::File(_, Destination::Stdout))).count();
+    if stdout > 1 {
+        return Err(Failure::usage("several reports cannot all go to stdout", "write all but one to files"));
+    }
+    // Before anything is drawn or written. Expectations count as read even if they are yet to be written.
+    for entry in &entries {
+        files::note(&entry.path);
+        files::note(&entry.path.with_extension("expect.ron"));
+    }
+    files::check(arguments.reports.iter().filter_map(Wanted::path))?;
+    // Reports may be meant to lie in them, also where nothing differs.
+    let mut exit = Exit::Success;
+    for folder in [&arguments.artifacts, &arguments.pictures].into_iter().flatten() {
+        if let Err(error) = make_folder(folder) {
+            exit = say(error, context);
+        }
+    }
+    let replayed = {
+        let progress = Progress::new("replaying", context.color);
+        replay(&entries, &options, &|done| progress.report(done as u64, entries.len() as u64))
+    };
+    if stdout == 0 {
+        let mut text = report::text(&replayed);
+        let differs = replayed.iter().any(|one| one.exit_code() == 1);
+        if differs && arguments.artifacts.is_none() && !arguments.reports.iter().any(|w| matches!(w, Wanted::File(..)))
+        {
+            text += "`--artifacts DIR` writes pictures and traces of what differs\n";
+        }
+        write_text(&text)?;
+    }
+    let exits = [exit, write_reports(&arguments.reports, &replayed, context)].map(|exit| exit as u8);
+    let worst = replayed.iter().map(Replayed::exit_code).chain(exits).max().unwrap_or(0);
+    match Exit::from_code(worst) {
+        Exit::Success => Ok(()),
+        exit => Err(Failure { exit, report: Report::Silent }),
+    }
+}
+
+fn options(arguments: &Arguments) -> Result<Options, Failure> {
+    let policies = arguments.policies.policies()?;
+    if arguments.bless {
+        if set("CI") {
+            let help = "replay with `--bless` on your own machine, look at the pictures, and commit the expectations";
+            return Err(Failure::usage("expectations are not written in continuous integration: CI is set", help));
+        }
+        if policies != Policies::DEFAULT {
+            let help = "leave out `--policy`, or `--bless`";
+            return Err(Failure::usage("expectations are written under the default policies only", help));
+        }
+    }
+    Ok(Options {
+        render: arguments.engine.options()?,
+        policies,
+        profile: arguments.profile.as_deref().and_then(Profile::from_name),
+        bless: arguments.bless,
+        expected: arguments.expected.clone(),
+        pictures: arguments.pictures.clone(),
+        artifacts: arguments.artifacts.clone(),
+    })
+}
+
+/// The scenes that are meant.
+fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
+    let filter = Filter::new(&arguments.filters).map_err(|error| {
+        Failure::usage(
+            error.to_string(),
+            "`*` stands for any characters, `?` for one, `{a,b}` for a or b, `[a-z]` for one of these",
+        )
+    })?;
+    let mut entries = find(&arguments.places).map_err(|error| {
+        Failure::usage(error.to_string(), "replay them one after the other, or from a folder above both")
+    })?;
+    let all = entries.len();
+    entries.retain(|entry| filter.takes(entry));
+    if entries.is_empty() {
+        // A run that looks at nothing must not pass for one that found nothing wrong.
+        let (message, help) = match all {
+            0 => ("there are no scenes here".to_owned(), "a scene is a file NAME.ron; look at the folder's name"),
+            all => (
+                format!("the filter leaves none of {all} scenes"),
+                "names are paths, such as `vectors/scenes/dot3/lit-stone`",
+            ),
+        };
+        let report = Report::Message { code: Some("NB1201"), message, help: Some(help.to_owned()) };
+        return Err(Failure { exit: Exit::Missing, report });
+    }
+    Ok(match arguments.shard {
+        Some(shard) => part(entries, shard),
+        None => entries,
+    })
+}
+
+/// Writes the reports; what cannot be written is said, and the others are written all the same.
+fn write_reports(reports: &[Wanted], replayed: &[Replayed], context: Context) -> Exit {
+    let mut exit = Exit::Success;
+    for wanted in reports {
+        let written = match wanted {
+            Wanted::Github => github(replayed),
+            Wanted::File(kind, destination) => {
+                let text = match kind {
+                    Kind::Json => report::json(replayed),
+                    Kind::Junit => report::junit(replayed),
+                    Kind::Html => report::html(replayed),
+                };
+                destination.write(text.as_bytes())
+            }
+        };
+        if let Err(error) = written {
+            exit = say(error, context);
+        }
+    }
+    exit
+}
+
+/// Says that an output was not written; the status that goes with it.
+fn say(error: OutputError, context: Context) -> Exit {
+    let failure = Failure::from(error);
+    terminal::print(Level::Error, &failure.report, context.color);
+    failure.exit
+}
+
+/// Annotations go to stdout, the summary to the file that GitHub Actions names.
+fn github(replayed: &[Replayed]) -> Result<(), OutputError> {
+    write_stdout(report::annotations(replayed).as_bytes())?;
+    let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()).map(PathBuf::from) else {
+        return Ok(());
+    };
+    files::claim(&path)?;
+    // Other commands of the same step write there as well.
+    let file = OpenOptions::new().append(true).create(true).open(&path);
+    file.and_then(|mut file| file.write_all(report::step_summary(replayed).as_bytes()))
+        .map_err(|source| OutputError::Write { path, source })
+}
+
+/// Whether a variable of the environment is set, and to something that means yes.
+fn set(name: &str) -> bool {
+    std::env::var(name).is_ok_and(|value| !matches!(value.to_ascii_lowercase().as_str(), "" | "0" | "false"))
+}
+
+fn wanted(text: &str) -> Result<Wanted, String> {
+    let kind = |name: &str| match name {
+        "json" => Some(Kind::Json),
+        "junit" => Some(Kind::Junit),
+        "html" => Some(Kind::Html),
+        _ => None,
+    };
+    match text.split_once('=') {
+        None if text == "github" => Some(Wanted::Github),
+        Some((name, file)) if !file.is_empty() => {
+            kind(name).map(|kind| Wanted::File(kind, Destination::from(OsStr::new(file))))
+        }
+        _ => None,
+    }
+    .ok_or_else(|| "not one of json=FILE, junit=FILE, html=FILE, github".to_owned())
+}

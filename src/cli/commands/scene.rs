@@ -1,0 +1,202 @@
+//! What the commands on scenes share: the file, the policies, the plan.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use ninebit::limits::Limits;
+use ninebit::plan::Plan;
+use ninebit::shown;
+use ninebit::state::{Draw, Policies, Scene};
+use ninebit_files::guard::caught;
+use ninebit_scene::truth::Truth;
+use ninebit_scene::{self as scene, ErrorKind, Loaded, SceneError};
+use serde::Serialize;
+
+use super::Context;
+use super::exit::{Exit, Failure, Report};
+use super::terminal::{self, Level};
+
+/// The scene and how to read it.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// The scene file
+    pub(crate) scene: PathBuf,
+    #[command(flatten)]
+    policies: PolicyArguments,
+}
+
+/// The answers to what no capture decides.
+#[derive(Debug, Default, Args)]
+pub(crate) struct PolicyArguments {
+    /// Choose an alternative of a rule; `ninebit policies` lists them
+    #[arg(long = "policy", value_name = "RULE=VALUE")]
+    policies: Vec<String>,
+}
+
+impl SceneArguments {
+    /// Reads, checks and plans the scene; warnings go to stderr.
+    pub(crate) fn load(&self, context: Context) -> Result<(Scene, Plan), Failure> {
+        load(&self.scene, &self.policies, context)
+    }
+}
+
+/// Reads, checks and plans the scene file at `path`; warnings go to stderr.
+pub(crate) fn load(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Scene, Plan), Failure> {
+    let (loaded, policies) = read(path, policies, context)?;
+    Ok((loaded.scene, Plan { policies, ..loaded.plan }))
+}
+
+/// The same of a scene that says what its picture ought to show.
+pub(crate) fn load_with_truth(
+    path: &Path,
+    policies: &PolicyArguments,
+    context: Context,
+) -> Result<((Scene, Plan), Truth), Failure> {
+    let (loaded, policies) = read(path, policies, context)?;
+    let Some(truth) = loaded.truth else {
+        return Err(Failure::invalid(
+            "NB0396",
+            format!("`{}` does not say what its picture ought to show", shown::path(path)),
+            "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it",
+        ));
+    };
+    Ok(((loaded.scene, Plan { policies, ..loaded.plan }), truth))
+}
+
+fn read(path: &Path, policies: &PolicyArguments, context: Context) -> Result<(Loaded, Policies), Failure> {
+    let policies = policies.policies()?;
+    let loaded = scene::load(path, &Limits::default()).map_err(refused)?;
+    if !loaded.warnings.is_empty() {
+        terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
+    }
+    Ok((loaded, policies))
+}
+
+impl PolicyArguments {
+    /// Whether none is chosen.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.policies.is_empty()
+    }
+
+    /// The policies of the command line.
+    pub(crate) fn policies(&self) -> Result<Policies, Failure> {
+        let mut policies = Policies::DEFAULT;
+        for assignment in &self.policies {
+            policies.set(assignment).map_err(|error| {
+                Failure::usage(error.to_string(), "`ninebit policies` lists the rules and their values")
+            })?;
+        }
+        Ok(policies)
+    }
+}
+
+/// A scene that was not accepted.
+pub(crate) fn refused(error: SceneError) -> Failure {
+    let exit = match error.kind() {
+        ErrorKind::Invalid => Exit::Invalid,
+        ErrorKind::Missing => Exit::Missing,
+        ErrorKind::Limit => Exit::Limit,
+    };
+    Failure { exit, report: Report::Scene(Box::new(error)) }
+}
+
+/// What became of several scenes.
+pub(crate) struct Each<T> {
+    /// What was made of those that are sound.
+    pub(crate) made: Vec<T>,
+    /// The others.
+    pub(crate) failed: Vec<Failed>,
+    exit: Exit,
+}
+
+/// A scene of which nothing was made.
+#[derive(Debug, Serialize)]
+pub(crate) struct Failed {
+    scene: String,
+    /// Exit status that goes with it.
+    exit: u8,
+    message: String,
+}
+
+/// Does `work` for each scene, apart from the others: what is wrong with one is said, and the others go on.
+pub(crate) fn each<T>(
+    scenes: &[&Path],
+    context: Context,
+    mut work: impl FnMut(&Path) -> Result<T, Failure>,
+) -> Each<T> {
+    let mut each = Each { made: Vec::new(), failed: Vec::new(), exit: Exit::Success };
+    for scene in scenes {
+        let failure = match apart(scene, || work(scene)) {
+            Ok(made) => {
+                each.made.push(made);
+                continue;
+            }
+            Err(failure) => failure,
+        };
+        terminal::print(Level::Error, &failure.report, context.color);
+        let (exit, message) = (failure.exit as u8, failure.report.plain());
+        each.failed.push(Failed { scene: shown::lossless(scene), exit, message });
+        each.exit = Exit::from_code(exit.max(each.exit as u8));
+    }
+    each
+}
+
+impl<T> Each<T> {
+    /// The end of the command, once everything is printed: the status of the worst scene.
+    pub(crate) fn end(&self) -> Result<(), Failure> {
+        match self.exit {
+            Exit::Success => Ok(()),
+            exit => Err(Failure { exit, report: Report::Silent }),
+        }
+    }
+}
+
+/// Runs `work`; a panic becomes a failure that names the scene.
+pub(crate) fn apart<T>(scene: &Path, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    caught(work).unwrap_or_else(|mut panic| {
+        panic.message = format!("{}, of `{}`", panic.message, shown::path(scene));
+        Err(panic.into())
+    })
+}
+
+/// Index of the target of that name, or of the first.
+pub(crate) fn chosen_target(scene: &Scene, name: Option<&str>) -> Result<usize, Failure> {
+    let Some(name) = name else { return Ok(0) };
+    scene.targets.iter().position(|target| target.name == name).ok_or_else(|| {
+        let names: Vec<_> = scene.targets.iter().map(|target| format!("`{}`", target.name)).collect();
+        Failure::usage(format!("the scene has no target `{name}`"), format!("its targets: {}", names.join(", ")))
+    })
+}
+
+/// The draws that are meant, with their numbers: one, or all.
+pub(crate) fn chosen_draws(scene: &Scene, number: Option<usize>) -> Result<Vec<(usize, &Draw)>, Failure> {
+    let all = scene.draws.iter().enumerate();
+    let Some(number) = number else { return Ok(all.collect()) };
+    if number >= scene.draws.len() {
+        let names: Vec<String> = all.take(16).map(|(n, draw)| format!("{n} `{}`", draw.name)).collect();
+        let message = format!("the scene has no draw {number}");
+        return Err(Failure::usage(message, format!("its draws: {}", names.join(", "))));
+    }
+    Ok(all.skip(number).take(1).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_scene_is_apart_from_the_others() {
+        let scenes = ["a.ron", "b.ron", "c.ron", "d.ron"].map(Path::new);
+        let each = each(&scenes, Context { color: false }, |scene| match scene.to_str() {
+            Some("b.ron") => panic!("a table of {} rows", 3),
+            Some("c.ron") => Err(Failure::unseen(scene)),
+            _ => Ok(scene.to_path_buf()),
+        });
+        assert_eq!(each.made, [Path::new("a.ron"), Path::new("d.ron")]);
+        let [b, c] = &each.failed[..] else { panic!("{:?}", each.failed) };
+        assert_eq!((b.scene.as_str(), b.exit, c.scene.as_str(), c.exit), ("b.ron", 6, "c.ron", 3));
+        assert!(b.message.starts_with("NB0801 internal error: src/cli/commands/scene.rs:"), "{}", b.message);
+        assert!(b.message.ends_with(": a table of 3 rows, of `b.ron`"), "{}", b.message);
+        assert!(matches!(each.end(), Err(Failure { exit: Exit::Internal, report: Report::Silent })));
+    }
+}

@@ -1,0 +1,62 @@
+//! Faces and levels of a texture in one picture.
+//!
+//! Six faces make a cross: -X, +Z, +X, -Z in a row, +Y above and -Y below +Z. Level 0 stands on the left, the others below one another on
+//! its right. What no texel covers is transparent.
+
+use std::ops::Range;
+
+use ninebit::texture::show::{self, Shown};
+use ninebit_scene::image::Rgba;
+
+use super::source::Opened;
+
+/// Columns and rows of the cross, by face in the order +X, -X, +Y, -Y, +Z, -Z.
+const CROSS: [(u32, u32); 6] = [(2, 1), (0, 1), (1, 0), (1, 2), (1, 1), (3, 1)];
+
+/// The picture of these faces of these levels.
+pub(super) fn picture(opened: &Opened, faces: Range<u32>, levels: Range<u32>) -> Rgba {
+    let levels: Vec<Rgba> = levels.map(|level| of_level(opened, &faces, level)).collect();
+    let Some((first, rest)) = levels.split_first() else { return empty(1, 1) };
+    let column = rest.iter().map(|level| level.width).max().unwrap_or(0);
+    let below: u32 = rest.iter().map(|level| level.height).sum();
+    let mut picture = empty(first.width + column, first.height.max(below));
+    place(&mut picture, (0, 0), first);
+    let mut y = 0;
+    for level in rest {
+        place(&mut picture, (first.width, y), level);
+        y += level.height;
+    }
+    picture
+}
+
+/// One level: its face, or the cross of its faces.
+fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
+    let show = |face: u32| {
+        let shown = show::level(&opened.texels, opened.format, &opened.palette, opened.dithered, face, level);
+        // Faces and levels were counted before.
+        shown.map_or_else(|| empty(1, 1), |Shown { width, height, pixels }| Rgba { width, height, pixels })
+    };
+    if faces.len() == 1 {
+        return show(faces.start);
+    }
+    let mut picture: Option<Rgba> = None;
+    for (face, (column, row)) in (0..).zip(CROSS) {
+        let shown = show(face);
+        let picture = picture.get_or_insert_with(|| empty(4 * shown.width, 3 * shown.height));
+        place(picture, (column * shown.width, row * shown.height), &shown);
+    }
+    picture.unwrap_or_else(|| empty(1, 1))
+}
+
+fn empty(width: u32, height: u32) -> Rgba {
+    Rgba { width, height, pixels: vec![[0; 4]; width as usize * height as usize] }
+}
+
+/// Copies a picture into a larger one.
+fn place(picture: &mut Rgba, (x, y): (u32, u32), part: &Rgba) {
+    let width = part.width as usize;
+    for (row, pixels) in part.pixels.chunks(width).enumerate() {
+        let at = (y as usize + row) * picture.width as usize + x as usize;
+        picture.pixels[at..at + width].copy_from_slice(pixels);
+    }
+}

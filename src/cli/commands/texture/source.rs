@@ -1,0 +1,168 @@
+//! The texture that the command line names: a file, or one of a scene.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use ninebit::engine::{self, RenderOptions};
+use ninebit::shown;
+use ninebit::state::{CUBE_FACES, Named, Profile, Scene, Texels, TextureFormat, TextureImage, TextureKind};
+use ninebit_scene::image::{self, Contents, ImageLimits};
+use ninebit_scene::texels;
+
+use super::Arguments;
+use crate::commands::Context;
+use crate::commands::exit::Failure;
+use crate::commands::scene::{PolicyArguments, load};
+
+/// A texture and how it is read.
+pub(super) struct Opened {
+    /// As the command line has it.
+    pub(super) name: String,
+    pub(super) kind: TextureKind,
+    pub(super) format: TextureFormat,
+    pub(super) texels: Texels,
+    /// Entries for P8; empty without.
+    pub(super) palette: Arc<[u32]>,
+    /// DXT1 is dithered.
+    pub(super) dithered: bool,
+    /// Name of the render target that it is.
+    pub(super) target: Option<String>,
+}
+
+impl Opened {
+    /// Six of a cube map, else one.
+    pub(super) fn faces(&self) -> u32 {
+        if self.kind == TextureKind::Cube { CUBE_FACES } else { 1 }
+    }
+}
+
+/// Reads the texture.
+pub(super) fn open(arguments: &Arguments, context: Context) -> Result<Opened, Failure> {
+    let name = shown::lossless(Path::new(&arguments.texture));
+    if let Some(end) = name.find(".ron:") {
+        let (scene, texture) = (&name[..end + 4], &name[end + 5..]);
+        return of_scene(arguments, Path::new(scene), texture, name.clone(), context);
+    }
+    let path = Path::new(&arguments.texture);
+    if path.extension().is_some_and(|extension| extension == "ron") {
+        let (scene, _) = load(path, &PolicyArguments::default(), context)?;
+        return Err(Failure::usage(format!("which texture of `{name}`?"), known(&scene, &name)));
+    }
+    of_file(arguments, path, name.clone())
+}
+
+/// What to write for the textures of a scene.
+fn known(scene: &Scene, file: &str) -> String {
+    let names: Vec<String> = scene.textures.iter().map(|texture| format!("`{file}:{}`", texture.name)).collect();
+    if names.is_empty() { "it has none".to_owned() } else { format!("write {}", names.join(" or ")) }
+}
+
+fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, Failure> {
+    if arguments.palette.is_some() {
+        return Err(Failure::usage("`--palette` names a palette of a scene", "name a texture as SCENE.ron:NAME"));
+    }
+    let dithered = arguments.profile != Some(Profile::Nv10);
+    let (kind, format, texels, palette) = match image::open(path, &ImageLimits::default())? {
+        Contents::Picture(picture) => {
+            let format = arguments.format.unwrap_or(TextureFormat::A8R8G8B8);
+            if !texels::can_pack(format) {
+                let message = format!("a picture cannot be packed into {}", format.name());
+                return Err(Failure::usage(message, "blocks and indices come from DDS files; choose another format"));
+            }
+            let (width, height) = (picture.width, picture.height);
+            let words = texels::pack(&picture.pixels, format).into();
+            (plain_kind(width, height), format, Texels { width, height, levels: 1, border: false, words }, None)
+        }
+        Contents::Texture(dds) => {
+            let format = arguments.format.unwrap_or(dds.format);
+            let Some(words) = dds.words_as(format) else {
+                let message = format!("`{name}` holds {}, not {}", dds.format.name(), format.name());
+                return Err(Failure::usage(message, "leave out `--format`"));
+            };
+            let kind = if dds.cube { TextureKind::Cube } else { plain_kind(dds.width, dds.height) };
+            let (width, height, levels) = (dds.width, dds.height, dds.levels);
+            let texels = Texels { width, height, levels, border: false, words: words.into() };
+            (kind, format, texels, dds.palette.filter(|_| format == TextureFormat::P8))
+        }
+    };
+    let palette = palette.unwrap_or_default().into();
+    Ok(Opened { name, kind, format, texels, palette, dithered, target: None })
+}
+
+/// Any sides make a rectangle.
+fn plain_kind(width: u32, height: u32) -> TextureKind {
+    let powers = width.is_power_of_two() && height.is_power_of_two();
+    if powers { TextureKind::TwoDimensional } else { TextureKind::Rectangle }
+}
+
+fn of_scene(
+    arguments: &Arguments,
+    path: &Path,
+    texture: &str,
+    name: String,
+    context: Context,
+) -> Result<Opened, Failure> {
+    if arguments.profile.is_some() || arguments.format.is_some() {
+        return Err(Failure::usage(
+            "a scene says itself what its profile and formats are",
+            "leave out `--profile` and `--format`",
+        ));
+    }
+    let (scene, plan) = load(path, &PolicyArguments::default(), context)?;
+    let Some(index) = scene.textures.iter().position(|known| known.name == texture) else {
+        let message = format!("the scene has no texture `{texture}`");
+        return Err(Failure::usage(message, known(&scene, &shown::path(path))));
+    };
+    let texture = &scene.textures[index];
+    let (texels, target) = match &texture.image {
+        TextureImage::Texels(texels) => (texels.clone(), None),
+        TextureImage::Target { target } => {
+            let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
+            let surface = frames.surfaces.swap_remove(*target);
+            let (width, height, words) = (surface.width, surface.height, surface.words.into());
+            let name = scene.targets[*target].name.clone();
+            (Texels { width, height, levels: 1, border: false, words }, Some(name))
+        }
+    };
+    Ok(Opened {
+        name,
+        kind: texture.kind,
+        format: texture.format,
+        texels,
+        palette: palette(arguments, &scene, index)?,
+        dithered: scene.profile == Profile::Nv2a,
+        target,
+    })
+}
+
+/// The palette of that name, or of the first unit that samples the texture; empty without.
+fn palette(arguments: &Arguments, scene: &Scene, texture: usize) -> Result<Arc<[u32]>, Failure> {
+    let index = match &arguments.palette {
+        Some(_) if scene.textures[texture].format != TextureFormat::P8 => {
+            let format = scene.textures[texture].format.name();
+            return Err(Failure::usage(
+                format!("a texture of format {format} reads no palette"),
+                "leave out `--palette`",
+            ));
+        }
+        Some(name) => {
+            let found = scene.palettes.iter().position(|palette| palette.name == *name);
+            Some(found.ok_or_else(|| {
+                let names: Vec<String> = scene.palettes.iter().map(|palette| format!("`{}`", palette.name)).collect();
+                let help = if names.is_empty() {
+                    "it has none".to_owned()
+                } else {
+                    format!("its palettes: {}", names.join(", "))
+                };
+                Failure::usage(format!("the scene has no palette `{name}`"), help)
+            })?)
+        }
+        None => {
+            let mut units = scene.draws.iter().flat_map(|draw| draw.textures.iter().flatten());
+            units.find(|unit| unit.texture == texture).and_then(|unit| unit.palette)
+        }
+    };
+    Ok(index
+        .and_then(|index| scene.palettes.get(index))
+        .map_or_else(|| Arc::from([]), |palette| palette.entries.clone()))
+}

@@ -1,0 +1,68 @@
+//! `ninebit vectors check`.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use ninebit_files::output::write_text;
+use ninebit_vectors::read::{Difference, Table};
+use ninebit_vectors::{BEHAVIOUR, pack};
+use rayon::prelude::*;
+
+use super::super::exit::Failure;
+
+/// Rows of a unit that are shown.
+const SHOWN: usize = 5;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The folder of the pack
+    #[arg(value_name = "DIR")]
+    pack: PathBuf,
+}
+
+/// Checks a pack.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let (manifest, tables) = pack::open(&arguments.pack)?;
+    let found: Vec<Vec<Difference>> = tables.par_iter().map(Table::differences).collect();
+    let rows: usize = tables.iter().map(|table| table.rows.len()).sum();
+    let differing: usize = found.iter().map(Vec::len).sum();
+    let mut text = String::new();
+    for (table, differences) in tables.iter().zip(&found).filter(|(_, differences)| !differences.is_empty()) {
+        let name = table.contents.unit.name();
+        let _ = writeln!(text, "{name}: {} of {} rows differ", differences.len(), table.rows.len());
+        for difference in differences.iter().take(SHOWN) {
+            let Difference { line, id, column, table: expected, model, in_lanes, row } = difference;
+            let _ = match in_lanes {
+                false => writeln!(text, "  line {line}, row {id}: {column} is {expected}, the model has {model}"),
+                true => writeln!(
+                    text,
+                    "  line {line}, row {id}: {column} is {expected}, in block lanes the model has {model}: a fault of this program"
+                ),
+            };
+            let columns = table.writer.inputs().iter().chain(table.writer.results());
+            let numbers = columns.zip(row.inputs.iter().chain(&row.results));
+            let shown: Vec<String> = numbers.map(|(c, value)| format!("{}={}", c.name, c.kind.write(*value))).collect();
+            let _ = writeln!(text, "    {}", shown.join(" "));
+        }
+    }
+    let (profile, level) = (&manifest.profile, &manifest.level);
+    let _ = writeln!(
+        text,
+        "{} units, {rows} rows of {profile} {level}: {}",
+        tables.len(),
+        match differing {
+            0 => "all as the model has them".to_owned(),
+            _ => format!("{differing} differ"),
+        }
+    );
+    if differing > 0 && manifest.behaviour_rev != BEHAVIOUR {
+        let _ = writeln!(
+            text,
+            "the pack is of behaviour {}, the model of {BEHAVIOUR}: see CHANGELOG.md, Numerics",
+            manifest.behaviour_rev
+        );
+    }
+    write_text(&text)?;
+    if differing > 0 { Err(Failure::difference()) } else { Ok(()) }
+}

@@ -1,0 +1,82 @@
+//! `ninebit vectors export`.
+
+use std::collections::HashSet;
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use ninebit::state::Profile;
+use ninebit_files::output::write_text;
+use ninebit_vectors::cases::Level;
+use ninebit_vectors::gpu::write::BATCHES;
+use ninebit_vectors::pack::{self, Options};
+use ninebit_vectors::view::View;
+use ninebit_vectors::{Unit, units};
+
+use super::super::exit::Failure;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The folder of the pack; it is made, and files of an earlier export in it are replaced
+    #[arg(short, long, value_name = "DIR")]
+    output: PathBuf,
+    /// The chip: nv10 or nv2a
+    #[arg(long, default_value = "nv2a", value_parser = super::profile)]
+    profile: Profile,
+    /// How many rows a unit has: L0 at most 1000, L1 60 000, L2 5 000 000
+    #[arg(long, default_value = "L0", value_parser = super::level)]
+    level: Level,
+    /// Of the random rows
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Only this unit; may be given several times
+    #[arg(long = "unit", value_name = "UNIT", value_parser = super::unit)]
+    units: Vec<&'static dyn Unit>,
+    /// Only rows that a policy changes: those to ask a real card first
+    #[arg(long)]
+    deciding: bool,
+    /// Also write a view: hex (packed words for $readmemh, with layouts for Verilog and C) or jsonl; may be given several times
+    #[arg(long = "view", value_name = "VIEW", value_parser = super::named::<View>)]
+    views: Vec<View>,
+    /// Also write draws for a graphics card, for the program in vectors/harness/gl: the view `gpu`
+    #[arg(long)]
+    gpu_batches: bool,
+}
+
+/// Writes a pack.
+pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let profile = arguments.profile;
+    let mut chosen = if arguments.units.is_empty() { units::all() } else { arguments.units.clone() };
+    if let Some(unit) = arguments.units.iter().find(|unit| !unit.profiles().contains(&profile)) {
+        return Err(super::lacks(*unit, profile));
+    }
+    chosen.retain(|unit| unit.profiles().contains(&profile));
+    let mut seen = HashSet::new();
+    chosen.retain(|unit| seen.insert(unit.name()));
+    let mut views = arguments.views.clone();
+    if arguments.gpu_batches && !views.contains(&View::Gpu) {
+        views.push(View::Gpu);
+    }
+    let options = Options {
+        profile,
+        level: arguments.level,
+        seed: arguments.seed,
+        units: chosen,
+        deciding: arguments.deciding,
+        views,
+    };
+    let manifest = pack::export(&arguments.output, &options)?;
+    let mut text = String::new();
+    for file in manifest.files.iter().filter(|file| file.path.ends_with(".tsv")) {
+        let _ = writeln!(text, "{:<24}{:>9} rows {:>12} bytes", file.unit, file.rows, file.bytes);
+    }
+    for file in manifest.files.iter().filter(|file| file.path.ends_with(".gpu.txt")) {
+        let _ = write!(text, "{:<24}{:>9} rows as draws", file.unit, file.rows);
+        let _ = match file.left_out {
+            0 => writeln!(text),
+            rows => writeln!(text, ", {rows} left out: at most {BATCHES} batches"),
+        };
+    }
+    let _ = writeln!(text, "root {}", manifest.root);
+    Ok(write_text(&text)?)
+}

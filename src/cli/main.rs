@@ -1,0 +1,5 @@
+//! The `ninebit` command.
+
+fn main() -> std::process::ExitCode {
+    ninebit_cli::main()
+}

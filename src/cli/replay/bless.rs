@@ -1,0 +1,58 @@
+//! Expectations written from what is drawn.
+
+use std::path::Path;
+
+use super::outcome::{Outcome, Problem, ProblemKind};
+use crate::expectation::{Expectation, ExpectationError, masked_digest};
+use ninebit::frame::Surface;
+use ninebit::shown;
+use ninebit_files::output::{Compression, Destination, OutputError, encode_png, write_file};
+use ninebit_scene::path::resolve;
+
+/// Whether `surface` may be written down as what is expected: a capture and an allowance are somebody else's picture.
+pub(super) fn allowed(expectation: &Expectation) -> bool {
+    expectation.capture.is_none() && expectation.allowance.is_none()
+}
+
+/// Writes the expectation that `surface` meets to `path`, in place of `before`, and the picture that it names.
+///
+/// # Errors
+/// A mask that cannot be used; a file that cannot be written.
+pub(super) fn write(
+    path: &Path,
+    folder: &Path,
+    target: &str,
+    surface: &Surface,
+    before: Option<&Expectation>,
+) -> Result<Outcome, Problem> {
+    let mut expectation = before.cloned().unwrap_or_else(|| Expectation::of(target, surface));
+    (expectation.width, expectation.height) = (surface.width, surface.height);
+    let compared = expectation.compared(folder).map_err(|error| refused(path, &error))?;
+    let pixels = surface.rgba8();
+    let mut masked = pixels.clone();
+    expectation.sha256 = masked_digest(surface.width, surface.height, &mut masked, &compared);
+    if let Some(picture) = &expectation.picture {
+        let png = encode_png(surface.width, surface.height, &pixels, Compression::Small).map_err(unwritten)?;
+        // The form of the name has been looked at even where there is no such file yet.
+        let place = match resolve(folder, picture) {
+            Ok(place) => place,
+            Err(error) if error.is_missing() => folder.join(picture),
+            Err(error) => return Err(refused(path, &error.into())),
+        };
+        Destination::File(place).write(&png).map_err(unwritten)?;
+    }
+    write_file(path, expectation.to_text().as_bytes()).map_err(unwritten)?;
+    Ok(Outcome::Blessed { before: before.map(|before| before.sha256.clone()), after: expectation.sha256 })
+}
+
+/// An expectation that cannot be used.
+pub(super) fn refused(path: &Path, error: &ExpectationError) -> Problem {
+    Problem::new(error.kind(), error.code(), format!("`{}`: {error}", shown::path(path)), error.help())
+}
+
+/// An output that was not written.
+pub(super) fn unwritten(error: OutputError) -> Problem {
+    let (code, message, help) = (error.code(), error.to_string(), error.help());
+    let text = format!("error[{code}]: {message}\n  help: {help}");
+    Problem { kind: ProblemKind::Output, code, message, text, place: None }
+}

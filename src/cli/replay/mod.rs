@@ -1,0 +1,118 @@
+//! Scenes drawn again and held against what is expected of them: the golden test of any project that keeps scenes.
+//!
+//! [`find()`] lists the scenes of files and folders, [`replay()`] draws them, each on one thread and many side by side, and says of each
+//! whether it shows what `NAME.expect.ron` beside it states. What is said of a scene depends on nothing but its files and the [`Options`]: not
+//! on the other scenes, their order or the threads. [`report`] writes it all down.
+
+mod bless;
+mod cause;
+mod find;
+mod outcome;
+mod panels;
+pub mod report;
+mod scene;
+
+use std::path::PathBuf;
+
+use rayon::prelude::*;
+
+use ninebit::engine::RenderOptions;
+use ninebit::state::{Policies, Profile};
+use ninebit::threads::on_threads;
+use ninebit_files::guard::caught;
+
+pub use cause::Cause;
+pub use find::{Entry, EntryKind, Filter, FilterError, FindError, find, part};
+pub use outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Summary, Traces};
+
+/// How scenes are replayed.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// How each scene is drawn; `threads` counts scenes that are drawn side by side, 0 as many as there are cores.
+    pub render: RenderOptions,
+    /// Answers to what no capture decides.
+    pub policies: Policies,
+    /// Only scenes of this chip; others are skipped.
+    pub profile: Option<Profile>,
+    /// Write expectations that are missing or not met, from what is drawn.
+    pub bless: bool,
+    /// A folder of pictures of an earlier run, as [`pictures`](Self::pictures) writes them: where a digest differs, they show where.
+    pub expected: Option<PathBuf>,
+    /// A folder that takes the picture of every scene.
+    pub pictures: Option<PathBuf>,
+    /// A folder that takes what is known of every difference.
+    pub artifacts: Option<PathBuf>,
+}
+
+/// Replays scenes; what became of each, in the order of `entries`. `progress` is told how many are done, from any thread.
+///
+/// A panic while one of them is replayed is what became of that one: [`ProblemKind::Internal`].
+pub fn replay(entries: &[Entry], options: &Options, progress: &(dyn Fn(usize) + Sync)) -> Vec<Replayed> {
+    each(entries, options.render.threads, progress, &|entry| scene::replay(entry, options))
+}
+
+/// Does `work` for each entry, apart from the others.
+fn each(
+    entries: &[Entry],
+    threads: usize,
+    progress: &(dyn Fn(usize) + Sync),
+    work: &(dyn Fn(&Entry) -> Replayed + Sync),
+) -> Vec<Replayed> {
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let one = |entry: &Entry| {
+        let replayed = caught(|| work(entry)).unwrap_or_else(|panic| Replayed {
+            name: entry.name.clone(),
+            path: entry.path.clone(),
+            outcome: Outcome::Failed(Problem::internal(&panic)),
+            unwritten: Vec::new(),
+        });
+        progress(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1);
+        replayed
+    };
+    on_threads(threads, || entries.par_iter().map(one).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_is_what_became_of_one_scene() {
+        let entry =
+            |name: &str| Entry { name: name.into(), path: format!("{name}.ron").into(), kind: EntryKind::Scene };
+        let entries = ["a", "b", "c", "d"].map(entry);
+        let work = |entry: &Entry| {
+            assert!(entry.name != "b", "a table of {} rows", 3);
+            let Entry { name, path, .. } = entry.clone();
+            Replayed { name, path, outcome: Outcome::Match, unwritten: Vec::new() }
+        };
+        let done = std::sync::Mutex::new(Vec::new());
+        let progress = |count| done.lock().expect("no panic here").push(count);
+        for threads in [1, 3] {
+            let replayed = each(&entries, threads, &progress, &work);
+            let codes: Vec<u8> = replayed.iter().map(Replayed::exit_code).collect();
+            assert_eq!(codes, [0, 6, 0, 0]);
+            let Outcome::Failed(problem) = &replayed[1].outcome else { panic!("{replayed:?}") };
+            assert_eq!((problem.code, problem.kind), ("NB0801", ProblemKind::Internal));
+            assert!(
+                problem.text.contains("src/cli/replay/mod.rs:") && problem.text.contains("a table of 3 rows"),
+                "{problem:?}"
+            );
+            let text = report::text(&replayed);
+            assert!(
+                text.contains("failed   b.ron\n    error[NB0801]: internal error: src/cli/replay/mod.rs:"),
+                "{text}"
+            );
+            assert!(text.ends_with("4 scenes: 3 as expected, 1 failed\n"), "{text}");
+            for report in [
+                report::junit(&replayed),
+                report::json(&replayed),
+                report::html(&replayed),
+                report::annotations(&replayed),
+            ] {
+                assert!(report.contains("NB0801") && report.contains("a table of 3 rows"), "{report}");
+            }
+        }
+        assert_eq!(done.into_inner().expect("no panic here").len(), 8);
+    }
+}

@@ -1,0 +1,89 @@
+//! The report for GitHub Actions: annotations on the files, and a summary of the step.
+
+use crate::replay::{Outcome, Replayed, Summary};
+use ninebit::shown;
+
+/// Annotations of one kind that GitHub keeps of a step.
+const MOST: usize = 10;
+
+/// Lines that GitHub Actions turns into annotations: an error for each scene that is not as expected, ten at most, as more are dropped
+/// there.
+pub fn annotations(all: &[Replayed]) -> String {
+    let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
+    let shown = if wrong.len() > MOST { MOST - 1 } else { wrong.len() };
+    let mut out: String = wrong.iter().take(shown).map(|one| annotation(one)).collect();
+    if wrong.len() > shown {
+        let message = format!("{} more scenes are not as expected; the log names them all", wrong.len() - shown);
+        out += &format!("::error title=ninebit replay::{}\n", data(&message));
+    }
+    out
+}
+
+fn annotation(one: &Replayed) -> String {
+    let place = match &one.outcome {
+        Outcome::Failed(problem) => {
+            problem.place.map_or(String::new(), |(line, column)| format!(",line={line},col={column}"))
+        }
+        _ => String::new(),
+    };
+    let (file, title) =
+        (property(&shown::path(&one.path)), property(&format!("{} {}", shown::name(&one.name), one.status())));
+    let messages: Vec<String> = std::iter::once(one.message())
+        .chain(one.unwritten.iter().map(|problem| shown::name(&problem.message).into_owned()))
+        .collect();
+    let message = messages.into_iter().filter(|message| !message.is_empty()).collect::<Vec<_>>().join("\n");
+    format!("::error file={file}{place},title={title}::{}\n", data(&message))
+}
+
+/// The text of a workflow command.
+fn data(text: &str) -> String {
+    text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
+}
+
+/// A value before the text.
+fn property(text: &str) -> String {
+    data(text).replace(':', "%3A").replace(',', "%2C")
+}
+
+/// What a step's summary shows, as Markdown: the counts, and a table of the scenes that are not as expected.
+pub fn step_summary(all: &[Replayed]) -> String {
+    let mut out = format!("### ninebit replay\n\n{}\n", Summary::of(all));
+    let mut rows = all.iter().filter(|one| one.exit_code() != 0).peekable();
+    if rows.peek().is_some() {
+        out += "\n| scene | | what |\n|---|---|---|\n";
+    }
+    for one in rows {
+        out += &format!("| {} | {} | {} |\n", cell(&one.name), one.status(), cell(&one.message()));
+    }
+    out
+}
+
+/// A name or message in a table of Markdown. What Markdown gives a meaning to is escaped, and so is what GitHub makes links and mentions of.
+fn cell(text: &str) -> String {
+    let mut out = String::new();
+    for c in shown::name(text).chars() {
+        match c {
+            '<' => out += "&lt;",
+            '>' => out += "&gt;",
+            '&' => out += "&amp;",
+            '\\' | '`' | '*' | '_' | '[' | ']' | '(' | ')' | '#' | '!' | '|' | '~' | ':' | '@' | '^' | '$' | '.' => {
+                out.extend(['\\', c]);
+            }
+            c => out.push(c),
+        }
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cell_has_no_links_mentions_or_markup() {
+        assert_eq!(cell("vectors/lit-stone"), "vectors/lit-stone");
+        assert_eq!(cell("[a](http://b.c)"), r"\[a\]\(http\://b\.c\)");
+        assert_eq!(cell("www.b.c @someone <b>|`"), r"www\.b\.c \@someone &lt;b&gt;\|\`");
+        assert_eq!(cell("a\nb"), r"a\\nb");
+    }
+}

@@ -1,0 +1,185 @@
+//! The report as one page that needs no other file.
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::diff::{CHANNELS, Histogram, ranges};
+use crate::replay::panels::GAP;
+use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
+use ninebit::shown;
+use ninebit_report::BesideLine;
+
+const STYLE: &str = include_str!("style.css");
+
+/// A page with everything that is known of the scenes that are not as expected, and a list of all; pictures stand in it.
+pub fn html(all: &[Replayed]) -> String {
+    let summary = Summary::of(all);
+    let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { "ninebit replay: " (summary) }
+                style { (PreEscaped(STYLE)) }
+            }
+            body {
+                h1 { "ninebit replay" }
+                p { (summary) }
+                @if !wrong.is_empty() {
+                    ul { @for one in &wrong { li { a href={ "#" (shown::name(&one.name)) } { (shown::name(&one.name)) } ": " (one.message()) } } }
+                }
+                @for one in &wrong { (scene(one)) }
+                h2 { "All scenes" }
+                div.scroll { table {
+                    @for one in all {
+                        tr {
+                            td { (status(one)) }
+                            td { code { (shown::path(&one.path)) } }
+                            td { @if matches!(one.outcome, Outcome::Skipped(_) | Outcome::Blessed { .. }) { (one.message()) } }
+                        }
+                    }
+                } }
+            }
+        }
+    };
+    page.into_string() + "\n"
+}
+
+fn status(one: &Replayed) -> Markup {
+    html! { span class={ "status " (one.status()) } { (one.status()) } }
+}
+
+fn scene(one: &Replayed) -> Markup {
+    html! {
+        section id=(shown::name(&one.name)) {
+            h2 { (shown::name(&one.name)) " " (status(one)) }
+            @match &one.outcome {
+                Outcome::Differs(difference) => (self::difference(difference)),
+                Outcome::Failed(problem) => pre { (shown::lines(&problem.text)) },
+                _ => {}
+            }
+            @for problem in &one.unwritten { pre { (shown::lines(&problem.text)) } }
+        }
+    }
+}
+
+fn image(png: &[u8], class: &str, text: &str) -> Markup {
+    html! { img class=(class) alt=(text) src={ "data:image/png;base64," (STANDARD.encode(png)) }; }
+}
+
+fn difference(difference: &Difference) -> Markup {
+    html! {
+        p { strong { (shown::name(&difference.verdict())) } }
+        @match &difference.known {
+            Some(known) => (pictures(known)),
+            None => {
+                p { "Only the digest of the expected picture is known; this was drawn:" }
+                (image(&difference.picture, "panels", "drawn"))
+            }
+        }
+        table {
+            tr { th { "target" } td { code { (shown::name(&difference.target)) } } }
+            tr { th { "expected" } td { code { (shown::name(&difference.expected)) } } }
+            tr { th { "drawn" } td { code { (difference.drawn) } } }
+            @if let Some(Known { origin: Origin::File(path), .. }) = &difference.known {
+                tr { th { "expected picture" } td { code { (shown::path(path)) } } }
+            }
+        }
+        @for remark in &difference.remarks { p { (shown::name(remark)) } }
+        @if let Some(known) = &difference.known {
+            h3 { "Drawn less expected, in pixels" }
+            (histogram(known))
+            @if let Some(traces) = &known.traces { (self::traces(known, traces)) }
+        }
+    }
+}
+
+fn pictures(known: &Known) -> Markup {
+    let (width, height) = (known.difference.width, known.difference.height);
+    // Each title is as wide as its panel. A tall picture does not fill the page's width, but is wide enough for its titles.
+    let [panel, gap] = [width as usize, GAP].map(|columns| format!("minmax(0, {columns}fr)"));
+    let titles = format!("grid-template-columns: {panel} {gap} {panel} {gap} {panel}");
+    let whole = 3 * width as usize + 2 * GAP;
+    let figure = format!("max-width: max(22rem, calc(45rem * {whole} / {height}))");
+    html! {
+        figure style=(figure) {
+            div.titles style=(titles) {
+                span { "expected" } span {} span { "drawn" } span {} span { "difference, times " (known.scale) }
+            }
+            (image(&known.panels, "panels", "expected, drawn, difference"))
+        }
+    }
+}
+
+fn histogram(known: &Known) -> Markup {
+    let channels = &known.difference.channels;
+    let rows = ranges().into_iter().filter(|(from, to)| channels.iter().any(|h| h.between(*from, *to) > 0));
+    let row = |title: &str, value: &dyn Fn(&Histogram) -> u64| {
+        html! { tr { th { (title) } @for channel in channels { td.number { (value(channel)) } } } }
+    };
+    html! {
+        table {
+            tr { th {} @for channel in CHANNELS { th.number { (channel) } } }
+            @for (from, to) in rows {
+                (row(&if from == to { format!("{from:+}") } else { format!("{from:+} to {to:+}") }, &|h| h.between(from, to)))
+            }
+            (row("pixels", &Histogram::different))
+            (row("largest", &|h| u64::from(h.largest())))
+        }
+    }
+}
+
+fn traces(known: &Known, traces: &Traces) -> Markup {
+    let first = &known.first;
+    // What both traces have before they part is there to be looked up; the block in which they part is shown whole.
+    let parted = traces.lines.iter().position(BesideLine::differs).unwrap_or(0);
+    let begin = traces.lines.iter().take(parted + 1).rposition(|line| line.heading.is_some()).unwrap_or(0);
+    html! {
+        details open[!traces.lines.is_empty()] {
+            summary { "How the first differing pixel, " (first.x) "," (first.y) ", came to be" }
+            @if traces.lines.is_empty() {
+                pre { (shown::lines(&traces.text)) }
+            } @else {
+                @let (before, after) = traces.lines.split_at(begin);
+                @if !before.is_empty() {
+                    details { summary { (before.len()) " steps before, the same in both" } (table(before)) }
+                }
+                (table(after))
+            }
+        }
+    }
+}
+
+fn table(lines: &[BesideLine]) -> Markup {
+    html! {
+        div.scroll { table.trace {
+            tr { th { "what" } th.number { "expected" } th.number { "drawn" } th { "rule" } th { "how" } }
+            @for line in lines {
+                @if let Some(heading) = &line.heading { tr.heading { td colspan="5" { (shown::name(heading)) } } }
+                tr.other[line.differs()] {
+                    td { (shown::name(&line.name)) }
+                    @for side in [&line.first, &line.second] {
+                        td.number { @if let Some((_, integer)) = side { (integer) } }
+                    }
+                    td { (line.rule) }
+                    td { (how(line.first.as_ref(), line.second.as_ref())) }
+                }
+            }
+        } }
+    }
+}
+
+/// How a value came about, once if both traces say the same.
+fn how(first: Option<&(String, String)>, second: Option<&(String, String)>) -> Markup {
+    let (first, second) = (first.map(|(how, _)| how), second.map(|(how, _)| how));
+    html! {
+        @match (first, second) {
+            (Some(a), Some(b)) if a != b => { (shown::name(a)) br; (shown::name(b)) }
+            (Some(how), _) | (None, Some(how)) => (shown::name(how)),
+            (None, None) => {}
+        }
+    }
+}

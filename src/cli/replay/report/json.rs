@@ -1,0 +1,91 @@
+//! The report for programs.
+
+use serde_json::{Value, json};
+
+use crate::diff::CHANNELS;
+use crate::replay::{Cause, Difference, Known, Origin, Outcome, Problem, Replayed, Summary};
+use ninebit::shown;
+
+/// One JSON document; `docs/replay.md` describes it.
+pub fn json(all: &[Replayed]) -> String {
+    let summary = Summary::of(all);
+    let document = json!({
+        "format": "ninebit-replay-1",
+        "version": env!("CARGO_PKG_VERSION"),
+        "summary": {
+            "scenes": summary.scenes, "match": summary.matching, "differs": summary.differing, "failed": summary.failed,
+            "blessed": summary.blessed, "skipped": summary.skipped,
+        },
+        "scenes": all.iter().map(scene).collect::<Vec<_>>(),
+    });
+    format!("{}\n", shown::json(&format!("{document:#}")))
+}
+
+fn scene(one: &Replayed) -> Value {
+    let (difference, problem) = match &one.outcome {
+        Outcome::Differs(difference) => (Some(self::difference(difference)), None),
+        Outcome::Failed(problem) => (None, Some(self::problem(problem))),
+        _ => (None, None),
+    };
+    json!({
+        "name": one.name,
+        "path": shown::lossless(&one.path),
+        "status": one.status(),
+        "message": one.message(),
+        "difference": difference,
+        "problem": problem,
+        "unwritten": one.unwritten.iter().map(self::problem).collect::<Vec<_>>(),
+    })
+}
+
+fn problem(problem: &Problem) -> Value {
+    json!({
+        "code": problem.code, "exit": problem.exit_code(), "message": problem.message, "text": problem.text,
+        "line": problem.place.map(|(line, _)| line), "column": problem.place.map(|(_, column)| column),
+    })
+}
+
+fn difference(difference: &Difference) -> Value {
+    let cause = difference.cause.map(|cause| match cause {
+        Cause::Policy { rule, value, meaning } => json!({ "policy": rule, "value": value, "meaning": meaning }),
+        Cause::Engine => json!({ "engine": "scalar" }),
+    });
+    json!({
+        "target": difference.target,
+        "expected": difference.expected,
+        "drawn": difference.drawn,
+        "cause": cause,
+        "remarks": difference.remarks,
+        "pixels": difference.known.as_ref().map(known),
+    })
+}
+
+fn known(known: &Known) -> Value {
+    let difference = &known.difference;
+    let channels: Vec<Value> = CHANNELS
+        .into_iter()
+        .zip(&difference.channels)
+        .map(|(name, histogram)| {
+            let buckets: Vec<Value> = histogram
+                .buckets()
+                .iter()
+                .map(|bucket| json!({ "from": bucket.from, "to": bucket.to, "pixels": bucket.pixels }))
+                .collect();
+            json!({ "channel": name, "pixels": histogram.different(), "largest": histogram.largest(), "histogram": buckets })
+        })
+        .collect();
+    let first = &known.first;
+    json!({
+        "picture": match &known.origin {
+            Origin::File(path) => Some(shown::lossless(path)),
+            Origin::Cause => None,
+        },
+        "pixels": difference.pixels(),
+        "different": difference.different,
+        "largest": difference.largest(),
+        "channels": channels,
+        "first": { "x": first.x, "y": first.y, "expected": first.expected, "drawn": first.drawn },
+        "trace": known.traces.as_ref().map(|traces| &traces.drawn),
+        "expected_trace": known.traces.as_ref().and_then(|traces| traces.expected.as_ref()),
+    })
+}

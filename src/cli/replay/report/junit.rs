@@ -1,0 +1,69 @@
+//! The report as JUnit XML, which continuous integration services read.
+
+use std::io;
+
+use quick_xml::Writer;
+use quick_xml::events::{BytesDecl, BytesText, Event};
+
+use crate::replay::{Outcome, Replayed, Summary};
+use ninebit::shown;
+
+/// One test case for each scene: its folder is the class, its verdict the message. Empty if the writer fails, which it does not in
+/// memory.
+pub fn junit(all: &[Replayed]) -> String {
+    let mut writer = Writer::new_with_indent(Vec::new(), b' ', 2);
+    let written = write(&mut writer, all).map(|()| writer.into_inner());
+    written.ok().and_then(|bytes| String::from_utf8(bytes).ok()).map_or(String::new(), |text| text + "\n")
+}
+
+fn write(writer: &mut Writer<Vec<u8>>, all: &[Replayed]) -> io::Result<()> {
+    let summary = Summary::of(all);
+    let errors = all.iter().filter(|one| matches!(one.outcome, Outcome::Failed(_))).count();
+    let counts =
+        [("tests", summary.scenes), ("failures", summary.differing), ("errors", errors), ("skipped", summary.skipped)]
+            .map(|(name, count)| (name, count.to_string()));
+    let counts = || counts.iter().map(|(name, count)| (*name, count.as_str()));
+    writer.write_event(Event::Decl(BytesDecl::new("1.0", Some("utf-8"), None)))?;
+    // The schema of Jenkins has no `skipped` here.
+    let suites = writer.create_element("testsuites").with_attributes(counts().filter(|(name, _)| *name != "skipped"));
+    suites.write_inner_content(|writer| {
+        let suite =
+            writer.create_element("testsuite").with_attribute(("name", "ninebit replay")).with_attributes(counts());
+        suite.write_inner_content(|writer| all.iter().try_for_each(|one| case(writer, one)))?;
+        Ok(())
+    })?;
+    Ok(())
+}
+
+fn case(writer: &mut Writer<Vec<u8>>, one: &Replayed) -> io::Result<()> {
+    let (folder, name) = one.name.rsplit_once('/').unwrap_or(("", &one.name));
+    let (folder, name, path) = (shown::name(folder), shown::name(name), shown::path(&one.path));
+    let (message, code) = (one.message(), one.exit_code().to_string());
+    let case = writer.create_element("testcase").with_attributes([
+        ("classname", &*folder),
+        ("name", &*name),
+        ("file", &*path),
+    ]);
+    match &one.outcome {
+        Outcome::Match | Outcome::Blessed { .. } => case.write_empty()?,
+        Outcome::Skipped(_) => case.write_inner_content(|writer| {
+            writer.create_element("skipped").with_attribute(("message", &*message)).write_empty()?;
+            Ok(())
+        })?,
+        Outcome::Differs(difference) => case.write_inner_content(|writer| {
+            let failure = writer.create_element("failure");
+            let attributes = [("message", &*message), ("type", "difference")];
+            failure
+                .with_attributes(attributes)
+                .write_text_content(BytesText::new(&shown::lines(&difference.text())))?;
+            Ok(())
+        })?,
+        Outcome::Failed(problem) => case.write_inner_content(|writer| {
+            let error = writer.create_element("error");
+            let attributes = [("message", &*message), ("type", &*format!("exit {code}"))];
+            error.with_attributes(attributes).write_text_content(BytesText::new(&shown::lines(&problem.text)))?;
+            Ok(())
+        })?,
+    };
+    Ok(())
+}

@@ -1,0 +1,33 @@
+//! The report for people.
+
+use std::fmt::Write;
+
+use crate::replay::{Outcome, Replayed, Summary};
+use ninebit::shown;
+
+/// One line for each scene that is not as expected, all that is wrong with those that could not be drawn, and the counts.
+pub fn text(all: &[Replayed]) -> String {
+    let mut out = String::new();
+    // Writing to a string cannot fail.
+    let _ = write(&mut out, all);
+    out
+}
+
+fn write(out: &mut String, all: &[Replayed]) -> std::fmt::Result {
+    for one in all {
+        match &one.outcome {
+            Outcome::Match => {}
+            Outcome::Failed(problem) => {
+                writeln!(out, "{:8} {}", one.status(), shown::path(&one.path))?;
+                for line in shown::lines(&problem.text).lines() {
+                    writeln!(out, "{}", format!("    {line}").trim_end())?;
+                }
+            }
+            _ => writeln!(out, "{:8} {}: {}", one.status(), shown::path(&one.path), one.message())?,
+        }
+        for problem in &one.unwritten {
+            writeln!(out, "{:8} {}", "", shown::name(&problem.message))?;
+        }
+    }
+    writeln!(out, "{}", Summary::of(all))
+}

@@ -1,0 +1,170 @@
+//! Catches panics.
+//!
+//! A panic is a fault of this program, and one scene's fault is no reason to say nothing of the others: [`caught`] turns it into a
+//! [`Panic`] that reports show. Decoders of other people's files panic now and then on bytes nobody thought of; a scene with such a file is an
+//! ordinary error, not a crash, so decoders run under `quietly`.
+//!
+//! Shipped binaries must therefore unwind: `panic = "abort"` would undo it. Not everything can be caught: where memory cannot be had or the
+//! stack is full, the process ends.
+
+use std::any::Any;
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::fmt;
+use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, Once, PoisonError};
+
+thread_local! {
+    /// Panics of this thread are expected and must not print.
+    static QUIET: Cell<bool> = const { Cell::new(false) };
+}
+
+/// How many [`caught`] are at work: panics of any thread are theirs.
+static GUARDS: AtomicUsize = AtomicUsize::new(0);
+
+/// The latest panics, for those who catch them: what is thrown does not say where it was thrown, and threads that do the work of others panic
+/// elsewhere than they are caught.
+static LATEST: Mutex<VecDeque<Panic>> = Mutex::new(VecDeque::new());
+
+/// How many of the latest panics are kept.
+const KEPT: usize = 64;
+
+/// A fault of this program.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Panic {
+    /// What it says of itself.
+    pub message: String,
+    /// File, line and column of the source, where known.
+    pub place: Option<String>,
+}
+
+impl Panic {
+    /// Stable code.
+    pub const CODE: &'static str = "NB0801";
+
+    /// What to do about it.
+    pub const HELP: &'static str = concat!(
+        "this is a fault of ninebit ",
+        env!("CARGO_PKG_VERSION"),
+        ", not of your scene: please report it with this message, the command line and the scene"
+    );
+}
+
+impl fmt::Display for Panic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "internal error: ")?;
+        if let Some(place) = &self.place {
+            write!(f, "{place}: ")?;
+        }
+        f.write_str(&self.message)
+    }
+}
+
+/// Runs `work`; a panic in it, or in threads whose panics reach it, becomes a value. Nothing is printed.
+///
+/// # Errors
+/// The panic.
+pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
+    install();
+    GUARDS.fetch_add(1, Ordering::Relaxed);
+    // Nothing that `work` touches survives a panic: the callers hand in their data by reference and drop what was made of it.
+    let result = catch_unwind(AssertUnwindSafe(work));
+    GUARDS.fetch_sub(1, Ordering::Relaxed);
+    result.map_err(|payload| {
+        let message = message(payload.as_ref());
+        let mut latest = LATEST.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = latest.iter().rposition(|panic| panic.message == message).and_then(|at| latest.remove(at));
+        known.unwrap_or(Panic { message, place: None })
+    })
+}
+
+/// Runs `work`, which reads untrusted bytes; a panic becomes its message.
+///
+/// The panic hook stays silent for this thread while `work` runs, and only for this thread: the hook that was installed
+/// before keeps reporting everything else.
+///
+/// # Errors
+/// The message of the panic.
+pub fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    install();
+    let outer = QUIET.replace(true);
+    // As in `caught`.
+    let result = catch_unwind(AssertUnwindSafe(work));
+    QUIET.set(outer);
+    result.map_err(|payload| message(payload.as_ref()))
+}
+
+fn install() {
+    static INSTALL: Once = Once::new();
+    INSTALL.call_once(|| {
+        let previous = take_hook();
+        set_hook(Box::new(move |info| {
+            if QUIET.get() {
+                return;
+            }
+            if GUARDS.load(Ordering::Relaxed) == 0 {
+                return previous(info);
+            }
+            let mut latest = LATEST.lock().unwrap_or_else(PoisonError::into_inner);
+            if latest.len() == KEPT {
+                latest.pop_front();
+            }
+            latest
+                .push_back(Panic { message: message(info.payload()), place: info.location().map(ToString::to_string) });
+        }));
+    });
+}
+
+/// The text of a panic's payload.
+fn message(payload: &(dyn Any + Send)) -> String {
+    if let Some(text) = payload.downcast_ref::<&str>() {
+        (*text).to_owned()
+    } else if let Some(text) = payload.downcast_ref::<String>() {
+        text.clone()
+    } else {
+        "no message".to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_panic_becomes_its_message_and_the_thread_goes_on() {
+        assert_eq!(quietly(|| 7), Ok(7));
+        assert_eq!(quietly(|| -> u32 { panic!("palette") }), Err("palette".to_owned()));
+        assert_eq!(quietly(|| -> u32 { panic!("index {}", 3) }), Err("index 3".to_owned()));
+        assert!(!QUIET.get(), "other panics of this thread are reported again");
+    }
+
+    #[test]
+    fn guards_nest() {
+        let outer = quietly(|| {
+            let inner = quietly(|| -> u32 { panic!("inner") });
+            assert!(QUIET.get(), "still inside the outer guard");
+            inner
+        });
+        assert_eq!(outer, Ok(Err("inner".to_owned())));
+    }
+
+    #[test]
+    fn a_caught_panic_says_where() {
+        let panic = caught(|| -> u32 { panic!("table of {} rows", 3) }).expect_err("it panicked");
+        let text = panic.to_string();
+        assert!(
+            text.starts_with("internal error: src/files/guard.rs:") && text.ends_with(": table of 3 rows"),
+            "{text}"
+        );
+        assert_eq!(caught(|| 7), Ok(7));
+    }
+
+    #[test]
+    fn a_panic_of_another_thread_says_where() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
+        let panic = caught(|| pool.install(|| -> u32 { panic!("of a worker") })).expect_err("it panicked");
+        assert_eq!(panic.message, "of a worker");
+        assert!(panic.place.is_some_and(|place| place.starts_with("src/files/guard.rs:")));
+    }
+}

@@ -1,0 +1,7 @@
+//! Files: read within [limits](ninebit::limits), written whole or not at all, frames as pictures, and panics that do not end the program.
+
+pub mod files;
+pub mod guard;
+pub mod output;
+pub mod picture;
+pub mod read;

@@ -1,0 +1,39 @@
+//! Digests of pictures.
+
+use sha2::{Digest, Sha256};
+
+use ninebit::frame::Surface;
+
+/// SHA-256, in lower-case hexadecimal, of width and height (four bytes each, little-endian) and the bytes of [`Surface::rgba8`].
+///
+/// It names what the picture shows: not how it is stored, nor how a PNG of it is compressed.
+pub fn surface_digest(surface: &Surface) -> String {
+    digest(surface.width, surface.height, &surface.rgba8())
+}
+
+/// The digest of a picture; see [`surface_digest`].
+pub fn digest(width: u32, height: u32, pixels: &[[u8; 4]]) -> String {
+    let mut hash = Sha256::new();
+    hash.update(width.to_le_bytes());
+    hash.update(height.to_le_bytes());
+    hash.update(pixels.as_flattened());
+    hexadecimal(&hash.finalize())
+}
+
+/// Bytes as two digits each.
+pub fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_digest_tells_shapes_apart() {
+        let pixels = vec![[1, 2, 3, 4]; 6];
+        assert_ne!(digest(2, 3, &pixels), digest(3, 2, &pixels));
+        // What sha256sum says of the twelve bytes 01 00 00 00, 01 00 00 00, 00 00 00 00.
+        assert_eq!(digest(1, 1, &[[0; 4]]), "7d450465ceb49083708a6970827f0e0b116ed285072a95b451e55f583f56da8d");
+    }
+}

@@ -1,0 +1,141 @@
+//! How exact a technique is: a scene's picture against its truth, the error split by cause, and what it costs the chip.
+//!
+//! The way from the truth to the picture is taken in steps, and each step has a cause:
+//!
+//! ```text
+//! truth                      the equation, per pixel, in float64                       truth::evaluate
+//!   | quantised normals      the same from the normals as the scene's bytes hold them  (where the truth names their register)
+//!   | method                 the ideal of the technique: what it computes instead      compare, mode follow
+//!   | interpolation, filtering, expansion, product and sum, store                      compare, mode follow
+//! picture                    the model
+//! ```
+//!
+//! All errors are the picture minus the truth, in steps of 1/255, over R, G and B.
+#![allow(clippy::float_arithmetic, reason = "statistics of errors; nothing of this is stored")]
+
+mod banding;
+mod cost;
+mod normals;
+mod report;
+
+use ninebit::plan::Plan;
+use ninebit::rop::surface;
+use ninebit::state::{Named, Scene};
+use ninebit::trace::Part;
+use ninebit_report::compare::{CompareOptions, Comparison, Mode, Statistics, compare};
+use ninebit_scene::truth::{Truth, TruthFrame, evaluate, evaluate_with_normals};
+
+pub use banding::Banding;
+pub use cost::HardwareCost;
+pub use normals::NormalError;
+pub use report::{accuracy_text, accuracy_value};
+
+/// The target that is measured: the first.
+const TARGET: usize = 0;
+
+/// R, G and B.
+const COLORS: u8 = 7;
+
+/// What a technique is off by because of one thing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cause {
+    /// What: "quantised normals", "method", or the name of a [`Part`].
+    pub name: &'static str,
+    /// What it adds to the error.
+    pub errors: Statistics,
+}
+
+/// How exact a scene's picture is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Accuracy {
+    /// Columns of the target.
+    pub width: u32,
+    /// Rows of the target.
+    pub height: u32,
+    /// Pixels that were measured: those that have a truth.
+    pub pixels: u64,
+    /// Pixels that were drawn and have none.
+    pub without: u64,
+    /// R, G and B together.
+    pub errors: Statistics,
+    /// R, G and B.
+    pub channels: [Statistics; 3],
+    /// The error, split by cause; the causes of a pixel add up to its error.
+    pub causes: Vec<Cause>,
+    /// Bands over the highlight.
+    pub banding: Banding,
+    /// How far the technique's normals are turned, where the truth names their register.
+    pub normals: Option<NormalError>,
+    /// What it costs the chip.
+    pub cost: HardwareCost,
+}
+
+/// Measures a scene with its truth. `None` if no pixel with a truth is drawn.
+pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
+    let ideal = evaluate(plan, truth, TARGET);
+    let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
+    let technique = compare(plan, &options);
+    let shown = Shown::new(plan);
+    let measured: Vec<usize> = (0..ideal.pixels.len())
+        .filter(|at| ideal.pixels[*at].is_some() && technique.errors[*at][0].is_finite())
+        .collect();
+    if measured.is_empty() {
+        return None;
+    }
+    let drawn = technique.errors.iter().filter(|errors| errors[0].is_finite()).count();
+    let read = truth.shading_normal.map(|register| normals::read(scene, plan, truth, register));
+    let quantised = read.as_ref().map(|read| evaluate_with_normals(plan, truth, TARGET, &read.ideal, read.space));
+    let mut errors = [Statistics::default(); 3];
+    let (mut inputs, mut method) = (Statistics::default(), Statistics::default());
+    for at in &measured {
+        let Some(pixel) = &ideal.pixels[*at] else { continue };
+        for n in 0..3 {
+            let wanted = 255.0 * pixel.color[n];
+            let byte = f64::from(shown.0[*at][n]);
+            errors[n].add(byte - wanted);
+            let from_bytes = color(quantised.as_ref(), *at, n).unwrap_or(wanted);
+            inputs.add(from_bytes - wanted);
+            method.add(byte - f64::from(technique.errors[*at][n]) - from_bytes);
+        }
+    }
+    let mut all = Statistics::default();
+    errors.iter().for_each(|channel| all.merge(channel));
+    let pixels = measured.len() as u64;
+    Some(Accuracy {
+        width: ideal.width,
+        height: ideal.height,
+        pixels,
+        without: drawn as u64 - pixels,
+        errors: all,
+        channels: errors,
+        causes: causes(read.is_some().then_some(inputs), method, &technique),
+        banding: Banding::of(&ideal, &shown.0, &measured),
+        normals: read.map(|read| NormalError::of(&ideal, &read, &measured)),
+        cost: HardwareCost::of(scene, plan, pixels),
+    })
+}
+
+/// A channel of a pixel's truth, in steps.
+fn color(frame: Option<&TruthFrame>, at: usize, channel: usize) -> Option<f64> {
+    frame.and_then(|frame| frame.pixels[at].as_ref()).map(|pixel| 255.0 * pixel.color[channel])
+}
+
+fn causes(inputs: Option<Statistics>, method: Statistics, technique: &Comparison) -> Vec<Cause> {
+    let inputs = inputs.map(|errors| Cause { name: "quantised normals", errors });
+    let method = Cause { name: "method", errors: method };
+    let parts =
+        technique.parts.iter().map(|(part, errors): &(Part, Statistics)| Cause { name: part.name(), errors: *errors });
+    inputs.into_iter().chain([method]).chain(parts).collect()
+}
+
+/// What a picture shows, R, G, B, A by pixel.
+struct Shown(Vec<[u8; 4]>);
+
+impl Shown {
+    fn new(plan: &Plan) -> Shown {
+        let frames = ninebit::engine::render(plan, &ninebit::engine::RenderOptions::default());
+        let words = frames.surfaces.get(TARGET).map_or(&[][..], |surface| &surface.words);
+        let format = plan.targets[TARGET].format;
+        Shown(words.iter().map(|word| surface::kept(format, *word)).collect())
+    }
+}

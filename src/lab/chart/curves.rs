@@ -1,0 +1,204 @@
+//! How the cost of a frame grows with what is drawn: in proportion, and not at all with what nothing sees.
+
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::picture::{Axis, COLORS, Drawing, Join, Mark, Series, Shape};
+use super::timing::{Effort, frames};
+use ninebit::engine::{RenderOptions, Renderer};
+use ninebit::limits::Limits;
+use ninebit::plan::Plan;
+use ninebit_scene::{SceneError, parse};
+
+/// The scene, with places for what varies.
+const TEMPLATE: &str = include_str!("curve.ron");
+const DRAW: &str = include_str!("curve_draw.ron");
+
+/// A dot product of what the stage before has left.
+const DOT: &str = "(rgb: (a: ExpandNormal(Spare0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true)),";
+/// A choice between two products.
+const MUX: &str = "(rgb: (a: Spare0, b: PrimaryColor, c: Texture0, d: PrimaryColor, sum: Spare0, mux: true)),";
+/// The first stage.
+const FIRST: &str = "(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true), alpha: (a: Texture0, b: PrimaryColor, ab: Spare0)),";
+/// A stage whose result nothing reads.
+const UNSEEN: &str = "(rgb: (a: Texture0, b: PrimaryColor, ab: Spare1)),";
+
+/// A scene of some size.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Scene {
+    /// Columns and rows of the frame.
+    pub side: usize,
+    /// Columns and rows of the grid, of two triangles each.
+    pub cells: usize,
+    /// Draws of the same.
+    pub draws: usize,
+    /// General stages, 1 to 8: dot products and, each fourth, a choice.
+    pub stages: usize,
+    /// Further stages, at most 8 with the others, that nothing reads.
+    pub unseen: usize,
+}
+
+const PLAIN: Scene = Scene { side: 256, cells: 1, draws: 1, stages: 1, unseen: 0 };
+
+/// A point of a curve.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Point {
+    /// How many there are of what is counted.
+    pub count: u64,
+    /// Pixels that are shaded, once for each draw.
+    pub pixels: u64,
+    /// Of a frame; a quarter of them took less.
+    pub microseconds: f64,
+}
+
+/// A line of a chart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Curve {
+    /// The chart that it stands in, also the name of its file.
+    pub chart: &'static str,
+    /// What is counted.
+    pub counted: &'static str,
+    /// Its name among others of its chart; may be empty.
+    pub label: &'static str,
+    /// In ascending order.
+    pub points: Vec<Point>,
+}
+
+/// Everything that is measured, in order; with few frames, small ones only.
+pub fn scenes(quick: bool) -> Vec<(Curve, Vec<Scene>)> {
+    let most = if quick { 2 } else { usize::MAX };
+    let curve = |chart, counted, label, scenes: Vec<Scene>| {
+        (Curve { chart, counted, label, points: Vec::new() }, scenes.into_iter().take(most).collect())
+    };
+    let sizes = |all: &[usize], of: fn(usize) -> Scene| all.iter().map(|n| of(*n)).collect::<Vec<_>>();
+    vec![
+        curve("cost-pixels", "pixels", "", sizes(&[32, 64, 128, 256, 512, 1024, 2048], |side| Scene { side, ..PLAIN })),
+        curve("cost-draws", "draws", "", sizes(&[1, 4, 16, 64, 256, 1024], |draws| Scene { draws, side: 64, ..PLAIN })),
+        curve(
+            "cost-triangles",
+            "triangles",
+            "",
+            sizes(&[4, 11, 32, 101, 320], |cells| Scene { cells, side: 1024, ..PLAIN }),
+        ),
+        curve(
+            "cost-stages",
+            "stages",
+            "each is seen",
+            sizes(&[1, 2, 3, 4, 5, 6, 7, 8], |stages| Scene { stages, ..PLAIN }),
+        ),
+        curve(
+            "cost-stages",
+            "stages",
+            "only the first is",
+            sizes(&[1, 2, 3, 4, 5, 6, 7, 8], |stages| Scene { unseen: stages - 1, ..PLAIN }),
+        ),
+    ]
+}
+
+impl Scene {
+    /// The scene, ready to be drawn.
+    ///
+    /// # Errors
+    /// The scene is not accepted: a fault of the template.
+    pub fn plan(&self) -> Result<Plan, Box<SceneError>> {
+        let seen = (1..self.stages).map(|n| if n % 4 == 3 { MUX } else { DOT });
+        let stages: String =
+            std::iter::once(FIRST).chain(seen).chain(std::iter::repeat_n(UNSEEN, self.unseen)).collect();
+        let parts = [
+            ("SIDE", self.side.to_string()),
+            ("CELLS", self.cells.to_string()),
+            ("STAGES", stages),
+            ("DRAWS", DRAW.repeat(self.draws)),
+        ];
+        let text =
+            parts.iter().fold(TEMPLATE.to_owned(), |text, (place, with)| text.replace(&format!("<{place}>"), with));
+        Ok(parse(&text, Path::new("curve.ron"), &Limits::default())?.plan)
+    }
+
+    /// A point of what is counted.
+    ///
+    /// # Errors
+    /// As [`plan`](Self::plan).
+    pub fn point(&self, counted: &str, effort: &Effort) -> Result<Point, Box<SceneError>> {
+        let plan = self.plan()?;
+        let options = RenderOptions { threads: 1, ..RenderOptions::default() };
+        let pixels = Renderer::new(&plan, &options).render().1.shaded_pixels.iter().sum();
+        let count = match counted {
+            "pixels" => pixels,
+            "draws" => self.draws as u64,
+            "triangles" => plan.draws.iter().map(|draw| draw.assembly.triangles.len() as u64).sum(),
+            _ => (self.stages + self.unseen) as u64,
+        };
+        Ok(Point { count, pixels, microseconds: frames(&plan, &options, 1, effort).lower / 1000.0 })
+    }
+}
+
+/// The charts, by the names of their files.
+pub fn drawings(curves: &[Curve]) -> Vec<(&'static str, Drawing)> {
+    let mut charts: Vec<&str> = curves.iter().map(|curve| curve.chart).collect();
+    charts.dedup();
+    charts
+        .into_iter()
+        .map(|chart| (chart, drawing(curves.iter().filter(|curve| curve.chart == chart).collect())))
+        .collect()
+}
+
+fn drawing(curves: Vec<&Curve>) -> Drawing {
+    let counted = curves.first().map_or("", |curve| curve.counted);
+    let stages = counted == "stages";
+    // Stages are few, and each pixel has them all.
+    let value =
+        |point: &Point| if stages { point.microseconds * 1000.0 / point.pixels as f64 } else { point.microseconds };
+    let all = || curves.iter().flat_map(|curve| &curve.points);
+    let (counts, values) = (all().map(|point| point.count as f64), all().map(value));
+    let series = curves.iter().enumerate().map(|(n, curve)| Series {
+        label: curve.label.to_owned(),
+        color: COLORS[n % COLORS.len()],
+        shape: Shape::ALL[n % Shape::ALL.len()],
+        join: Join::Solid,
+        marks: curve
+            .points
+            .iter()
+            .map(|point| Mark { x: point.count as f64, y: value(point), name: String::new() })
+            .collect(),
+    });
+    let series = series.collect();
+    let (x, y) = if stages {
+        (Axis::linear("general stages", counts, true), Axis::linear("ns per pixel, one thread", values, true))
+    } else {
+        (Axis::logarithmic(counted, counts), Axis::logarithmic("microseconds per frame, one thread", values))
+    };
+    Drawing { title: format!("Cost by {counted}"), x, y, series, levels: Vec::new(), size: [560.0, 400.0] }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn counts_are_what_the_scenes_have() {
+        for (curve, scenes) in scenes(true) {
+            for (n, scene) in scenes.iter().enumerate() {
+                let point = scene.point(curve.counted, &Effort::QUICK).unwrap();
+                let wanted = match curve.counted {
+                    "pixels" => point.pixels,
+                    "draws" => [1, 4][n],
+                    "triangles" => 2 * (scene.cells * scene.cells) as u64,
+                    _ => n as u64 + 1,
+                };
+                assert_eq!(point.count, wanted, "{}", curve.chart);
+                assert!(point.pixels > 0 && point.microseconds > 0.0, "{}", curve.chart);
+            }
+        }
+    }
+
+    /// Stages that nothing reads are left out of the plan; the others are not.
+    #[test]
+    fn only_seen_stages_are_planned() {
+        let planned = |scene: Scene| scene.plan().unwrap().draws[0].stages.len();
+        assert_eq!(planned(Scene { stages: 8, ..PLAIN }), 8);
+        assert_eq!(planned(Scene { unseen: 7, ..PLAIN }), 1);
+    }
+}

@@ -1,0 +1,382 @@
+//! Charts as pictures: SVG and PNG of one drawing.
+
+use std::sync::Arc;
+
+use kuva::backend::png::PngBackend;
+use kuva::backend::svg::SvgBackend;
+use kuva::plot::legend::{LegendEntry, LegendPosition, LegendShape};
+use kuva::plot::scatter::MarkerShape;
+use kuva::plot::{LinePlot, ScatterPlot};
+use kuva::render::annotations::ReferenceLine;
+use kuva::render::layout::{Layout, TickFormat};
+use kuva::render::plots::Plot;
+use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
+use kuva::render::theme::Theme;
+
+use super::labels::{self, Named, Rect};
+use super::page::plain;
+use ninebit_files::output::OutputError;
+
+/// An axis: what it shows with its unit, and its ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// Quantity and unit.
+    pub label: String,
+    /// Lower end; above 0 on a logarithmic axis.
+    pub low: f64,
+    /// Upper end.
+    pub high: f64,
+    /// Equal ratios are equal lengths.
+    pub logarithmic: bool,
+}
+
+impl Axis {
+    /// A logarithmic axis around values above 0, from a tick to a tick.
+    pub fn logarithmic(label: impl Into<String>, values: impl Iterator<Item = f64>) -> Axis {
+        let (low, high) = ends(values.filter(|value| *value > 0.0), 1.0);
+        Axis {
+            label: label.into(),
+            low: tick_below(low / 1.05),
+            high: 1.0 / tick_below(1.0 / (high * 1.05)),
+            logarithmic: true,
+        }
+    }
+
+    /// A linear axis around values, or around those and 0.
+    pub fn linear(label: impl Into<String>, values: impl Iterator<Item = f64>, from_zero: bool) -> Axis {
+        let (low, high) = ends(values.chain(from_zero.then_some(0.0)), 0.0);
+        let room = if high > low { 0.04 * (high - low) } else { 1.0 };
+        let low = if from_zero && low >= 0.0 { 0.0 } else { low - room };
+        Axis { label: label.into(), low, high: high + room, logarithmic: false }
+    }
+
+    /// Where a value stands between the ends, 0 to 1.
+    fn share(&self, value: f64) -> f64 {
+        if self.logarithmic {
+            (value.max(self.low).ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
+        } else {
+            (value - self.low) / (self.high - self.low)
+        }
+    }
+}
+
+/// The library counts clipped regions through all drawings of a process; here each drawing begins anew, so that its bytes are its own.
+fn numbered_anew(svg: &str) -> String {
+    const NAME: &str = "kuva-clip-";
+    let mut pieces = svg.split(NAME);
+    let mut text = pieces.next().unwrap_or_default().to_owned();
+    let mut known: Vec<&str> = Vec::new();
+    for piece in pieces {
+        let digits = piece.find(|c: char| !c.is_ascii_digit()).unwrap_or(piece.len());
+        let (number, rest) = piece.split_at(digits);
+        let place = known.iter().position(|other| *other == number).unwrap_or_else(|| {
+            known.push(number);
+            known.len() - 1
+        });
+        text += &format!("plot-{place}{rest}");
+    }
+    text
+}
+
+/// The largest 1, 2 or 5 times a power of ten that is not above a positive number.
+fn tick_below(value: f64) -> f64 {
+    let power = 10.0_f64.powf(value.log10().floor());
+    [5.0, 2.0].into_iter().map(|n| n * power).find(|tick| *tick <= value).unwrap_or(power)
+}
+
+/// The least and the largest of finite values; `empty` twice of none.
+fn ends(values: impl Iterator<Item = f64>, empty: f64) -> (f64, f64) {
+    let finite = values.filter(|value| value.is_finite());
+    let ends = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    if ends.0 > ends.1 { (empty, empty) } else { ends }
+}
+
+/// What stands at each point of a series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// Nothing: a line alone.
+    None,
+    /// A disc.
+    Circle,
+    /// A square.
+    Square,
+    /// A triangle.
+    Triangle,
+    /// A diamond.
+    Diamond,
+    /// A cross.
+    Cross,
+}
+
+impl Shape {
+    /// Shapes that are easily told apart, for families in order.
+    pub const ALL: [Shape; 5] = [Shape::Circle, Shape::Square, Shape::Triangle, Shape::Diamond, Shape::Cross];
+
+    fn marker(self) -> Option<MarkerShape> {
+        match self {
+            Shape::None => None,
+            Shape::Circle => Some(MarkerShape::Circle),
+            Shape::Square => Some(MarkerShape::Square),
+            Shape::Triangle => Some(MarkerShape::Triangle),
+            Shape::Diamond => Some(MarkerShape::Diamond),
+            Shape::Cross => Some(MarkerShape::Cross),
+        }
+    }
+}
+
+/// How the points of a series are joined, in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Join {
+    /// Not at all.
+    None,
+    /// By a line.
+    Solid,
+    /// By a dashed line.
+    Dashed,
+}
+
+/// A point and its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mark {
+    /// Value on the horizontal axis.
+    pub x: f64,
+    /// Value on the vertical axis.
+    pub y: f64,
+    /// Written beside it; nothing if empty.
+    pub name: String,
+}
+
+/// Points that belong together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// For the legend; empty keeps it out of there.
+    pub label: String,
+    /// Colour, `#rrggbb`.
+    pub color: &'static str,
+    /// At each point.
+    pub shape: Shape,
+    /// Between points.
+    pub join: Join,
+    /// The points.
+    pub marks: Vec<Mark>,
+}
+
+/// Dark colours that stay apart for those who see few colours.
+pub const COLORS: [&str; 8] = ["#1f5fa8", "#c2401e", "#2f7d4f", "#7b3fa0", "#a67c00", "#00838f", "#ad1457", "#4d4d4d"];
+
+/// A chart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drawing {
+    /// Above the chart.
+    pub title: String,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+    /// Points and lines; later ones stand on earlier ones.
+    pub series: Vec<Series>,
+    /// Levels of the vertical axis with their names, drawn as broken lines.
+    pub levels: Vec<(f64, String)>,
+    /// Width and height in pixels of the SVG; the PNG has twice as many each way.
+    pub size: [f64; 2],
+}
+
+/// A chart in both formats.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// The text of the SVG.
+    pub svg: String,
+    /// The bytes of the PNG.
+    pub png: Vec<u8>,
+}
+
+/// Room around the plot: left, right, top, bottom.
+const MARGINS: [f64; 4] = [78.0, 24.0, 44.0, 62.0];
+/// Height of a letter of names.
+const NAME: u32 = 11;
+const BODY: u32 = 12;
+/// Lines of the grid, pale: names stand on them.
+const GRID: &str = "#e4e4e4";
+/// Columns of the PNG for one of the SVG.
+const SCALE: f32 = 2.0;
+
+impl Drawing {
+    /// Draws it.
+    ///
+    /// # Errors
+    /// The PNG cannot be encoded.
+    pub fn draw(&self) -> Result<Picture, OutputError> {
+        let legend = self.legend();
+        let widest = legend.iter().map(|entry| labels::text_width(&entry.label, f64::from(BODY))).fold(0.0, f64::max);
+        let [left, right, top, bottom] = MARGINS;
+        let right = if legend.is_empty() { right } else { widest + 56.0 };
+        let mut layout = Layout::new((self.x.low, self.x.high), (self.y.low, self.y.high))
+            .with_width(self.size[0])
+            .with_height(self.size[1])
+            .with_force_margins(left, right)
+            .with_force_margins_y(top, bottom)
+            .with_x_axis_min(self.x.low)
+            .with_x_axis_max(self.x.high)
+            .with_y_axis_min(self.y.low)
+            .with_y_axis_max(self.y.high)
+            .with_title(self.title.as_str())
+            .with_x_label(self.x.label.as_str())
+            .with_y_label(self.y.label.as_str())
+            .with_title_size(15)
+            .with_label_size(13)
+            .with_tick_size(11)
+            .with_body_size(BODY)
+            .with_theme(Theme { grid_color: GRID.to_owned(), ..Theme::light() });
+        if self.x.logarithmic {
+            layout = layout.with_log_x().with_x_tick_format(TickFormat::Custom(Arc::new(plain)));
+        }
+        if self.y.logarithmic {
+            layout = layout.with_log_y().with_y_tick_format(TickFormat::Custom(Arc::new(plain)));
+        }
+        if !legend.is_empty() {
+            let place = LegendPosition::Custom(self.size[0] - right + 10.0, top);
+            layout = layout.with_legend_entries(legend).with_legend_position(place).with_legend_box(false);
+        }
+        for (level, name) in &self.levels {
+            layout = layout
+                .with_reference_line(ReferenceLine::horizontal(*level).with_color("#444444").with_label(name.as_str()));
+        }
+        let plots = self.series.iter().flat_map(Series::plots).collect();
+        let mut scene = render_multiple(plots, layout);
+        let plot = Rect { x: left, y: top, width: self.size[0] - left - right, height: self.size[1] - top - bottom };
+        self.write_names(&mut scene, &plot);
+        let png = PngBackend::new().with_scale(SCALE).render_scene(&scene).map_err(|reason| OutputError::Encode {
+            width: (self.size[0] * f64::from(SCALE)) as u32,
+            height: (self.size[1] * f64::from(SCALE)) as u32,
+            reason,
+        })?;
+        Ok(Picture { svg: numbered_anew(&SvgBackend::new().render_scene(&scene)) + "\n", png })
+    }
+
+    fn legend(&self) -> Vec<LegendEntry> {
+        let named = self.series.iter().filter(|series| !series.label.is_empty());
+        named
+            .map(|series| LegendEntry {
+                label: series.label.clone(),
+                color: series.color.to_owned(),
+                shape: series.shape.marker().map_or(LegendShape::Line, LegendShape::Marker),
+                dasharray: (series.join == Join::Dashed).then(|| "6 4".to_owned()),
+            })
+            .collect()
+    }
+
+    /// The names of the marks, with a thin line to those that stand apart.
+    fn write_names(&self, scene: &mut Scene, plot: &Rect) {
+        let at = |mark: &Mark| {
+            [plot.x + plot.width * self.x.share(mark.x), plot.y + plot.height * (1.0 - self.y.share(mark.y))]
+        };
+        let mut lines = Vec::new();
+        for series in self.series.iter().filter(|series| series.join != Join::None) {
+            lines.extend(series.marks.windows(2).map(|pair| (at(&pair[0]), at(&pair[1]))));
+        }
+        let marks: Vec<(&Series, &Mark)> =
+            self.series.iter().flat_map(|series| series.marks.iter().map(move |mark| (series, mark))).collect();
+        let marks: Vec<(&Series, &Mark)> =
+            marks.into_iter().filter(|(series, mark)| series.shape != Shape::None || !mark.name.is_empty()).collect();
+        let size = f64::from(NAME);
+        let named: Vec<Named> = marks
+            .iter()
+            .map(|(_, mark)| {
+                let height = if mark.name.is_empty() { 0.0 } else { size + 2.0 };
+                Named { at: at(mark), size: [labels::text_width(&mark.name, size), height] }
+            })
+            .collect();
+        let places = labels::place(&named, plot, &lines);
+        for (((series, mark), named), place) in marks.iter().zip(&named).zip(&places) {
+            if mark.name.is_empty() {
+                continue;
+            }
+            if let Some(([x1, y1], [x2, y2])) = labels::leader(named, place) {
+                let stroke = "#999999".into();
+                scene.add(Primitive::Line { x1, y1, x2, y2, stroke, stroke_width: 0.7, stroke_dasharray: None });
+            }
+            // Text that is narrower than was reckoned stays near its mark.
+            let (x, anchor) = if place.x + place.width <= named.at[0] {
+                (place.x + place.width, TextAnchor::End)
+            } else if place.x >= named.at[0] {
+                (place.x, TextAnchor::Start)
+            } else {
+                (place.x + place.width / 2.0, TextAnchor::Middle)
+            };
+            scene.add(Primitive::Text {
+                x,
+                y: place.y + size - 0.5,
+                content: mark.name.clone(),
+                size: NAME,
+                anchor,
+                rotate: None,
+                bold: false,
+                color: Some(series.color.into()),
+            });
+        }
+    }
+}
+
+impl Series {
+    fn plots(&self) -> Vec<Plot> {
+        let points = || self.marks.iter().map(|mark| (mark.x, mark.y));
+        let mut plots = Vec::new();
+        let line = || LinePlot::new().with_data(points()).with_color(self.color).with_stroke_width(1.6);
+        match self.join {
+            Join::None => {}
+            Join::Solid => plots.push(Plot::Line(line())),
+            Join::Dashed => plots.push(Plot::Line(line().with_dashed())),
+        }
+        if let Some(marker) = self.shape.marker() {
+            plots.push(Plot::Scatter(
+                ScatterPlot::new().with_data(points()).with_color(self.color).with_size(4.5).with_marker(marker),
+            ));
+        }
+        plots
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logarithmic_axes_end_at_ticks() {
+        let axis = |values: &[f64]| {
+            let axis = Axis::logarithmic("", values.iter().copied());
+            (axis.low, (axis.high * 1e6).round() / 1e6)
+        };
+        assert_eq!(axis(&[3.0, 70.0]), (2.0, 100.0));
+        assert_eq!(axis(&[1.06, 1.5, 0.0, f64::NAN]), (1.0, 2.0));
+        assert_eq!(axis(&[1.0, 20.0]), (0.5, 50.0));
+        assert_eq!(axis(&[]), (0.5, 2.0));
+    }
+
+    #[test]
+    fn a_drawing_holds_its_names_and_both_formats_are_the_same_each_time() {
+        let mark = |x: f64, y: f64, name: &str| Mark { x, y, name: name.to_owned() };
+        let series = Series {
+            label: "a family".to_owned(),
+            color: COLORS[0],
+            shape: Shape::Circle,
+            join: Join::Dashed,
+            marks: vec![mark(1.0, 2.0, "one < two"), mark(5.0, 8.0, "other")],
+        };
+        let drawing = Drawing {
+            title: "title".to_owned(),
+            x: Axis::logarithmic("ns", [1.0, 5.0].into_iter()),
+            y: Axis::linear("error", [2.0, 8.0].into_iter(), true),
+            series: vec![series],
+            levels: vec![(4.0, "limit 4".to_owned())],
+            size: [400.0, 300.0],
+        };
+        let picture = drawing.draw().unwrap();
+        for text in ["title", "a family", "one &lt; two", "other", "limit 4"] {
+            assert!(picture.svg.contains(text), "{text}");
+        }
+        let png = image::load_from_memory(&picture.png).unwrap();
+        assert_eq!((png.width(), png.height()), (800, 600));
+        assert_eq!(drawing.draw().unwrap(), picture);
+    }
+}

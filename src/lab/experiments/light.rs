@@ -1,0 +1,91 @@
+//! A directional light that sinks to the horizon of a bumpy surface and below it.
+
+use super::strip::{WIDTH, angle, centre, colors, draw, errors, largest, root_mean_square, scene, whole_row};
+use super::{Method, Scale, Sweep, steps};
+use ninebit_scene::SceneError;
+use ninebit_scene::generate::normal_map::encode;
+
+/// What happens to light that comes from below the surface.
+#[derive(Clone, Copy)]
+enum Shadow {
+    /// Nothing: bumps catch it.
+    None,
+    /// The light's own height above the surface, times four, multiplies it.
+    Term,
+}
+
+pub(super) fn behind() -> Sweep {
+    let method = |name: &str, shadow: Shadow, works: f64| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |elevation| Ok(largest(&light(elevation, 30.0, shadow)?.0))),
+        works,
+        fails: -15.0,
+    };
+    Sweep {
+        name: "light-behind",
+        title: "A light that sinks below the surface",
+        parameter: "height of the light, degrees",
+        error: "largest error, 8-bit steps",
+        limit: 16.0,
+        scale: Scale::Real(0.05),
+        shown: steps(-40.0, 40.0, 81),
+        methods: vec![
+            method("N . L", Shadow::None, 20.0),
+            Method { fails: 1.0, ..method("N . L times 4 L.z", Shadow::Term, 30.0) },
+        ],
+    }
+}
+
+pub(super) fn grazing() -> Sweep {
+    let method = |name: &str, bumps: f64| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |elevation| {
+            let (errors, ideal) = light(elevation, bumps, Shadow::None)?;
+            Ok(100.0 * root_mean_square(&errors) / root_mean_square(&ideal).max(1e-9))
+        }),
+        works: 60.0,
+        fails: 0.25,
+    };
+    Sweep {
+        name: "light-grazing",
+        title: "A light that grazes the surface",
+        parameter: "height of the light, degrees",
+        error: "rms error, per cent of the rms light",
+        limit: 5.0,
+        scale: Scale::Real(0.05),
+        shown: (1..=60).map(f64::from).collect(),
+        methods: vec![method("bumps of up to 2 degrees", 2.0), method("bumps of up to 10 degrees", 10.0)],
+    }
+}
+
+/// The errors in steps, and what there ought to be.
+fn light(elevation: f64, bumps: f64, shadow: Shadow) -> Result<(Vec<f64>, Vec<f64>), Box<SceneError>> {
+    let elevation = elevation.to_radians();
+    let tilt = |at: f64| angle(-bumps, bumps, at);
+    let normals = colors(
+        "normals",
+        (0..WIDTH).map(|x| {
+            let tilt = tilt(centre(x, WIDTH));
+            encode([tilt.sin(), 0.0, tilt.cos()])
+        }),
+    );
+    let [r, g, b] = encode([elevation.cos(), 0.0, elevation.sin()]);
+    let dot = "a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true";
+    let stages = match shadow {
+        Shadow::None => format!("(rgb: ({dot}))"),
+        Shadow::Term => format!(
+            "(rgb: ({dot}), alpha: (a: ExpandNormal(ConstantColor0, Blue), b: UnsignedInvert(Zero), ab: Spare0, \
+             scale: Four)), (rgb: (a: Spare0, b: (Spare0, Alpha), ab: Spare0))"
+        ),
+    };
+    let draw_text = format!(
+        "({}, textures: [(texture: \"normals\", mag_filter: Nearest)], program: Combiners(constants: (({r}, {g}, {b})), \
+         stages: [{stages}], final_combiner: (d: Spare0)))",
+        whole_row(WIDTH)
+    );
+    let pixels = draw(&scene("Nv2a", WIDTH, "", &normals, &draw_text))?;
+    let ideal =
+        |at: f64| if elevation <= 0.0 { 0.0 } else { (tilt(at) - (std::f64::consts::FRAC_PI_2 - elevation)).cos() };
+    let wanted = (0..WIDTH).map(|x| 255.0 * ideal(centre(x, WIDTH)).max(0.0)).collect();
+    Ok((errors(&pixels, 0, ideal), wanted))
+}

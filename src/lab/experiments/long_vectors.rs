@@ -1,0 +1,71 @@
+//! Light vectors longer than one.
+
+use super::order::pass;
+use super::strip::{WIDTH, angle, byte, bytes, centre, colors, draw, errors, largest, scene, whole_row};
+use super::{Method, Scale, Sweep, steps};
+use ninebit_scene::generate::normal_map::encode;
+
+/// The light stands in the middle of an octant.
+const THIRD: f64 = 0.577_350_269_189_625_8;
+
+pub(super) fn sweep() -> Sweep {
+    let method = |name: &str, text: fn(f64) -> String| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |length| {
+            Ok(largest(&errors(&draw(&text(length))?, 0, |at| {
+                let [x, y, z] = normal(at);
+                length * THIRD * (x + y + z)
+            })))
+        }),
+        works: 1.0,
+        fails: 1.9,
+    };
+    Sweep {
+        name: "long-vectors",
+        title: "Light vectors longer than one",
+        parameter: "length of the light vector",
+        error: "largest error, 8-bit steps",
+        limit: 8.0,
+        scale: Scale::Real(0.005),
+        shown: steps(1.0, 1.9, 46),
+        methods: vec![method("dot product of a general stage", combined), method("passes, additions first", passes)],
+    }
+}
+
+/// From facing away in y to facing it, between x and z.
+fn normal(at: f64) -> [f64; 3] {
+    let tilt = angle(-90.0, 90.0, at);
+    let side = tilt.cos() * std::f64::consts::FRAC_1_SQRT_2;
+    [side, tilt.sin(), side]
+}
+
+fn combined(length: f64) -> String {
+    let normals = colors("normals", (0..WIDTH).map(|x| encode(normal(centre(x, WIDTH)))));
+    let [r, g, b] = encode([(length * THIRD).min(1.0); 3]);
+    let draw = format!(
+        "({}, textures: [(texture: \"normals\", mag_filter: Nearest)], program: Combiners(constants: (({r}, {g}, {b})), \
+         stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true))], \
+         final_combiner: (d: Spare0)))",
+        whole_row(WIDTH)
+    );
+    scene("Nv2a", WIDTH, "", &normals, &draw)
+}
+
+fn passes(length: f64) -> String {
+    let half = |name: &str, of: fn([f64; 3]) -> f64| {
+        let texels: Vec<u8> = (0..WIDTH).map(|x| byte(of(normal(centre(x, WIDTH))).max(0.0))).collect();
+        bytes(name, WIDTH, &texels)
+    };
+    let textures = half("+x", |[x, _, _]| x)
+        + &half("+y", |[_, y, _]| y)
+        + &half("-y", |[_, y, _]| -y)
+        + &half("+z", |[_, _, z]| z);
+    let light = byte((length * THIRD).min(1.0));
+    let draws = [
+        pass("+x", light, "Add"),
+        pass("+y", light, "Add"),
+        pass("+z", light, "Add"),
+        pass("-y", light, "ReverseSubtract"),
+    ];
+    scene("Nv2a", WIDTH, "", &textures, &draws.concat())
+}

@@ -1,0 +1,77 @@
+//! Highlights of a bumpy surface that moves away.
+
+use super::strip::{angle, centre, colors, draw, errors, root_mean_square, row, scene};
+use super::{Method, Scale, Sweep};
+use ninebit_scene::generate::normal_map::encode;
+
+const PIXELS: usize = 256;
+/// Texels of the map.
+const TEXELS: usize = 512;
+/// Degrees by which normals lean at most.
+const TILT: f64 = 35.0;
+
+pub(super) fn sweep() -> Sweep {
+    let method = |name: &str, squarings: u32, filter: &'static str| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |texels| {
+            let pixels = draw(&text(texels, squarings, filter))?;
+            Ok(root_mean_square(&errors(&pixels, 0, |at| seen(at, texels, squarings))))
+        }),
+        works: 1.0,
+        fails: 12.0,
+    };
+    Sweep {
+        name: "minified-normals",
+        title: "A highlight on bumps that get smaller",
+        parameter: "texels a pixel",
+        error: "rms error, 8-bit steps",
+        limit: 20.0,
+        scale: Scale::Real(0.02),
+        shown: (0..=40).map(|n| (f64::from(n) / 8.0).exp2()).collect(),
+        methods: vec![
+            method("N . H, levels", 0, "mip_filter: Linear"),
+            method("(N . H)^8, levels", 3, "mip_filter: Linear"),
+            method("(N . H)^8, level 0 alone", 3, "mip_filter: None"),
+        ],
+    }
+}
+
+/// How a texel's normal leans: waves of two lengths, about a dozen texels and thirty.
+fn tilt(texel: usize) -> f64 {
+    let at = std::f64::consts::TAU * texel as f64 / TEXELS as f64;
+    angle(-TILT, TILT, 0.5 + 0.25 * ((41.0 * at).sin() + (17.0 * at + 1.0).sin()))
+}
+
+/// The mean of the highlight over the texels that a pixel covers.
+fn seen(at: f64, texels: f64, squarings: u32) -> f64 {
+    const SAMPLES: usize = 64;
+    let sample = |n: usize| {
+        let place = at * texels * PIXELS as f64 + (centre(n, SAMPLES) - 0.5) * texels;
+        // Between texels as an exact filter mixes them, brought to unit length.
+        let left = (place - 0.5).floor();
+        let weight = place - 0.5 - left;
+        let normal = |texel: f64| {
+            let tilt = tilt(texel.rem_euclid(TEXELS as f64) as usize);
+            [tilt.sin(), tilt.cos()]
+        };
+        let (a, b) = (normal(left), normal(left + 1.0));
+        let mixed = [0, 1].map(|k| a[k] + (b[k] - a[k]) * weight);
+        let cosine = mixed[1] / (mixed[0] * mixed[0] + mixed[1] * mixed[1]).sqrt();
+        cosine.powi(1 << squarings)
+    };
+    (0..SAMPLES).map(sample).sum::<f64>() / SAMPLES as f64
+}
+
+fn text(texels: f64, squarings: u32, filter: &str) -> String {
+    let normals = colors("normals", (0..TEXELS).map(|n| encode([tilt(n).sin(), 0.0, tilt(n).cos()])));
+    let normals = normals.replacen("(source:", "(levels: All, source:", 1);
+    let right = format!("t0: ({}, 0)", texels * PIXELS as f64 / TEXELS as f64);
+    let draw = format!(
+        "({}, textures: [(texture: \"normals\", {filter})], program: Combiners(constants: ((128, 128, 255)), \
+         stages: [(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true)), {}], \
+         final_combiner: (d: Spare0)))",
+        row(PIXELS, "t0: (0, 0)", &right),
+        "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ".repeat(squarings as usize)
+    );
+    scene("Nv2a", PIXELS, "", &normals, &draw)
+}

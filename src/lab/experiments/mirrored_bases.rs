@@ -1,0 +1,71 @@
+//! Tangent bases where a texture is mirrored.
+
+use super::strip::{WIDTH, colors, draw, errors, root_mean_square, scene};
+use super::{Method, Scale, Sweep, steps};
+use ninebit_scene::generate::normal_map::encode;
+
+/// Toward the light: along the binormal and up.
+const LIGHT: [f64; 3] = [0.0, 0.6, 0.8];
+/// The left half of a square shows the texture mirrored; corners of the halves as x, y, s, t.
+const LEFT: &str = "(position: (-1, -1), normal: (0, 0, 1), t0: (1, 1)), (position: (0, -1), normal: (0, 0, 1), t0: (0, 1)), \
+     (position: (0, 1), normal: (0, 0, 1), t0: (0, 0)), (position: (-1, 1), normal: (0, 0, 1), t0: (1, 0)), ";
+const RIGHT: &str = "(position: (0, -1), normal: (0, 0, 1), t0: (0, 1)), (position: (1, -1), normal: (0, 0, 1), t0: (1, 1)), \
+     (position: (1, 1), normal: (0, 0, 1), t0: (1, 0)), (position: (0, 1), normal: (0, 0, 1), t0: (0, 0)), ";
+
+pub(super) fn sweep() -> Sweep {
+    let method = |name: &str, vertices: fn() -> String| Method {
+        name: name.to_owned(),
+        measure: Box::new(move |degrees: f64| {
+            let tilt = degrees.to_radians();
+            let pixels = draw(&text(tilt, &vertices()))?;
+            Ok(root_mean_square(&errors(&pixels, 0, |_| tilt.sin() * LIGHT[1] + tilt.cos() * LIGHT[2])))
+        }),
+        works: 0.05,
+        fails: 45.0,
+    };
+    Sweep {
+        name: "mirrored-bases",
+        title: "Tangent bases where a texture is mirrored",
+        parameter: "tilt of the mapped normal, degrees",
+        error: "rms error, 8-bit steps",
+        limit: 8.0,
+        scale: Scale::Real(0.05),
+        shown: steps(0.0, 45.0, 46),
+        methods: vec![
+            method("bases of the mesh, split where it is mirrored", || {
+                let [x, y, z] = LIGHT;
+                format!(
+                    "vertices: Matrix(matrix: Identity, mesh: Triangles(vertices: [{LEFT}{RIGHT}], indices: [0, 1, 2, 0, 2, 3, 4, \
+                     5, 6, 4, 6, 7]), diffuse: LightVector(direction: ({x}, {y}, {z})))"
+                )
+            }),
+            method("binormal taken as N x T", || {
+                // Where s runs to the left, N x T points against the binormal.
+                listed([-LIGHT[1], -LIGHT[1]], [LIGHT[1], LIGHT[1]])
+            }),
+            method("one basis for both sides of the seam", || listed([-LIGHT[1], 0.0], [0.0, LIGHT[1]])),
+        ],
+    }
+}
+
+/// Quads with light vectors whose binormal components are given at the ends of each half.
+fn listed(left: [f64; 2], right: [f64; 2]) -> String {
+    let vertex = |x: usize, y: usize, binormal: f64| {
+        let [g, b] = [binormal, LIGHT[2]].map(|n| 0.5 + 0.5 * n);
+        format!("(position: ({x}, {y}), diffuse: Float(0.5, {g}, {b}, 1)), ")
+    };
+    let quad = |from: usize, to: usize, [a, b]: [f64; 2]| {
+        vertex(from, 0, a) + &vertex(to, 0, b) + &vertex(to, 1, b) + &vertex(from, 1, a)
+    };
+    format!("vertices: Window([{}{}]), topology: Quads", quad(0, WIDTH / 2, left), quad(WIDTH / 2, WIDTH, right))
+}
+
+/// A map of one normal that leans along the binormal.
+fn text(tilt: f64, vertices: &str) -> String {
+    let normals = colors("normals", std::iter::once(encode([0.0, tilt.sin(), tilt.cos()])));
+    let draw = format!(
+        "({vertices}, textures: [\"normals\"], program: Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), \
+         b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true))], final_combiner: (d: Spare0)))"
+    );
+    scene("Nv10", WIDTH, "", &normals, &draw)
+}

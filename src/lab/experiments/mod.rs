@@ -1,0 +1,191 @@
+//! Where methods fail: the parameter that breaks each, and from which value on.
+//!
+//! A [`Sweep`] makes a small scene for every value of its parameter, draws it with the engine, and measures how far the picture is from a
+//! formula in float64. [`threshold`] halves an interval, between a value at which a method works and one at which it fails, until the place
+//! is found. Nothing about the outcome is written down here: thresholds, curves and their page come from the model.
+#![allow(clippy::float_arithmetic, reason = "measures pictures against formulas; nothing of this is stored")]
+
+mod cube_resolution;
+mod destination_alpha;
+mod emboss;
+mod filtered_normals;
+mod half_vectors;
+mod light;
+mod long_vectors;
+mod minified_normals;
+mod mirrored_bases;
+mod order;
+pub mod page;
+mod power_table;
+mod squaring;
+mod strip;
+mod subtraction;
+
+use ninebit_scene::SceneError;
+
+/// How far a picture is off for a value of the parameter.
+pub type Measure = Box<dyn Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync>;
+
+/// One way of doing it.
+pub struct Method {
+    /// For the legend and the table.
+    pub name: String,
+    /// How far the picture is off.
+    pub measure: Measure,
+    /// A value of the parameter at which it ought to work.
+    pub works: f64,
+    /// One at which it ought to fail.
+    pub fails: f64,
+}
+
+impl std::fmt::Debug for Method {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Method").field("name", &self.name).finish_non_exhaustive()
+    }
+}
+
+/// The values that a parameter takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// Real numbers; a threshold is sought to this much.
+    Real(f64),
+    /// Whole numbers.
+    Whole,
+    /// Powers of two.
+    Doubling,
+}
+
+/// A parameter that is moved until methods fail.
+#[derive(Debug)]
+pub struct Sweep {
+    /// Name of its files, and of its place in the page.
+    pub name: &'static str,
+    /// Above its picture.
+    pub title: &'static str,
+    /// What is moved, with its unit.
+    pub parameter: &'static str,
+    /// What is measured, with its unit.
+    pub error: &'static str,
+    /// An error up to this much is called working.
+    pub limit: f64,
+    /// What values the parameter takes.
+    pub scale: Scale,
+    /// The values that the picture shows.
+    pub shown: Vec<f64>,
+    /// The ways of doing it.
+    pub methods: Vec<Method>,
+}
+
+/// Where a method stops working.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Threshold {
+    /// Between two values.
+    Between {
+        /// It works here.
+        works: f64,
+        /// It fails here.
+        fails: f64,
+    },
+    /// It works even where it ought to fail.
+    Holds,
+    /// It fails even where it ought to work.
+    Fails,
+}
+
+impl Scale {
+    /// A value between two others, or `None` if there is none that matters.
+    fn between(self, a: f64, b: f64) -> Option<f64> {
+        match self {
+            Scale::Real(enough) => ((a - b).abs() > enough).then_some(0.5 * (a + b)),
+            Scale::Whole => {
+                let middle = (0.5 * (a + b)).floor();
+                (middle != a && middle != b).then_some(middle)
+            }
+            Scale::Doubling => Scale::Whole.between(a.log2().round(), b.log2().round()).map(f64::exp2),
+        }
+    }
+}
+
+/// Finds where a method's error crosses the limit, by halving the interval between where it works and where it fails.
+///
+/// # Errors
+/// A scene of the sweep is not accepted: a fault of the sweep.
+pub fn threshold(sweep: &Sweep, method: &Method) -> Result<Threshold, Box<SceneError>> {
+    let works_at = |value: f64| Ok::<bool, Box<SceneError>>((method.measure)(value)? <= sweep.limit);
+    if !works_at(method.works)? {
+        return Ok(Threshold::Fails);
+    }
+    if works_at(method.fails)? {
+        return Ok(Threshold::Holds);
+    }
+    let (mut works, mut fails) = (method.works, method.fails);
+    while let Some(middle) = sweep.scale.between(works, fails) {
+        if works_at(middle)? {
+            works = middle;
+        } else {
+            fails = middle;
+        }
+    }
+    Ok(Threshold::Between { works, fails })
+}
+
+/// Every sweep, in the order of the page.
+pub fn sweeps() -> Vec<Sweep> {
+    vec![
+        squaring::sweep(),
+        power_table::sweep(),
+        subtraction::sweep(),
+        order::sweep(),
+        long_vectors::sweep(),
+        light::grazing(),
+        light::behind(),
+        filtered_normals::sweep(),
+        minified_normals::sweep(),
+        cube_resolution::sweep(),
+        half_vectors::sweep(),
+        destination_alpha::sweep(),
+        emboss::sweep(),
+        mirrored_bases::sweep(),
+    ]
+}
+
+/// `count` values from `low` to `high`, equally far apart.
+fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {
+    (0..count).map(|n| low + (high - low) * n as f64 / (count.max(2) - 1) as f64).collect()
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    fn sweep(scale: Scale, method: Method) -> Sweep {
+        Sweep {
+            name: "",
+            title: "",
+            parameter: "",
+            error: "",
+            limit: 4.0,
+            scale,
+            shown: Vec::new(),
+            methods: vec![method],
+        }
+    }
+
+    fn found(scale: Scale, works: f64, fails: f64, measure: fn(f64) -> f64) -> Threshold {
+        let measure = Box::new(move |value| Ok(measure(value)));
+        let sweep = sweep(scale, Method { name: String::new(), measure, works, fails });
+        threshold(&sweep, &sweep.methods[0]).unwrap()
+    }
+
+    #[test]
+    fn halving_finds_the_place() {
+        let between = |works, fails| Threshold::Between { works, fails };
+        assert_eq!(found(Scale::Whole, 0.0, 100.0, |v| v / 3.0), between(12.0, 13.0));
+        assert_eq!(found(Scale::Whole, 100.0, -7.0, |v| 20.0 - v), between(16.0, 15.0));
+        assert_eq!(found(Scale::Doubling, 1.0, 1024.0, |v| v / 10.0), between(32.0, 64.0));
+        assert_eq!(found(Scale::Real(0.25), 0.0, 8.0, |v| v), between(4.0, 4.25));
+        assert_eq!(found(Scale::Whole, 0.0, 4.0, |v| v), Threshold::Holds);
+        assert_eq!(found(Scale::Whole, 5.0, 9.0, |v| v), Threshold::Fails);
+    }
+}

@@ -1,7 +1,0 @@
-//! The `ninebit` command.
-
-mod cli;
-
-fn main() -> std::process::ExitCode {
-    cli::main()
-}

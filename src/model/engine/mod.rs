@@ -1,0 +1,319 @@
+//! The engines: a plan in, frames or the trace of one pixel out.
+//!
+//! `pixel.rs` owns the order in which the blocks run for one pixel, generic over the lane and the observer; `walk.rs` walks triangles and
+//! quads: the scalar engine, which is the definition. `rows/` is the fast engine: the same bytes, a block of pixels at a time. `bins.rs` tells
+//! which triangles meet which bands of rows. This module runs draws and bands of rows on threads. A pixel's result is a pure function of the
+//! plan, whatever the engine, bands and threads.
+
+mod bins;
+mod counting;
+pub mod pixel;
+mod report;
+mod rows;
+mod tracing;
+pub mod walk;
+
+pub use counting::{DrawCounts, count, fragments};
+pub use rows::{Isa, Reason};
+pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
+
+use crate::frame::{Frames, Surface};
+use crate::plan::Plan;
+use crate::rop::surface;
+use crate::state::{Named, Target, Texture, TextureImage, named};
+use crate::texture::unit::Image;
+use crate::threads::Team;
+use crate::trace::Silent;
+use bins::Bins;
+use rows::Rows;
+use std::ops::Range;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+
+named! {
+    /// Which engine draws. The bytes do not depend on it.
+    pub enum Engine {
+        /// The definition: one pixel at a time.
+        Scalar = "scalar",
+        /// Blocks of pixels.
+        Fast = "fast",
+    }
+}
+
+/// How to render.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RenderOptions {
+    /// Threads; 0 takes one a core. The result does not depend on it.
+    pub threads: usize,
+    /// The engine. The result does not depend on it.
+    pub engine: Engine,
+    /// The instruction set of the fast engine; `None` takes the widest. One that the machine lacks is taken as the baseline.
+    pub isa: Option<Isa>,
+    /// Rows of a band, the unit that threads share; `None` takes what suits. The result does not depend on it.
+    pub band: Option<usize>,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        RenderOptions { threads: 1, engine: Engine::Fast, isa: None, band: None }
+    }
+}
+
+/// What a render did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Covered pixels of each draw, counted once for each triangle that covers them.
+    pub shaded_pixels: Vec<u64>,
+    /// Of the fast engine: pixels of which the definition computed something, by the reason, and none of any other. A pixel counts once for
+    /// each thing of its that was computed so.
+    pub defined_pixels: Vec<(Reason, u64)>,
+}
+
+/// Least rows of a band, unless asked for: the unit of work that threads share.
+const BAND: usize = 16;
+
+/// Below this many pixels draws stay on one thread.
+const SMALL: usize = 16_384;
+
+/// Pixels of a band that stays in cache while several draws pass over it.
+const CACHED: usize = 32_768;
+
+/// Up to so many triangles a draw, setting each up for every band costs nothing to speak of.
+const FEW: usize = 16;
+
+/// Renders every draw.
+pub fn render(plan: &Plan, options: &RenderOptions) -> Frames {
+    render_counted(plan, options, &|_, _| {}).0
+}
+
+/// Renders every draw, counting; `progress` is told how many of how many bands of rows are done, from any thread.
+pub fn render_counted(
+    plan: &Plan,
+    options: &RenderOptions,
+    progress: &(dyn Fn(usize, usize) + Sync),
+) -> (Frames, Statistics) {
+    let mut frames = cleared(plan);
+    let renderer = Renderer::new(plan, options);
+    let total = renderer.groups().map(|draws| draws.len() * renderer.bands(&draws)).sum();
+    let done = AtomicUsize::new(0);
+    let band_done = || progress(done.fetch_add(1, Ordering::Relaxed) + 1, total);
+    let statistics = renderer.draw_all(&mut frames, &band_done);
+    (frames, statistics)
+}
+
+/// A plan ready to be drawn, any number of times.
+#[derive(Debug)]
+pub struct Renderer<'a> {
+    plan: &'a Plan,
+    rows: Option<Rows>,
+    isa: Isa,
+    band: Option<usize>,
+    team: Team,
+    /// Of each draw that the fast engine draws in several bands.
+    bins: Vec<Option<Bins>>,
+}
+
+impl<'a> Renderer<'a> {
+    /// Decodes textures and compiles draws, as far as the engine wants that, and starts the threads.
+    pub fn new(plan: &'a Plan, options: &RenderOptions) -> Renderer<'a> {
+        // The caller's thread draws too.
+        let team = Team::new(options.threads);
+        let isa = options
+            .isa
+            .filter(|isa| isa.is_available())
+            .unwrap_or_else(|| if options.isa.is_some() { Isa::Baseline } else { Isa::best() });
+        let rows = (options.engine == Engine::Fast).then(|| Rows::compile(plan));
+        let mut renderer = Renderer { plan, rows, isa, band: options.band, team, bins: Vec::new() };
+        if renderer.rows.is_some() {
+            renderer.bins = renderer.groups().flat_map(|draws| renderer.bin(draws)).collect();
+        }
+        renderer
+    }
+
+    /// The bins of some draws that are drawn together.
+    fn bin(&self, draws: Range<usize>) -> impl Iterator<Item = Option<Bins>> {
+        let (height, bands) = (self.band(&draws), self.bands(&draws));
+        self.plan.draws[draws].iter().map(move |draw| (bands > 1).then(|| Bins::new(&draw.assembly, height, bands)))
+    }
+
+    /// The engine that draws.
+    pub fn engine(&self) -> Engine {
+        if self.rows.is_some() { Engine::Fast } else { Engine::Scalar }
+    }
+
+    /// The instruction set that the fast engine uses.
+    pub fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    /// Clears the targets and draws everything.
+    pub fn render(&self) -> (Frames, Statistics) {
+        let mut frames = cleared(self.plan);
+        let statistics = self.draw_all(&mut frames, &|| {});
+        (frames, statistics)
+    }
+
+    /// Draws everything once more on frames that [`render`](Self::render) made; nothing is cleared.
+    pub fn redraw(&self, frames: &mut Frames) -> Statistics {
+        self.draw_all(frames, &|| {})
+    }
+
+    fn draw_all(&self, frames: &mut Frames, band_done: &(dyn Fn() + Sync)) -> Statistics {
+        let defined = [const { AtomicU64::new(0) }; Reason::ALL.len()];
+        let shaded = self.groups().flat_map(|draws| self.draw_group(draws, frames, band_done, &defined));
+        let shaded_pixels = shaded.collect();
+        let defined = Reason::ALL.iter().copied().zip(defined.map(AtomicU64::into_inner));
+        Statistics { shaded_pixels, defined_pixels: defined.filter(|(_, count)| *count > 0).collect() }
+    }
+
+    /// Neighbouring draws on one target: they are drawn band by band, all of them on one before any on the next, so that the band stays in
+    /// cache. None reads what another has drawn except through the surface itself.
+    fn groups(&self) -> impl Iterator<Item = Range<usize>> {
+        let draws = &self.plan.draws;
+        let mut first = 0;
+        std::iter::from_fn(move || {
+            let target = draws.get(first)?.target;
+            let count = draws[first..].iter().take_while(|draw| draw.target == target).count();
+            first += count;
+            Some(first - count..first)
+        })
+    }
+
+    /// Rows of a band of some draws.
+    fn band(&self, draws: &Range<usize>) -> usize {
+        let target = &self.plan.targets[self.plan.draws[draws.start].target];
+        let (width, height) = (target.width as usize, target.height as usize);
+        let triangles: usize = self.plan.draws[draws.clone()].iter().map(|draw| draw.assembly.triangles.len()).sum();
+        let rows = match (&self.rows, self.team.count()) {
+            (None, _) => BAND,
+            // What is set up for a triangle is set up for each band that it meets.
+            (Some(_), 1) if draws.len() == 1 || triangles > FEW * draws.len() => height,
+            (Some(_), 1) => CACHED / width,
+            // More would share the work more evenly; but triangles on a border are set up on both sides of it.
+            (Some(_), threads) => height.div_ceil(3 * threads),
+        };
+        // Even, so that quads stay whole.
+        self.band.unwrap_or(rows.min(height).max(BAND)).max(1).next_multiple_of(2)
+    }
+
+    fn bands(&self, draws: &Range<usize>) -> usize {
+        let target = &self.plan.targets[self.plan.draws[draws.start].target];
+        (target.height as usize).div_ceil(self.band(draws))
+    }
+
+    /// Runs some draws on their target; covered pixels of each.
+    fn draw_group(
+        &self,
+        draws: Range<usize>,
+        frames: &mut Frames,
+        band_done: &(dyn Fn() + Sync),
+        defined: &[AtomicU64],
+    ) -> Vec<u64> {
+        let plan = self.plan;
+        let compiled: Vec<_> = draws
+            .clone()
+            .map(|index| self.rows.as_ref().map(|rows| rows.draw(plan, index, &frames.surfaces)))
+            .collect();
+        let window = |index: usize| {
+            let window = &plan.draws[index].window;
+            window.width as usize * window.height as usize
+        };
+        let alone = Team::new(1);
+        let team = if draws.clone().map(window).sum::<usize>() >= SMALL { &self.team } else { &alone };
+        let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
+        let height = self.band(&draws);
+        let run = |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, block: &mut rows::Block| {
+            for ((index, compiled), shaded) in draws.clone().zip(&compiled).zip(&shaded) {
+                let draw = &plan.draws[index];
+                let pixels = match compiled {
+                    Some(compiled) => {
+                        let bins = self.bins.get(index).and_then(Option::as_ref);
+                        let triangles = bins.map(|bins| bins.of(band.first_row / height));
+                        let job = rows::Job { plan, draw, compiled: compiled.as_ref(), textures, triangles };
+                        if triangles == Some(&[]) { 0 } else { rows::isa::run(self.isa, job, band, block) }
+                    }
+                    None => walk::draw(plan, draw, textures, band, &mut Silent).0,
+                };
+                shaded.fetch_add(pixels, Ordering::Relaxed);
+                band_done();
+            }
+            for (all, own) in defined.iter().zip(std::mem::take(&mut block.defined)) {
+                all.fetch_add(own, Ordering::Relaxed);
+            }
+        };
+        draw_bands(plan, plan.draws[draws.start].target, height, frames, team, &run);
+        shaded.into_iter().map(AtomicU64::into_inner).collect()
+    }
+}
+
+/// The surfaces as the clears leave them.
+pub fn cleared(plan: &Plan) -> Frames {
+    let clear = |target: &Target| {
+        let pixels = target.width as usize * target.height as usize;
+        Surface {
+            width: target.width,
+            height: target.height,
+            format: target.format,
+            words: vec![surface::pack(target.format, target.clear_color); pixels],
+            depth: target.depth.map_or(Vec::new(), |d| vec![d.clear; pixels]),
+        }
+    };
+    Frames { surfaces: plan.targets.iter().map(clear).collect() }
+}
+
+/// What the ideal's surface holds after the clear, R, G, B, A in 255ths: the colour as it was given, and what blending reads of
+/// channels that the format does not keep.
+pub fn cleared_colors(target: &Target) -> [u8; 4] {
+    let read = surface::read(target.format, surface::pack(target.format, target.clear_color));
+    let kept = surface::kept_channels(target.format);
+    std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
+}
+
+/// Each texture as it stands at this moment. Without surfaces nothing reads those that are targets.
+pub fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Image<'a, L>> {
+    let words = |texture: &'a Texture| match &texture.image {
+        TextureImage::Texels(texels) => &texels.words[..],
+        TextureImage::Target { target } => surfaces.get(*target).map_or(&[][..], |surface| &surface.words),
+    };
+    plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
+}
+
+/// What draws in one band.
+type RunBand<'r> = dyn Fn(&[Image<'_, i32>], &mut walk::Band<'_>, &mut rows::Block) + Sync + 'r;
+
+/// Draws on a target, in bands of so many rows, which threads take one after the other.
+fn draw_bands(plan: &Plan, target: usize, height: usize, frames: &mut Frames, team: &Team, run_band: &RunBand<'_>) {
+    let surface = &mut frames.surfaces[target];
+    let width = surface.width as usize;
+    // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
+    let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
+    let textures = images(plan, &frames.surfaces);
+    let mut depths = depth.chunks_mut(height * width);
+    let bands = words.chunks_mut(height * width).enumerate().map(|(number, words)| walk::Band {
+        first_row: number * height,
+        width,
+        words,
+        depth: depths.next().unwrap_or_default(),
+    });
+    let bands = Mutex::new(bands);
+    let work = || {
+        let mut block = rows::Block::default();
+        loop {
+            // A panic elsewhere ends the render anyway.
+            let band = bands.lock().unwrap_or_else(PoisonError::into_inner).next();
+            let Some(mut band) = band else { return };
+            run_band(&textures, &mut band, &mut block);
+        }
+    };
+    team.run(work);
+    let surface = &mut frames.surfaces[target];
+    (surface.words, surface.depth) = (words, depth);
+}
+
+/// Runs one draw by the definition, on one thread.
+pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
+    let draw = &plan.draws[index];
+    draw_bands(plan, draw.target, BAND, frames, &Team::new(1), &|textures, band, _| {
+        walk::draw(plan, draw, textures, band, &mut Silent);
+    });
+}

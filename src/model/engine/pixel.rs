@@ -1,0 +1,489 @@
+//! One pixel: the order in which the blocks of the chip run.
+
+use super::report as reports;
+use crate::combiner::direct::Direct;
+use crate::combiner::registers::{Registers, channel_name};
+use crate::combiner::{final_combiner, general};
+use crate::number::{Lane, convert};
+use crate::plan::{Plan, PlannedDraw};
+use crate::raster::fog::FogPlane;
+use crate::raster::ideal;
+use crate::raster::interpolate::{self, Sample, Settled};
+use crate::raster::setup::{Triangle, centres};
+use crate::rop::{blend, surface};
+use crate::state::{Cull, FrontFace, Register, ShadeModel, TriangleVertices, VertexColor};
+use crate::texture::chain::Chain;
+use crate::texture::place::{Coordinates, Interpolated};
+use crate::texture::stage::ShaderSetup;
+use crate::texture::unit::{self, Image, PlannedUnit};
+use crate::trace::{Decision, Observer, Rule, Step, Work, report};
+
+/// A triangle of a draw, set up.
+#[derive(Debug)]
+pub struct TriangleContext<'a> {
+    pub(super) plan: &'a Plan,
+    /// The draw.
+    pub draw: &'a PlannedDraw,
+    /// Its number in the draw.
+    pub number: usize,
+    /// The triangle, set up.
+    pub triangle: Triangle,
+    pub(super) primary: [[u8; 4]; 3],
+    pub(super) secondary: [[u8; 4]; 3],
+    pub(super) coordinates: [Option<Coordinates>; 4],
+    /// Of the texture shader, where there is one; units have none of their own then.
+    shader: Option<Box<ShaderSetup>>,
+    /// None where the fog register's alpha is not read, or fog is off.
+    pub fog: Option<FogPlane>,
+    /// Depths of the vertices, where they are tested.
+    pub z: [i64; 3],
+    /// Coordinates and fog are this triangle's.
+    complete: bool,
+}
+
+/// A covered pixel before shading.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment {
+    /// Column and row.
+    pub pixel: (i64, i64),
+    /// Edge functions.
+    pub e: [i64; 3],
+    /// What the surface holds.
+    pub stored: u32,
+    /// What the depth buffer holds, as the lane keeps it.
+    pub stored_depth: i64,
+    /// The ideal's weights of the vertices, where they are not those of the snapped triangle.
+    pub weights: Option<[f64; 3]>,
+}
+
+/// What a fragment leaves behind.
+#[derive(Clone, Copy, Debug)]
+pub struct Stored<L> {
+    /// The surface's new word.
+    pub word: u32,
+    /// The new depth, if it is written, as the lane keeps it.
+    pub depth: Option<i64>,
+    /// The blended channels before the store, and which of them the mask lets through: what an ideal surface would hold.
+    pub channels: [L; 4],
+}
+
+impl<'a> TriangleContext<'a> {
+    /// Sets up triangle `number`; `None` when it is culled, empty, or outside `rows`.
+    pub fn new(plan: &'a Plan, draw: &'a PlannedDraw, number: usize, rows: (i64, i64)) -> Option<Self> {
+        let mut context = TriangleContext::vacant(plan, draw);
+        if !context.set_up(number, rows) {
+            return None;
+        }
+        context.complete();
+        Some(context)
+    }
+
+    /// A place to [set up](Self::set_up) one triangle of a draw after the other.
+    pub(super) fn vacant(plan: &'a Plan, draw: &'a PlannedDraw) -> Self {
+        TriangleContext {
+            plan,
+            draw,
+            number: 0,
+            triangle: Triangle::default(),
+            primary: [[0; 4]; 3],
+            secondary: [[0; 4]; 3],
+            coordinates: [None; 4],
+            shader: None,
+            fog: None,
+            z: [0; 3],
+            complete: false,
+        }
+    }
+
+    /// Becomes triangle `number`; `false`, and worth nothing, when that is culled, empty, or outside `rows`. Texture coordinates and fog
+    /// are left for [`complete`](Self::complete).
+    #[inline(always)]
+    pub(super) fn set_up(&mut self, number: usize, rows: (i64, i64)) -> bool {
+        let (plan, draw) = (self.plan, self.draw);
+        let [first, second, third] = draw.assembly.triangles.vertices(number);
+        let all = &draw.assembly.corners;
+        let corners = [&all[first as usize], &all[second as usize], &all[third as usize]];
+        let along = |axis: usize| corners.map(|c| i64::from(c.position[axis]));
+        let (x, y) = (along(0), along(1));
+        let (top, bottom) = centres(y);
+        if bottom <= rows.0.max(top) || top >= rows.1 {
+            return false;
+        }
+        let w = corners.map(|c| c.w);
+        if !self.triangle.set(x, y, w, draw.perspective, plan.profile) {
+            return false;
+        }
+        let front = self.triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
+        match draw.cull {
+            Cull::Front if front => return false,
+            Cull::Back if !front => return false,
+            Cull::None | Cull::Front | Cull::Back => {}
+        }
+        (self.number, self.complete) = (number, false);
+        let colored = match draw.shade_model {
+            ShadeModel::Smooth => corners,
+            ShadeModel::Flat => [&all[draw.assembly.triangles.provoking(number) as usize]; 3],
+        };
+        self.primary = colored.map(|c| c.primary);
+        self.secondary = colored.map(|c| c.secondary);
+        if draw.depth_test.is_some() {
+            self.z = self.vertices().position(2).map(|z| convert::depth(z, draw.depth_bits));
+        }
+        true
+    }
+
+    /// Sets up texture coordinates and fog, if they are not.
+    #[inline(always)]
+    pub(super) fn complete(&mut self) {
+        if std::mem::replace(&mut self.complete, true) {
+            return;
+        }
+        let draw = self.draw;
+        if let Some(shader) = &draw.shader {
+            self.shader = Some(Box::new(ShaderSetup::new(shader, &draw.units, &self.triangle, self.vertices())));
+        } else {
+            for unit in &draw.units {
+                let sets = self.coordinate_set(unit.stage.coordinate_set);
+                self.coordinates[unit.index] = Some(Coordinates::new(&self.triangle, sets, unit));
+            }
+        }
+        if draw.fog.enabled && draw.fog_channels & 8 != 0 {
+            self.fog = Some(FogPlane::new(&self.triangle, draw.fog.function, self.vertices().fog()));
+        }
+    }
+
+    /// Its vertices.
+    #[inline(always)]
+    pub fn vertices(&self) -> TriangleVertices<'a> {
+        self.draw.assembly.triangle(self.number)
+    }
+
+    /// s, t, r, q of its vertices.
+    #[inline(always)]
+    pub(super) fn coordinate_set(&self, set: usize) -> [[f32; 4]; 3] {
+        self.vertices().coordinates(set)
+    }
+
+    /// A colour of vertex `corner` of the three, as it was given: its own, or the provoking vertex's.
+    fn source(&self, register: Register, corner: usize) -> VertexColor {
+        let assembly = &self.draw.assembly;
+        let vertex = match self.draw.shade_model {
+            ShadeModel::Smooth => assembly.triangles.vertices(self.number)[corner],
+            ShadeModel::Flat => assembly.triangles.provoking(self.number),
+        };
+        if register == Register::PrimaryColor {
+            assembly.vertices.diffuse(vertex as usize)
+        } else {
+            assembly.vertices.specular(vertex as usize)
+        }
+    }
+
+    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the texture shader, the alpha or the depth test.
+    ///
+    /// `destination` is the ideal's stored colour, where the lane has one; without it the stored word counts.
+    #[inline]
+    pub fn shade<L: Lane, O: Observer>(
+        &self,
+        fragment: &Fragment,
+        destination: Option<[L; 4]>,
+        textures: &[Image<'_, L>],
+        observer: &mut O,
+    ) -> Option<Stored<L>> {
+        let draw = self.draw;
+        let sample = Sample { ideal: fragment.weights, ..Sample::new(&self.triangle, fragment.e) };
+        if O::ON {
+            reports::setup(&self.triangle, &sample, fragment.pixel, observer);
+        }
+        let mut registers = Registers::<L>::new();
+        self.interpolate_colors(&sample, &mut registers, observer);
+        self.sample_textures(&sample, fragment.pixel, &mut registers, textures, observer)?;
+        if O::ON {
+            reports::stage_constants(0, draw, observer);
+        }
+        for stage in &draw.stages {
+            general::run(stage, draw.mux_select, &self.plan.policies, &mut registers, observer);
+            if O::ON {
+                // The next stage's constants may differ.
+                reports::stage_constants(stage.index + 1, draw, observer);
+            }
+        }
+        let source =
+            final_combiner::run(&draw.final_combiner, self.plan.profile, &self.plan.policies, &mut registers, observer);
+        self.raster_operations(source, &sample, fragment, destination, observer)
+    }
+
+    /// INT-2: PRIMARY, SECONDARY and FOG.
+    #[inline]
+    fn interpolate_colors<L: Lane, O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        registers: &mut Registers<L>,
+        observer: &mut O,
+    ) {
+        let draw = self.draw;
+        let constant = |colors: &[[u8; 4]; 3]| colors[0] == colors[1] && colors[1] == colors[2];
+        let sets = [
+            (Register::PrimaryColor, draw.primary, &self.primary, "primary"),
+            (Register::SecondaryColor, draw.secondary, &self.secondary, "secondary"),
+        ];
+        // Equal bytes at all three vertices need no weights: C W0 + C W1 + C W2 is 256 C.
+        let weights = if O::ON || sets.iter().any(|s| s.1 != 0 && !constant(s.2)) {
+            let weights = sample.weights();
+            if O::ON && sets.iter().any(|s| s.1 != 0) {
+                reports::weights(sample, weights, self.barycentrics(sample), observer);
+            }
+            weights
+        } else {
+            [Settled { value: 0, lowered: false }; 2]
+        };
+        let lane = |n: usize| {
+            let k = 2 * n;
+            #[allow(clippy::float_arithmetic, reason = "the ideal's weight")]
+            L::weight(weights[n].value as i32, || 256.0 * self.barycentrics(sample)[k])
+        };
+        let (w0, w2) = (lane(0), lane(1));
+        for (register, live, colors, name) in sets {
+            if live == 0 {
+                continue;
+            }
+            let source = |k: usize| self.source(register, k);
+            let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
+                std::array::from_fn(|k| {
+                    let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(&source(k), channel));
+                    // Bytes are as they were given.
+                    if O::MEASURES && matches!(source(k), VertexColor::Floats(_)) {
+                        observer.settle(Rule::Num4, corner)
+                    } else {
+                        corner
+                    }
+                })
+            });
+            let value = if O::ON || !constant(colors) {
+                let mut channel = 0;
+                corners.map(|c| {
+                    let value = interpolate::color(c, w0, w2);
+                    channel += 1;
+                    if O::MEASURES && live >> (channel - 1) & 1 != 0 {
+                        observer.settle(Rule::Int2, value)
+                    } else {
+                        value
+                    }
+                })
+            } else {
+                corners.map(|c| c[0])
+            };
+            if O::ON {
+                let output =
+                    draw.vertex_program.then_some(if register == Register::PrimaryColor { "oD0" } else { "oD1" });
+                for channel in (0..4).filter(|c| live >> c & 1 != 0) {
+                    reports::color(
+                        name,
+                        channel,
+                        ([0, 1, 2].map(source), output),
+                        corners[channel],
+                        &weights,
+                        value[channel],
+                        observer,
+                    );
+                }
+            }
+            registers.load(register, value);
+        }
+        if draw.fog_channels != 0 {
+            self.load_fog(sample, registers, observer);
+        }
+    }
+
+    /// The fog register: its colour, and in alpha the factor (NUM-6), 255 with fog off (CMB-13).
+    fn load_fog<L: Lane, O: Observer>(&self, sample: &Sample<'_>, registers: &mut Registers<L>, observer: &mut O) {
+        let draw = self.draw;
+        let [r, g, b] = draw.fog.color.map(L::byte);
+        let factor = if let Some(plane) = &self.fog {
+            let found = plane.at(sample);
+            let vertices = self.vertices();
+            let ideal = || {
+                ideal::fog(&draw.fog.function, self.barycentrics(sample), vertices.fog(), vertices.fog_coordinates())
+            };
+            let rule = match draw.fog.function {
+                None => Rule::Num6,
+                Some(function) if function.mode.is_linear() => Rule::Fog2,
+                Some(_) => Rule::Fog4,
+            };
+            let factor = observer.settle(rule, L::value(i32::from(found.byte), ideal));
+            if O::ON {
+                self.report_fog(sample, plane, found, factor, observer);
+            }
+            factor
+        } else {
+            if O::ON {
+                observer.step(Step::given("fog", "CMB-13", "fog.a", 255).per(255).ideal(Some(255.0)));
+            }
+            L::ONE
+        };
+        if O::ON {
+            for (channel, value) in [r, g, b].into_iter().enumerate() {
+                let name = format!("fog.{}", channel_name(channel));
+                observer.step(report::register_step("fog", "NUM-5", name, value));
+            }
+        }
+        registers.load(Register::Fog, [r, g, b, factor]);
+    }
+
+    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). `None`: the texture shader drops the fragment.
+    #[inline]
+    pub(super) fn sample_textures<L: Lane, O: Observer>(
+        &self,
+        sample: &Sample<'_>,
+        pixel: (i64, i64),
+        registers: &mut Registers<L>,
+        textures: &[Image<'_, L>],
+        observer: &mut O,
+    ) -> Option<()> {
+        const UNITS: [Register; 4] = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+        for (n, register) in UNITS.into_iter().enumerate() {
+            if self.draw.unbound[n] != 0 {
+                // TEX-16.
+                registers.load(register, [L::ZERO, L::ZERO, L::ZERO, L::ONE]);
+                if O::ON {
+                    for channel in (0..4).filter(|c| self.draw.unbound[n] >> c & 1 != 0) {
+                        let name = format!("texture{n}.{}", channel_name(channel));
+                        let value = if channel == 3 { 255_u8 } else { 0 };
+                        let block = format!("texture unit {n}");
+                        let ideal = Some(f64::from(value));
+                        observer.step(Step::given(&block, "TEX-16", name, i64::from(value)).per(255).ideal(ideal));
+                    }
+                }
+            }
+        }
+        let w = self.w();
+        if let (Some(shader), Some(setup)) = (&self.draw.shader, &self.shader) {
+            let (units, vertices, scale) = (&self.draw.units, self.vertices(), self.plan.policies.dependent_scale);
+            let chain = Chain { shader, units, setup, textures, vertices, w, scale };
+            let values = chain.run(sample, pixel, observer)?;
+            for (register, value) in UNITS.into_iter().zip(values) {
+                registers.load(register, value);
+            }
+        }
+        let units = if self.draw.shader.is_none() { &self.draw.units[..] } else { &[] };
+        for planned in units {
+            let Some(place) = self.place(planned, sample, pixel) else { continue };
+            let image = &textures[planned.state.texture];
+            let value = unit::sample::<L, O>(planned, image, &place, observer);
+            registers.load(UNITS[planned.index], value);
+        }
+        if O::ON {
+            reports::undefined(self.draw.undefined, observer);
+        }
+        if !self.draw.spare0_alpha {
+            return Some(());
+        }
+        let alpha = registers.read(Register::Texture0, 3);
+        registers.values[Register::Spare0 as usize][3] = alpha;
+        if O::ON {
+            let inputs = vec![report::register("texture0.a", alpha)];
+            observer.step(report::register_step("registers", "CMB-13", "spare0.a", alpha).by("write", inputs));
+        }
+        Some(())
+    }
+
+    /// w of the vertices; all 1 without perspective.
+    fn w(&self) -> [f32; 3] {
+        if self.draw.perspective { self.vertices().position(3) } else { [1.0; 3] }
+    }
+
+    /// The coordinates of a unit, before anything moves them. `None`: it has none of its own.
+    #[inline]
+    pub(super) fn coordinates_of(&self, unit: usize) -> Option<&Coordinates> {
+        match &self.shader {
+            None => self.coordinates[unit].as_ref(),
+            Some(shader) => shader.coordinates(unit),
+        }
+    }
+
+    /// Where a unit samples at its own coordinates.
+    #[inline]
+    pub(super) fn place<'s>(
+        &'s self,
+        unit: &'s PlannedUnit,
+        sample: &'s Sample<'s>,
+        pixel: (i64, i64),
+    ) -> Option<Interpolated<'s>> {
+        let coordinates = self.coordinates_of(unit.index)?;
+        Some(Interpolated { unit, coordinates, at: sample, pixel, vertices: self.vertices(), w: self.w() })
+    }
+
+    /// ROP-1 to ROP-6, DEP-1, DEP-2.
+    #[inline]
+    fn raster_operations<L: Lane, O: Observer>(
+        &self,
+        source: [L; 4],
+        sample: &Sample<'_>,
+        fragment: &Fragment,
+        destination: Option<[L; 4]>,
+        observer: &mut O,
+    ) -> Option<Stored<L>> {
+        let draw = self.draw;
+        if let Some(test) = &draw.alpha_test
+            && !blend::alpha_test(test, source[3], observer)
+        {
+            return None;
+        }
+        let mut depth = None;
+        if let Some(test) = &draw.depth_test {
+            let z = L::depth(sample.depth(self.z, draw.depth_full), || self.ideal_depth(sample));
+            let passed = test.function.passes(z, fragment.stored_depth);
+            observer.decided(Decision::DepthTest, i64::from(passed), || i64::from(passed));
+            if O::ON {
+                self.report_depth(sample, z, fragment.stored_depth, passed, observer);
+            }
+            if !passed {
+                return None;
+            }
+            depth = test.write.then_some(z);
+        }
+        let channels = match &draw.blend {
+            None => source,
+            Some(state) => {
+                let mut direct = Direct::new(&self.plan.policies, observer);
+                let truncated = blend::truncated(draw.surface, source, &mut direct);
+                observer.count(Work::BytesRead, u64::from(draw.surface.bytes()));
+                let stored = surface::read(draw.surface, fragment.stored);
+                let destination = match destination {
+                    Some(held) => held.map(|held| observer.settle(Rule::Rop5, held)),
+                    None => stored.map(L::byte),
+                };
+                if O::ON {
+                    self.report_blend_operands(&source, &truncated, fragment.stored, &destination, observer);
+                }
+                let constant = draw.blend_constant;
+                blend::run(state, draw.blended, constant, &truncated, &destination, observer)
+            }
+        };
+        let word = surface::pack(draw.surface, channels.map(|c| c.decision().clamp(0, 255) as u8));
+        let word = (fragment.stored & !draw.write_mask) | (word & draw.write_mask);
+        if draw.write_mask != 0 {
+            observer.count(Work::BytesWritten, u64::from(draw.surface.bytes()));
+        }
+        if O::ON {
+            self.report_store(&channels, fragment.stored, word, depth, observer);
+        }
+        Some(Stored { word, depth, channels })
+    }
+
+    /// The ideal's depth in units of the buffer's last bit.
+    pub(super) fn ideal_depth(&self, sample: &Sample<'_>) -> f64 {
+        let linear = sample.ideal.map_or_else(
+            || ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false),
+            |weights| ideal::linear(weights, self.vertices().position(3), self.draw.perspective),
+        );
+        ideal::depth(linear, self.vertices().position(2), self.draw.depth_full)
+    }
+
+    /// The ideal's weights of the three vertices.
+    fn barycentrics(&self, sample: &Sample<'_>) -> [f64; 3] {
+        if let Some(weights) = sample.ideal {
+            return weights;
+        }
+        ideal::barycentrics(&self.triangle, sample.e, self.vertices().position(3), self.draw.perspective)
+    }
+}

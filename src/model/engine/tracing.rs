@@ -1,0 +1,322 @@
+//! The trace of one pixel: the same walk, the lane that carries the ideal beside the definition, and a recorder.
+
+use std::convert::Infallible;
+use std::fmt;
+
+use super::pixel::{Fragment, TriangleContext};
+use super::{cleared, cleared_colors, draw_defined, images};
+use crate::number::Paired;
+use crate::plan::{Plan, PlannedDraw};
+use crate::raster::assemble::Piece;
+use crate::rop::surface;
+use crate::state::{StageOrigin, Target, TextureImage};
+use crate::texture::unit::Image;
+use crate::trace::{Observer, Recorder, Silent, Step};
+
+/// Everything that happened to one pixel of a render target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PixelTrace {
+    /// Name of the target.
+    pub target: String,
+    /// Column.
+    pub x: u32,
+    /// Row.
+    pub y: u32,
+    /// R, G, B, A as a picture shows them, after the clear.
+    pub cleared: [u8; 4],
+    /// R, G, B, A as a picture shows them, at the end.
+    pub shown: [u8; 4],
+    /// The stored word at the end.
+    pub word: u32,
+    /// How many fragments come before those of `draws`.
+    pub left_out: u64,
+    /// The triangles that cover the pixel, in order, without those left out.
+    pub draws: Vec<DrawTrace>,
+}
+
+/// One triangle's fragment at the pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawTrace {
+    /// Number of the draw.
+    pub draw: usize,
+    /// Its name.
+    pub name: String,
+    /// Number of the triangle in the draw.
+    pub triangle: usize,
+    /// What it is a piece of, if it was cut off another (RAS-6).
+    pub piece: Option<Piece>,
+    /// Whether it was stored, or dropped by a test.
+    pub stored: bool,
+    /// R, G, B, A as a picture shows them, after this fragment.
+    pub shown: [u8; 4],
+    /// Every rule that was applied, in order.
+    pub steps: Vec<Step>,
+    /// What each general stage was written as in the language of an API; empty if the program was written for the combiners.
+    pub program_origin: Vec<StageOrigin>,
+}
+
+impl DrawTrace {
+    /// What a block of the steps was written as: a portion of a general stage, of a program in the language of an API.
+    pub fn origin(&self, block: &str) -> Option<&str> {
+        let (stage, portion) = block.strip_prefix("general stage ")?.split_once(' ')?;
+        let origin = self.program_origin.get(stage.parse::<usize>().ok()?)?;
+        Some(if portion == "rgb" { &origin.rgb } else { &origin.alpha })
+    }
+}
+
+/// A pixel or draw that does not exist.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum TraceError {
+    /// Outside the target.
+    Pixel {
+        /// Column asked for.
+        x: u32,
+        /// Row asked for.
+        y: u32,
+        /// Target.
+        target: String,
+        /// Its columns.
+        width: u32,
+        /// Its rows.
+        height: u32,
+    },
+    /// No such draw.
+    Draw {
+        /// Draw asked for.
+        draw: usize,
+        /// Draws of the scene.
+        count: usize,
+    },
+}
+
+impl fmt::Display for TraceError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            TraceError::Pixel { x, y, target, width, height } => {
+                write!(f, "pixel {x},{y} lies outside target `{target}`, which is {width} x {height}")
+            }
+            TraceError::Draw { draw, count } => {
+                write!(f, "there is no draw {draw}; the scene has {count}, numbered from 0")
+            }
+        }
+    }
+}
+
+impl std::error::Error for TraceError {}
+
+/// How many fragments a trace keeps unless more are asked for: the last ones.
+pub const FRAGMENTS: u64 = 256;
+
+/// Traces pixel (x, y) of target number `target`: its last [`FRAGMENTS`] fragments. `only` keeps those of a single draw.
+///
+/// # Errors
+/// The pixel lies outside the target, or the draw does not exist.
+pub fn trace(plan: &Plan, target: usize, pixel: (u32, u32), only: Option<usize>) -> Result<PixelTrace, TraceError> {
+    trace_last(plan, target, pixel, only, FRAGMENTS)
+}
+
+/// [`trace`] of the last `fragments` fragments. They are all in memory, some 60 KB each; [`Tracer`] hands them over one by one.
+///
+/// # Errors
+/// As [`trace`].
+pub fn trace_last(
+    plan: &Plan,
+    target: usize,
+    pixel: (u32, u32),
+    only: Option<usize>,
+    fragments: u64,
+) -> Result<PixelTrace, TraceError> {
+    let tracer = Tracer::new(plan, target, pixel, only, fragments)?;
+    let mut draws = Vec::new();
+    let Ok(end) = tracer.run(|draw| {
+        draws.push(draw);
+        Ok::<(), Infallible>(())
+    });
+    let (cleared, left_out) = (tracer.cleared(), tracer.left_out());
+    let (target, (x, y), TraceEnd { shown, word }) = (tracer.target().name.clone(), pixel, end);
+    Ok(PixelTrace { target, x, y, cleared, shown, word, left_out, draws })
+}
+
+/// A trace about to be made: how many fragments there are is known, and each is handed over as soon as it is shaded.
+#[derive(Debug)]
+pub struct Tracer<'a> {
+    plan: &'a Plan,
+    target: usize,
+    pixel: (u32, u32),
+    only: Option<usize>,
+    left_out: u64,
+}
+
+/// What the surface holds once everything is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TraceEnd {
+    /// R, G, B, A as a picture shows them.
+    pub shown: [u8; 4],
+    /// The stored word.
+    pub word: u32,
+}
+
+impl<'a> Tracer<'a> {
+    /// Prepares the trace of pixel (x, y) of target number `target`, of its last `fragments` fragments. `only` counts and keeps those of a single
+    /// draw. Covered pixels are counted here; nothing is shaded yet.
+    ///
+    /// # Errors
+    /// The pixel lies outside the target, or the draw does not exist.
+    pub fn new(
+        plan: &'a Plan,
+        target: usize,
+        pixel: (u32, u32),
+        only: Option<usize>,
+        fragments: u64,
+    ) -> Result<Self, TraceError> {
+        let (description, (x, y)) = (&plan.targets[target], pixel);
+        if x >= description.width || y >= description.height {
+            return Err(TraceError::Pixel {
+                x,
+                y,
+                target: description.name.clone(),
+                width: description.width,
+                height: description.height,
+            });
+        }
+        if let Some(draw) = only.filter(|d| *d >= plan.draws.len()) {
+            return Err(TraceError::Draw { draw, count: plan.draws.len() });
+        }
+        let mut tracer = Tracer { plan, target, pixel, only, left_out: 0 };
+        let mut count = 0_u64;
+        for (_, planned) in tracer.draws().filter(|(index, _)| tracer.keeps(*index)) {
+            let mut context = TriangleContext::vacant(plan, planned);
+            count += (0..planned.assembly.triangles.len())
+                .filter(|n| covered(&mut context, *n, pixel).is_some())
+                .count() as u64;
+        }
+        tracer.left_out = count.saturating_sub(fragments);
+        Ok(tracer)
+    }
+
+    /// The render target.
+    pub fn target(&self) -> &'a Target {
+        &self.plan.targets[self.target]
+    }
+
+    /// Column and row.
+    pub fn pixel(&self) -> (u32, u32) {
+        self.pixel
+    }
+
+    /// R, G, B, A as a picture shows them, after the clear.
+    pub fn cleared(&self) -> [u8; 4] {
+        let target = self.target();
+        surface::show(target.format, surface::pack(target.format, target.clear_color))
+    }
+
+    /// How many fragments come before the first that is handed over.
+    pub fn left_out(&self) -> u64 {
+        self.left_out
+    }
+
+    fn keeps(&self, index: usize) -> bool {
+        self.only.is_none_or(|only| only == index)
+    }
+
+    /// The draws that may touch the pixel, with their numbers.
+    fn draws(&self) -> impl Iterator<Item = (usize, &'a PlannedDraw)> {
+        let (target, (x, y)) = (self.target, self.pixel);
+        self.plan.draws.iter().enumerate().filter(move |(_, planned)| {
+            let window = &planned.window;
+            let inside =
+                (window.x..window.x + window.width).contains(&x) && (window.y..window.y + window.height).contains(&y);
+            planned.target == target && inside
+        })
+    }
+
+    /// Draws the pixel, and hands each fragment that is kept to `each`, in order.
+    ///
+    /// # Errors
+    /// That of `each`, which ends the trace.
+    pub fn run<E>(&self, mut each: impl FnMut(DrawTrace) -> Result<(), E>) -> Result<TraceEnd, E> {
+        let (plan, description) = (self.plan, self.target());
+        let mut frames = cleared(plan);
+        // Whole frames are needed only where a later draw reads one.
+        let rendered = plan.textures.iter().any(|t| matches!(t.image, TextureImage::Target { .. }));
+        let at = self.pixel.1 as usize * description.width as usize + self.pixel.0 as usize;
+        let word = frames.surfaces[self.target].words[at];
+        let depth = frames.surfaces[self.target].depth.get(at).copied().unwrap_or(0);
+        let mut pixel = Pixel { word, depth, ideal: cleared_colors(description).map(f64::from) };
+        let mut passed_over = self.left_out;
+        let mut finished = 0;
+        for (index, planned) in self.draws() {
+            if rendered {
+                (finished..index).for_each(|before| draw_defined(plan, before, &mut frames));
+                finished = index;
+            }
+            let textures = images(plan, &frames.surfaces);
+            let mut context = TriangleContext::vacant(plan, planned);
+            for number in 0..planned.assembly.triangles.len() {
+                let Some(e) = covered(&mut context, number, self.pixel) else { continue };
+                context.complete();
+                if !self.keeps(index) || passed_over > 0 {
+                    passed_over -= u64::from(self.keeps(index));
+                    pixel.shade(planned, &context, self.pixel, e, &textures, &mut Silent);
+                    continue;
+                }
+                let mut recorder = Recorder::default();
+                let stored = pixel.shade(planned, &context, self.pixel, e, &textures, &mut recorder);
+                each(DrawTrace {
+                    draw: index,
+                    name: planned.name.clone(),
+                    triangle: context.number,
+                    piece: planned.assembly.clipping.piece(context.number).copied(),
+                    stored,
+                    shown: surface::show(planned.surface, pixel.word),
+                    steps: recorder.steps,
+                    program_origin: planned.program_origin.clone(),
+                })?;
+            }
+        }
+        Ok(TraceEnd { shown: surface::show(description.format, pixel.word), word: pixel.word })
+    }
+}
+
+/// The edge functions of triangle `number` at a pixel that it covers. Texture coordinates and fog are not set up.
+fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32)) -> Option<[i64; 3]> {
+    let (i, j) = (i64::from(x), i64::from(y));
+    if !context.set_up(number, (j, j + 1)) {
+        return None;
+    }
+    let e = context.triangle.edges(i, j);
+    context.triangle.covers(e).then_some(e)
+}
+
+/// The traced pixel's memory.
+struct Pixel {
+    word: u32,
+    depth: u32,
+    /// What a surface of real numbers would hold, R, G, B, A in 255ths.
+    ideal: [f64; 4],
+}
+
+impl Pixel {
+    /// Shades one fragment; returns whether it was stored.
+    fn shade<O: Observer>(
+        &mut self,
+        planned: &PlannedDraw,
+        context: &TriangleContext<'_>,
+        (x, y): (u32, u32),
+        e: [i64; 3],
+        textures: &[Image<'_, Paired>],
+        observer: &mut O,
+    ) -> bool {
+        let pixel = (i64::from(x), i64::from(y));
+        let fragment = Fragment { pixel, e, stored: self.word, stored_depth: i64::from(self.depth), weights: None };
+        let fixed = surface::read(planned.surface, self.word);
+        let destination = std::array::from_fn(|n| Paired { fixed: i32::from(fixed[n]), ideal: self.ideal[n] });
+        let Some(stored) = context.shade(&fragment, Some(destination), textures, observer) else { return false };
+        self.word = stored.word;
+        self.depth = stored.depth.map_or(self.depth, |depth| depth as u32);
+        for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
+            self.ideal[n] = stored.channels[n].ideal.clamp(0.0, 255.0);
+        }
+        true
+    }
+}

@@ -1,0 +1,413 @@
+//! What the chip allows of a program (CMB-12 and its neighbours), decided on the state alone.
+//!
+//! Every language of programs ends here. Its front end keeps the places of what it read and names the registers in its own words.
+
+use std::ops::Range;
+
+use super::place::{Part, Place, Places};
+use crate::diagnostic::{Diagnostic, only_nv2a};
+use crate::state::{Bias, Combiners, Component, FinalRegister, GeneralStage, Portion, Profile, Register, Scale};
+
+/// What a language calls things.
+pub trait Notation {
+    /// A register.
+    fn register(&self, register: FinalRegister) -> &'static str;
+    /// An output scale.
+    fn scale(&self, scale: Scale) -> &'static str;
+    /// What to do about a finding.
+    fn help(&self, help: Help) -> &'static str;
+}
+
+/// Advice that each language words for itself.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Help {
+    /// There is no stage: how to write one that does nothing.
+    EmptyStage,
+    /// Constants of single stages on nv10: how to write those of the whole program.
+    SharedConstants,
+    /// Two results for one register.
+    OtherRegister,
+    /// A bias with a scale of 4 or 1/2.
+    BiasScale,
+    /// The fog factor in an RGB portion.
+    FogColor,
+    /// The fog factor in an alpha portion.
+    FogBlue,
+    /// The secondary colour's alpha on nv10.
+    SecondaryAlpha,
+    /// Blue in an RGB portion.
+    RgbComponents,
+    /// RGB in an alpha portion.
+    AlphaComponents,
+    /// Blue in A to F.
+    FinalComponents,
+    /// RGB in G.
+    FinalAlphaComponents,
+    /// A destination that is read only.
+    Writable,
+    /// A register of the final combiner where it cannot be read.
+    OtherInput,
+}
+
+/// What was found, besides errors, about a program.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Checked {
+    /// Errors and warnings, in no particular order.
+    pub findings: Vec<Diagnostic>,
+    /// The first place that reads what each texture unit gives; `None`: nothing does, or the place is not written.
+    pub reads: [Option<Range<usize>>; 4],
+}
+
+/// Whether a chip has so many general stages. The finding, if not; `place` tells where stage n stands.
+pub fn stage_count(
+    count: usize,
+    profile: Profile,
+    place: impl Fn(usize) -> Option<Range<usize>>,
+) -> Option<Diagnostic> {
+    let most = profile.general_stages();
+    if count <= most {
+        return None;
+    }
+    let finding = Diagnostic::error("NB0301", place(most), format!("{count} general stages; {profile:?} has {most}"))
+        .label(format!("stage {most} is the first too many"))
+        .rule("CMB-12");
+    Some(if count <= Profile::Nv2a.general_stages() {
+        finding.help("profile Nv2a has 8: write `profile: Nv2a`, or use fewer stages")
+    } else {
+        finding.help("use fewer stages")
+    })
+}
+
+/// Checks a program. With too many stages nothing else is looked at.
+pub fn check(combiners: &Combiners, profile: Profile, places: &Places, notation: &dyn Notation) -> Checked {
+    let mut check = Check {
+        profile,
+        places,
+        notation,
+        checked: Checked::default(),
+        // SPARE0.a starts as texture 0's alpha.
+        spares: [false, true, false, false],
+        textures: [[false; 2]; 4],
+    };
+    if let Some(finding) = stage_count(combiners.stages.len(), profile, |stage| places.get(Place::Stage(stage))) {
+        check.checked.findings.push(finding);
+        return check.checked;
+    }
+    check.stages(combiners);
+    check.final_combiner(combiners);
+    check.checked
+}
+
+/// The finding that a general stage reads a register of the final combiner. The state cannot express it, so front ends do.
+pub fn only_final(place: Range<usize>, name: &str, help: &str) -> Diagnostic {
+    Diagnostic::error("NB0313", place, format!("{name} exists only in the final combiner"))
+        .label("not in a general stage")
+        .rule("CMB-12")
+        .help(help)
+}
+
+/// The walk over a program, in the order of execution.
+struct Check<'p> {
+    profile: Profile,
+    places: &'p Places,
+    notation: &'p dyn Notation,
+    checked: Checked,
+    /// SPARE0.rgb, SPARE0.a, SPARE1.rgb, SPARE1.a hold something defined.
+    spares: [bool; 4],
+    /// A stage has written TEXTURE0 to TEXTURE3: RGB, alpha.
+    textures: [[bool; 2]; 4],
+}
+
+impl Check<'_> {
+    fn push(&mut self, finding: Diagnostic) {
+        self.checked.findings.push(finding);
+    }
+
+    fn name(&self, register: impl Into<FinalRegister>) -> &'static str {
+        self.notation.register(register.into())
+    }
+
+    fn stages(&mut self, combiners: &Combiners) {
+        if combiners.stages.is_empty() {
+            let finding = Diagnostic::error(
+                "NB0323",
+                self.places.get(Place::Stages),
+                "the combiners have at least one general stage",
+            )
+            .label("none here")
+            .rule("CMB-12")
+            .help(self.notation.help(Help::EmptyStage));
+            self.push(finding);
+        }
+        for (index, stage) in combiners.stages.iter().enumerate() {
+            let differ = stage.constants != combiners.final_combiner.constants;
+            self.own_constants(Place::StageConstants(index), differ, "general stages");
+            // Both portions read what the stages before have written.
+            self.portion(index, &stage.rgb, false);
+            self.portion(index, &stage.alpha, true);
+            self.blue_to_alpha(index, stage);
+            self.write(stage);
+        }
+    }
+
+    /// Constants of one stage or of the final combiner: not on nv10.
+    fn own_constants(&mut self, place: Place, differ: bool, owner: &str) {
+        let span = self.places.get(place);
+        if self.profile == Profile::Nv10 && (span.is_some() || differ) {
+            let finding = Diagnostic::error("NB0303", span, format!("Nv10 has no own constants for {owner}"))
+                .label("not on this chip")
+                .rule("CMB-12")
+                .help(self.notation.help(Help::SharedConstants));
+            self.push(finding);
+        }
+    }
+
+    fn portion(&mut self, stage: usize, portion: &Portion, alpha: bool) {
+        let at = |part| Place::General { stage, alpha, part };
+        let outputs = [portion.ab_output, portion.cd_output, portion.sum_output];
+        for (n, output) in outputs.into_iter().enumerate() {
+            self.output(at(Part::Output(n)), output);
+        }
+        self.distinct(outputs, at);
+        let writes = outputs.iter().any(|register| *register != Register::Zero);
+        for (n, input) in portion.inputs.iter().enumerate() {
+            let place = self.places.get(at(Part::Input(n)));
+            if input.component == if alpha { Component::Rgb } else { Component::Blue } {
+                let (message, help) = if alpha {
+                    ("an alpha portion has no RGB to read", Help::AlphaComponents)
+                } else {
+                    ("an RGB portion cannot read just blue", Help::RgbComponents)
+                };
+                self.component(at(Part::Component(n)), place.clone(), message.to_owned(), help);
+            }
+            let register = FinalRegister::from(input.register);
+            let reads_alpha = input.component == Component::Alpha;
+            self.on_chip(register, place.clone());
+            self.secondary_alpha(register, reads_alpha, place.clone());
+            if register == FinalRegister::Fog && reads_alpha {
+                let help = if alpha { Help::FogBlue } else { Help::FogColor };
+                let finding =
+                    Diagnostic::error("NB0308", place.clone(), "the fog factor is readable in the final combiner only")
+                        .label("Fog's alpha")
+                        .rule("CMB-12")
+                        .help(self.notation.help(help));
+                self.push(finding);
+            }
+            if writes {
+                self.read(register, reads_alpha, place);
+            }
+        }
+        if alpha {
+            for (on, part, what) in [
+                (portion.ab_dot_product, Part::Dot(0), "dot products"),
+                (portion.cd_dot_product, Part::Dot(1), "dot products"),
+                (portion.ab_blue_to_alpha, Part::BlueToAlpha(0), "blue-to-alpha"),
+                (portion.cd_blue_to_alpha, Part::BlueToAlpha(1), "blue-to-alpha"),
+            ] {
+                if on {
+                    let place = self.places.get(at(part));
+                    self.push(
+                        Diagnostic::error("NB0306", place, format!("the alpha portion has no {what}"))
+                            .label("not here")
+                            .rule("CMB-12")
+                            .help("write it in the `rgb` portion"),
+                    );
+                }
+            }
+        }
+        if portion.bias == Bias::NegativeHalf && matches!(portion.scale, Scale::Four | Scale::Half) {
+            let scale = self.notation.scale(portion.scale);
+            let mut finding = Diagnostic::error(
+                "NB0307",
+                self.places.get(at(Part::Bias)),
+                format!("bias NegativeHalf does not go with scale {scale}"),
+            )
+            .label("this bias")
+            .rule("CMB-9")
+            .help(self.notation.help(Help::BiasScale));
+            if let Some(scale) = self.places.get(at(Part::Scale)) {
+                finding = finding.related(scale, "this scale");
+            }
+            self.push(finding);
+        }
+    }
+
+    fn output(&mut self, place: Place, register: Register) {
+        let span = self.places.get(place);
+        if matches!(register, Register::ConstantColor0 | Register::ConstantColor1 | Register::Fog) {
+            let finding = Diagnostic::error("NB0312", span, format!("{} cannot be written", self.name(register)))
+                .label("read only")
+                .rule("CMB-12")
+                .help(self.notation.help(Help::Writable));
+            self.push(finding);
+        } else {
+            self.on_chip(register.into(), span);
+        }
+    }
+
+    /// No two results of a portion go to the same register.
+    fn distinct(&mut self, outputs: [Register; 3], at: impl Fn(Part) -> Place) {
+        for second in 1..3 {
+            let register = outputs[second];
+            let first = outputs[..second].iter().position(|first| *first == register && register != Register::Zero);
+            if let Some(first) = first {
+                let [again, first] = [second, first].map(|n| self.places.get(at(Part::Output(n))));
+                let mut finding =
+                    Diagnostic::error("NB0310", again, format!("two results go to {}", self.name(register)))
+                        .label("again here")
+                        .rule("CMB-12")
+                        .help(self.notation.help(Help::OtherRegister));
+                if let Some(first) = first {
+                    finding = finding.related(first, "first here");
+                }
+                self.push(finding);
+                return;
+            }
+        }
+    }
+
+    /// Legality of blue-to-alpha within a stage.
+    fn blue_to_alpha(&mut self, index: usize, stage: &GeneralStage) {
+        let (rgb, alpha) = (&stage.rgb, &stage.alpha);
+        for (n, on, output) in [(0, rgb.ab_blue_to_alpha, rgb.ab_output), (1, rgb.cd_blue_to_alpha, rgb.cd_output)] {
+            if !on {
+                continue;
+            }
+            let place = self.places.get(Place::General { stage: index, alpha: false, part: Part::BlueToAlpha(n) });
+            if self.profile == Profile::Nv10 {
+                self.push(only_nv2a("NB0304", place.clone(), "blue-to-alpha", "CMB-11"));
+            }
+            for (m, written) in [alpha.ab_output, alpha.cd_output, alpha.sum_output].into_iter().enumerate() {
+                if written == output && output != Register::Zero {
+                    let message = format!("two results go to the alpha of {}", self.name(output));
+                    let mut finding = Diagnostic::error("NB0305", place.clone(), message)
+                        .label("blue goes there")
+                        .rule("CMB-12")
+                        .help("send one of them to another register");
+                    let other = Place::General { stage: index, alpha: true, part: Part::Output(m) };
+                    if let Some(other) = self.places.get(other) {
+                        finding = finding.related(other, "the alpha portion writes it, too");
+                    }
+                    self.push(finding);
+                }
+            }
+        }
+    }
+
+    fn final_combiner(&mut self, combiners: &Combiners) {
+        let state = &combiners.final_combiner;
+        self.own_constants(Place::FinalConstants, false, "the final combiner");
+        for (n, input) in state.inputs.iter().chain([&state.g]).enumerate() {
+            let place = self.places.get(Place::FinalInput(n));
+            let wrong = if n == 6 { Component::Rgb } else { Component::Blue };
+            if input.component == wrong {
+                let help = if n == 6 { Help::FinalAlphaComponents } else { Help::FinalComponents };
+                let message = format!("this input cannot read {wrong:?}");
+                self.component(Place::FinalComponent(n), place.clone(), message, help);
+            }
+            self.on_chip(input.register, place.clone());
+            let alpha = input.component == Component::Alpha;
+            let special = matches!(input.register, FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF);
+            if special && (n >= 4 || alpha) {
+                let message = format!("{} cannot be read here", self.name(input.register));
+                let finding = Diagnostic::error("NB0313", place.clone(), message)
+                    .label("only as the RGB of input A, B, C or D")
+                    .rule("FIN-1")
+                    .help(self.notation.help(Help::OtherInput));
+                self.push(finding);
+            }
+            self.secondary_alpha(input.register, alpha, place.clone());
+            self.read(input.register, alpha, place);
+        }
+    }
+
+    fn component(&mut self, written: Place, input: Option<Range<usize>>, message: String, help: Help) {
+        let place = self.places.get(written).or(input);
+        let help = self.notation.help(help);
+        self.push(Diagnostic::error("NB0311", place, message).label("not here").rule("CMB-12").help(help));
+    }
+
+    /// NV10 has two texture registers.
+    fn on_chip(&mut self, register: FinalRegister, place: Option<Range<usize>>) {
+        if matches!(register, FinalRegister::Texture2 | FinalRegister::Texture3) && self.profile == Profile::Nv10 {
+            let what = format!("register {}", self.name(register));
+            self.push(only_nv2a("NB0302", place, &what, "CMB-12"));
+        }
+    }
+
+    fn secondary_alpha(&mut self, register: FinalRegister, alpha: bool, place: Option<Range<usize>>) {
+        if register == FinalRegister::SecondaryColor && alpha && self.profile == Profile::Nv10 {
+            let message = format!("the alpha of {} is not defined on Nv10", self.name(register));
+            let finding = Diagnostic::error("NB0309", place, message)
+                .label("undefined")
+                .rule("CMB-13")
+                .help(self.notation.help(Help::SecondaryAlpha));
+            self.push(finding);
+        }
+    }
+
+    /// Notes a read, and warns if nothing defines what it gives. What is not written is not meant to be read.
+    fn read(&mut self, register: FinalRegister, alpha: bool, place: Option<Range<usize>>) {
+        let Some(place) = place else { return };
+        if let Some(unit) = texture(register) {
+            if !self.textures[unit][usize::from(alpha)] {
+                self.checked.reads[unit].get_or_insert(place);
+            }
+            return;
+        }
+        let index = match register {
+            FinalRegister::Spare0 | FinalRegister::Spare0PlusSecondary => usize::from(alpha),
+            FinalRegister::Spare1 => 2 + usize::from(alpha),
+            _ => return,
+        };
+        if self.spares[index] {
+            return;
+        }
+        // Once is enough for each.
+        self.spares[index] = true;
+        let name = self.name([FinalRegister::Spare0, FinalRegister::Spare1][index / 2]);
+        let what = ["RGB", "alpha"][index % 2];
+        self.push(
+            Diagnostic::warning("NB0903", place, format!("{name}'s {what} is read before a stage writes it"))
+                .label("no document says what this is; the model takes 0")
+                .rule("CMB-13")
+                .help("write the register in an earlier stage, or read another"),
+        );
+    }
+
+    /// Notes what a stage writes.
+    fn write(&mut self, stage: &GeneralStage) {
+        let mut note = |register: Register, alpha: bool| match register {
+            Register::Spare0 => self.spares[usize::from(alpha)] = true,
+            Register::Spare1 => self.spares[2 + usize::from(alpha)] = true,
+            other => {
+                if let Some(unit) = texture(other.into()) {
+                    self.textures[unit][usize::from(alpha)] = true;
+                }
+            }
+        };
+        for (portion, alpha) in [(&stage.rgb, false), (&stage.alpha, true)] {
+            for output in [portion.ab_output, portion.cd_output, portion.sum_output] {
+                note(output, alpha);
+            }
+        }
+        for (blue, output) in
+            [(stage.rgb.ab_blue_to_alpha, stage.rgb.ab_output), (stage.rgb.cd_blue_to_alpha, stage.rgb.cd_output)]
+        {
+            if blue {
+                note(output, true);
+            }
+        }
+    }
+}
+
+/// The texture unit of a register.
+fn texture(register: FinalRegister) -> Option<usize> {
+    match register {
+        FinalRegister::Texture0 => Some(0),
+        FinalRegister::Texture1 => Some(1),
+        FinalRegister::Texture2 => Some(2),
+        FinalRegister::Texture3 => Some(3),
+        _ => None,
+    }
+}

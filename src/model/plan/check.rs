@@ -1,0 +1,413 @@
+//! What a [`Scene`] must hold to, whoever made it: the one place that says so for all of the state.
+//!
+//! The front end finds most of this earlier, with its place in the text. A scene built in code comes here first, and nothing behind this
+//! looks again: indices are in range, sides and counts within the limits, combinations those that the chip has. What depends on
+//! where vertices end up (RAS-0) is found when triangles are formed.
+
+use super::PlanError;
+use crate::diagnostic::Severity;
+use crate::legality::{self, Help, Notation};
+use crate::limits::Limits;
+use crate::place::Places;
+use crate::raster::GUARD;
+use crate::rop::surface;
+use crate::state::{
+    AddressMode, CUBE_FACES, Draw, FinalRegister, Level, Named, Palette, Profile, Scale, Scene, ShaderOperation,
+    ShaderStage, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
+};
+
+/// At most this many errors of one kind of thing: the rest would say the same.
+const MOST_ERRORS: usize = 8;
+
+/// Everything that is wrong with a scene, but for where its vertices lie.
+pub(super) fn check(scene: &Scene, limits: &Limits) -> Vec<PlanError> {
+    let mut check = Check { scene, limits, draw: None, errors: Vec::new() };
+    check.counts();
+    check.targets();
+    check.palettes();
+    check.textures();
+    for (index, draw) in scene.draws.iter().enumerate() {
+        if check.errors.len() >= MOST_ERRORS {
+            break;
+        }
+        check.draw = Some(index);
+        check.of_draw(draw);
+    }
+    check.errors
+}
+
+struct Check<'s> {
+    scene: &'s Scene,
+    limits: &'s Limits,
+    /// The draw that is looked at.
+    draw: Option<usize>,
+    errors: Vec<PlanError>,
+}
+
+impl Check<'_> {
+    fn refuse(&mut self, rule: impl Into<Option<&'static str>>, message: String, help: impl Into<String>) {
+        let error = PlanError { draw: self.draw, vertex: None, rule: rule.into(), message, help: help.into() };
+        self.errors.push(error);
+    }
+
+    /// Refuses what only nv2a has.
+    fn only_nv2a(&mut self, rule: &'static str, has: bool, what: &str) {
+        if has && self.scene.profile == Profile::Nv10 {
+            self.refuse(rule, format!("Nv10 has no {what}"), "use the profile Nv2a, or leave it out");
+        }
+    }
+
+    fn counts(&mut self) {
+        let Scene { targets, draws, .. } = self.scene;
+        let total = |count: fn(&Draw) -> usize| draws.iter().map(count).fold(0, usize::saturating_add);
+        let limits = *self.limits;
+        for (count, most, what) in [
+            (targets.len(), limits.targets, "render targets"),
+            (draws.len(), limits.draws, "draws"),
+            (total(|draw| draw.vertices.len()), limits.vertices, "vertices of all draws"),
+            (total(|draw| draw.indices.len()), limits.indices, "indices of all draws"),
+            (self.scene.textures.len(), limits.textures, "textures"),
+        ] {
+            if count > most {
+                self.refuse(
+                    None,
+                    format!("{count} {what} are more than {most}"),
+                    "`limits::Limits` says what is allowed",
+                );
+            }
+        }
+        let side = |target: &Target| u64::from(target.width.min(1 << 16)) * u64::from(target.height.min(1 << 16));
+        let bytes = targets.iter().map(|target| side(target) * if target.depth.is_some() { 8 } else { 4 });
+        let bytes = bytes.fold(0, u64::saturating_add);
+        if bytes > limits.surface_bytes {
+            let message = format!("the targets take {bytes} bytes; {} are allowed", limits.surface_bytes);
+            self.refuse(None, message, "make the targets smaller, or fewer");
+        }
+        // What textures share they decode apart.
+        let bytes: u64 = self.scene.textures.iter().map(texel_bytes).fold(0, u64::saturating_add);
+        if bytes > limits.texture_bytes {
+            let message = format!("the textures take {bytes} bytes; {} are allowed", limits.texture_bytes);
+            self.refuse(None, message, "make the textures smaller, or fewer");
+        }
+    }
+
+    fn targets(&mut self) {
+        let most = self.limits.target_side.min((GUARD / 16) as u32);
+        for target in &self.scene.targets {
+            let Target { name, width, height, format, depth, .. } = target;
+            for (side, what) in [(*width, "width"), (*height, "height")] {
+                if !(1..=most).contains(&side) {
+                    let message = format!("the {what} of target `{name}` is {side}");
+                    self.refuse("RAS-0", message, format!("take 1 to {most}"));
+                }
+            }
+            self.only_nv2a("ROP-5", format.is_nv2a_only(), &format!("surface format {}", format.name()));
+            if let Some(depth) = depth
+                && depth.clear >> depth.format.bits() != 0
+            {
+                let message = format!("target `{name}` clears its depth to {:#x}", depth.clear);
+                self.refuse("DEP-2", message, format!("take at most {} bits", depth.format.bits()));
+            }
+        }
+    }
+
+    fn palettes(&mut self) {
+        for Palette { name, entries } in &self.scene.palettes {
+            if !Palette::LENGTHS.contains(&entries.len()) {
+                let message = format!("palette `{name}` has {} entries", entries.len());
+                self.refuse("TEX-1", message, "take 32, 64, 128 or 256");
+            }
+        }
+    }
+
+    fn textures(&mut self) {
+        for texture in &self.scene.textures {
+            if self.errors.len() >= MOST_ERRORS {
+                return;
+            }
+            let name = &texture.name;
+            self.only_nv2a(
+                "TEX-1",
+                texture.format.is_nv2a_only(),
+                &format!("texture format {}", texture.format.name()),
+            );
+            match &texture.image {
+                TextureImage::Texels(texels) => {
+                    if self.sides(texture, texels.width, texels.height) {
+                        self.texels(texture, texels);
+                    }
+                }
+                TextureImage::Target { target } => {
+                    let Some(shown) = self.scene.targets.get(*target) else {
+                        let (message, help) = missing("target", *target, self.scene.targets.len());
+                        self.refuse(None, format!("texture `{name}` shows {message}"), help);
+                        continue;
+                    };
+                    let fits = texture.format.bytes() == shown.format.bytes() && !texture.format.is_compressed();
+                    if texture.kind == TextureKind::Cube || texture.format == TextureFormat::P8 || !fits {
+                        let (kind, format) = (texture.kind.name(), texture.format.name());
+                        let message = format!("texture `{name}` shows target `{}` as {kind}, {format}", shown.name);
+                        let help = "take TwoDimensional or Rectangle, and a format of texels as long as the pixels";
+                        self.refuse("TEX-1", message, help);
+                    }
+                    self.sides(texture, shown.width, shown.height);
+                }
+            }
+        }
+    }
+
+    /// Whether the sides are such as the chip takes.
+    fn sides(&mut self, texture: &Texture, width: u32, height: u32) -> bool {
+        let Texture { name, kind, format, .. } = texture;
+        let most = kind.largest_side(*format, self.scene.profile).min(self.limits.texture_side);
+        let before = self.errors.len();
+        let what = format!("texture `{name}` ({}, {}) of {width} x {height}", kind.name(), format.name());
+        if width == 0 || height == 0 || width.max(height) > most {
+            self.refuse("TEX-7", what, format!("take sides of 1 to {most} texels"));
+        } else if *kind == TextureKind::Rectangle {
+            if !format.is_linear(self.scene.profile) {
+                self.refuse("TEX-7", what, "the chip has no rectangle textures of this format: take another");
+            } else if self.scene.profile == Profile::Nv10 && width % 2 == 1 {
+                self.refuse("TEX-7", what, "the width of a rectangle texture is even on Nv10");
+            }
+        } else if !(width.is_power_of_two() && height.is_power_of_two()) {
+            self.refuse("TEX-7", what, "take sides that are powers of two, or the kind Rectangle");
+        } else if *kind == TextureKind::Cube && width != height {
+            self.refuse("TEX-12", what, "faces of a cube map are square");
+        }
+        self.errors.len() == before
+    }
+
+    /// Levels, border and words of a texture whose sides are legal.
+    fn texels(&mut self, texture: &Texture, texels: &Texels) {
+        let Texture { name, kind, format, .. } = texture;
+        let Texels { width, height, levels, border, words } = texels;
+        let most = if *kind == TextureKind::Rectangle { 1 } else { Level::most(*width, *height) };
+        if !(1..=most).contains(levels) {
+            let message = format!("texture `{name}` has {levels} levels");
+            self.refuse("TEX-9", message, format!("{} of {width} x {height} take 1 to {most}", kind.name()));
+            return;
+        }
+        self.only_nv2a("TEX-7", *border, "textures with border texels");
+        if *border && (*kind != TextureKind::TwoDimensional || format.is_compressed()) {
+            let message = format!("texture `{name}` has border texels and is {}, {}", kind.name(), format.name());
+            self.refuse("TEX-7", message, "border texels go with uncompressed textures of two dimensions");
+        }
+        let faces = if *kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
+        let expected = faces * Level::chain(*format, *width, *height, *levels, *border).1;
+        if words.len() != expected {
+            let message = format!("texture `{name}` has {} words", words.len());
+            self.refuse("TEX-1", message, format!("its faces and levels take {expected}"));
+            return;
+        }
+        let bits = 8 * format.bytes();
+        if bits < 32
+            && let Some(at) = words.iter().position(|word| word >> bits != 0)
+        {
+            let message = format!("word {at} of texture `{name}` is {:#x}", words[at]);
+            self.refuse("TEX-1", message, format!("a texel of {} has {bits} bits", format.name()));
+        }
+    }
+
+    fn of_draw(&mut self, draw: &Draw) {
+        let count = draw.vertices.len();
+        if let Some(at) = draw.indices.iter().position(|index| *index as usize >= count) {
+            let message = format!("index {at} is {}, and the draw has {count} vertices", draw.indices[at]);
+            self.refuse("RAS-4", message, "indices count vertices from 0");
+        }
+        if draw.fog.enabled
+            && draw.fog.function.is_none()
+            && let Some(at) = (0..count).find(|at| draw.vertices.fog(*at).is_nan())
+        {
+            let message = format!("the fog factor of vertex {at} is no number");
+            self.refuse(
+                "INT-5n",
+                message,
+                "factors run from 0, all fog, to 1; with a fog function coordinates may be anything",
+            );
+        }
+        self.combiners(draw);
+        self.units(draw);
+        match self.scene.targets.get(draw.target) {
+            Some(target) => self.operations(draw, target),
+            None => {
+                let (message, help) = missing("target", draw.target, self.scene.targets.len());
+                self.refuse(None, format!("the draw goes into {message}"), help);
+            }
+        }
+    }
+
+    fn operations(&mut self, draw: &Draw, target: &Target) {
+        if draw.depth_test.is_some() && target.depth.is_none() {
+            let message = format!("target `{}` has no depth buffer", target.name);
+            self.refuse("DEP-2", message, "give the target `depth`, or leave the depth test out");
+        }
+        let Some(blend) = draw.blend else { return };
+        if !surface::blends(target.format) {
+            let message = format!("surface format {} cannot be blended", target.format.name());
+            self.refuse("ROP-5", message, "leave `blend` out, or draw into a target with a colour format");
+        }
+        self.only_nv2a("ROP-3", blend.equation.is_nv2a_only(), &format!("blend equation {}", blend.equation.name()));
+    }
+
+    fn combiners(&mut self, draw: &Draw) {
+        let checked = legality::check(&draw.combiners, self.scene.profile, &Places::default(), &Words);
+        for finding in
+            checked.findings.into_iter().filter(|finding| finding.severity == Severity::Error).take(MOST_ERRORS)
+        {
+            self.refuse(finding.rule, finding.message, finding.help.unwrap_or_default());
+        }
+    }
+
+    fn units(&mut self, draw: &Draw) {
+        let profile = self.scene.profile;
+        for (index, (unit, stage)) in draw.textures.iter().zip(&draw.texture_shader).enumerate() {
+            let conventional = matches!(stage.operation, ShaderOperation::None | ShaderOperation::Sample);
+            let idle = unit.is_none() && stage.operation == ShaderOperation::None;
+            if index >= profile.texture_units() && !idle {
+                self.refuse(
+                    "CMB-12",
+                    format!("Nv10 has no texture unit {index}"),
+                    "use the profile Nv2a, or units 0 and 1",
+                );
+            }
+            self.only_nv2a("TSH-10", !conventional, "texture shader");
+            self.stage(draw, index, stage);
+            if let Some(unit) = unit {
+                self.unit(draw, index, unit, stage);
+            } else if stage.operation.samples() {
+                let message = format!("stage {index} samples, but its unit has no texture");
+                self.refuse("TSH-10", message, "bind a texture to the unit, or take the operation None");
+            }
+        }
+    }
+
+    /// What a unit does with its coordinates.
+    fn stage(&mut self, draw: &Draw, index: usize, stage: &ShaderStage) {
+        let name = stage.operation.name();
+        if stage.coordinate_set >= draw.texture_shader.len() {
+            let message = format!("stage {index} takes coordinate set {}", stage.coordinate_set);
+            self.refuse("TSH-10", message, "a vertex has the sets 0 to 3");
+        }
+        if stage.previous >= index.max(1) {
+            let message = format!("stage {index} reads unit {}", stage.previous);
+            self.refuse("TSH-10", message, "`previous` is a unit before this one; 0 at the first");
+        }
+        if let Some(help) = ShaderStage::misplaced(&draw.texture_shader, index) {
+            self.refuse("TSH-10", format!("{name} cannot stand at stage {index} here"), help);
+        } else if ShaderStage::reads_too_late(&draw.texture_shader, index) {
+            let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2".to_owned();
+            self.refuse("TSH-10", message, "let `previous` be 0 or 1");
+        }
+        let finite = match stage.operation {
+            ShaderOperation::BumpEnvironment { matrix, luminance } => {
+                matrix.iter().chain(luminance.iter().flatten()).all(|number| number.is_finite())
+            }
+            ShaderOperation::DotReflectConstantEye { eye } => eye.iter().all(|number| number.is_finite()),
+            _ => true,
+        };
+        if !finite {
+            self.refuse("NUM-0", format!("a number of {name} at stage {index} is not finite"), "take finite numbers");
+        }
+    }
+
+    /// A unit, and the texture that it samples.
+    fn unit(&mut self, draw: &Draw, index: usize, unit: &TextureUnit, stage: &ShaderStage) {
+        let profile = self.scene.profile;
+        let Some(texture) = self.scene.textures.get(unit.texture) else {
+            let (message, help) = missing("texture", unit.texture, self.scene.textures.len());
+            self.refuse(None, format!("unit {index} samples {message}"), help);
+            return;
+        };
+        let Texture { name, kind, format, image } = texture;
+        if stage.operation.samples() && !stage.operation.kinds().contains(kind) {
+            let message = format!("{} does not sample a texture of kind {}", stage.operation.name(), kind.name());
+            self.refuse("TSH-10", message, "give the unit another texture, or take the operation for this kind");
+        }
+        match unit.palette {
+            Some(palette) if *format == TextureFormat::P8 && palette >= self.scene.palettes.len() => {
+                let (message, help) = missing("palette", palette, self.scene.palettes.len());
+                self.refuse("TEX-1", format!("unit {index} reads {message}"), help);
+            }
+            None if *format == TextureFormat::P8 => {
+                let message = format!("texture `{name}` is of format P8, and unit {index} has no palette");
+                self.refuse("TEX-1", message, "give the unit a `palette`");
+            }
+            Some(_) if *format != TextureFormat::P8 => {
+                let message = format!("texture `{name}` of format {} reads no palette", format.name());
+                self.refuse("TEX-1", message, format!("let `palette` of unit {index} be None"));
+            }
+            _ => {}
+        }
+        if let TextureImage::Target { target } = image
+            && *target == draw.target
+        {
+            let message = format!("unit {index} samples the target that the draw goes into");
+            self.refuse(None, message, "draw into another target and sample that one");
+        }
+        let modes = [unit.address_s, unit.address_t];
+        if profile == Profile::Nv10 {
+            self.only_nv2a("TEX-7", modes.contains(&AddressMode::ClampToBorder), "border colour");
+            self.only_nv2a("TEX-18", unit.signed != [false; 4], "signed texture channel");
+            if *kind == TextureKind::Rectangle && modes != [AddressMode::ClampToEdge; 2] {
+                let message =
+                    format!("rectangle texture `{name}` is addressed with another mode than ClampToEdge on Nv10");
+                self.refuse("TEX-7", message, "take ClampToEdge for s and t");
+            }
+        }
+        let TextureUnit { lod_bias, min_lod, max_lod, .. } = *unit;
+        if !(-4096..=4095).contains(&lod_bias) || !(0..=4095).contains(&max_lod) || !(0..=max_lod).contains(&min_lod) {
+            let message = format!("unit {index} has lod_bias {lod_bias}, min_lod {min_lod}, max_lod {max_lod}");
+            let help =
+                "the bias is -4096 to 4095, the least lod 0 to 4095 and at most the greatest, which is at most 4095";
+            self.refuse("TEX-9", message, help);
+        }
+    }
+}
+
+/// Bytes of a texture's words.
+fn texel_bytes(texture: &Texture) -> u64 {
+    match &texture.image {
+        TextureImage::Texels(texels) => 4 * texels.words.len() as u64,
+        TextureImage::Target { .. } => 0,
+    }
+}
+
+/// What is said of an index past the end of its list, and what to do.
+fn missing(what: &str, index: usize, count: usize) -> (String, String) {
+    let help = if count == 0 { format!("add a {what} first") } else { format!("take 0 to {}", count - 1) };
+    (format!("{what} {index} of {count}"), help)
+}
+
+/// The words of the state.
+struct Words;
+
+impl Notation for Words {
+    fn register(&self, register: FinalRegister) -> &'static str {
+        register.name()
+    }
+
+    fn scale(&self, scale: Scale) -> &'static str {
+        scale.name()
+    }
+
+    fn help(&self, help: Help) -> &'static str {
+        match help {
+            Help::EmptyStage => "one whose portions are `Portion::idle` changes nothing",
+            Help::SharedConstants => {
+                "give all stages and the final combiner the same constants; the profile Nv2a allows own ones"
+            }
+            Help::OtherRegister => "send one of them to another register, or to Zero, which discards it",
+            Help::BiasScale => "with this bias the scale is One or Two",
+            Help::FogColor => "read Rgb here",
+            Help::FogBlue => "read Blue here, the fog colour's",
+            Help::SecondaryAlpha => "the profile Nv2a defines it; or read the alpha of PrimaryColor",
+            Help::RgbComponents => "take Rgb or Alpha",
+            Help::AlphaComponents => "take Alpha or Blue",
+            Help::FinalComponents => "inputs A to F read Rgb or Alpha",
+            Help::FinalAlphaComponents => "G reads Alpha or Blue",
+            Help::Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
+            Help::OtherInput => "read Spare0 or another register",
+        }
+    }
+}

@@ -1,0 +1,455 @@
+//! The plan: what of a scene can reach its frames, decided once, before any pixel.
+//!
+//! Everything that can fail has failed by the time a [`Plan`] exists; below it nothing returns an error. With
+//! [`PlanOptions::prune`] (the default) outputs, channels, units and reads that nothing can see are left out; the bytes are the same
+//! without.
+
+mod check;
+mod fold;
+mod liveness;
+
+use crate::combiner::final_combiner::PlannedFinal;
+use crate::combiner::general::PlannedStage;
+use crate::limits::Limits;
+use crate::raster::TEXEL_LIMIT;
+use crate::raster::assemble::{Assembly, assemble};
+use crate::rop::surface;
+use crate::state::named;
+use crate::state::{
+    AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies,
+    Positions, Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, SurfaceFormat,
+    TEXTURE_UNITS, Target, Texture, TextureImage, TextureKind, TextureUnit,
+};
+use crate::texture::stage::{PlannedShader, PlannedShaderStage};
+use crate::texture::unit::PlannedUnit;
+use liveness::{Computed, Liveness};
+use std::fmt;
+
+/// How a plan is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PlanOptions {
+    /// Answers to what no capture decides.
+    pub policies: Policies,
+    /// Leave out what cannot reach a frame.
+    pub prune: bool,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        PlanOptions { policies: Policies::DEFAULT, prune: true }
+    }
+}
+
+/// Why a scene cannot be planned.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PlanError {
+    /// Index of the draw, if one is to blame.
+    pub draw: Option<usize>,
+    /// Index of the vertex, if one is to blame.
+    pub vertex: Option<usize>,
+    /// Rule that sets the limit, if one does.
+    pub rule: Option<&'static str>,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: String,
+}
+
+impl fmt::Display for PlanError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match (self.draw, self.vertex) {
+            (Some(draw), Some(vertex)) => write!(f, "draw {draw}, vertex {vertex}: ")?,
+            (Some(draw), None) => write!(f, "draw {draw}: ")?,
+            (None, _) => {}
+        }
+        f.write_str(&self.message)?;
+        if let Some(rule) = self.rule {
+            write!(f, " ({rule})")?;
+        }
+        if self.help.is_empty() { Ok(()) } else { write!(f, "; {}", self.help) }
+    }
+}
+
+impl std::error::Error for PlanError {}
+
+/// A scene ready to be drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Plan {
+    /// The chip.
+    pub profile: Profile,
+    /// The policies in force. They do not change what is planned, so they may be set afterwards.
+    pub policies: Policies,
+    /// Render targets.
+    pub targets: Vec<Target>,
+    /// Textures.
+    pub textures: Vec<Texture>,
+    /// Draws in order.
+    pub draws: Vec<PlannedDraw>,
+}
+
+/// A draw reduced to what can reach its target.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedDraw {
+    /// Name for messages and traces.
+    pub name: String,
+    /// Index of the target.
+    pub target: usize,
+    /// Format of the target.
+    pub surface: SurfaceFormat,
+    /// Pixels that may be drawn: the scissor within the target.
+    pub window: Rectangle,
+    /// Vertices in window coordinates and triangles.
+    pub assembly: Assembly,
+    /// Smooth or flat.
+    pub shade_model: ShadeModel,
+    /// Perspective-corrected weights.
+    pub perspective: bool,
+    /// Faces dropped.
+    pub cull: Cull,
+    /// Which winding is the front.
+    pub front_face: FrontFace,
+    /// Channels of the primary colour that are read, bits R, G, B, A.
+    pub primary: u8,
+    /// Channels of the secondary colour that are read.
+    pub secondary: u8,
+    /// Channels of the fog register that are read.
+    pub fog_channels: u8,
+    /// Fog state.
+    pub fog: Fog,
+    /// Bound units that are read.
+    pub units: Vec<PlannedUnit>,
+    /// The texture shader, where there is one: units then run as its stages.
+    pub shader: Option<PlannedShader>,
+    /// Channels of each unit that does nothing that are read (TEX-16).
+    pub unbound: [u8; TEXTURE_UNITS],
+    /// SPARE0's initial alpha is read (CMB-13).
+    pub spare0_alpha: bool,
+    /// Registers that are read before anything wrote them (CMB-13): bits as [`registers::bit`](crate::combiner::registers::bit).
+    pub undefined: u64,
+    /// General stages that are needed.
+    pub stages: Vec<PlannedStage>,
+    /// What each general stage of the state was written as; may be empty.
+    pub program_origin: Vec<StageOrigin>,
+    /// The vertices were made by a vertex program.
+    pub vertex_program: bool,
+    /// Mux bit.
+    pub mux_select: MuxSelect,
+    /// Final combiner.
+    pub final_combiner: PlannedFinal,
+    /// Alpha test, unless it always passes.
+    pub alpha_test: Option<AlphaTest>,
+    /// Depth test.
+    pub depth_test: Option<DepthTest>,
+    /// Largest depth of the target's buffer; 0 without one.
+    pub depth_full: i64,
+    /// Bits of depth.
+    pub depth_bits: u32,
+    /// Blend, where the surface allows it.
+    pub blend: Option<Blend>,
+    /// Channels that are blended, bits R, G, B, A.
+    pub blended: u8,
+    /// Blend constant.
+    pub blend_constant: [u8; 4],
+    /// Bits of the stored word that are written.
+    pub write_mask: u32,
+    /// Channels that those bits keep, bits R, G, B, A.
+    pub written: u8,
+    /// What was folded away before the rest was planned.
+    pub folded: Folded,
+}
+
+/// Constants of a draw's state that settle something for every pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Folded {
+    /// The blend stores the source as it is: no destination is read.
+    pub replaces: bool,
+    /// Blending leaves every colour as it is: none is written.
+    pub keeps: bool,
+    /// Channels of the fragment that are 0 whatever the pixel, bits R, G, B, A.
+    pub zero: u8,
+    /// Nothing of the draw can be seen, and why.
+    pub invisible: Option<Invisible>,
+}
+
+named! {
+    /// Why nothing of a draw can be seen.
+    pub enum Invisible {
+        /// It has no triangles.
+        NoTriangles = "it has no triangles",
+        /// Its window is empty.
+        NoPixels = "its scissor leaves no pixel",
+        /// Neither colour nor depth is written.
+        NothingWritten = "it writes neither colour nor depth",
+        /// Its fragments are 0 and are added.
+        AddsZero = "its source is 0 in every channel and blending keeps what is there",
+        /// Its blend keeps the destination.
+        KeepsDestination = "its blend keeps what is there, whatever the source",
+    }
+}
+
+impl Plan {
+    /// Whether a draw reads what others have drawn: a texture that is a target.
+    pub fn reads_target(&self, planned: &PlannedDraw) -> bool {
+        let is_target = |texture: usize| matches!(self.textures[texture].image, TextureImage::Target { .. });
+        planned.units.iter().any(|unit| is_target(unit.state.texture))
+    }
+
+    /// Plans a scene, whoever made it, within the default [`Limits`].
+    ///
+    /// # Errors
+    /// What is not as [`Scene`] says it has to be, or else every vertex (eight at most a draw) outside the limits of RAS-0.
+    pub fn compile(scene: &Scene, options: &PlanOptions) -> Result<Plan, Vec<PlanError>> {
+        Plan::compile_within(scene, options, &Limits::default())
+    }
+
+    /// Plans a scene within limits.
+    ///
+    /// # Errors
+    /// As [`compile`](Plan::compile).
+    pub fn compile_within(scene: &Scene, options: &PlanOptions, limits: &Limits) -> Result<Plan, Vec<PlanError>> {
+        let mut errors = check::check(scene, limits);
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        let mut draws = Vec::with_capacity(scene.draws.len());
+        let black: Vec<u8> = scene.textures.iter().map(fold::black_channels).collect();
+        for (index, draw) in scene.draws.iter().enumerate() {
+            check_coordinates(scene, index, draw, &mut errors);
+            match assemble(draw) {
+                Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, &black, options)),
+                Err(positions) => errors.extend(positions.into_iter().map(|p| {
+                    PlanError {
+                        draw: Some(index),
+                        vertex: Some(p.vertex),
+                        rule: Some("RAS-0"),
+                        message: format!(
+                            "window position x = {}, y = {}, w = {} lies outside the rasteriser's domain",
+                            p.window[0], p.window[1], p.window[3]
+                        ),
+                        help: match draw.positions {
+                            Positions::Window => {
+                                "keep |x| and |y| below 4096 pixels and w between 2^-20 and 2^20; \
+                                 a vertex far outside the view can be cut off by splitting its triangle"
+                            }
+                            Positions::Clip(_) => {
+                                "keep w at most 2^20; what lies behind the viewer or far outside the view is cut off, \
+                                 as long as its numbers are not so large that none is left in 32 bits"
+                            }
+                        }
+                        .to_string(),
+                    }
+                })),
+            }
+        }
+        if !errors.is_empty() {
+            return Err(errors);
+        }
+        Ok(Plan {
+            profile: scene.profile,
+            policies: options.policies,
+            targets: scene.targets.clone(),
+            textures: scene.textures.clone(),
+            draws,
+        })
+    }
+}
+
+/// Columns and rows of a texture.
+pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
+    match &scene.textures[texture].image {
+        TextureImage::Texels(texels) => (texels.width, texels.height),
+        TextureImage::Target { target } => (scene.targets[*target].width, scene.targets[*target].height),
+    }
+}
+
+/// RAS-0 for texture coordinates: finite, and at most 65536 texels where q is 1 and they do not give a direction.
+fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<PlanError>) {
+    const MOST_ERRORS: usize = 8;
+    let mut found = 0;
+    let moves = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::BumpEnvironment { .. });
+    for (unit, stage) in draw.textures.iter().zip(&draw.texture_shader) {
+        if stage.operation == ShaderOperation::None {
+            continue;
+        }
+        let sampled = unit.filter(|_| matches!(stage.operation, ShaderOperation::Sample) || moves(stage));
+        let texture = sampled.map(|unit| (&scene.textures[unit.texture], texture_size(scene, unit.texture)));
+        for vertex in 0..draw.vertices.len() {
+            let set = draw.vertices.coordinates(vertex, stage.coordinate_set);
+            // TSH-7 has no use for q.
+            let plane = set[3] == 1.0 || moves(stage);
+            let far = |n: usize, side: u32| plane && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;
+            let finite = set.iter().all(|c| c.is_finite());
+            let outside = match texture {
+                _ if !finite => true,
+                Some((Texture { kind: TextureKind::TwoDimensional, .. }, (width, height))) => {
+                    far(0, width) || far(1, height)
+                }
+                Some((Texture { kind: TextureKind::Rectangle, .. }, _)) => far(0, 1) || far(1, 1),
+                _ => false,
+            };
+            if outside && found < MOST_ERRORS {
+                found += 1;
+                let what = match texture {
+                    Some((Texture { kind: TextureKind::TwoDimensional, name, .. }, (width, height))) if finite => {
+                        format!(
+                            "is more than 65536 texels of the {width} x {height} texture `{name}` away from its origin"
+                        )
+                    }
+                    Some((Texture { name, .. }, _)) if finite => {
+                        format!("is more than 65536 texels away from the origin of `{name}`")
+                    }
+                    _ => "is not a finite number".to_string(),
+                };
+                errors.push(PlanError {
+                    draw: Some(index),
+                    vertex: Some(vertex),
+                    rule: Some("RAS-0"),
+                    message: format!("texture coordinate ({}, {}) {what}", set[0], set[1]),
+                    help: "shift the coordinates by whole repeats, or split the geometry".to_string(),
+                });
+            }
+        }
+    }
+}
+
+fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], options: &PlanOptions) -> PlannedDraw {
+    let target = &scene.targets[draw.target];
+    let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
+    let window = draw.scissor.map_or(whole, |s| {
+        let x = s.x.min(target.width);
+        let y = s.y.min(target.height);
+        Rectangle { x, y, width: s.width.min(target.width - x), height: s.height.min(target.height - y) }
+    });
+    let state_mask = surface::write_mask(target.format, draw.color_mask);
+    let state_blend = draw.blend.filter(|_| surface::blends(target.format));
+    let depth_test = draw.depth_test.filter(|_| target.depth.is_some());
+    let mut folded = Folded::default();
+    let computed = Computed::new(&draw.combiners, fold::initially_zero(draw, black));
+    if options.prune {
+        let written = written_channels(target.format, state_mask);
+        folded.zero = computed.zero_fragment();
+        let mut keeps_always = false;
+        if let Some(blend) = &state_blend {
+            (folded.replaces, keeps_always) = fold::blend(blend, draw.blend_constant, written, 0);
+            let zero = if written & !folded.zero == 0 { folded.zero } else { 0 };
+            folded.keeps = fold::blend(blend, draw.blend_constant, written, zero).1;
+        }
+        folded.invisible = if assembly.triangles.is_empty() {
+            Some(Invisible::NoTriangles)
+        } else if window.width == 0 || window.height == 0 {
+            Some(Invisible::NoPixels)
+        } else if depth_test.is_some_and(|test| test.write) {
+            None
+        } else if written == 0 {
+            Some(Invisible::NothingWritten)
+        } else if keeps_always {
+            Some(Invisible::KeepsDestination)
+        } else {
+            folded.keeps.then_some(Invisible::AddsZero)
+        };
+    }
+    let write_mask = if folded.keeps { 0 } else { state_mask };
+    let blend = state_blend.filter(|_| !folded.replaces && !folded.keeps);
+    let alpha_test = draw.alpha_test.filter(|t| !(options.prune && t.function == CompareFunction::Always));
+    let written = written_channels(target.format, write_mask);
+    let blended = if options.prune { written } else { 15 };
+    let liveness = computed.liveness(draw, (target.format, alpha_test.is_some(), blend), written, options.prune);
+    let sampled = |index: usize| draw.textures[index].filter(|_| draw.texture_shader[index].operation.samples());
+    let units: Vec<PlannedUnit> = liveness
+        .units
+        .iter()
+        .enumerate()
+        .filter_map(|(index, live)| {
+            let state = sampled(index).filter(|_| *live != 0)?;
+            Some(plan_unit(scene, index, state, draw.texture_shader[index], *live))
+        })
+        .collect();
+    let idle = |index: usize| match draw.texture_shader[index].operation {
+        ShaderOperation::None => true,
+        operation => operation.samples() && draw.textures[index].is_none(),
+    };
+    let shader = plan_shader(draw, &units, &liveness);
+    PlannedDraw {
+        name: draw.name.clone(),
+        target: draw.target,
+        surface: target.format,
+        window,
+        assembly,
+        shade_model: draw.shade_model,
+        perspective: draw.perspective,
+        cull: draw.cull,
+        front_face: draw.front_face,
+        primary: liveness.primary,
+        secondary: liveness.secondary,
+        fog_channels: liveness.fog,
+        fog: draw.fog,
+        units,
+        shader,
+        unbound: std::array::from_fn(|n| if idle(n) { liveness.units[n] } else { 0 }),
+        spare0_alpha: liveness.spare0_alpha,
+        undefined: liveness.undefined,
+        stages: liveness.stages,
+        program_origin: draw.program_origin.clone(),
+        vertex_program: draw.vertex_program.is_some(),
+        mux_select: draw.combiners.mux_select,
+        final_combiner: liveness.final_combiner,
+        alpha_test,
+        depth_test,
+        depth_full: target.depth.map_or(0, |d| (1 << d.format.bits()) - 1),
+        depth_bits: target.depth.map_or(0, |d| d.format.bits()),
+        blend,
+        blended,
+        blend_constant: draw.blend_constant,
+        write_mask,
+        written,
+        folded,
+    }
+}
+
+/// A unit with the image it samples.
+fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage, live: u8) -> PlannedUnit {
+    let texture = &scene.textures[state.texture];
+    let (width, height) = texture_size(scene, state.texture);
+    let (count, border) = match &texture.image {
+        TextureImage::Texels(texels) => (texels.levels, texels.border),
+        TextureImage::Target { .. } => (1, false),
+    };
+    // Levels that no lod can reach are not planned.
+    let reachable = if state.mip_filter == MipFilter::None { 1 } else { count };
+    let (mut levels, face_words) = Level::chain(texture.format, width, height, count, border);
+    levels.truncate(reachable as usize);
+    PlannedUnit {
+        index,
+        state,
+        stage,
+        kind: texture.kind,
+        format: texture.format,
+        levels,
+        face_words,
+        border,
+        dithered: scene.profile == Profile::Nv2a,
+        palette: state.palette.map(|palette| scene.palettes[palette].entries.clone()),
+        live,
+    }
+}
+
+/// The texture shader of a draw, if its units do more than sample.
+fn plan_shader(draw: &Draw, units: &[PlannedUnit], liveness: &Liveness) -> Option<PlannedShader> {
+    let conventional = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::None | ShaderOperation::Sample);
+    if draw.texture_shader.iter().all(conventional) {
+        return None;
+    }
+    let stages = std::array::from_fn(|index| PlannedShaderStage {
+        state: draw.texture_shader[index],
+        unit: units.iter().position(|unit| unit.index == index),
+        live: liveness.units[index],
+        dots: liveness.dots[index],
+    });
+    Some(PlannedShader { stages })
+}
+
+/// Channels R, G, B, A of the fragment that the written bits keep.
+fn written_channels(format: SurfaceFormat, write_mask: u32) -> u8 {
+    let (bits, kept) = (surface::channel_bits(format), surface::kept_channels(format));
+    (0..4).filter(|n| bits[*n] & write_mask != 0 && kept >> n & 1 != 0).map(|n| 1 << n).sum()
+}

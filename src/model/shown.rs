@@ -1,0 +1,195 @@
+//! Names and texts of others, as people and reports see them.
+//!
+//! Scenes, their files and what cards call themselves come from anywhere. What of them is printed or reported goes through here, so that no
+//! name moves a terminal's cursor, turns the order of letters around, ends its line, breaks a document, or gives orders to the program
+//! that reads the log: continuous integration services obey lines that begin with `::`, and `##[` or `##vso[` anywhere in a line.
+//!
+//! [`name`] is for one name in a line of our own, [`lines`] for a text of several lines, [`path`] for a file, [`json`] for a document,
+//! whose content it keeps. All but `path` leave alone what they made themselves.
+
+use std::borrow::Cow;
+use std::fmt::Write;
+use std::path::Path;
+
+/// A character that is shown as its number: controls, those that order text of two directions, separators of lines, marks that nobody
+/// sees, and what XML 1.0 cannot hold.
+fn is_hidden(c: char) -> bool {
+    c.is_control()
+        || matches!(c,
+            '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{feff}'
+            | '\u{fff9}'..='\u{fffb}' | '\u{fffe}' | '\u{ffff}' | '\u{e0000}'..='\u{e007f}')
+}
+
+/// A name, or another text of one line: `\n`, `\t`, `\u{1b}` for what must not be there.
+///
+/// ```
+/// use ninebit::shown;
+/// assert_eq!(shown::name("wall"), "wall");
+/// assert_eq!(shown::name("a\n::error::b\u{1b}[31m"), r"a\n::error::b\u{1b}[31m");
+/// assert_eq!(shown::name("::error::b"), r"\u{3a}:error::b");
+/// assert_eq!(shown::name("##[error]b"), r"#\u{23}[error]b");
+/// ```
+pub fn name(text: &str) -> Cow<'_, str> {
+    escaped(text, is_hidden)
+}
+
+/// A text of several lines, of which each is shown as a [`name`]; tabs stay.
+pub fn lines(text: &str) -> Cow<'_, str> {
+    let line = |line| escaped(line, |c| is_hidden(c) && c != '\t');
+    if text.split('\n').all(|text| matches!(line(text), Cow::Borrowed(_))) {
+        return Cow::Borrowed(text);
+    }
+    Cow::Owned(text.split('\n').map(line).collect::<Vec<_>>().join("\n"))
+}
+
+fn escaped(text: &str, hidden: impl Fn(char) -> bool) -> Cow<'_, str> {
+    let ordering = text.trim_start().starts_with("::");
+    if !ordering && !text.contains("##") && !text.contains(&hidden) {
+        return Cow::Borrowed(text);
+    }
+    let mut out = String::with_capacity(text.len() + 16);
+    let mut before = None;
+    for c in text.chars() {
+        let first_colon = ordering && c == ':' && !out.contains(r"\u{3a}");
+        if hidden(c) {
+            out.extend(c.escape_default());
+        } else if first_colon || c == '#' && before == Some('#') {
+            out.extend(c.escape_unicode());
+        } else {
+            out.push(c);
+        }
+        before = Some(c);
+    }
+    Cow::Owned(out)
+}
+
+/// A file's path as a [`name`]; bytes that are no text as `\xff`.
+pub fn path(path: &Path) -> String {
+    name(&lossless(path)).into_owned()
+}
+
+/// A path as text that differs from that of every other path, but for paths that have `\xff` in their names.
+pub fn lossless(path: &Path) -> String {
+    let mut text = String::new();
+    for chunk in path.as_os_str().as_encoded_bytes().utf8_chunks() {
+        text.push_str(chunk.valid());
+        for byte in chunk.invalid() {
+            // Writing to a string cannot fail.
+            let _ = write!(text, "\\x{byte:02x}");
+        }
+    }
+    text
+}
+
+/// A JSON document of the same content, in which what must not reach a terminal stands as `\u001b`.
+pub fn json(document: &str) -> Cow<'_, str> {
+    let bad = |c: char| is_hidden(c) && c != '\n';
+    if !document.contains(bad) && !document.contains("##") {
+        return Cow::Borrowed(document);
+    }
+    // Only texts between quotes hold such characters.
+    let mut out = String::with_capacity(document.len() + 16);
+    let mut before = None;
+    for c in document.chars() {
+        if bad(c) || c == '#' && before == Some('#') {
+            for unit in c.encode_utf16(&mut [0; 2]) {
+                let _ = write!(out, "\\u{unit:04x}");
+            }
+        } else {
+            out.push(c);
+        }
+        before = Some(c);
+    }
+    Cow::Owned(out)
+}
+
+/// An excerpt of a text with as many bytes, for marks under it. What stands in for a character is not its number but a sign.
+pub fn excerpt(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_hidden) && !text.contains("##") {
+        return Cow::Borrowed(text);
+    }
+    let mut before = None;
+    let sign = |c: char| {
+        let doubled = c == '#' && before == Some('#');
+        before = Some(c);
+        match c.len_utf8() {
+            // Drawn as the sign for a substitute.
+            1 if doubled => '\u{1a}',
+            2 if is_hidden(c) => '\u{b7}',
+            3 if is_hidden(c) => '\u{fffd}',
+            4 if is_hidden(c) => '\u{1f7e1}',
+            _ => c,
+        }
+    };
+    Cow::Owned(text.chars().map(sign).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// Characters that names are made of, the hostile ones among them often.
+    fn hostile() -> impl Strategy<Value = String> {
+        let c = prop_oneof![
+            any::<char>(),
+            (0_u32..0xa0).prop_map(|c| char::from_u32(c).unwrap_or('a')),
+            prop::sample::select(vec![
+                ':', '#', '[', ' ', '\n', '\r', '\u{1b}', '\u{202e}', '\u{2066}', '\u{2028}', '\u{ffff}'
+            ])
+        ];
+        prop::collection::vec(c, 0..24).prop_map(|chars| chars.into_iter().collect())
+    }
+
+    fn harmless(line: &str) -> bool {
+        !line.contains(is_hidden) && !line.trim_start().starts_with("::") && !line.contains("##")
+    }
+
+    proptest! {
+        #[test]
+        fn a_name_is_one_harmless_line(text in hostile()) {
+            let shown = name(&text).into_owned();
+            prop_assert!(harmless(&shown), "{shown:?}");
+            prop_assert_eq!(name(&shown), shown.as_str());
+            let lines = lines(&text).into_owned();
+            prop_assert!(lines.split('\n').all(|line| harmless(&line.replace('\t', " "))), "{lines:?}");
+        }
+
+        #[test]
+        fn a_document_keeps_its_content(text in hostile()) {
+            let document = serde_json::to_string_pretty(&serde_json::json!({ &text: [&text] })).unwrap_or_default();
+            let shown = json(&document).into_owned();
+            prop_assert!(shown.lines().all(harmless), "{shown:?}");
+            prop_assert_eq!(
+                serde_json::from_str::<serde_json::Value>(&shown).ok(),
+                serde_json::from_str::<serde_json::Value>(&document).ok()
+            );
+        }
+
+        #[test]
+        fn an_excerpt_keeps_its_places(text in hostile()) {
+            let shown = excerpt(&text);
+            let ends = |text: &str| text.char_indices().map(|(at, _)| at).collect::<Vec<_>>();
+            prop_assert_eq!(ends(&shown), ends(&text));
+            prop_assert!(!shown.contains("##"));
+        }
+    }
+
+    #[test]
+    fn ordinary_text_stays_as_it_is() {
+        for text in ["vectors/scenes/dot3/lit-stone.ron", "Stein, größer: 3 × 4 — 石", "C# and a::b", "a\\nb"] {
+            assert!(matches!(name(text), Cow::Borrowed(_)), "{text}");
+        }
+        assert!(matches!(lines("a\n\tb: 1\n"), Cow::Borrowed(_)));
+        assert!(matches!(json("{\n  \"a\": 1\n}\n"), Cow::Borrowed(_)));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn paths_that_are_no_text_stay_apart() {
+        use std::os::unix::ffi::OsStrExt;
+        let of = |bytes: &[u8]| path(Path::new(std::ffi::OsStr::from_bytes(bytes)));
+        assert_eq!(of(b"a/\xff\xfe.ron"), r"a/\xff\xfe.ron");
+        assert_ne!(of(b"\xff.ron"), of(b"\xfe.ron"));
+    }
+}

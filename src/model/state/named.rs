@@ -1,0 +1,38 @@
+//! Enumerations whose variants have names: one list serves the scene reader, traces and messages.
+
+/// An enumeration whose variants can be listed and named.
+pub trait Named: Copy + PartialEq + 'static {
+    /// The enumeration's own name.
+    const TYPE: &'static str;
+    /// Every variant.
+    const ALL: &'static [Self];
+    /// Names of [`ALL`](Self::ALL), in its order, spelled as in the source and in scene files.
+    const NAMES: &'static [&'static str];
+
+    /// The name of this variant.
+    fn name(self) -> &'static str {
+        Self::ALL.iter().position(|v| *v == self).map_or("", |i| Self::NAMES[i])
+    }
+
+    /// The variant of that name.
+    fn from_name(name: &str) -> Option<Self> {
+        Self::NAMES.iter().position(|n| *n == name).map(|i| Self::ALL[i])
+    }
+}
+
+/// Declares a field-less enumeration and implements [`Named`] for it. A variant is named as it is spelled, or `= "otherwise"`.
+#[macro_export]
+macro_rules! named {
+    (@name $variant:ident) => { stringify!($variant) };
+    (@name $variant:ident $text:literal) => { $text };
+    ($(#[$meta:meta])* $vis:vis enum $name:ident { $($(#[$vmeta:meta])* $variant:ident $(= $text:literal)?),+ $(,)? }) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        $vis enum $name { $($(#[$vmeta])* $variant),+ }
+        impl $crate::state::Named for $name {
+            const TYPE: &'static str = stringify!($name);
+            const ALL: &'static [Self] = &[$($name::$variant),+];
+            const NAMES: &'static [&'static str] = &[$($crate::named!(@name $variant $($text)?)),+];
+        }
+    };
+}

@@ -1,0 +1,87 @@
+//! Work on several threads. Without the feature `threads` everything happens on the caller's.
+
+/// Does work whose parallel iterators use so many threads, 0 being one a core.
+#[cfg(feature = "threads")]
+pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
+    let pool = (threads != 0).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok());
+    match pool.flatten() {
+        Some(pool) => pool.install(work),
+        None => work(),
+    }
+}
+
+/// How many threads [`on_threads`] works with.
+#[cfg(feature = "threads")]
+pub fn count(threads: usize) -> usize {
+    on_threads(threads, rayon::current_num_threads)
+}
+
+/// The caller's thread, and others that help it.
+#[derive(Debug)]
+pub(crate) struct Team {
+    #[cfg(feature = "threads")]
+    helpers: Option<rayon::ThreadPool>,
+}
+
+impl Team {
+    /// A team of so many threads, 0 being one a core; fewer where they cannot be had.
+    #[cfg(feature = "threads")]
+    pub(crate) fn new(threads: usize) -> Team {
+        let threads = match threads {
+            0 => std::thread::available_parallelism().map_or(1, usize::from),
+            threads => threads,
+        };
+        let pool = |helpers| rayon::ThreadPoolBuilder::new().num_threads(helpers).build().ok();
+        Team { helpers: (threads > 1).then(|| pool(threads - 1)).flatten() }
+    }
+
+    /// A team of the caller's thread.
+    #[cfg(not(feature = "threads"))]
+    pub(crate) fn new(_: usize) -> Team {
+        Team {}
+    }
+
+    /// How many they are.
+    pub(crate) fn count(&self) -> usize {
+        #[cfg(feature = "threads")]
+        let helpers = self.helpers.as_ref().map_or(0, rayon::ThreadPool::current_num_threads);
+        #[cfg(not(feature = "threads"))]
+        let helpers = 0;
+        1 + helpers
+    }
+
+    /// Every thread does the work once.
+    pub(crate) fn run(&self, work: impl Fn() + Sync) {
+        #[cfg(feature = "threads")]
+        if let Some(pool) = &self.helpers {
+            return pool.in_place_scope(|scope| {
+                for _ in 0..pool.current_num_threads() {
+                    scope.spawn(|_| work());
+                }
+                work();
+            });
+        }
+        work();
+    }
+}
+
+#[cfg(all(test, feature = "threads"))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn none_is_one_a_core() {
+        assert!(count(0) > 0);
+        assert_eq!(count(3), 3);
+    }
+
+    #[test]
+    fn every_thread_works_once() {
+        let runs = std::sync::atomic::AtomicUsize::new(0);
+        let team = Team::new(3);
+        team.run(|| {
+            runs.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        });
+        assert_eq!((team.count(), runs.into_inner()), (3, 3));
+    }
+}

@@ -1,0 +1,32 @@
+//! Programs in the languages that people have them in. Pixel programs of each become the same [`Combiners`](ninebit::state::Combiners).
+//!
+//! * [`text`]: general stages and final combiner as statements, read and printed (`docs/combiner-language.md`).
+//! * [`combiner_calls`]: the calls of OpenGL that set register combiners (`docs/programs.md`).
+//! * [`registers`]: the words of the chips' registers, read and written (`docs/registers.md`).
+//! * [`texture_stages`]: Direct3D texture stage states; [`texture_environment`]: the OpenGL texture environment
+//!   (`docs/programs.md`). Both write each of their stages as equations over [arguments](cascade::Argument), and [`cascade`]
+//!   turns equations into general stages.
+//! * [`pixel_shader`]: Direct3D pixel shaders, version 1.1 (`docs/pixel-shader.md`).
+//! * [`vertex_shader`]: vertex programs in the assembler language vs.1.1 (`docs/vertex-shader.md`).
+//! * [`legality`](ninebit::legality): what the chip allows (CMB-12), the same for every language. A front end says where the parts of a program
+//!   stand ([`Places`]) and what its words are ([`Notation`](ninebit::legality::Notation)).
+//!
+//! Nothing here knows scenes or files.
+
+pub mod c_source;
+mod calls;
+pub mod cascade;
+pub mod combiner_calls;
+mod finding;
+mod lexer;
+pub mod pixel_shader;
+pub mod registers;
+pub mod text;
+pub mod texture_environment;
+pub mod texture_stages;
+pub mod vertex_shader;
+
+pub use calls::{Aside, Pasted};
+pub use finding::At;
+pub mod spelling;
+pub use ninebit::place::{Part, Place, Places};

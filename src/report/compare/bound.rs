@@ -1,0 +1,184 @@
+//! Between which numbers the error of a single rule lies: the bounds that `docs/numerics.md` states.
+#![allow(clippy::float_arithmetic, reason = "bounds of errors")]
+
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::raster::ideal;
+use ninebit::state::{
+    ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, TriangleVertices,
+};
+use ninebit::texture::unit::PlannedUnit;
+use ninebit::trace::Rule;
+
+/// Half a step, less what a quotient by 255 cannot reach.
+const NEAREST: f64 = 127.0 / 255.0;
+
+/// Lowest and highest error, the definition minus the ideal, in steps (weights: 256ths). None is stated for TEX-15, whose error depends
+/// on how small q becomes.
+pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
+    let policies = &plan.policies;
+    let symmetric = |n: f64| Some((-n, n));
+    match rule {
+        Rule::Num4 => symmetric(0.5 + 255.0 / 16384.0),
+        // The floor to 4096ths comes first, then that of NUM-6.
+        Rule::Num6 => {
+            let slack = 2.0 * 255.0 * weights(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
+        Rule::Fog2 => {
+            let slack = fog_slack(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
+        // Entries and bytes are rounded, the chord of a segment lies up to 0.96 above the curve, and e is floored to 4096ths where its slope
+        // is up to 16 ln 2; at the table's end the curve is 1.
+        Rule::Fog4 => {
+            let slack = fog_slack(plan) + 255.0 * 11.1 / 4096.0 + 1.0;
+            Some((-1.0 - slack, 1.0 + slack))
+        }
+        Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
+        // A floor, one step lower on a tie, and what the weights are off.
+        Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
+        Rule::Tex12 | Rule::Tex15 | Rule::Tex9 => None,
+        // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
+        Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
+        // A quotient by q magnifies what weights are off, as in TEX-15.
+        Rule::Tsh7 if projects(plan) => None,
+        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
+        Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
+        Rule::Tsh9 => {
+            let slack = number_slack(plan) + 255.0 / 4096.0;
+            Some((-1.0 - slack, slack))
+        }
+        // A byte of a half is off by what the other byte is worth.
+        Rule::Tex1 if any_unit(plan, |unit| unit.is_wide()) => symmetric(1.01),
+        Rule::Tex1 => symmetric(0.715),
+        // A unit test of the decoder finds the extremes.
+        Rule::Tex2 => symmetric(1.016),
+        Rule::Tex3 => Some((-13.71, 5.484)),
+        Rule::Tex4 => Some((-3.42, 4.791)),
+        Rule::Tex6 => symmetric(0.5),
+        Rule::Tex18 => symmetric(3.0),
+        Rule::Cmb2 => symmetric(0.0),
+        Rule::Cmb3 => match policies.expand_centre {
+            ExpandCentre::Centred => symmetric(1.0),
+            ExpandCentre::Literal => symmetric(0.0),
+        },
+        Rule::Cmb4 => match policies.half_bias {
+            HalfBiasConstant::Half128 | HalfBiasConstant::Half127 => symmetric(0.5),
+            HalfBiasConstant::Half127And5 => symmetric(0.0),
+        },
+        // -256 negated is 255.
+        Rule::Cmb5 => Some((-1.0, 0.0)),
+        // With half bits kept exact halves exist.
+        Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 if policies.half_bias == HalfBiasConstant::Half127And5 => symmetric(0.5),
+        Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 => symmetric(NEAREST),
+        Rule::Cmb9 => match policies.output_rounding {
+            // Biased: -1/2, twice that when doubled. Halved: 0 or 1/2.
+            OutputRounding::BeforeScale => Some((-1.0, 0.5)),
+            OutputRounding::AfterScale => Some((-1.5, 0.5)),
+        },
+        Rule::Num3 => match policies.register_floor {
+            // The real-number text stops at -255.
+            RegisterFloor::Full => Some((-1.0, 0.0)),
+            RegisterFloor::Symmetric => symmetric(0.0),
+        },
+        Rule::Fin2 | Rule::Fin4 => symmetric(NEAREST),
+        Rule::Rop2 => symmetric(NEAREST),
+        // 5 bits lose up to 7 steps when they are cut; read back they are up to 7 below and, widened, up to 7 above.
+        Rule::Rop5 => symmetric(7.0),
+    }
+}
+
+/// The largest relative error of a triangle's weights: the block-floating products of w (INT-1) and w itself (INT-6).
+fn weights(plan: &Plan) -> f64 {
+    triangles(plan).map(|(draw, vertices)| relative(plan, draw, vertices)).fold(0.0, f64::max)
+}
+
+/// How far weights that are off move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle times their
+/// relative error, twice because their sum is off as well.
+fn coordinate_slack(plan: &Plan) -> f64 {
+    let slack = triangles(plan).flat_map(|(draw, vertices)| {
+        let relative = relative(plan, draw, vertices);
+        draw.units.iter().flat_map(move |unit| {
+            let sets = vertices.coordinates(unit.stage.coordinate_set);
+            let sides = unit.scale(&unit.levels[0]);
+            // Planes are floored to 2^-27 of a step.
+            [0, 1].map(|axis| {
+                let (low, high) = range(sets.map(|set| f64::from(set[axis])));
+                2.0 * relative * (high - low) * 256.0 * f64::from(sides[axis]) + 2.0_f64.powi(-26)
+            })
+        })
+    });
+    // The last bits of the ideal's own float64.
+    slack.fold(1e-6, f64::max)
+}
+
+/// How far the light unit's words, weights that are off and the cut to 24 bits move a fog factor, in steps: what they move d' or e, times
+/// the steepest slope of the function.
+fn fog_slack(plan: &Plan) -> f64 {
+    let slack = triangles(plan).map(|(draw, vertices)| {
+        let Some(function) = &draw.fog.function else { return 0.0 };
+        let (passed, coordinates) = (vertices.fog(), vertices.fog_coordinates());
+        let real: [f64; 3] = std::array::from_fn(|k| ideal::fog_of_vertex(function, passed[k], coordinates[k]));
+        let (p0, p1) = if function.takes_e() { (0.0, 1.0) } else { (f64::from(function.p0), f64::from(function.p1)) };
+        if !(p0.is_finite()
+            && p1.is_finite()
+            && passed.iter().all(|d| d.is_finite())
+            && real.iter().all(|d| d.is_finite()))
+        {
+            return 0.0;
+        }
+        let ((low, high), largest) = (range(real), real.iter().fold(0.0, |n, d| d.abs().max(n)));
+        let rounded = (0..3).map(|k| (f64::from(passed[k]) - real[k]).abs()).fold(0.0, f64::max);
+        let moved = rounded + 2.0 * relative(plan, draw, vertices) * (high - low) + 2.0_f64.powi(-23) * largest;
+        // 16 ln 2; the slope of 2^(-32 x^2) is steepest where x^2 is 1 / (64 ln 2).
+        let slope = match function.mode {
+            FogMode::Linear | FogMode::LinearAbs => p1.abs(),
+            FogMode::Exp | FogMode::ExpAbs => 11.1,
+            FogMode::Exp2 | FogMode::Exp2Abs => 4.05,
+        };
+        // The last term: float64 where large terms cancel.
+        255.0 * (slope * moved + 2.0_f64.powi(-48) * (p0.abs() + (p1 * largest).abs() + 1.0))
+    });
+    slack.fold(0.0, f64::max)
+}
+
+/// The same for coordinates that become colours, in steps.
+fn number_slack(plan: &Plan) -> f64 {
+    let slack = triangles(plan).flat_map(|(draw, vertices)| {
+        let relative = relative(plan, draw, vertices);
+        let spans = (0..16).map(move |n| range(vertices.coordinates(n / 4).map(|set| f64::from(set[n % 4]))));
+        spans.map(move |(low, high)| 2.0 * relative * (high - low) * 255.0)
+    });
+    slack.fold(1e-6, f64::max)
+}
+
+/// Whether some unit divides by a q other than 1.
+fn projects(plan: &Plan) -> bool {
+    triangles(plan).any(|(draw, vertices)| {
+        let q = |unit: &PlannedUnit| vertices.coordinates(unit.stage.coordinate_set).map(|set| set[3]);
+        draw.units.iter().any(|unit| q(unit) != [1.0; 3])
+    })
+}
+
+fn any_unit(plan: &Plan, is: impl Fn(&PlannedUnit) -> bool) -> bool {
+    plan.draws.iter().flat_map(|draw| &draw.units).any(is)
+}
+
+fn triangles(plan: &Plan) -> impl Iterator<Item = (&PlannedDraw, TriangleVertices<'_>)> {
+    plan.draws
+        .iter()
+        .flat_map(|draw| (0..draw.assembly.triangles.len()).map(move |number| (draw, draw.assembly.triangle(number))))
+}
+
+fn relative(plan: &Plan, draw: &PlannedDraw, vertices: TriangleVertices<'_>) -> f64 {
+    let (nearest, farthest) = range(vertices.position(3).map(f64::from));
+    if !draw.perspective || nearest == farthest {
+        return 0.0;
+    }
+    let cut = if plan.profile == Profile::Nv10 { 2.0_f64.powi(-15) } else { 0.0 };
+    2.0_f64.powi(-27) * farthest / nearest + 2.0 * cut
+}
+
+fn range(values: [f64; 3]) -> (f64, f64) {
+    (values[0].min(values[1]).min(values[2]), values[0].max(values[1]).max(values[2]))
+}

@@ -1,0 +1,356 @@
+//! The walk over draws and bands of rows, whatever the ideal is allowed to decide.
+#![allow(clippy::float_arithmetic, reason = "statistics of errors")]
+
+use super::meter::Counts;
+use super::{
+    ChannelError, CompareOptions, Comparison, Decided, Histogram, Mode, RuleError, Statistics, WorstPixel, bound,
+};
+use ninebit::engine::cleared_colors;
+use ninebit::number::Lane;
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::rop::surface;
+use ninebit::state::{Named, Texture, TextureImage};
+use ninebit::texture::unit::Image;
+use ninebit::threads::on_threads;
+use ninebit::trace::{Decision, Part, Rule};
+use rayon::prelude::*;
+
+/// Rows of a band; even, so that quads stay whole.
+const BAND: usize = 16;
+
+/// Worst pixels that are named.
+const WORST: usize = 8;
+
+/// What is known of a pixel beside its colour.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct State {
+    /// The ideal's depth.
+    pub(super) depth: i64,
+    /// A fragment was stored.
+    pub(super) drawn: bool,
+    /// A decision has differed.
+    pub(super) diverged: bool,
+}
+
+/// Some rows of a target, as both sides hold them.
+pub(super) struct Band<'a, L> {
+    /// First row.
+    pub(super) first_row: usize,
+    /// Columns.
+    pub(super) width: usize,
+    /// The definition's words.
+    pub(super) words: &'a mut [u32],
+    /// The definition's depths; empty without a depth buffer.
+    pub(super) depth: &'a mut [u32],
+    /// What the lane holds.
+    pub(super) held: &'a mut [[L; 4]],
+    /// The rest.
+    pub(super) states: &'a mut [State],
+}
+
+impl<L> Band<'_, L> {
+    /// First row and the row after the last.
+    pub(super) fn rows(&self) -> (i64, i64) {
+        (self.first_row as i64, (self.first_row + self.words.len() / self.width) as i64)
+    }
+
+    /// Where pixel (i, j) is.
+    pub(super) fn at(&self, i: i64, j: i64) -> usize {
+        (j as usize - self.first_row) * self.width + i as usize
+    }
+}
+
+/// Textures as a draw finds them.
+pub(super) struct Images<'a, L> {
+    /// With what the lane holds.
+    pub(super) lane: Vec<Image<'a, L>>,
+    /// Only the definition's words.
+    pub(super) words: Vec<Image<'a, i32>>,
+    /// Width and states of those that are surfaces.
+    pub(super) states: Vec<Option<(u32, &'a [State])>>,
+}
+
+/// How the two sides are evaluated.
+pub(super) trait Method {
+    /// The ideal's lane.
+    type Lane: Lane + Send + Sync;
+
+    /// Draws what of a draw falls into a band.
+    fn draw(
+        plan: &Plan,
+        planned: &PlannedDraw,
+        images: &Images<'_, Self::Lane>,
+        band: &mut Band<'_, Self::Lane>,
+        counts: &mut Counts,
+    );
+
+    /// A channel at the end: the ideal, and what each part adds.
+    fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>);
+}
+
+/// A target, or some of its rows, as both sides hold it.
+struct Surface<L> {
+    first_row: usize,
+    width: usize,
+    words: Vec<u32>,
+    depth: Vec<u32>,
+    held: Vec<[L; 4]>,
+    states: Vec<State>,
+}
+
+impl<L: Lane> Surface<L> {
+    fn new(plan: &Plan, target: usize, (first, end): (usize, usize)) -> Self {
+        let target = &plan.targets[target];
+        let (width, pixels) = (target.width as usize, (end - first) * target.width as usize);
+        let clear = target.depth.map_or(0, |d| d.clear);
+        let depth = L::depth(i64::from(clear), || f64::from(clear));
+        Surface {
+            first_row: first,
+            width,
+            words: vec![surface::pack(target.format, target.clear_color); pixels],
+            depth: target.depth.map_or(Vec::new(), |_| vec![clear; pixels]),
+            held: vec![cleared_colors(target).map(L::byte); pixels],
+            states: vec![State { depth, ..State::default() }; pixels],
+        }
+    }
+
+    fn bands(&mut self) -> Vec<Band<'_, L>> {
+        let size = BAND * self.width;
+        let mut depths = self.depth.chunks_mut(size);
+        let colors = self.words.chunks_mut(size).zip(self.held.chunks_mut(size)).zip(self.states.chunks_mut(size));
+        let band = |(number, ((words, held), states))| Band {
+            first_row: self.first_row + number * BAND,
+            width: self.width,
+            words,
+            depth: depths.next().unwrap_or_default(),
+            held,
+            states,
+        };
+        colors.enumerate().map(band).collect()
+    }
+}
+
+/// What some rows came to.
+#[derive(Default)]
+struct Outcome {
+    counts: Counts,
+    drawn: u64,
+    diverged: u64,
+    channels: [(Statistics, Histogram); 4],
+    parts: [Statistics; Part::ALL.len()],
+    unexplained: f64,
+    worst: Vec<WorstPixel>,
+    errors: Vec<[f32; 4]>,
+}
+
+impl Outcome {
+    /// Adds rows that lie below.
+    fn append(&mut self, mut other: Outcome) {
+        self.counts.merge(&other.counts);
+        self.drawn += other.drawn;
+        self.diverged += other.diverged;
+        for (mine, other) in self.channels.iter_mut().zip(&other.channels) {
+            mine.0.merge(&other.0);
+            mine.1.merge(&other.1);
+        }
+        self.parts.iter_mut().zip(&other.parts).for_each(|(mine, other)| mine.merge(other));
+        self.unexplained = self.unexplained.max(other.unexplained);
+        self.worst.append(&mut other.worst);
+        self.keep_worst();
+        self.errors.append(&mut other.errors);
+    }
+
+    fn keep_worst(&mut self) {
+        self.worst.sort_by(|a, b| b.error().abs().total_cmp(&a.error().abs()));
+        self.worst.truncate(WORST);
+    }
+}
+
+impl WorstPixel {
+    /// The definition minus the ideal, in steps.
+    pub fn error(&self) -> f64 {
+        f64::from(self.shown) - self.ideal
+    }
+}
+
+/// Draws everything that the target can show, and sums up.
+pub(super) fn run<M: Method>(plan: &Plan, options: &CompareOptions) -> Comparison {
+    let reads_targets = plan.draws.iter().any(|planned| plan.reads_target(planned));
+    let work = || if reads_targets { whole::<M>(plan, options) } else { banded::<M>(plan, options) };
+    summed(plan, options, on_threads(options.threads, work))
+}
+
+/// No draw reads a surface: each band goes through all draws by itself, and other targets do not matter.
+fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
+    let height = plan.targets[options.target].height as usize;
+    let surfaces: Vec<Surface<M::Lane>> = Vec::new();
+    let images = images(plan, &surfaces);
+    let bands: Vec<Outcome> = (0..height.div_ceil(BAND))
+        .into_par_iter()
+        .map(|number| {
+            let rows = (number * BAND, (number * BAND + BAND).min(height));
+            let mut surface = Surface::new(plan, options.target, rows);
+            let mut counts = Counts::default();
+            for planned in plan.draws.iter().filter(|planned| planned.target == options.target) {
+                for mut band in surface.bands() {
+                    M::draw(plan, planned, &images, &mut band, &mut counts);
+                }
+            }
+            let mut outcome = outcome::<M>(plan, options, &surface);
+            outcome.counts.merge(&counts);
+            outcome
+        })
+        .collect();
+    bands.into_iter().fold(Outcome::default(), |mut all, band| {
+        all.append(band);
+        all
+    })
+}
+
+/// Draw after draw on whole surfaces.
+fn whole<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
+    let (surfaces, counts) = surfaces::<M>(plan);
+    let mut outcome = outcome::<M>(plan, options, &surfaces[options.target]);
+    outcome.counts.merge(&counts);
+    outcome
+}
+
+/// What the lane holds of a target in the end, R, G, B, A row by row; `None` where nothing was drawn.
+pub(super) fn held<M: Method>(plan: &Plan, target: usize) -> Vec<Option<[M::Lane; 4]>> {
+    let (surfaces, _) = surfaces::<M>(plan);
+    let surface = &surfaces[target];
+    surface.held.iter().zip(&surface.states).map(|(held, state)| state.drawn.then_some(*held)).collect()
+}
+
+/// All targets after all draws.
+fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
+    let rows = |target: usize| (0, plan.targets[target].height as usize);
+    let mut surfaces: Vec<Surface<M::Lane>> =
+        (0..plan.targets.len()).map(|target| Surface::new(plan, target, rows(target))).collect();
+    let mut counts = Counts::default();
+    for planned in &plan.draws {
+        let empty = Surface { first_row: 0, width: 0, words: vec![], depth: vec![], held: vec![], states: vec![] };
+        // The surface leaves the others for the draw, so that they can be read as textures.
+        let mut surface = std::mem::replace(&mut surfaces[planned.target], empty);
+        let images = images(plan, &surfaces);
+        let drawn: Vec<Counts> = surface
+            .bands()
+            .into_par_iter()
+            .map(|mut band| {
+                let mut counts = Counts::default();
+                M::draw(plan, planned, &images, &mut band, &mut counts);
+                counts
+            })
+            .collect();
+        drawn.iter().for_each(|band| counts.merge(band));
+        surfaces[planned.target] = surface;
+    }
+    (surfaces, counts)
+}
+
+/// The textures now. Without surfaces nothing reads those that are targets.
+fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
+    let surface = |texture: &Texture| match &texture.image {
+        TextureImage::Target { target } => {
+            let surface = plan.targets[*target].format;
+            // Bits read as another format are not what the lane holds.
+            let channels =
+                if surface.texture_format() == texture.format { surface::sampled_channels(surface) } else { 0 };
+            surfaces.get(*target).map(|s| (s, channels))
+        }
+        TextureImage::Texels(_) => None,
+    };
+    let words = |texture: &'a Texture| match &texture.image {
+        TextureImage::Texels(texels) => &texels.words[..],
+        TextureImage::Target { .. } => surface(texture).map_or(&[][..], |(s, _)| &s.words),
+    };
+    Images {
+        lane: plan
+            .textures
+            .iter()
+            .map(|texture| {
+                let memory = surface(texture).map(|(s, channels)| (&s.held[..], channels));
+                Image { words: words(texture), memory }
+            })
+            .collect(),
+        words: plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect(),
+        states: plan.textures.iter().map(|t| surface(t).map(|(s, _)| (s.width as u32, &s.states[..]))).collect(),
+    }
+}
+
+/// Compares what both sides hold at the end.
+fn outcome<M: Method>(plan: &Plan, options: &CompareOptions, surface: &Surface<M::Lane>) -> Outcome {
+    let format = plan.targets[options.target].format;
+    let kept = surface::kept_channels(format) & options.channels;
+    let mut out = Outcome { errors: Vec::with_capacity(surface.words.len()), ..Outcome::default() };
+    let mut least = 0.0;
+    for (at, (word, state)) in surface.words.iter().zip(&surface.states).enumerate() {
+        let mut errors = if state.drawn && state.diverged { [f32::INFINITY; 4] } else { [f32::NAN; 4] };
+        out.drawn += u64::from(state.drawn);
+        out.diverged += u64::from(state.drawn && state.diverged);
+        if state.drawn && !state.diverged {
+            let shown = surface::kept(format, *word);
+            let mut worst: Option<WorstPixel> = None;
+            for channel in (0..4).filter(|n| kept >> n & 1 != 0) {
+                let (ideal, parts) = M::channel(shown[channel], surface.held[at][channel], &mut out.counts);
+                let (x, y) = ((at % surface.width) as u32, (surface.first_row + at / surface.width) as u32);
+                let pixel = WorstPixel { x, y, channel, shown: shown[channel], ideal };
+                let error = pixel.error();
+                errors[channel] = error as f32;
+                out.channels[channel].0.add(error);
+                out.channels[channel].1.add(error);
+                if let Some(parts) = parts {
+                    out.parts.iter_mut().zip(parts).for_each(|(all, part)| all.add(part));
+                    out.unexplained = out.unexplained.max((error - parts.iter().sum::<f64>()).abs());
+                }
+                if worst.is_none_or(|w| w.error().abs() < error.abs()) {
+                    worst = Some(pixel);
+                }
+            }
+            // Most pixels are no candidates.
+            if let Some(worst) = worst.filter(|w| w.error().abs() > least) {
+                out.worst.push(worst);
+                if out.worst.len() >= 2 * WORST {
+                    out.keep_worst();
+                    least = out.worst.last().map_or(0.0, |w| w.error().abs());
+                }
+            }
+        }
+        out.errors.push(errors);
+    }
+    out.keep_worst();
+    out
+}
+
+fn summed(plan: &Plan, options: &CompareOptions, outcome: Outcome) -> Comparison {
+    let target = &plan.targets[options.target];
+    let mode = options.mode;
+    let rules = outcome.counts.rules.iter().zip(Rule::ALL).filter(|(errors, _)| errors.count > 0);
+    let decisions = outcome.counts.decisions.iter().zip(Decision::ALL).filter(|(counts, _)| counts[0] > 0);
+    let kept = surface::kept_channels(target.format) & options.channels;
+    let frames = mode != Mode::PerOp;
+    let channels = (0..4).filter(|n| frames && kept >> n & 1 != 0).map(|channel| {
+        let (errors, histogram) = outcome.channels[channel];
+        ChannelError { channel, errors, histogram }
+    });
+    let parts = Part::ALL.iter().copied().zip(outcome.parts).filter(|_| mode == Mode::Follow).collect();
+    Comparison {
+        mode,
+        target: target.name.clone(),
+        width: target.width,
+        height: target.height,
+        drawn: outcome.drawn,
+        diverged: outcome.diverged,
+        channels: channels.collect(),
+        parts,
+        unexplained: if mode == Mode::Follow { outcome.unexplained } else { 0.0 },
+        rules: rules
+            .map(|(errors, rule)| RuleError { rule: *rule, errors: *errors, bound: bound::of(*rule, plan) })
+            .collect(),
+        decisions: decisions
+            .map(|([taken, differing], decision)| Decided { decision: *decision, taken: *taken, differing: *differing })
+            .collect(),
+        worst: if frames { outcome.worst } else { Vec::new() },
+        errors: if frames { outcome.errors } else { Vec::new() },
+    }
+}

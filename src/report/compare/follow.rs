@@ -1,0 +1,90 @@
+//! The ideal takes every decision of the definition.
+
+use super::draw::{Band, Images, Method};
+use super::meter::{Counts, Meter};
+use ninebit::engine::pixel::Fragment;
+use ninebit::engine::walk;
+use ninebit::number::{Ideal, Paired, STRANDS, Strands};
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::rop::surface;
+use ninebit::state::Named;
+use ninebit::trace::{Observer, Part, Rule};
+
+/// Errors add up; their parts are told apart.
+pub(super) struct Follow;
+
+/// Each rule starts from the definition's integers.
+pub(super) struct PerOp;
+
+impl Method for Follow {
+    type Lane = Paired<Strands<STRANDS>>;
+
+    fn draw(
+        plan: &Plan,
+        planned: &PlannedDraw,
+        images: &Images<'_, Self::Lane>,
+        band: &mut Band<'_, Self::Lane>,
+        counts: &mut Counts,
+    ) {
+        draw(plan, planned, images, band, &mut Meter::<false>(counts));
+    }
+
+    fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
+        let settled = shown_as(shown, held, &mut Meter::<false>(counts));
+        (settled.ideal.real(), Some(settled.ideal.parts()))
+    }
+}
+
+impl Method for PerOp {
+    type Lane = Paired<Strands<1>>;
+
+    fn draw(
+        plan: &Plan,
+        planned: &PlannedDraw,
+        images: &Images<'_, Self::Lane>,
+        band: &mut Band<'_, Self::Lane>,
+        counts: &mut Counts,
+    ) {
+        draw(plan, planned, images, band, &mut Meter::<true>(counts));
+    }
+
+    fn channel(shown: u8, held: Self::Lane, counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
+        (shown_as(shown, held, &mut Meter::<true>(counts)).ideal.real(), None)
+    }
+}
+
+/// What a picture shows of a channel.
+fn shown_as<I: Ideal>(shown: u8, held: Paired<I>, observer: &mut impl Observer) -> Paired<I> {
+    observer.settle(Rule::Rop5, Paired { fixed: i32::from(shown), ..held })
+}
+
+fn draw<I: Ideal>(
+    plan: &Plan,
+    planned: &PlannedDraw,
+    images: &Images<'_, Paired<I>>,
+    band: &mut Band<'_, Paired<I>>,
+    observer: &mut impl Observer,
+) {
+    walk::covered(plan, planned, band.rows(), |context, i, j| {
+        let at = band.at(i, j);
+        let stored_depth = band.depth.get(at).copied().unwrap_or(0);
+        let fragment = Fragment {
+            pixel: (i, j),
+            e: context.triangle.edges(i, j),
+            stored: band.words[at],
+            stored_depth: i64::from(stored_depth),
+            weights: None,
+        };
+        let read = surface::read(planned.surface, band.words[at]);
+        let destination = std::array::from_fn(|n| Paired { fixed: i32::from(read[n]), ..band.held[at][n] });
+        let Some(stored) = context.shade(&fragment, Some(destination), &images.lane, observer) else { return };
+        band.words[at] = stored.word;
+        band.states[at].drawn = true;
+        if let (Some(depth), Some(slot)) = (stored.depth, band.depth.get_mut(at)) {
+            *slot = depth as u32;
+        }
+        for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
+            band.held[at][n] = stored.channels[n];
+        }
+    });
+}

@@ -1,0 +1,174 @@
+//! The ideal decides for itself: two evaluations side by side, each with a surface of its own.
+#![allow(clippy::float_arithmetic, reason = "the real-number reference; it never feeds a stored byte")]
+
+use std::marker::PhantomData;
+
+use super::draw::{Band, Images, Method};
+use super::meter::{Counts, Log};
+use ninebit::engine::pixel::{Fragment, TriangleContext};
+use ninebit::engine::walk;
+use ninebit::number::{Ideal, Lane};
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::raster::ideal::Outline;
+use ninebit::state::{Cull, FrontFace, Named};
+use ninebit::trace::{Decision, Observer, Part, Silent};
+
+/// Two evaluations.
+pub(super) struct Free;
+
+impl Method for Free {
+    type Lane = f64;
+
+    fn draw(
+        plan: &Plan,
+        planned: &PlannedDraw,
+        images: &Images<'_, f64>,
+        band: &mut Band<'_, f64>,
+        counts: &mut Counts,
+    ) {
+        let (rows, columns) = walk::window(planned, band.rows());
+        if planned.folded.invisible.is_some() || rows.0 >= rows.1 || columns.0 >= columns.1 {
+            return;
+        }
+        for number in 0..planned.assembly.triangles.len() {
+            let fixed = TriangleContext::new(plan, planned, number, rows);
+            let outline = outline(planned, number);
+            let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows);
+            let spans = outer(&fixed).into_iter().chain(outline.as_ref().map(|o| o.rows));
+            let Some(reach) = spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
+            for j in rows.0.max(reach.0)..rows.1.min(reach.1) {
+                let definition = fixed.as_ref().map_or((0, 0), |c| c.triangle.span(j, columns));
+                let ideal = outline.as_ref().map_or((0, 0), |o| o.span(j, columns));
+                let inside = |span: (i64, i64), i: i64| (span.0..span.1).contains(&i);
+                let both = [definition, ideal].into_iter().filter(|s| s.0 < s.1);
+                let Some((low, high)) = both.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) else { continue };
+                for i in low..high {
+                    let covered = (inside(definition, i), inside(ideal, i));
+                    if covered != (false, false) {
+                        pixel(planned, fixed.as_ref(), outline.as_ref(), covered, (i, j), images, band, counts);
+                    }
+                }
+            }
+        }
+    }
+
+    fn channel(_shown: u8, held: f64, _counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
+        (held, None)
+    }
+}
+
+/// The triangle before its vertices are snapped; none if it is culled.
+fn outline(planned: &PlannedDraw, number: usize) -> Option<Outline> {
+    let outline = Outline::new(planned.assembly.triangle(number).positions(), planned.perspective)?;
+    let front = outline.counter_clockwise == (planned.front_face == FrontFace::CounterClockwise);
+    match planned.cull {
+        Cull::Front if front => None,
+        Cull::Back if !front => None,
+        Cull::None | Cull::Front | Cull::Back => Some(outline),
+    }
+}
+
+/// One pixel that either side covers.
+#[allow(clippy::too_many_arguments, reason = "two sides of one pixel")]
+fn pixel(
+    planned: &PlannedDraw,
+    fixed: Option<&TriangleContext<'_>>,
+    outline: Option<&Outline>,
+    covered: (bool, bool),
+    (i, j): (i64, i64),
+    images: &Images<'_, f64>,
+    band: &mut Band<'_, f64>,
+    counts: &mut Counts,
+) {
+    let at = band.at(i, j);
+    counts.decided(Decision::Coverage, covered.0 != covered.1);
+    let mut diverged = covered.0 != covered.1;
+    let mut logs = [(); 2].map(|()| Log { diverged: &images.states, ..Log::default() });
+    let [definition, ideal] = &mut logs;
+    if let (true, Some(context)) = (covered.0, fixed) {
+        let fragment = Fragment {
+            pixel: (i, j),
+            e: context.triangle.edges(i, j),
+            stored: band.words[at],
+            stored_depth: i64::from(band.depth.get(at).copied().unwrap_or(0)),
+            weights: None,
+        };
+        if let Some(stored) = context.shade::<i32, _>(&fragment, None, &images.words, definition) {
+            band.words[at] = stored.word;
+            band.states[at].drawn = true;
+            if let (Some(depth), Some(slot)) = (stored.depth, band.depth.get_mut(at)) {
+                *slot = depth as u32;
+            }
+        }
+    }
+    // Where the definition has no such triangle the pixel is left out whatever the ideal holds.
+    if let (true, Some(outline), Some(context)) = (covered.1, outline, fixed) {
+        real_side(planned, context, outline, (i, j), images, band, ideal);
+    }
+    if covered == (true, true) {
+        for (definition, ideal) in definition.decisions.iter().zip(&ideal.decisions) {
+            // A test that only one side passed ends the other side's list.
+            debug_assert_eq!(definition.0, ideal.0);
+            counts.decided(definition.0, definition.1 != ideal.1);
+            diverged |= definition.1 != ideal.1;
+        }
+    }
+    band.states[at].diverged |= diverged || definition.tainted || ideal.tainted;
+    band.states[at].drawn |= band.states[at].diverged;
+}
+
+/// The ideal's side of a pixel that it covers.
+fn real_side<L: Lane>(
+    planned: &PlannedDraw,
+    context: &TriangleContext<'_>,
+    outline: &Outline,
+    (i, j): (i64, i64),
+    images: &Images<'_, L>,
+    band: &mut Band<'_, L>,
+    observer: &mut impl Observer,
+) {
+    let at = band.at(i, j);
+    let fragment = Fragment {
+        pixel: (i, j),
+        // Any sample will do: the ideal goes by its own weights.
+        e: [context.triangle.doubled_area, 0, 0],
+        stored: band.words[at],
+        stored_depth: band.states[at].depth,
+        weights: Some(outline.weights(i, j)),
+    };
+    if let Some(stored) = context.shade::<L, _>(&fragment, Some(band.held[at]), &images.lane, observer) {
+        band.states[at].drawn = true;
+        band.states[at].depth = stored.depth.unwrap_or(band.states[at].depth);
+        for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
+            band.held[at][n] = stored.channels[n];
+        }
+    }
+}
+
+/// The ideal alone, in a lane of real numbers.
+pub(super) struct Real<L>(PhantomData<L>);
+
+impl<L: Ideal + Send + Sync> Method for Real<L> {
+    type Lane = L;
+
+    fn draw(plan: &Plan, planned: &PlannedDraw, images: &Images<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
+        let (rows, columns) = walk::window(planned, band.rows());
+        if planned.folded.invisible.is_some() || rows.0 >= rows.1 || columns.0 >= columns.1 {
+            return;
+        }
+        for number in 0..planned.assembly.triangles.len() {
+            let Some(outline) = outline(planned, number) else { continue };
+            let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
+            for j in rows.0.max(outline.rows.0)..rows.1.min(outline.rows.1) {
+                let (low, high) = outline.span(j, columns);
+                for i in low..high {
+                    real_side(planned, &context, &outline, (i, j), images, band, &mut Silent);
+                }
+            }
+        }
+    }
+
+    fn channel(_shown: u8, held: L, _counts: &mut Counts) -> (f64, Option<[f64; Part::ALL.len()]>) {
+        (held.real(), None)
+    }
+}

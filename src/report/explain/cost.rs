@@ -1,0 +1,154 @@
+//! What a draw costs, from its plan alone.
+
+use ninebit::combiner::general::{BLUE, PlannedPortion};
+use ninebit::plan::PlannedDraw;
+use ninebit::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, ShaderOperation, SumRounding};
+use ninebit::texture::dot::{DOT_OPERATIONS, REFLECTION_OPERATIONS};
+use ninebit::texture::stage::{PlannedShader, PlannedShaderStage};
+use ninebit::texture::unit::PlannedUnit;
+use ninebit::trace::Work;
+
+/// Work by kind, in the order of `Work::ALL`.
+pub(super) type Amounts = [u64; Work::ALL.len()];
+
+/// What one fragment costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FragmentCost {
+    /// Every fragment.
+    pub shaded: Amounts,
+    /// On top of that, one that passes the tests.
+    pub stored: Amounts,
+}
+
+/// What a draw costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// Covered pixels, once for each triangle that covers them.
+    pub fragments: u64,
+    /// A test decides which of them are stored: [`total`](Self::total) is then the most that it can be.
+    pub tested: bool,
+    /// The texture shader drops fragments before they are shaded (TSH-10): all of the work is then the most that it can be.
+    pub kills: bool,
+    /// The lod decides how much texture units read (TEX-9): texels and filter steps are then the most that they can be.
+    pub lod_decides: bool,
+    /// Of one fragment.
+    pub fragment: FragmentCost,
+}
+
+impl Cost {
+    pub(super) fn of(planned: &PlannedDraw, policies: &Policies, fragments: u64) -> Cost {
+        let fragment = FragmentCost { shaded: shaded(planned, policies), stored: stored(planned) };
+        Cost {
+            fragments,
+            tested: planned.alpha_test.is_some()
+                || planned.depth_test.is_some()
+                || planned.shader.as_ref().is_some_and(PlannedShader::kills),
+            kills: planned.shader.as_ref().is_some_and(PlannedShader::kills),
+            lod_decides: planned.units.iter().any(PlannedUnit::needs_lod),
+            fragment,
+        }
+    }
+
+    /// The work if `stored` fragments pass the tests.
+    pub fn with(&self, stored: u64) -> Amounts {
+        std::array::from_fn(|n| self.fragments * self.fragment.shaded[n] + stored * self.fragment.stored[n])
+    }
+
+    /// The work if all fragments pass.
+    pub fn total(&self) -> Amounts {
+        self.with(self.fragments)
+    }
+}
+
+fn shaded(planned: &PlannedDraw, policies: &Policies) -> Amounts {
+    let mut amounts = Amounts::default();
+    let mut add = |work: Work, amount: u64| amounts[work as usize] += amount;
+    for unit in &planned.units {
+        let (texels, lerps) = unit_cost(unit);
+        add(Work::Texels, texels);
+        add(Work::Lerps, lerps);
+    }
+    if let Some(shader) = &planned.shader {
+        add(Work::Dots, shader.stages.iter().map(dot_unit).sum());
+    }
+    for stage in &planned.stages {
+        for portion in [&stage.rgb, &stage.alpha] {
+            let (products, roundings) = portion_cost(portion, policies);
+            add(Work::Products, products);
+            add(Work::Roundings, roundings);
+        }
+    }
+    let last = &planned.final_combiner;
+    let product = u64::from(last.product.count_ones());
+    add(Work::Products, product);
+    add(Work::Roundings, product);
+    if last.lerps {
+        let channels = u64::from((last.live & 7).count_ones());
+        add(Work::Products, 2 * channels);
+        add(Work::Roundings, channels * if policies.lerp_rounding == LerpRounding::Once { 1 } else { 2 });
+    }
+    amounts
+}
+
+/// Texels and filter steps of a unit; the most that they can be where the lod decides.
+fn unit_cost(unit: &PlannedUnit) -> (u64, u64) {
+    let level = |filter: Filter| match filter {
+        Filter::Nearest => (1, 0),
+        // Two rows and their mix, in four channels.
+        Filter::Linear => (4, 12),
+    };
+    let magnified = level(unit.state.mag_filter);
+    if !unit.needs_lod() {
+        return magnified;
+    }
+    let (texels, lerps) = level(unit.state.min_filter);
+    let minified = match unit.state.mip_filter {
+        MipFilter::Linear if unit.levels.len() > 1 => (2 * texels, 2 * lerps + 4),
+        _ => (texels, lerps),
+    };
+    (magnified.0.max(minified.0), magnified.1.max(minified.1))
+}
+
+/// What the dot unit does for a stage: its own dot product, and a reflection if something is sampled in its direction.
+fn dot_unit(stage: &PlannedShaderStage) -> u64 {
+    let reflects = matches!(
+        stage.state.operation,
+        ShaderOperation::DotReflectSpecular | ShaderOperation::DotReflectConstantEye { .. }
+    );
+    let product = if stage.dots { DOT_OPERATIONS } else { 0 };
+    product + if reflects && stage.live != 0 { REFLECTION_OPERATIONS } else { 0 }
+}
+
+/// Products and roundings of a portion.
+fn portion_cost(planned: &PlannedPortion, policies: &Policies) -> (u64, u64) {
+    let portion = &planned.portion;
+    let dots = [portion.ab_dot_product, portion.cd_dot_product];
+    // A dot product is the same in all channels.
+    let values = |channels: u8, same: bool| u64::from(if same { channels.min(1) } else { channels.count_ones() as u8 });
+    let (mut products, mut roundings) = (0, 0);
+    for n in 0..2 {
+        let channels = planned.product_channels(n);
+        products += values(channels, dots[n]) * if dots[n] { 3 } else { 1 };
+        if dots[n] && policies.dot_rounding == DotRounding::Each {
+            roundings += 3 * values(channels, true);
+        }
+        let blue = if planned.blue_to_alpha[n] { BLUE } else { 0 };
+        roundings += values(planned.live[n] | blue, dots[n]);
+    }
+    let third = values(planned.live[2], dots[0] && dots[1]);
+    let rounds_each = !portion.mux && policies.sum_rounding == SumRounding::Each;
+    (products, roundings + third * if rounds_each { 3 } else { 1 })
+}
+
+fn stored(planned: &PlannedDraw) -> Amounts {
+    let mut amounts = Amounts::default();
+    let bytes = u64::from(planned.surface.bytes());
+    if planned.blend.is_some() {
+        amounts[Work::Blends as usize] = u64::from(planned.blended.count_ones());
+        amounts[Work::BytesRead as usize] = bytes;
+    }
+    if planned.write_mask != 0 {
+        amounts[Work::BytesWritten as usize] = bytes;
+    }
+    amounts
+}

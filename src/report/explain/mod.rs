@@ -1,0 +1,288 @@
+//! A plan in words: what each draw computes, what was left out and why, and what it will cost.
+//!
+//! The program is shown whole, in the combiner language, and then as equations of what is left of it:
+//! `spare0.rgb = expand(tex0) . expand(col0)`. Costs are predicted from the plan; a
+//! run counts the same ([`engine::count`]).
+
+mod cost;
+mod equation;
+mod report;
+mod shader;
+
+pub use cost::{Cost, FragmentCost};
+pub use report::{explanation_json, explanation_text};
+
+use crate::planes;
+use ninebit::engine;
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::rop::surface;
+use ninebit::state::{
+    Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, StageOrigin, TEXTURE_UNITS,
+    TextureKind, VertexProgram,
+};
+use ninebit::texture::unit::PlannedUnit;
+use ninebit_program::text::print;
+use ninebit_program::text::words::register;
+
+/// A draw in words.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DrawExplanation {
+    /// Name of the draw.
+    pub name: String,
+    /// Name of its target.
+    pub target: String,
+    /// The vertex program that made its vertices, and how many there are.
+    pub vertex_program: Option<(VertexProgram, usize)>,
+    /// Its pixel program in the combiner language, whole.
+    pub program: String,
+    /// What each general stage of it was written as in the language of an API; empty if it was written for the combiners.
+    pub program_origin: Vec<StageOrigin>,
+    /// What it computes, in order: what the plan has kept.
+    pub equations: Vec<String>,
+    /// What has been cut off its triangles; `None`: nothing.
+    pub clipping: Option<String>,
+    /// What nothing can see, and why.
+    pub dropped: Vec<String>,
+    /// What it will cost.
+    pub cost: Cost,
+}
+
+/// Explains a plan of a scene, draw by draw.
+pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
+    let draws = scene.draws.iter().zip(&plan.draws);
+    draws
+        .map(|(draw, planned)| DrawExplanation {
+            name: planned.name.clone(),
+            target: plan.targets[planned.target].name.clone(),
+            vertex_program: draw.vertex_program.clone().map(|program| (program, draw.vertices.len())),
+            program: print(&draw.combiners),
+            program_origin: draw.program_origin.clone(),
+            equations: equations(scene, plan, planned),
+            clipping: clipping(planned),
+            dropped: dropped(scene, draw, planned),
+            cost: Cost::of(planned, &plan.policies, engine::fragments(plan, planned)),
+        })
+        .collect()
+}
+
+/// What RAS-6 has done to a draw's triangles.
+fn clipping(planned: &PlannedDraw) -> Option<String> {
+    let clipping = &planned.assembly.clipping;
+    if clipping.planes == 0 {
+        return None;
+    }
+    let (left, pieces, cut) = (planned.assembly.triangles.len(), clipping.pieces.len(), clipping.cut);
+    let given = left - pieces + cut + clipping.removed;
+    let (planes, removed) = (planes(clipping.planes), clipping.removed);
+    Some(format!(
+        "{given} triangles: {removed} removed and {cut} cut into {pieces} pieces ({planes}); {left} are drawn"
+    ))
+}
+
+fn channels(mask: u8) -> String {
+    (0..4).filter(|n| mask >> n & 1 != 0).map(|n| ["r", "g", "b", "a"][n]).collect()
+}
+
+fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
+    let mut lines = Vec::new();
+    if planned.folded.invisible.is_some() {
+        return lines;
+    }
+    for index in 0..TEXTURE_UNITS {
+        if let Some(shader) = &planned.shader {
+            lines.extend(shader::before(shader, index));
+        }
+        if let Some(unit) = planned.units.iter().find(|unit| unit.index == index) {
+            lines.push(sampled(scene, unit));
+        }
+        if let Some(shader) = &planned.shader {
+            lines.extend(shader::after(shader, index));
+        }
+    }
+    for (of, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
+        if live != 0 {
+            let how = planned.shade_model.name().to_lowercase();
+            lines.push(format!("{}.{} = {how}(vertices)", register(of), channels(live)));
+        }
+    }
+    lines.extend(fog(planned));
+    for stage in &planned.stages {
+        lines.extend(equation::stage(stage, planned.mux_select));
+    }
+    lines.extend(equation::final_combiner(&planned.final_combiner));
+    if let Some(test) = &planned.alpha_test {
+        lines.push(format!("pass if fragment.a {} {}", comparison(test.function), test.reference));
+    }
+    if let Some(test) = &planned.depth_test {
+        let write = if test.write { ", then store z" } else { "" };
+        lines.push(format!("pass if z {} stored z{write}", comparison(test.function)));
+    }
+    lines.extend(equation::blend(planned));
+    if planned.write_mask != 0 {
+        let target = &plan.targets[planned.target];
+        lines.push(format!("store {} to `{}`, {}", channels(planned.written), target.name, target.format.name()));
+    }
+    lines
+}
+
+/// The fog register, as far as it is read: what its factor is a function of.
+fn fog(planned: &PlannedDraw) -> Vec<String> {
+    let mut lines = Vec::new();
+    let colors = channels(planned.fog_channels & 7);
+    if !colors.is_empty() {
+        let [r, g, b] = planned.fog.color;
+        lines.push(format!("fog.{colors} = ({r}, {g}, {b})/255"));
+    }
+    if planned.fog_channels & 8 != 0 {
+        let factor = match planned.fog.function {
+            _ if !planned.fog.enabled => "1: fog is off".to_string(),
+            None => "smooth(vertices): factors".to_string(),
+            Some(function) => curve(&function),
+        };
+        lines.push(format!("fog.a = {factor}"));
+    }
+    lines
+}
+
+/// Fog as a function of the coordinate d.
+fn curve(function: &FogFunction) -> String {
+    let FogFunction { mode, p0, p1, p2, .. } = function;
+    let square = if *p2 == 0.0 { String::new() } else { format!(" + {p2} d^2") };
+    let e = format!("e = {p0} + {p1} d{square} at the vertices");
+    match mode {
+        FogMode::Linear if function.per_vertex => format!("e - 1, limited to 0..1, {e}"),
+        FogMode::LinearAbs if function.per_vertex => format!("|e| - 1, limited to 0..1, {e}"),
+        FogMode::Linear => format!("{p0} + {p1} d - 1, limited to 0..1, d being the pixel's fog coordinate"),
+        FogMode::LinearAbs => format!("{p0} + {p1} |d| - 1, limited to 0..1, d being the pixel's fog coordinate"),
+        FogMode::Exp => format!("2^(16 (e - 3/2)), 1 from e = 3/2 on, 0 below e = 1, {e}"),
+        FogMode::ExpAbs => format!("2^(-16 |e - 3/2|), 0 from a distance of 1/2 on, {e}"),
+        FogMode::Exp2 | FogMode::Exp2Abs => format!("2^(-32 (e - 3/2)^2), 0 from a distance of 1/2 on, {e}"),
+    }
+}
+
+/// What a unit samples, and how.
+fn sampled(scene: &Scene, unit: &PlannedUnit) -> String {
+    let texture = &scene.textures[unit.state.texture].name;
+    let modes = format!("{}/{}", unit.state.address_s.name(), unit.state.address_t.name());
+    format!(
+        "tex{}.{} = {}(`{texture}`, {} x {} {}{}, {})",
+        unit.index,
+        channels(unit.live),
+        filters(unit),
+        unit.levels[0].width,
+        unit.levels[0].height,
+        unit.format.name(),
+        if unit.levels.len() > 1 { format!(", {} levels", unit.levels.len()) } else { String::new() },
+        match unit.kind {
+            TextureKind::Cube => "cube map".to_string(),
+            TextureKind::TwoDimensional => modes,
+            TextureKind::Rectangle => format!("{modes}, in texels"),
+        }
+    )
+}
+
+/// How a unit filters: one word, or one for each side of lod 0 and one for levels.
+fn filters(unit: &PlannedUnit) -> String {
+    let state = &unit.state;
+    let [min, mag] = [state.min_filter, state.mag_filter].map(|filter| filter.name().to_lowercase());
+    if !unit.needs_lod() {
+        return mag;
+    }
+    match state.mip_filter {
+        MipFilter::Linear if unit.levels.len() > 1 => format!("{mag} or {min} of two levels"),
+        MipFilter::Nearest if unit.levels.len() > 1 => format!("{mag} or {min} of the nearest level"),
+        _ => format!("{mag} or, minified, {min}"),
+    }
+}
+
+fn comparison(function: CompareFunction) -> &'static str {
+    match function {
+        CompareFunction::Never => "never",
+        CompareFunction::Less => "<",
+        CompareFunction::Equal => "=",
+        CompareFunction::LessOrEqual => "<=",
+        CompareFunction::Greater => ">",
+        CompareFunction::NotEqual => "!=",
+        CompareFunction::GreaterOrEqual => ">=",
+        CompareFunction::Always => "always, whatever",
+    }
+}
+
+/// What of the state is not in the plan, and why.
+fn dropped(scene: &Scene, draw: &Draw, planned: &PlannedDraw) -> Vec<String> {
+    if let Some(why) = planned.folded.invisible {
+        return vec![format!("the whole draw: {}", why.name())];
+    }
+    let mut lines = Vec::new();
+    for (index, unit) in draw.textures.iter().enumerate() {
+        let Some(unit) = unit else { continue };
+        let name = &scene.textures[unit.texture].name;
+        match planned.units.iter().find(|planned| planned.index == index) {
+            None if !draw.texture_shader[index].operation.samples() => {
+                let operation = draw.texture_shader[index].operation.name();
+                lines.push(format!(
+                    "texture unit {index}, `{name}`: the texture shader does not sample it ({operation})"
+                ));
+            }
+            None => lines.push(format!("texture unit {index}, `{name}`: nothing that is needed reads tex{index}")),
+            Some(planned) if planned.live != 15 => {
+                lines.push(format!("tex{index}.{}: nothing that is needed reads it", channels(15 & !planned.live)));
+            }
+            Some(_) => {}
+        }
+    }
+    for (of, live) in [(Register::PrimaryColor, planned.primary), (Register::SecondaryColor, planned.secondary)] {
+        if live != 15 {
+            let name = register(of);
+            lines.push(format!("{name}.{}: nothing that is needed reads it", channels(15 & !live)));
+        }
+    }
+    for (index, stage) in draw.combiners.stages.iter().enumerate() {
+        let kept = planned.stages.iter().find(|planned| planned.index == index);
+        for (state, all, what) in [(&stage.rgb, 7, "rgb"), (&stage.alpha, 8, "alpha")] {
+            let kept = kept.map(|stage| if what == "rgb" { &stage.rgb } else { &stage.alpha });
+            let outputs = [("AB", state.ab_output), ("CD", state.cd_output), ("sum", state.sum_output)];
+            for (n, (output, destination)) in outputs.into_iter().enumerate() {
+                if destination == Register::Zero {
+                    continue;
+                }
+                let live = kept.map_or(0, |portion| portion.live[n]);
+                if live != all {
+                    let (name, dead) = (register(destination), channels(all & !live));
+                    lines.push(format!("stage {index} {what} {output}: {name}.{dead} is not read afterwards"));
+                }
+            }
+        }
+    }
+    let fragment = planned.final_combiner.live;
+    if fragment & 8 == 0 {
+        lines.push("fragment.a: it is not tested, blended or stored".to_string());
+    }
+    if fragment & 7 != 7 {
+        lines.push(format!("fragment.{}: it is neither blended nor stored", channels(7 & !fragment)));
+    }
+    if fragment & 7 != 0 && !planned.final_combiner.lerps {
+        lines.push("final combiner A, B, C: A and C are 0, so D alone counts".to_string());
+    }
+    if let Some(test) = &draw.alpha_test
+        && planned.alpha_test.is_none()
+    {
+        lines.push(format!("alpha test: {} passes every fragment", test.function.name()));
+    }
+    lines.extend(draw.blend.as_ref().and_then(|blend| dropped_blend(blend, planned)));
+    lines
+}
+
+fn dropped_blend(blend: &Blend, planned: &PlannedDraw) -> Option<String> {
+    let Blend { equation, source, destination } = blend;
+    let state = format!("blend {}, {}, {}", equation.name(), source.name(), destination.name());
+    if !surface::blends(planned.surface) {
+        Some(format!("{state}: {} surfaces do not blend", planned.surface.name()))
+    } else if planned.folded.replaces {
+        Some(format!("{state}: it stores the source as it is, the destination is not read"))
+    } else if planned.folded.keeps {
+        Some(format!("{state}: it keeps what is there, no colour is written"))
+    } else {
+        None
+    }
+}

@@ -1,0 +1,131 @@
+//! Cube maps: of the direction itself, brought to unit length, of half vectors, and of the light of a sky.
+//!
+//! A texel's direction is the one that meets its centre (TEX-12). Vectors are stored as in [`normal_map`](super::normal_map), colours as
+//! 0..255 for 0..1; alpha is 255.
+#![allow(
+    clippy::float_arithmetic,
+    reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
+)]
+
+use super::byte;
+use super::normal_map::encode;
+use super::sky::HemisphereLight;
+use crate::image::Rgba;
+use crate::vector::{Vector, minus, plus, unit_or_zero};
+use ninebit::state::Named;
+use ninebit::texture::cube::Face;
+
+/// Sides of the faces of a cube map.
+pub const CUBE_SIDES: std::ops::RangeInclusive<u32> = 1..=1024;
+
+/// What a texel holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Content {
+    /// The direction that meets it.
+    Direction,
+    /// The unit vector half-way between the direction, which points to the viewer, and that to a light.
+    Half {
+        /// Toward the light, of any length but zero.
+        light: [f64; 3],
+        /// The map is looked up with the direction *from* the viewer instead, as positions in camera space are.
+        from_viewer: bool,
+    },
+    /// The light that meets a surface whose normal is the direction.
+    Sky(HemisphereLight),
+}
+
+/// The six faces, in the order in which a cube map stores them. `side` is brought into [`CUBE_SIDES`].
+pub fn faces(side: u32, content: Content) -> Vec<Rgba> {
+    let side = side.clamp(*CUBE_SIDES.start(), *CUBE_SIDES.end());
+    let face = |face: &Face| {
+        let texels = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
+        let pixels = texels.map(|(column, row)| {
+            let [r, g, b] = texel(direction(*face, column, row, side), content);
+            [r, g, b, 255]
+        });
+        Rgba { width: side, height: side, pixels: pixels.collect() }
+    };
+    Face::ALL.iter().map(face).collect()
+}
+
+/// The unit direction that meets the centre of a texel.
+fn direction(face: Face, column: u32, row: u32, side: u32) -> Vector {
+    let along = |index: u32| (2.0 * f64::from(index) + 1.0 - f64::from(side)) / f64::from(side);
+    let mut direction = [0.0; 3];
+    for (signed, value) in face.components().into_iter().zip([along(column), along(row), 1.0]) {
+        direction[signed.axis] = if signed.negative { -value } else { value };
+    }
+    unit_or_zero(direction)
+}
+
+/// The bytes for a unit direction.
+fn texel(direction: Vector, content: Content) -> [u8; 3] {
+    match content {
+        Content::Direction => encode(direction),
+        Content::Half { light, from_viewer } => encode(half(direction, light, from_viewer)),
+        Content::Sky(light) => light.at(direction).map(byte),
+    }
+}
+
+/// The unit vector half-way between a direction, toward the viewer or from it, and that to a light; zero if nothing lies half-way.
+fn half(direction: Vector, light: [f64; 3], from_viewer: bool) -> Vector {
+    let combine = if from_viewer { minus } else { plus };
+    unit_or_zero(combine(unit_or_zero(light), direction))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vector::dot;
+
+    #[test]
+    fn a_texel_holds_the_direction_that_meets_it() {
+        for face in Face::ALL {
+            for (column, row) in [(0, 0), (3, 0), (1, 2), (3, 3)] {
+                let d = direction(*face, column, row, 4);
+                assert!((dot(d, d) - 1.0).abs() < 1e-12);
+                assert_eq!(Face::of(d, d.map(f64::abs), 0.0), *face);
+                let [s, t, m] = face.components().map(|c| if c.negative { -d[c.axis] } else { d[c.axis] });
+                let place = [s, t].map(|c| (c / m + 1.0) / 2.0 * 4.0);
+                assert!((place[0] - f64::from(column) - 0.5).abs() < 1e-12, "{place:?}");
+                assert!((place[1] - f64::from(row) - 0.5).abs() < 1e-12, "{place:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn half_vectors_lie_half_way() {
+        let light = [0.0, 0.0, 5.0];
+        let between = half([1.0, 0.0, 0.0], light, false);
+        assert!((between[0] - between[2]).abs() < 1e-12 && between[0] > 0.7);
+        assert_eq!(half([-1.0, 0.0, 0.0], light, true), between);
+        // The light behind the viewer's line: nothing lies half-way.
+        assert_eq!(half([0.0, 0.0, -1.0], light, false), [0.0; 3]);
+    }
+
+    #[test]
+    fn the_middle_of_a_face_is_its_axis() {
+        let faces = faces(1, Content::Direction);
+        let middles: Vec<[u8; 4]> = faces.iter().map(|face| face.pixels[0]).collect();
+        assert_eq!(middles[0], [255, 128, 128, 255]);
+        assert_eq!(middles[1], [1, 128, 128, 255]);
+        assert_eq!(middles[3], [128, 1, 128, 255]);
+        assert_eq!(middles[4], [128, 128, 255, 255]);
+    }
+
+    #[test]
+    fn a_sky_shows_on_the_faces_of_its_cube() {
+        use crate::generate::sky::Integral;
+        let light = HemisphereLight {
+            axis: [0.0, 1.0, 0.0],
+            sky: [1.0, 0.5, 0.0],
+            ground: [0.0; 3],
+            integral: Integral::Exact,
+        };
+        let faces = faces(1, Content::Sky(light));
+        let middles: Vec<[u8; 4]> = faces.iter().map(|face| face.pixels[0]).collect();
+        assert_eq!(middles[2], [255, 128, 0, 255]);
+        assert_eq!(middles[3], [0, 0, 0, 255]);
+        assert_eq!(middles[4], [128, 64, 0, 255]);
+    }
+}

@@ -1,0 +1,184 @@
+//! Normal maps from height fields, by the three-texel triangle.
+//!
+//! For every texel the texel itself, its right neighbour and the neighbour above it are three points of the surface. The two
+//! edges from the texel span a triangle, and the normalised cross product of the edges is the texel's normal. Two neighbours
+//! instead of four keep every crease one texel wide; the map is half a texel off its height field, down and to the left.
+//!
+//! Orientation: x to the right, **y upward on the image**, z out of it. Red, green and blue are x, y and z; so a slope that faces the
+//! top of the image is more green. With texture coordinates that grow downward, y is the direction of *decreasing* t.
+//!
+//! A component n in -1..1 is stored as the byte 128 + round(127 n): 0 is 128, -1 is 1, 1 is 255. The byte 0 does not occur. Alpha keeps
+//! the height.
+#![allow(
+    clippy::float_arithmetic,
+    reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
+)]
+
+use crate::image::Rgba;
+
+/// Which channel of the input is the height, 0 the lowest.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum HeightChannel {
+    /// Red: that of a grey image.
+    #[default]
+    Red,
+    /// Alpha: that of an image which carries its height along, a normal map of this module among them.
+    Alpha,
+}
+
+/// How a height field is read.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// How many texels high a height of 255 is. Negative turns hills into pits.
+    pub scale: f64,
+    /// The image repeats: the right neighbour of the last column is the first column, likewise for rows. Otherwise the last column
+    /// and the first row take the slope of their inner neighbours.
+    pub wrap: bool,
+    /// Where the height is.
+    pub channel: HeightChannel,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { scale: 8.0, wrap: true, channel: HeightChannel::Red }
+    }
+}
+
+/// The normal map of a height field of the same size.
+///
+/// `options.scale` must be finite; its magnitude is limited to 2^20.
+pub fn from_height(height: &Rgba, options: &Options) -> Rgba {
+    let texels = normals(height, options).into_iter().zip(&height.pixels);
+    let pixels = texels.map(|(normal, height)| {
+        let [r, g, b] = encode(normal);
+        [r, g, b, byte(*height, options.channel)]
+    });
+    Rgba { width: height.width, height: height.height, pixels: pixels.collect() }
+}
+
+/// The height of a texel.
+fn byte([red, _, _, alpha]: [u8; 4], channel: HeightChannel) -> u8 {
+    match channel {
+        HeightChannel::Red => red,
+        HeightChannel::Alpha => alpha,
+    }
+}
+
+/// The unit normals of a height field's texels, before they become bytes; row by row from the top.
+///
+/// `options.scale` must be finite; its magnitude is limited to 2^20.
+pub fn normals(height: &Rgba, options: &Options) -> Vec<[f64; 3]> {
+    let (columns, rows) = (height.width as usize, height.height as usize);
+    let at = |x: usize, y: usize| byte(height.pixels[y * columns + x], options.channel);
+    let scale = if options.scale.is_finite() { options.scale.clamp(-1_048_576.0, 1_048_576.0) } else { 0.0 };
+    let mut normals = Vec::with_capacity(height.pixels.len());
+    for y in 0..rows {
+        for x in 0..columns {
+            // Rise from `from` to `to`, in steps of the height byte.
+            let rise = |from: u8, to: u8| f64::from(i16::from(to) - i16::from(from));
+            let right = match (x + 1 < columns, options.wrap) {
+                (true, _) => rise(at(x, y), at(x + 1, y)),
+                (false, true) => rise(at(x, y), at(0, y)),
+                (false, false) => rise(at(x.saturating_sub(1), y), at(x, y)),
+            };
+            let up = match (y > 0, options.wrap) {
+                (true, _) => rise(at(x, y), at(x, y - 1)),
+                (false, true) => rise(at(x, y), at(x, rows - 1)),
+                (false, false) => rise(at(x, (y + 1).min(rows - 1)), at(x, y)),
+            };
+            normals.push(normal(right * scale / 255.0, up * scale / 255.0));
+        }
+    }
+    normals
+}
+
+/// The height at a point, in texels from the centre of the first one: the bilinear mix of the texels around, 0 to 255.
+pub(super) fn height_at(height: &Rgba, options: &Options, x: f64, y: f64) -> f64 {
+    let (left, top) = (x.floor(), y.floor());
+    let at = |x: f64, y: f64| {
+        let index = |place: f64, count: u32| {
+            let (place, last) = (place as i64, i64::from(count) - 1);
+            (if options.wrap { place.rem_euclid(last + 1) } else { place.clamp(0, last) }) as usize
+        };
+        let (column, row) = (index(x, height.width), index(y, height.height));
+        f64::from(byte(height.pixels[row * height.width as usize + column], options.channel))
+    };
+    let mix = |a: f64, b: f64, weight: f64| a + (b - a) * weight;
+    let row = |y: f64| mix(at(left, y), at(left + 1.0, y), x - left);
+    mix(row(top), row(top + 1.0), y - top)
+}
+
+/// The normal of the triangle with the edges (1, 0, right) and (0, 1, up): their cross product (-right, -up, 1), normalised.
+fn normal(right: f64, up: f64) -> [f64; 3] {
+    let length = (right * right + up * up + 1.0).sqrt();
+    [-right / length, -up / length, 1.0 / length]
+}
+
+/// Bytes of a vector of components in -1..1: 128 + round(127 n).
+pub fn encode(vector: [f64; 3]) -> [u8; 3] {
+    // The sum is positive, so the conversion's truncation is a floor; out of range it saturates.
+    vector.map(|n| (128.5 + 127.0 * n) as u8)
+}
+
+/// The vector that such bytes stand for.
+pub fn decode(bytes: [u8; 3]) -> [f64; 3] {
+    bytes.map(|byte| (f64::from(byte) - 128.0) / 127.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn field(width: u32, rows: &[&[u8]]) -> Rgba {
+        let pixels = rows.iter().flat_map(|row| row.iter().map(|h| [*h, 1, 2, 255 - *h])).collect();
+        Rgba { width, height: rows.len() as u32, pixels }
+    }
+
+    #[test]
+    fn a_flat_field_points_out_of_the_image() {
+        let map = from_height(&field(2, &[&[9, 9], &[9, 9]]), &Options::default());
+        assert_eq!(map.pixels, [[128, 128, 255, 9]; 4]);
+    }
+
+    #[test]
+    fn slopes_face_where_they_should() {
+        // A rise of one texel a texel: 45 degrees, 127 / sqrt 2 = 89.8.
+        let options = Options { scale: 255.0, wrap: false, ..Options::default() };
+        let to_the_right = from_height(&field(3, &[&[0, 1, 2], &[0, 1, 2]]), &options);
+        assert!(to_the_right.pixels.iter().all(|p| p[..3] == [38, 128, 218]), "{:?}", to_the_right.pixels);
+        let upward = from_height(&field(2, &[&[2, 2], &[1, 1], &[0, 0]]), &options);
+        assert!(upward.pixels.iter().all(|p| p[..3] == [128, 38, 218]), "{:?}", upward.pixels);
+        let downward = from_height(&field(2, &[&[0, 0], &[1, 1], &[2, 2]]), &options);
+        assert!(downward.pixels.iter().all(|p| p[..3] == [128, 218, 218]), "facing the top is more green");
+        let pit = from_height(&field(2, &[&[2, 2], &[1, 1], &[0, 0]]), &Options { scale: -255.0, ..options });
+        assert_eq!(pit.pixels.iter().map(|p| p[1]).collect::<Vec<_>>(), [218; 6]);
+    }
+
+    #[test]
+    fn wrapping_looks_at_the_other_side() {
+        let step = field(2, &[&[0, 2]]);
+        let options = Options { scale: 255.0, wrap: true, ..Options::default() };
+        let wrapped = from_height(&step, &options);
+        assert!(wrapped.pixels[0][0] < 128 && wrapped.pixels[1][0] > 128, "{:?}", wrapped.pixels);
+        let open = from_height(&step, &Options { wrap: false, ..options });
+        assert_eq!(open.pixels[0][0], open.pixels[1][0]);
+        let single = from_height(&field(1, &[&[7]]), &Options { wrap: false, ..options });
+        assert_eq!(single.pixels, [[128, 128, 255, 7]]);
+    }
+
+    #[test]
+    fn the_height_may_be_in_alpha() {
+        let options = Options { channel: HeightChannel::Alpha, ..Options::default() };
+        let map = from_height(&field(2, &[&[10, 10]]), &options);
+        assert_eq!(map.pixels, [[128, 128, 255, 245]; 2]);
+    }
+
+    #[test]
+    fn the_bytes_stay_in_range() {
+        assert_eq!(encode([-1.0, 0.0, 1.0]), [1, 128, 255]);
+        for scale in [f64::NAN, f64::INFINITY, 1e300, -1e300] {
+            let map = from_height(&field(2, &[&[0, 255]]), &Options { scale, ..Options::default() });
+            assert!(map.pixels.iter().all(|p| p[0] >= 1 && p[2] >= 128));
+        }
+    }
+}

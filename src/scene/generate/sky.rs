@@ -1,0 +1,81 @@
+//! How much of the sky a surface sees, and the light that follows from it.
+//!
+//! The light of a far sky and ground over the half sphere around a normal depends on nothing but the angle between the normal and the sky's
+//! axis. Truths compute it, and cube maps hold it for every normal.
+#![allow(
+    clippy::float_arithmetic,
+    reason = "makes input data and references for the model: f64 with + - * / and square root in a fixed order"
+)]
+
+use crate::vector::{Vector, dot, unit_or_zero};
+use ninebit::state::named;
+
+named! {
+    /// How much of the sky a surface sees, over the angle q between its normal and the sky's axis.
+    pub enum Integral {
+        /// 1 - sin q / 2 on the upper half, sin q / 2 on the lower.
+        Exact,
+        /// 1/2 + cos q / 2.
+        Simplified,
+    }
+}
+
+/// Light from all around: a sky and a ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HemisphereLight {
+    /// Toward the middle of the sky, in the space of the normals; any length.
+    pub axis: [f64; 3],
+    /// R, G, B of the sky; 1 is full.
+    pub sky: [f64; 3],
+    /// R, G, B of the ground.
+    pub ground: [f64; 3],
+    /// How much of the sky a surface sees.
+    pub integral: Integral,
+}
+
+impl HemisphereLight {
+    /// R, G, B of the light that meets a surface with this unit normal.
+    pub fn at(&self, normal: [f64; 3]) -> [f64; 3] {
+        let sky = self.share(normal);
+        [0, 1, 2].map(|n| sky * self.sky[n] + (1.0 - sky) * self.ground[n])
+    }
+
+    /// The share of the sky, 0 to 1.
+    fn share(&self, normal: Vector) -> f64 {
+        let cosine = dot(normal, unit_or_zero(self.axis)).clamp(-1.0, 1.0);
+        match self.integral {
+            Integral::Simplified => 0.5 + 0.5 * cosine,
+            Integral::Exact => {
+                let half_sine = 0.5 * (1.0 - cosine * cosine).sqrt();
+                if cosine >= 0.0 { 1.0 - half_sine } else { half_sine }
+            }
+        }
+    }
+}
+
+/// A colour's bytes as numbers from 0 to 1.
+pub fn color(bytes: [u8; 3]) -> [f64; 3] {
+    bytes.map(|byte| f64::from(byte) / 255.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_two_integrals_agree_at_the_poles_and_the_equator() {
+        let of = |integral, normal| {
+            let axis = [0.0, 0.0, 2.0];
+            HemisphereLight { axis, sky: [1.0, 0.0, 0.5], ground: [0.0, 1.0, 0.5], integral }.at(normal)
+        };
+        for integral in [Integral::Exact, Integral::Simplified] {
+            assert_eq!(of(integral, [0.0, 0.0, 1.0]), [1.0, 0.0, 0.5]);
+            assert_eq!(of(integral, [0.0, 0.0, -1.0]), [0.0, 1.0, 0.5]);
+            assert_eq!(of(integral, [1.0, 0.0, 0.0]), [0.5, 0.5, 0.5]);
+        }
+        // Between them they do not: at 30 degrees 0.75 and 0.933.
+        let tilted = [0.5, 0.0, 0.75_f64.sqrt()];
+        assert!((of(Integral::Exact, tilted)[0] - 0.75).abs() < 1e-12);
+        assert!((of(Integral::Simplified, tilted)[0] - 0.933_012_701_892_219).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,95 @@
+//! Findings as text with the offending lines and carets under the exact values.
+
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Group, Level, Origin, Renderer, Snippet};
+
+use ninebit::diagnostic::{Diagnostic, Severity, Source, floor_boundary};
+use ninebit::shown;
+
+/// Longest excerpt of a line on either side of a mark, in bytes: scenes of one endless line stay readable.
+const MARGIN: usize = 200;
+/// Lines with marks up to here are shown from their start.
+const LONG_LINE: usize = 1000;
+
+/// Renders `diagnostics`, one after the other, a blank line between them.
+pub fn render(diagnostics: &[Diagnostic], source: &Source, color: bool) -> String {
+    let renderer = if color { Renderer::styled() } else { Renderer::plain() };
+    let mut text = String::new();
+    for (index, diagnostic) in diagnostics.iter().enumerate() {
+        if index > 0 {
+            text.push('\n');
+        }
+        text.push_str(&renderer.render(&[group(diagnostic, source)]));
+        text.push('\n');
+    }
+    text
+}
+
+fn group<'a>(diagnostic: &'a Diagnostic, source: &'a Source) -> Group<'a> {
+    let source = diagnostic.file.as_ref().map_or(source, |file| &file.source);
+    let level = match diagnostic.severity {
+        Severity::Error => Level::ERROR,
+        Severity::Warning => Level::WARNING,
+    };
+    let mut group = Group::with_title(level.primary_title(shown::name(&diagnostic.message)).id(diagnostic.code));
+    if let Some(span) = &diagnostic.span {
+        let line = |place: &Range<usize>| source.position(place.start).0;
+        let (beside, apart): (Vec<_>, Vec<_>) =
+            diagnostic.related.iter().partition(|(place, _)| line(place) == line(span));
+        group = excerpt(group, source, (span, &diagnostic.label), AnnotationKind::Primary, &beside);
+        for (place, label) in apart {
+            group = excerpt(group, source, (place, label), AnnotationKind::Context, &[]);
+        }
+    } else {
+        group = group.element(Origin::path(shown::name(&source.name)));
+    }
+    if let Some(rule) = diagnostic.rule {
+        group = group.element(Level::NOTE.message(format!("rule {rule} in docs/numerics.md")));
+    }
+    for note in &diagnostic.notes {
+        group = group.element(Level::NOTE.message(shown::name(note)));
+    }
+    if let Some(help) = &diagnostic.help {
+        group = group.element(Level::HELP.message(shown::name(help)));
+    }
+    group
+}
+
+/// Adds the line around a place; of a value of many lines, the first. Places `beside` it stand in the same line.
+fn excerpt<'a>(
+    group: Group<'a>,
+    source: &'a Source,
+    (span, label): (&Range<usize>, &'a str),
+    kind: AnnotationKind,
+    beside: &[&'a (Range<usize>, String)],
+) -> Group<'a> {
+    let text = &source.text;
+    let start = floor_boundary(text, span.start);
+    let line_start = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+    let line_end = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+    let (line, column) = source.position(start);
+    // The renderer counts columns from the start of what it gets; of an endless line it gets a part, and the column is ours.
+    let whole = start - line_start <= LONG_LINE;
+    let from = if whole { line_start } else { floor_boundary(text, start - MARGIN) };
+    let last = beside.iter().map(|(place, _)| place.end).fold(span.end, usize::max).min(start + LONG_LINE);
+    let to = floor_boundary(text, line_end.min(last + MARGIN));
+    let part = text[from..to].trim_end_matches('\r');
+    let mark = |place: &Range<usize>| {
+        let begin = floor_boundary(part, place.start.saturating_sub(from));
+        let end = floor_boundary(part, place.end.saturating_sub(from)).max(begin);
+        begin..begin + part[begin..end].trim_end().len()
+    };
+    let annotate = |kind: AnnotationKind, place: &Range<usize>, label: &'a str| {
+        kind.span(mark(place)).label((!label.is_empty()).then(|| shown::name(label)))
+    };
+    let snippet = Snippet::source(shown::excerpt(part))
+        .line_start(line)
+        .annotation(annotate(kind, span, label))
+        .annotations(beside.iter().map(|(place, label)| annotate(AnnotationKind::Context, place, label)));
+    if whole {
+        group.element(snippet.path(shown::name(&source.name)))
+    } else {
+        group.element(Origin::path(shown::name(&source.name)).line(line).char_column(column)).element(snippet)
+    }
+}

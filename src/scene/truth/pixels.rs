@@ -1,0 +1,213 @@
+//! Which pixel shows which point of which mesh, and the light there.
+
+use std::sync::Arc;
+
+use super::{Equation, Field, Interpolated, NormalSource, Space, Truth, lighting};
+use crate::mesh::Mesh;
+use crate::vector::{Vector, dot, unit_or_zero, wide};
+use ninebit::engine::walk::{self, Band};
+use ninebit::engine::{RenderOptions, cleared, images, render};
+use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::raster::ideal::Outline;
+use ninebit::state::{Vertex, VertexColor};
+use ninebit::trace::Silent;
+
+/// A given normal that is shorter stands for none: bytes of 128 are the zero vector, and half a step away from it.
+const SHORTEST: f64 = 1.0 / 64.0;
+
+/// What a pixel ought to show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pixel {
+    /// R, G, B, 0 to 1.
+    pub color: [f64; 3],
+    /// The unit normal that the light was computed with, object space.
+    pub normal: [f64; 3],
+    /// Unit tangent, binormal and normal of the mesh, object space.
+    pub basis: [[f64; 3]; 3],
+}
+
+impl Pixel {
+    /// A vector of the pixel's tangent space or of object space, in object space.
+    pub fn object(&self, vector: [f64; 3], space: Space) -> [f64; 3] {
+        match space {
+            Space::Object => vector,
+            Space::Tangent => from_tangent(&self.basis, vector),
+        }
+    }
+}
+
+/// What a target ought to show.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TruthFrame {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// Row by row; `None` where no draw with a truth is seen, or where a triangle was cut off behind the viewer.
+    pub pixels: Vec<Option<Pixel>>,
+}
+
+/// The truth of a target's pixels: of each, that of the last draw with a truth that stored a fragment there.
+pub fn evaluate(plan: &Plan, truth: &Truth, target: usize) -> TruthFrame {
+    frame(plan, truth, target, |_| None)
+}
+
+/// The same, the surface's normals being given: R, G, B of -1..1 by pixel, of any length; `None` keeps the truth's own.
+pub fn evaluate_with_normals(
+    plan: &Plan,
+    truth: &Truth,
+    target: usize,
+    normals: &[Option<[f64; 3]>],
+    space: Space,
+) -> TruthFrame {
+    frame(plan, truth, target, |at| normals.get(at).copied().flatten().map(|normal| (normal, space)))
+}
+
+fn frame(plan: &Plan, truth: &Truth, target: usize, given: impl Fn(usize) -> Option<(Vector, Space)>) -> TruthFrame {
+    let (width, height) = (plan.targets[target].width, plan.targets[target].height);
+    let seen = seen(plan, truth, target);
+    let pixels = seen.into_iter().enumerate().map(|(at, place)| {
+        let (draw, triangle) = place?;
+        let planned = &plan.draws[draw];
+        let mesh = truth.meshes.get(draw)?.as_ref()?;
+        let point = point(planned, mesh, triangle, (at as u32 % width, at as u32 / width))?;
+        Some(shade(truth, &point, given(at)))
+    });
+    TruthFrame { width, height, pixels: pixels.collect() }
+}
+
+/// Draw and triangle that each pixel shows.
+fn seen(plan: &Plan, truth: &Truth, target: usize) -> Vec<Option<(usize, usize)>> {
+    // What other targets hold decides nothing here but what tests on alpha read.
+    let reads = plan.draws.iter().any(|planned| planned.target == target && plan.reads_target(planned));
+    let others = reads.then(|| render(plan, &RenderOptions::default()));
+    let images = images(plan, others.as_ref().map_or(&[], |frames| &frames.surfaces));
+    let mut surface = cleared(plan).surfaces.swap_remove(target);
+    let width = surface.width as usize;
+    let mut seen = vec![None; surface.words.len()];
+    let mut band = Band { first_row: 0, width, words: &mut surface.words, depth: &mut surface.depth };
+    for (number, planned) in plan.draws.iter().enumerate().filter(|(_, planned)| planned.target == target) {
+        let described = truth.meshes.get(number).is_some_and(Option::is_some);
+        walk::covered(plan, planned, band.rows(), |context, i, j| {
+            if walk::pixel(context, &images, &mut band, i, j, &mut Silent) && described {
+                seen[j as usize * width + i as usize] = Some((number, context.number));
+            }
+        });
+    }
+    seen
+}
+
+/// A point of a mesh.
+struct Point {
+    position: Vector,
+    /// Unit tangent, binormal, normal.
+    basis: [Vector; 3],
+    coordinates: [f64; 2],
+    planned: [Vertex; 3],
+    weights: [f64; 3],
+}
+
+/// The point at a pixel's centre. `None` for a triangle whose corners are not all the mesh's own.
+fn point(planned: &PlannedDraw, mesh: &Arc<Mesh>, triangle: usize, (column, row): (u32, u32)) -> Option<Point> {
+    let triangles = &planned.assembly.triangles;
+    if triangle >= triangles.len() {
+        return None;
+    }
+    let corners = triangles.vertices(triangle).map(|v| v as usize);
+    if corners.iter().any(|corner| *corner >= mesh.positions.len()) {
+        return None;
+    }
+    let vertices = planned.assembly.triangle(triangle).all();
+    let outline = Outline::new(vertices.map(|vertex| vertex.position), planned.perspective)?;
+    let weights = outline.weights(i64::from(column), i64::from(row));
+    let mix = |values: &[[f32; 3]]| mixed(weights, corners.map(|corner| wide(values[corner])));
+    let texture = corners.map(|corner| mesh.texture_coordinates[corner].map(f64::from));
+    let coordinates = [0, 1].map(|n| (0..3).map(|k| weights[k] * texture[k][n]).sum());
+    Some(Point {
+        position: mix(&mesh.positions),
+        basis: [mix(&mesh.tangents), mix(&mesh.binormals), mix(&mesh.normals)].map(unit_or_zero),
+        coordinates,
+        planned: vertices,
+        weights,
+    })
+}
+
+fn mixed(weights: [f64; 3], values: [Vector; 3]) -> Vector {
+    [0, 1, 2].map(|n| (0..3).map(|k| weights[k] * values[k][n]).sum())
+}
+
+fn from_tangent(basis: &[Vector; 3], v: Vector) -> Vector {
+    [0, 1, 2].map(|n| basis[0][n] * v[0] + basis[1][n] * v[1] + basis[2][n] * v[2])
+}
+
+/// R, G, B, 1 being full.
+pub(crate) fn real_color(color: &VertexColor) -> [f64; 3] {
+    let [r, g, b, _] = match color {
+        VertexColor::Bytes(bytes) => bytes.map(|byte| f64::from(byte) / 255.0),
+        VertexColor::Floats(floats) => floats.map(f64::from),
+    };
+    [r, g, b]
+}
+
+/// An interpolated vector of the vertices.
+fn interpolated(point: &Point, what: Interpolated) -> Vector {
+    let signed = |color: &VertexColor| real_color(color).map(|c| 2.0 * c - 1.0);
+    let set = |vertex: &Vertex, n: usize| {
+        let [s, t, r, _] = vertex.texture_coordinates[n].map(f64::from);
+        [s, t, r]
+    };
+    let values = point.planned.map(|vertex| match what {
+        Interpolated::PrimaryColor => signed(&vertex.diffuse),
+        Interpolated::SecondaryColor => signed(&vertex.specular),
+        Interpolated::T0 => set(&vertex, 0),
+        Interpolated::T1 => set(&vertex, 1),
+        Interpolated::T2 => set(&vertex, 2),
+        Interpolated::T3 => set(&vertex, 3),
+    });
+    mixed(point.weights, values)
+}
+
+/// The normal of the surface, object space.
+fn normal(truth: &Truth, point: &Point) -> Vector {
+    let mapped = |vector: Vector| from_tangent(&point.basis, vector);
+    unit_or_zero(match &truth.normal {
+        NormalSource::Mesh => point.basis[2],
+        NormalSource::Radial { center } => crate::vector::minus(point.position, *center),
+        NormalSource::Hemisphere { zero_outside } => {
+            mapped(crate::generate::hemisphere::normal_at(point.coordinates, *zero_outside))
+        }
+        NormalSource::Map(field) => mapped(field.at(point.coordinates)),
+    })
+}
+
+fn shade(truth: &Truth, point: &Point, given: Option<(Vector, Space)>) -> Pixel {
+    let mut pixel = Pixel { color: [0.0; 3], normal: [0.0; 3], basis: point.basis };
+    pixel.normal = match given {
+        Some((vector, _)) if dot(vector, vector) < SHORTEST * SHORTEST => [0.0; 3],
+        Some((vector, space)) => unit_or_zero(pixel.object(vector, space)),
+        None => normal(truth, point),
+    };
+    let [s, t] = point.coordinates;
+    pixel.color = match truth.equation {
+        Equation::Lighting => light(truth, point, pixel.normal),
+        Equation::SignedProduct => [(2.0 * s - 1.0) * (2.0 * t - 1.0); 3],
+        Equation::Difference => [s - t; 3],
+        Equation::DotProduct(a, b) => [dot(interpolated(point, a), interpolated(point, b)); 3],
+    }
+    .map(|c| c.clamp(0.0, 1.0));
+    pixel
+}
+
+fn light(truth: &Truth, point: &Point, normal: Vector) -> [f64; 3] {
+    let mut sum = truth.material.ambient;
+    let mut add = |term: [f64; 3]| sum.iter_mut().zip(term).for_each(|(sum, term)| *sum += term);
+    for light in &truth.lights {
+        add(lighting::light(light, truth.eye.as_ref(), &truth.material, point.position, normal));
+    }
+    if let Some(hemisphere) = &truth.hemisphere {
+        let reached = truth.occlusion.as_ref().map_or(1.0, |field: &Arc<Field<1>>| field.at(point.coordinates)[0]);
+        add(hemisphere.at(normal).map(|c| c * reached));
+    }
+    let map = truth.color_map.as_ref().map_or([1.0; 3], |field| field.at(point.coordinates));
+    [0, 1, 2].map(|n| sum[n] * map[n])
+}
