@@ -190,8 +190,7 @@ fn a_run_that_is_told_to_end_leaves_no_temporary_file() {
 fn a_signal_that_the_caller_ignores_stays_ignored() {
     let bench = Bench::new();
     let program = env!("CARGO_BIN_EXE_ninebit");
-    let script =
-        format!("trap '' HUP; '{program}' vectors export -o pack --level L1 & sleep 0.05; kill -HUP $!; wait $!");
+    let script = format!("trap '' HUP; '{program}' vectors export -o pack & sleep 0.05; kill -HUP $!; wait $!");
     let mut command = std::process::Command::new("sh");
     let run = Run::of(command.args(["-c", &script]).current_dir(bench.path("")).output().unwrap());
     assert_eq!((run.status, run.stderr.as_str()), (0, ""));

@@ -239,3 +239,34 @@ fn engines_agree_on_textures_that_states_share() {
         }
     }
 }
+
+/// Stages of a texture shader that sample at the same coordinates, some of whose colours nobody reads.
+#[test]
+fn engines_agree_on_stages_with_equal_coordinates() {
+    let bump = "(operation: BumpEnvironment(matrix: (0.5, 0, 0.7, 0)), coordinates: 0, previous: 0)";
+    for stages in [
+        format!("Sample, (operation: Sample, coordinates: 0), {bump}, (operation: Sample, coordinates: 0)"),
+        format!("Sample, Sample, {bump}, (operation: Sample, coordinates: 0)"),
+    ] {
+        for [a, b] in
+            [["Texture0", "Texture3"], ["Texture1", "Texture3"], ["Texture2", "Texture3"], ["Texture3", "Zero"]]
+        {
+            let vertex = |x, y, at| format!("(position: ({x}, {y}), t0: {at}, t1: {at})");
+            let vertices = [vertex(0, 0, "(0, 0, 0, 2)"), vertex(32, 0, "(9, 0, 0, 2)"), vertex(0, 32, "(0, 9, 0, 2)")];
+            let text = format!(
+                "(version: 1, profile: Nv2a, targets: [(width: 32, height: 32)],
+                  textures: {{ \"a\": (source: Checker(width: 8, height: 8, colors: ((10, 200, 90), (70, 30, 120)))) }},
+                  draws: [(vertices: Window([{}]), textures: [{}], texture_shader: [{stages}],
+                    program: Combiners(stages: [(rgb: (a: {a}, b: UnsignedInvert(Zero), c: {b}, d: UnsignedInvert(Zero), sum: Spare0))],
+                      final_combiner: (d: Spare0)))])",
+                vertices.join(", "),
+                [r#"(texture: "a")"#; 4].join(", "),
+            );
+            let loaded = scene::parse(&text, Path::new("stages.ron"), &Limits::default())
+                .unwrap_or_else(|error| panic!("{error}"));
+            if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1)]) {
+                panic!("{stages} | {a} + {b}: {difference}");
+            }
+        }
+    }
+}

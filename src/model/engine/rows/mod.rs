@@ -259,7 +259,9 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         }
         compiled.shader = shader.map(Arc::new);
     }
-    for n in 1..compiled.samplers.len() {
+    // Stages of a texture shader each find their own.
+    let sharing = if draw.shader.is_none() { compiled.samplers.len() } else { 0 };
+    for n in 1..sharing {
         let (earlier, later) = compiled.samplers.split_at_mut(n);
         later[0].shares = earlier.iter().position(|other| share(draw, other, &later[0]));
     }
