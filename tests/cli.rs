@@ -347,3 +347,31 @@ fn warnings_go_to_stderr_and_change_nothing() {
     assert!(run.stderr.contains("warning") && run.stderr.contains("grey"), "{}", run.stderr);
     assert!(!run.stdout.is_empty());
 }
+
+#[test]
+fn render_writes_depths_and_stored_words() {
+    let bench = Bench::new();
+    let draw = "(vertices: Window([(position: (0, 0, 0.25)), (position: (8, 0, 0.25)), (position: (0, 8, 0.25))]), depth_test: (function: Less))";
+    for (format, depth, bytes, grey) in [
+        ("Z24S8", vec![0, 0xff, 0xff, 0x3f], vec![0, 0xff, 0xff, 0xff], [0x3fff, 0xffff]),
+        ("Z16", vec![0xff, 0x3f], vec![0xff, 0xff], [0x3fff, 0xffff]),
+    ] {
+        let target =
+            format!("(name: \"a\", width: 8, height: 8, format: R5G6B5, depth: {format}, clear: (color: (255, 0, 0)))");
+        bench.write("a.ron", format!("(version: 1, profile: Nv2a, targets: [{target}], draws: [{draw}])"));
+        bench.run("render a.ron -o a.png --depth a.raw --raw colors").data();
+        let words = std::fs::read(bench.path("a.raw")).unwrap();
+        assert_eq!((&words[..bytes.len()], &words[words.len() - bytes.len()..]), (&depth[..], &bytes[..]), "{format}");
+        assert_eq!(words.len(), 64 * bytes.len());
+        let colors = std::fs::read(bench.path("colors")).unwrap();
+        assert_eq!((colors.len(), &colors[126..]), (128, &[0x00, 0xf8][..]));
+        bench.run("render a.ron -o a.png --depth depth.PNG").data();
+        let image = image::open(bench.path("depth.PNG")).unwrap().into_luma16();
+        assert_eq!([image.get_pixel(0, 0).0[0], image.get_pixel(7, 7).0[0]], grey, "{format}");
+    }
+    bench.run("render a.ron -o a.png --raw a.png").failed(2, "--raw");
+    bench.run("render a.ron -o - --raw -").failed(2, "only one output can go to stdout");
+    bench.run("render a.ron -o same --raw same").failed(2, "NB0706");
+    bench.write("b.ron", "(version: 1, profile: Nv10, targets: [(name: \"a\", width: 8, height: 8)], draws: [])");
+    bench.run("render b.ron -o b.png --depth b.raw").failed(2, "the target `a` has no depth buffer");
+}

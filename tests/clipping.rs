@@ -154,3 +154,13 @@ fn the_corridor_is_cut_on_all_sides() {
     let open = drawn(&plan).surfaces[0].words.iter().filter(|word| **word == clear).count();
     assert!(open < 480 * 360 / 50, "{open}");
 }
+
+/// The largest target is filled by a mesh that reaches from one side of clip space to the other, of which the guard band cuts the rim.
+#[test]
+fn the_largest_target_is_within_reach() {
+    let text = "(version: 1, profile: Nv2a, targets: [(name: \"a\", width: 4096, height: 4096)],
+        draws: [(vertices: Matrix(mesh: Grid(columns: 1, rows: 1), matrix: Orthographic(left: -1, right: 1, bottom: -1, top: 1, near: -2, far: 2)))])";
+    let plan = plan(text);
+    assert_eq!(plan.draws[0].assembly.clipping.removed, 0);
+    assert_eq!(white(&plan), 4096 * 4096);
+}

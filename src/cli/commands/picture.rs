@@ -23,6 +23,21 @@ pub(crate) fn dds() -> impl TypedValueParser<Value = Destination> {
     OsStringValueParser::new().try_map(|name| of(name, "dds"))
 }
 
+/// Reads the name of a file of stored words; `-` is stdout.
+pub(crate) fn words() -> impl TypedValueParser<Value = Destination> {
+    OsStringValueParser::new().try_map(|name| of(name, "raw"))
+}
+
+/// Reads the name of a file of depths: a PNG, or stored words; `-` is stdout.
+pub(crate) fn depths() -> impl TypedValueParser<Value = Destination> {
+    OsStringValueParser::new().try_map(|name| if is_png(Path::new(&name)) { of(name, "png") } else { of(name, "raw") })
+}
+
+/// Whether a file's name says that it is a PNG.
+pub(crate) fn is_png(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
+}
+
 /// A name may end as it likes, but not like another format.
 fn of(name: OsString, format: &'static str) -> Result<Destination, String> {
     let path = Path::new(&name);
@@ -48,8 +63,9 @@ mod tests {
         }
         for name in ["a.jpg", "b/a.JPEG", "a.b.webp", "a.dds"] {
             assert!(of(name.into(), "png").is_err(), "{name}");
+            assert!(of(name.into(), "raw").is_err(), "{name}");
         }
-        assert!(of("a.dds".into(), "dds").is_ok());
+        assert!(of("a.dds".into(), "dds").is_ok() && of("a.png".into(), "raw").is_err() && is_png(Path::new("a.PNG")));
         assert_eq!(
             of("b/a.png".into(), "dds"),
             Err("this command writes DDS: write to `b/a.dds` and convert that".to_owned())

@@ -4,8 +4,10 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use ninebit::engine;
-use ninebit::state::Named;
-use ninebit_files::output::{Compression, Destination, encode_png, write_json};
+use ninebit::frame::Surface;
+use ninebit::shown;
+use ninebit::state::{DepthFormat, Named};
+use ninebit_files::output::{Compression, Destination, OutputError, encode_grey_png, encode_png, write_json};
 use serde_json::json;
 
 use super::cost::Cost;
@@ -27,6 +29,13 @@ pub(crate) struct Arguments {
     target: Option<String>,
     #[command(flatten)]
     engine: EngineArguments,
+    /// Its depth buffer: NAME.png, grey of 16 bits, the upper 16 of each depth; any other name, words as the chip stores them, little-endian: two
+    /// bytes of Z16, four of Z24S8, whose low byte is the stencil
+    #[arg(long, value_name = "FILE", value_parser = picture::depths())]
+    depth: Option<Destination>,
+    /// Its stored colours: words, little-endian, as many bytes as the format has, row by row from the top
+    #[arg(long, value_name = "FILE.raw", value_parser = picture::words())]
+    raw: Option<Destination>,
     /// What stdout says: nothing, or statistics as one JSON document
     #[arg(long, value_enum, default_value_t = Format::Text, conflicts_with = "stats")]
     format: Format,
@@ -42,19 +51,32 @@ enum Stats {
 
 /// Renders a scene and writes one of its targets.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let destination = &arguments.output;
+    let destinations =
+        || [Some(&arguments.output), arguments.depth.as_ref(), arguments.raw.as_ref()].into_iter().flatten();
     let statistics_wanted = arguments.stats.is_some() || matches!(arguments.format, Format::Json);
-    if statistics_wanted && *destination == Destination::Stdout {
+    let to_stdout = destinations().filter(|destination| **destination == Destination::Stdout).count();
+    if statistics_wanted && to_stdout == 1 {
         return Err(Failure::usage(
             "the picture and the statistics cannot both go to stdout",
             "write the picture to a file",
         ));
     }
+    if to_stdout > 1 {
+        return Err(Failure::usage("only one output can go to stdout", "write the others to files"));
+    }
     let options = arguments.engine.options()?;
     let mut clock = Clock::start();
     let (scene, plan) = arguments.scene.load(context)?;
-    destination.check()?;
+    destinations().try_for_each(Destination::check)?;
     let target = chosen_target(&scene, arguments.target.as_deref())?;
+    let depth_buffer = scene.targets[target].depth;
+    if arguments.depth.is_some() && depth_buffer.is_none() {
+        let name = shown::name(&scene.targets[target].name).into_owned();
+        return Err(Failure::usage(
+            format!("the target `{name}` has no depth buffer"),
+            "leave out `--depth`, or write `depth: Z24S8` in the target",
+        ));
+    }
     clock.lap("load");
     let (frames, statistics) = {
         let progress = Progress::new("rendering", context.color);
@@ -65,7 +87,13 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     drop(plan);
     let surface = &frames.surfaces[target];
     let pixels = surface.rgba8();
-    destination.write(&encode_png(surface.width, surface.height, &pixels, Compression::Fast)?)?;
+    arguments.output.write(&encode_png(surface.width, surface.height, &pixels, Compression::Fast)?)?;
+    if let (Some(destination), Some(buffer)) = (&arguments.depth, depth_buffer) {
+        destination.write(&depths(surface, buffer.format, destination)?)?;
+    }
+    if let Some(destination) = &arguments.raw {
+        destination.write(&little_endian(&surface.words, surface.format.bytes() as usize))?;
+    }
     clock.lap("write");
 
     if statistics_wanted {
@@ -99,6 +127,25 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         write_json(&format!("{value:#}"))?;
     }
     Ok(())
+}
+
+/// A depth buffer as the destination's name wants it.
+fn depths(surface: &Surface, format: DepthFormat, destination: &Destination) -> Result<Vec<u8>, OutputError> {
+    let bits = format.bits();
+    match destination {
+        Destination::File(path) if picture::is_png(path) => {
+            let grey: Vec<u16> = surface.depth.iter().map(|depth| (depth >> (bits - 16)) as u16).collect();
+            encode_grey_png(surface.width, surface.height, &grey)
+        }
+        // The stencil is not modelled: 0.
+        _ if bits == 24 => Ok(little_endian(&surface.depth.iter().map(|depth| depth << 8).collect::<Vec<_>>(), 4)),
+        _ => Ok(little_endian(&surface.depth, 2)),
+    }
+}
+
+/// Words of so many bytes.
+fn little_endian(words: &[u32], bytes: usize) -> Vec<u8> {
+    words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect()
 }
 
 /// Wall-clock times of the steps.

@@ -6,14 +6,11 @@ use crate::cases::{self, Level};
 use crate::table::{Contents, Writer};
 use crate::unit::Conditions;
 use crate::units;
-use ninebit::combiner::final_combiner::{self, PlannedFinal};
-use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::Registers;
 use ninebit::state::{Policies, Register};
-use ninebit::trace::Silent;
 
 /// The bytes of a pixel drawn by the model.
-fn pixel(placement: &Placement, combiners: &Combiners, profile: Profile) -> [i32; 4] {
+fn pixel(placement: &Placement, combiners: &Combiners) -> [i32; 4] {
     let mut file = Registers::<i32>::new();
     for (name, bytes) in &placement.sources {
         let register = match *name {
@@ -31,27 +28,14 @@ fn pixel(placement: &Placement, combiners: &Combiners, profile: Profile) -> [i32
     if let Some(byte) = fog.and_then(|rest| rest.split(' ').next()) {
         file.load(Register::Fog, [byte.parse().unwrap(), byte.parse().unwrap(), byte.parse().unwrap(), 0]);
     }
-    file.write(Register::Spare0, 3, file.read(Register::Texture0, 3));
-    for (index, stage) in combiners.stages.iter().enumerate() {
-        let planned = PlannedStage {
-            index,
-            rgb: PlannedPortion::whole(stage.rgb, 7),
-            alpha: PlannedPortion::whole(stage.alpha, 8),
-            constants: stage.constants,
-            reads_constants: true,
-        };
-        general::run(&planned, combiners.mux_select, &Policies::DEFAULT, &mut file, &mut Silent);
-    }
-    let state = combiners.final_combiner;
-    let planned = PlannedFinal { state, live: 15, product: 7, sum: 7, reads_constants: false, lerps: true };
-    final_combiner::run(&planned, profile, &Policies::DEFAULT, &mut file, &mut Silent)
+    combiners.run(file, &Policies::DEFAULT).map(i32::from)
 }
 
 /// The results that the reads of all draws make.
-fn observed(placement: &Placement, profile: Profile) -> Vec<(String, i64)> {
+fn observed(placement: &Placement) -> Vec<(String, i64)> {
     let mut sums: Vec<(String, i64)> = Vec::new();
     for draw in &placement.draws {
-        let pixel = pixel(placement, draw.combiners.as_ref().unwrap(), profile);
+        let pixel = pixel(placement, draw.combiners.as_ref().unwrap());
         for read in &draw.reads {
             let value = read.weight * i64::from(pixel[read.channel]);
             match sums.iter_mut().find(|(column, _)| *column == read.column) {
@@ -85,7 +69,7 @@ fn the_model_answers_what_recipes_ask() {
                     assert!(placement.draws.iter().all(|draw| {
                         draw.combiners.as_ref().is_some_and(|c| c.stages.len() <= profile.general_stages())
                     }));
-                    for (name, value) in observed(&placement, profile) {
+                    for (name, value) in observed(&placement) {
                         let column = writer.results().iter().position(|column| column.name == name).unwrap();
                         let kind = &writer.results()[column].kind;
                         assert_eq!(kind.read(&value.to_string()), Some(row.results[column]), "{name} of {row:?}");

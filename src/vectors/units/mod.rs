@@ -31,6 +31,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &raster::ColorWeights,
         &raster::ColorInterpolation,
         &raster::TextureCoordinate,
+        &raster::DepthInterpolation,
         &fog::LightUnit,
         &fog::FogFactor,
         &fog::FogTable,

@@ -148,7 +148,7 @@ impl Unit for ColorWeights {
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4, 3 4 1, and sixteenths 5 6 5. Then halves and quarters of an area that is a
-        // power of two, which no tie lowers, unless w is none.
+        // power of two, which no tie lowers if all w are equal.
         let [one, two, other] = [1.0_f32, 2.0, 1.5].map(|w| i64::from(w.to_bits()));
         let positions = [
             [40, 24, 104, 216, 88, 264],
@@ -156,8 +156,15 @@ impl Unit for ColorWeights {
             [104, 216, 88, 264, 40, 24],
             [79, 232, 103, 216, 79, 200],
         ];
+        let three = i64::from(3.0_f32.to_bits());
+        let unequal = vec![8, 8, 72, 8, 8, 72, 1, 1, three, one, one];
         let exact = [one, two, other].map(|w| vec![8, 8, 72, 8, 8, 72, 1, 1, w, w, w]);
-        positions.into_iter().map(|row| [&row[..], &[5, 13, one, one, one]].concat()).chain(exact).collect()
+        positions
+            .into_iter()
+            .map(|row| [&row[..], &[5, 13, one, one, one]].concat())
+            .chain(exact)
+            .chain([unequal])
+            .collect()
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -177,6 +184,78 @@ impl Unit for ColorWeights {
         for (n, weight) in weights.into_iter().enumerate() {
             (results[6 + n], results[8 + n]) = (weight.lowered.into(), weight.value);
         }
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// The depth of a pixel from the depths of three vertices.
+#[derive(Debug)]
+pub(super) struct DepthInterpolation;
+
+impl Unit for DepthInterpolation {
+    fn name(&self) -> &'static str {
+        "depth-interpolation"
+    }
+
+    fn about(&self) -> &'static str {
+        "the depth of a covered pixel from three vertex depths in units of the buffer's last bit"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["DEP-1"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = geometry();
+        columns.push(Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]));
+        columns.extend(["in.z0", "in.z1", "in.z2"].map(|name| Column::unsigned(name, 24, (1 << 24) - 1)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        let mut columns = EDGES.map(|name| Column::result(name, Kind::Signed(36))).to_vec();
+        columns.push(Column::result("out.depth", Kind::Unsigned(24)));
+        columns
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // A large quad of a captured frame, one edge number the largest after the other, and exponents of two and of three edge numbers that are equal.
+        let large = [2048, 640, 8192, 640, 8192, 7040];
+        let pixels = [[408, 227], [200, 41], [505, 60], [500, 430], [256, 106], [384, 173], [340, 90], [300, 219]];
+        let z = [[11_184_809, 11_184_809, 16_777_214], [0, 960, 0], [16_777_215, 0, 8_388_607], [5, 70_000, 1]];
+        let row = |pixel: [i64; 2], z: [i64; 3]| [&large[..], &pixel, &[24], &z].concat();
+        // Reciprocals that are 3/16 low, not half a step, and not exact.
+        let low = [
+            [4915, 7045, 10035, 5508, 7107, 163, 476, 348, 24, 3_597_702, 12_720_132, 15_691_790],
+            [2917, 264, 8027, 1474, 5186, 8247, 328, 231, 24, 8_419_059, 4_525_543, 12_990_690],
+            [8529, 9904, 5415, 596, 1156, 2443, 212, 216, 24, 15_346_555, 6_445_416, 1_166_487],
+            [493, 1674, 4381, 62, 7888, 3734, 378, 115, 24, 15_863_290, 14_299_080, 3_347_501],
+            [9821, 6498, 5739, 9119, 6852, 1364, 476, 200, 24, 13_699_386, 12_271_433, 3_587_143],
+            [6213, 6326, 97, 5301, 9255, 2082, 137, 312, 24, 2_182_219, 8_827_351, 5_483_606],
+        ];
+        let captured = pixels.into_iter().flat_map(|pixel| z.map(|z| row(pixel, z)));
+        captured.chain(low.map(|row| row.to_vec())).collect()
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        fit(inputs);
+        for z in 9..12 {
+            inputs[z] >>= 24 - inputs[8];
+        }
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        is_covered(inputs, profile) && inputs[9..].iter().all(|z| z >> inputs[8] == 0)
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let Some(triangle) = triangle(inputs, None, conditions.profile) else { return results.fill(0) };
+        let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
+        results[..3].copy_from_slice(&sample.e);
+        results[3] = sample.depth([inputs[9], inputs[10], inputs[11]], (1 << inputs[8]) - 1);
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
