@@ -5,7 +5,7 @@
 )]
 
 use super::fetch::Numbers;
-use super::quotient::{IOTA_REAL, Line, Positions, position, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::triangle::Piece;
 use crate::engine::pixel::TriangleContext;
 
@@ -14,6 +14,9 @@ const BELOW: u64 = (1 << 29) - 1;
 
 /// Sign and exponent of a double.
 const EXPONENT: u64 = 0xfff << 52;
+
+/// 2^-28.
+const STEP: f64 = 1.0 / (1_u64 << 28) as f64;
 
 /// The exponent of 1.
 const ONE: u64 = 1023 << 52;
@@ -54,14 +57,13 @@ impl Depths {
         let lanes = out.len();
         let (last, [z0, z1, z2]) = (f64::from(at.last), self.z);
         let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
-        let mut unknown = 0;
         for n in 0..lanes {
             let (x, y) = position::<ROW>(n, last, xs, ys, iota);
             let e0 = edges[0].at::<FMA, ROW>(x, y);
             let e1 = edges[1].at::<FMA, ROW>(x, y);
             let e2 = edges[2].at::<FMA, ROW>(x, y);
             let (x0, x1, x2) = (power(e0), power(e1), power(e2));
-            let second = x1 >= x0 && x1 >= x2;
+            let second = (x1 >= x0) & (x1 >= x2);
             let first = x0 >= x2;
             let z = if first { z0 } else { z2 };
             let z = if second { z1 } else { z };
@@ -77,7 +79,7 @@ impl Depths {
             let reciprocal = floor(low);
             let exact = length == sum;
             // A quotient that was rounded to the border of two reciprocals.
-            let close = reciprocal == low && !exact;
+            let close = (reciprocal == low) & !exact;
             let reciprocal = if exact { (1_i64 << 29) as f64 } else { reciprocal };
             // What makes weights of them.
             let unit = f64::from_bits((2 * ONE - (29 << 52)).wrapping_sub(length.to_bits()));
@@ -93,13 +95,13 @@ impl Depths {
             let top = power(if largest > 1e-30 { largest } else { 1e-30 });
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
             let sum = cut(t0 * scale) + cut(t1 * scale) + cut(t2 * scale) + floor(z * scale);
-            let depth = floor(sum * (top * 2.0_f64.powi(-28)));
+            let depth = floor(sum * (top * STEP));
             let depth = if depth > 0.0 { depth } else { 0.0 };
             let depth = if depth < self.full { depth } else { self.full };
-            unknown |= u32::from(close);
-            out[n] = if close { UNKNOWN } else { super::quotient::nearest(depth) as u32 };
+            // -1 is UNKNOWN.
+            out[n] = nearest(if close { -1.0 } else { depth }) as u32;
         }
-        unknown != 0
+        out.iter().fold(0, |all, depth| all | *depth) == UNKNOWN
     }
 }
 
