@@ -163,7 +163,7 @@ fn targets_and_raster_operations() {
     );
     let (target, draw) = (&loaded.scene.targets[0], &loaded.scene.draws[0]);
     assert_eq!(target.clear_color, [1, 2, 3, 4]);
-    assert_eq!(target.depth, Some(DepthBuffer { format: DepthFormat::Z16, clear: 32767 }));
+    assert_eq!(target.depth, Some(DepthBuffer { format: DepthFormat::Z16, clear: 32767, clear_stencil: 0 }));
     assert_eq!(draw.alpha_test.unwrap().reference, 128);
     assert!(!draw.depth_test.unwrap().write);
     assert_eq!(

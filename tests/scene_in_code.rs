@@ -21,17 +21,20 @@ fn texture() -> Texture {
     Texture { name: "grey".to_owned(), kind: TextureKind::TwoDimensional, format: TextureFormat::A8R8G8B8, image }
 }
 
+const STENCIL_TEST: StencilTest = StencilTest {
+    function: CompareFunction::Equal,
+    reference: 1,
+    mask: 255,
+    write_mask: 255,
+    fail: StencilOperation::Zero,
+    depth_fail: StencilOperation::Keep,
+    pass: StencilOperation::Increment,
+};
+
 /// A triangle, textured, on 8 x 8 pixels.
 fn plain(profile: Profile) -> Scene {
-    let depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff });
-    let target = |name: &str| Target {
-        name: name.to_owned(),
-        width: 8,
-        height: 8,
-        format: SurfaceFormat::A8R8G8B8,
-        clear_color: [0; 4],
-        depth,
-    };
+    let depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 });
+    let target = |name: &str| Target { name: name.to_owned(), depth, ..Target::new(8, 8, SurfaceFormat::A8R8G8B8) };
     let stages = [true, false, false, false];
     let mut stage = GeneralStage {
         rgb: Portion::idle(Component::Rgb),
@@ -45,19 +48,8 @@ fn plain(profile: Profile) -> Scene {
     let vertices: Vec<Vertex> =
         places.iter().map(|[x, y]| Vertex { position: [*x, *y, 0.5, 1.0], ..Vertex::default() }).collect();
     let draw = Draw {
-        name: "draw".to_owned(),
-        target: 0,
-        positions: Positions::Window,
         vertices: vertices.into(),
         indices: [0, 1, 2].into(),
-        topology: Topology::Triangles,
-        shade_model: ShadeModel::Smooth,
-        provoking_vertex: ProvokingVertex::Last,
-        perspective: true,
-        cull: Cull::None,
-        front_face: FrontFace::CounterClockwise,
-        scissor: None,
-        fog: Fog { enabled: false, color: [0; 3], function: None },
         textures: [Some(TextureUnit::new(0)), None, None, None],
         texture_shader: std::array::from_fn(|n| ShaderStage::conventional(n, stages[n])),
         combiners: Combiners {
@@ -65,13 +57,7 @@ fn plain(profile: Profile) -> Scene {
             mux_select: MuxSelect::Msb,
             final_combiner: FinalCombiner::initial([[0; 4]; 2]),
         },
-        program_origin: vec![],
-        vertex_program: None,
-        alpha_test: None,
-        depth_test: None,
-        blend: None,
-        blend_constant: [0; 4],
-        color_mask: [true; 4],
+        ..Draw::default()
     };
     let shown = Texture { name: "shown".to_owned(), image: TextureImage::Target { target: 1 }, ..texture() };
     let entries = vec![0; 256].into();
@@ -131,6 +117,16 @@ const CASES: &[Case] = &[
             (target.width, target.height) = (4096, 4096);
         }
         s.targets.push(s.targets[0].clone());
+    }),
+    ("target `frame` clears a stencil that Z16 does not have", |s| {
+        s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z16, clear: 0, clear_stencil: 1 });
+    }),
+    ("the window clip has 0 rectangles", |s| {
+        s.draws[0].window_clip = Some(WindowClip { rectangles: vec![], exclusive: false });
+    }),
+    ("the window clip has 9 rectangles", |s| {
+        let rectangle = Rectangle { x: 0, y: 0, width: 1, height: 1 };
+        s.draws[0].window_clip = Some(WindowClip { rectangles: vec![rectangle; 9], exclusive: true });
     }),
     ("target `frame` clears its depth to 0x1000000", |s| s.targets[0].depth.as_mut().unwrap().clear = 1 << 24),
     ("palette `colours` has 3 entries", |s| s.palettes[0].entries = vec![0; 3].into()),
@@ -213,6 +209,10 @@ const CASES: &[Case] = &[
     ("target `frame` has no depth buffer", |s| {
         s.targets[0].depth = None;
         s.draws[0].depth_test = Some(DepthTest { function: CompareFunction::Less, write: true });
+    }),
+    ("target `frame` has no stencil", |s| {
+        s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z16, clear: 0, clear_stencil: 0 });
+        s.draws[0].stencil_test = Some(STENCIL_TEST);
     }),
     ("surface format B8 cannot be blended", |s| {
         s.targets[0].format = SurfaceFormat::B8;
@@ -362,7 +362,7 @@ fn hurt_target(target: &mut Target, r: &mut Random) {
         1 => target.height = r.whole(),
         2 => target.format = r.any(),
         3 => target.depth = None,
-        _ => target.depth = Some(DepthBuffer { format: r.any(), clear: r.whole() }),
+        _ => target.depth = Some(DepthBuffer { format: r.any(), clear: r.whole(), clear_stencil: r.whole() as u8 }),
     }
 }
 
@@ -496,6 +496,9 @@ fn hurt_draw(draw: &mut Draw, r: &mut Random) {
             (input.register, input.component) = (r.any(), r.any());
         }
         _ => {
+            let rectangle = Rectangle { x: r.whole(), y: r.whole(), width: r.whole(), height: r.whole() };
+            draw.window_clip = Some(WindowClip { rectangles: vec![rectangle; r.below(10)], exclusive: k == 0 });
+            draw.stencil_test = Some(StencilTest { function: r.any(), fail: r.any(), pass: r.any(), ..STENCIL_TEST });
             draw.depth_test = Some(DepthTest { function: r.any(), write: true });
             draw.blend = Some(Blend { equation: r.any(), source: r.any(), destination: r.any() });
         }

@@ -35,6 +35,7 @@ mod assets_images;
 mod assets_output;
 mod assets_scenes;
 mod bad_scenes;
+mod captures;
 mod cli;
 mod cli_chart;
 mod cli_compare;

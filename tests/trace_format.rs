@@ -181,7 +181,10 @@ fn traces_and_the_page_agree() {
     let mut sequence = Random::seeded(1);
     let mut random = move |below: u32| sequence.below(below.into()) as u32;
     for number in 0..SCENES {
-        let scene = random_scene::scene().new_tree(&mut runner).unwrap().current();
+        let scene = match number % 4 {
+            2.. => random_scene::wide::scene().new_tree(&mut runner).unwrap().current(),
+            _ => random_scene::scene().new_tree(&mut runner).unwrap().current(),
+        };
         let mut policies = Policies::DEFAULT;
         if number % 2 == 1 {
             for policy in POLICIES {

@@ -70,6 +70,15 @@ macro_rules! source {
         #[derive(Deserialize)]
         #[serde(deny_unknown_fields, bound(deserialize = "'de: 'a"))]
         pub(super) struct $name<'a> { $(pub(super) $field: Option<Raw<'a, $type>>),* }
+        impl<'a> $name<'a> {
+            /// The fields that are written, with their texts.
+            #[allow(dead_code, reason = "asked of a few")]
+            pub(super) fn written(&self) -> impl Iterator<Item = (&'static str, &'a str)> {
+                [$((stringify!($field), self.$field.as_ref().map(|raw| raw.text))),*]
+                    .into_iter()
+                    .filter_map(|(name, text)| Some((name, text?)))
+            }
+        }
         impl<'a> Expected<'a> for $name<'a> {
             const EXPECTED: &'static str = "fields in parentheses, `(field: value, ...)`";
             fn split(text: &'a str) -> Option<Self> {
@@ -203,8 +212,22 @@ source! {
         format: Name<state::SurfaceFormat>,
         clear: Clear<'a>,
         depth: Name<state::DepthFormat>,
+        clip: Rectangle<'a>,
     }
-    struct Clear { color: Color, depth: f32, stencil: Reserved }
+    struct Clear { color: Color, depth: f32, stencil: u8 }
+    /// A clear among the draws.
+    struct ClearDraw { color: Color, color_mask: Tuple<'a, bool>, depth: f32, stencil: u8, rectangle: Rectangle<'a> }
+    struct StencilTest {
+        function: Name<state::CompareFunction>,
+        reference: u8,
+        mask: u8,
+        write_mask: u8,
+        fail: Name<state::StencilOperation>,
+        depth_fail: Name<state::StencilOperation>,
+        pass: Name<state::StencilOperation>,
+    }
+    struct ColorKey { color: Color, mode: Name<state::ColorKeyMode> }
+    struct WindowClip { rectangles: List<'a, Rectangle<'a>>, exclusive: bool }
     struct Texture {
         kind: Word,
         format: Name<state::TextureFormat>,
@@ -240,6 +263,7 @@ source! {
         cull: Name<state::Cull>,
         front_face: Name<state::FrontFace>,
         scissor: Rectangle<'a>,
+        window_clip: WindowClip<'a>,
         fog: Fog<'a>,
         textures: List<'a, Unit>,
         program: Program,
@@ -249,7 +273,8 @@ source! {
         blend_constant: Color,
         color_mask: Tuple<'a, bool>,
         dither: bool,
-        stencil_test: Reserved,
+        stencil_test: StencilTest<'a>,
+        clear: ClearDraw<'a>,
         logic_op: Reserved,
         texture_shader: List<'a, ShaderStage>,
         texgen: List<'a, CoordinateSource>,
@@ -351,7 +376,7 @@ source! {
         max_lod: f32,
         anisotropy: u32,
         cylindrical_wrap: bool,
-        color_key: Reserved,
+        color_key: ColorKey<'a>,
     }
     struct StageState {
         operation: ShaderOperation,

@@ -3,6 +3,7 @@
 //! A [`Unit`] is a function of the model between named columns of integers. [`cases`] chooses rows, [`table`] writes and reads them,
 //! [`pack`] puts the tables of many units into a folder with a manifest and checks one.
 
+pub mod captures;
 pub mod cases;
 pub mod column;
 pub mod error;

@@ -201,9 +201,9 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
         let format: DepthFormat = c.any();
         let full = (1_u32 << format.bits()) - 1;
         let clear = if c.once_in(3) { c.word() & full } else { full };
-        DepthBuffer { format, clear }
+        DepthBuffer { format, clear, clear_stencil: 0 }
     });
-    Target { name: format!("target{n}"), width, height, format, clear_color: c.bytes(), depth }
+    Target { name: format!("target{n}"), width, height, format, clear_color: c.bytes(), depth, clip: None }
 }
 
 fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
@@ -265,6 +265,8 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
             width: c.size(1, 40),
             height: c.size(1, 40),
         }),
+        window_clip: None,
+        stencil_test: None,
         fog,
         textures,
         texture_shader,

@@ -10,7 +10,7 @@ use ninebit::state::*;
 use proptest::prelude::*;
 
 /// Words of tape beyond those of the first kind: for each draw, and for the rest.
-const WIDER_DRAW: usize = 640;
+const WIDER_DRAW: usize = 800;
 const WIDER: usize = 256 + 4 * WIDER_DRAW;
 /// Words of tape of a scene of the first kind.
 const FIRST: usize = SHARED + 4 * DRAW;
@@ -42,6 +42,16 @@ fn widened(tape: &[u32]) -> Scene {
                 scene.targets[target].format = c.any();
             }
         });
+        let (c, target) = (&mut shared.part(8), &mut scene.targets[target]);
+        if c.once_in(4) {
+            target.clip = Some(rectangle(c, target.width, target.height));
+        }
+        if let Some(depth) = &mut target.depth
+            && depth.format.has_stencil()
+            && c.once_in(2)
+        {
+            depth.clear_stencil = c.byte();
+        }
     }
     for index in 0..scene.draws.len() {
         let mut c = tape.part(WIDER_DRAW);
@@ -65,8 +75,73 @@ fn attempt(scene: &mut Scene, change: impl FnOnce(&mut Scene)) {
 type Change = fn(&mut Choices<'_>, &mut Scene, usize);
 
 /// What may happen to a draw, in order.
-const CHANGES: [Change; 8] =
-    [share_mesh, share_texture, front_end::change, share_program, view, extreme_w, extreme_coordinates, lods];
+const CHANGES: [Change; 10] = [
+    share_mesh,
+    share_texture,
+    front_end::change,
+    share_program,
+    view,
+    extreme_w,
+    extreme_coordinates,
+    lods,
+    stencil_and_clips,
+    color_keys,
+];
+
+/// A rectangle that begins within a target, now and then an empty one.
+fn rectangle(c: &mut Choices<'_>, width: u32, height: u32) -> Rectangle {
+    Rectangle { x: c.below(width), y: c.below(height), width: c.below(width + 2), height: c.below(height + 2) }
+}
+
+/// A stencil test, where the target has a stencil, and a window clip.
+fn stencil_and_clips(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    let draw = &mut scene.draws[index];
+    let target = &scene.targets[draw.target];
+    if target.depth.is_some_and(|depth| depth.format.has_stencil()) && c.below(3) != 0 {
+        draw.stencil_test = Some(StencilTest {
+            function: if c.once_in(2) { CompareFunction::Always } else { c.any() },
+            reference: c.byte(),
+            mask: if c.once_in(3) { c.byte() } else { 255 },
+            write_mask: if c.once_in(3) { c.byte() } else { 255 },
+            fail: c.any(),
+            depth_fail: c.any(),
+            pass: c.any(),
+        });
+    }
+    if c.once_in(4) {
+        let count = c.size(1, WINDOW_CLIP_RECTANGLES as u32);
+        let rectangles = (0..count).map(|_| rectangle(c, target.width, target.height)).collect();
+        draw.window_clip = Some(WindowClip { rectangles, exclusive: c.once_in(2) });
+    }
+}
+
+/// Colour keys of texels that the textures have, where that is easily said.
+fn color_keys(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    let Scene { textures, palettes, draws, .. } = scene;
+    for unit in draws[index].textures.iter_mut().flatten() {
+        let mut c = c.part(12);
+        if !c.once_in(4) {
+            continue;
+        }
+        let mut word = c.word();
+        if let (TextureImage::Texels(texels), 0..3) = (&textures[unit.texture].image, c.below(4)) {
+            word = texels.words[c.word() as usize % texels.words.len()];
+        }
+        let format = textures[unit.texture].format;
+        let bytes = match (format, unit.palette) {
+            (TextureFormat::P8, Some(palette)) => {
+                let entries = &palettes[palette].entries;
+                let [b, g, r, a] = entries[word as usize & (entries.len() - 1)].to_le_bytes();
+                [r, g, b, a]
+            }
+            _ if format.is_compressed() || format == TextureFormat::P8 => c.bytes(),
+            _ => ninebit::texture::format::expand(format, word),
+        };
+        unit.color_key = Some(ColorKey { color: bytes, mode: c.any() });
+        (unit.min_filter, unit.mag_filter) = (Filter::Nearest, Filter::Nearest);
+        unit.mip_filter = [MipFilter::None, MipFilter::Nearest][c.below(2) as usize];
+    }
+}
 
 /// Another reading of the same words.
 fn texture_format(c: &mut Choices<'_>, texture: &mut Texture) {

@@ -45,6 +45,8 @@ fn is_parameter(name: &str) -> bool {
         "write_mask",
         "z_max",
         "alpha_test.reference",
+        "stencil_test.mask",
+        "stencil_test.write_mask",
         "r",
         "g",
         "b",
@@ -170,6 +172,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
     let n = |k: usize| inputs[k].1;
     let v = |k: usize| inputs[k].1.value;
     let max0 = |k: usize| v(k).max(0);
+    let stencil = |new: i128| plain(v(0) & !v(2) | new & v(2));
     Some(match operation {
         // Rasteriser and interpolation.
         "edge_function" => plain(v(0) * v(3) + v(1) * v(4) + v(2)),
@@ -372,6 +375,21 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "always" => plain(1),
         "depth" => Number { value: depth([v(0), v(1), v(2)], [v(3), v(4), v(5)], v(6)), per_one: v(6) },
         "drop_2_bits" => byte(v(0) >> 2 << 2),
+        "equals_key" => {
+            let half = inputs.len() / 2;
+            plain(i128::from((0..half).all(|k| v(k) == v(k + half))))
+        }
+        "zero_if" if v(1) != 0 => Number { value: 0, ..n(0) },
+        "zero_if" => n(0),
+        "and" => plain(v(0) & v(1)),
+        "stencil_keep" => plain(v(0)),
+        "stencil_zero" => stencil(0),
+        "stencil_replace" => stencil(v(1)),
+        "stencil_increment_saturate" => stencil((v(0) + 1).min(255)),
+        "stencil_decrement_saturate" => stencil((v(0) - 1).max(0)),
+        "stencil_invert" => stencil(255 - v(0)),
+        "stencil_increment" => stencil((v(0) + 1) % 256),
+        "stencil_decrement" => stencil((v(0) + 255) % 256),
         "drop_3_bits" => byte(v(0) >> 3 << 3),
         "read_surface" => byte(surface(&inputs[1].0, v(0), &inputs[2].0)?),
         "constant_0" => byte(0),

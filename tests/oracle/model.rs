@@ -17,7 +17,7 @@ pub mod texture;
 
 use combiner::Registers;
 use ninebit::frame::Surface;
-use ninebit::state::{Draw, Policies, Scene};
+use ninebit::state::{Draw, Policies, Rectangle, Scene, Target, WindowClip};
 use raster::{Sample, Setup};
 use shader::Units;
 use texture::Image;
@@ -34,7 +34,7 @@ pub fn render(scene: &Scene, policies: &Policies) -> Vec<Surface> {
                 height: t.height,
                 format: t.format,
                 words: vec![rop::store(t.format, t.clear_color.map(i128::from)); pixels],
-                depth: t.depth.map_or(Vec::new(), |d| vec![d.clear; pixels]),
+                depth: t.depth.map_or(Vec::new(), |d| vec![d.clear + (u32::from(d.clear_stencil) << 24); pixels]),
             }
         })
         .collect();
@@ -61,32 +61,48 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
         for j in top..bottom {
             for i in left..right {
                 let sample = setup.sample(i.into(), j.into());
-                if !sample.covered {
+                if !sample.covered || clipped(draw, target, (i, j)) {
                     continue;
                 }
                 // TSH-10
                 let Some(textures) = units.registers(i.into(), j.into(), &sample) else { continue };
                 let color = shade(draw, textures, &setup, &sample, policies);
                 let at = (j * u64::from(target.width) + i) as usize;
-                // ROP-1, then DEP-2.
+                // ROP-1, then STN-1, then DEP-2.
                 if let Some(test) = draw.alpha_test
                     && !test.function.passes(color[3] as u32, test.reference.into())
                 {
                     continue;
                 }
-                if let (Some(test), Some(buffer)) = (draw.depth_test, target.depth) {
-                    let depth = setup.depth(&sample, (1 << buffer.format.bits()) - 1) as u32;
-                    if !test.function.passes(depth, surface.depth[at]) {
+                if let Some(buffer) = target.depth
+                    && (draw.depth_test.is_some() || draw.stencil_test.is_some())
+                {
+                    let (mut stencil, mut stored) = (surface.depth[at] >> 24, surface.depth[at] % (1 << 24));
+                    let incoming = || setup.depth(&sample, (1 << buffer.format.bits()) - 1) as u32;
+                    let passed = rop::stencil_and_depth(draw, incoming, &mut stencil, &mut stored);
+                    surface.depth[at] = (stencil << 24) + stored;
+                    if !passed {
                         continue;
-                    }
-                    if test.write {
-                        surface.depth[at] = depth;
                     }
                 }
                 surface.words[at] = rop::write(draw, target.format, surface.words[at], color);
             }
         }
     }
+}
+
+/// CLP-1, CLP-2
+fn clipped(draw: &Draw, target: &Target, (x, y): (u64, u64)) -> bool {
+    let inside = |r: &Rectangle| {
+        let reaches = |at: u64, from: u32, size: u32| at >= u64::from(from) && at < u64::from(from) + u64::from(size);
+        reaches(x, r.x, r.width) && reaches(y, r.y, r.height)
+    };
+    let window = match &draw.window_clip {
+        Some(WindowClip { rectangles, exclusive: true }) => rectangles.iter().any(inside),
+        Some(WindowClip { rectangles, exclusive: false }) => !rectangles.iter().any(inside),
+        None => false,
+    };
+    window || target.clip.is_some_and(|clip| !inside(&clip))
 }
 
 /// One fragment's colour, R, G, B, A bytes.

@@ -1,7 +1,7 @@
 //! Surfaces: ROP-1 to ROP-6.
 
 use super::real::rnd255;
-use ninebit::state::{BlendEquation, BlendFactor, Draw, SurfaceFormat};
+use ninebit::state::{BlendEquation, BlendFactor, Draw, StencilOperation, SurfaceFormat};
 
 /// ROP-5: a colour as the surface stores it (R, G, B, A bytes).
 pub fn store(format: SurfaceFormat, [r, g, b, a]: [i128; 4]) -> u32 {
@@ -109,4 +109,46 @@ pub fn write(draw: &Draw, format: SurfaceFormat, old: u32, color: [i128; 4]) -> 
     let bits = channel_bits(format);
     let mask = (0..4).filter(|c| draw.color_mask[*c]).fold(0, |m, c| m | bits[c]);
     store(format, out) & mask | old & !mask
+}
+
+/// STN-1 and DEP-2: whether a fragment passes both tests. `stencil` and `depth` are what is stored.
+pub fn stencil_and_depth(draw: &Draw, incoming: impl FnOnce() -> u32, stencil: &mut u32, depth: &mut u32) -> bool {
+    let before = *stencil;
+    // Every bit of the write mask takes the operation's bit.
+    let mut store = |operation: StencilOperation, reference: u32, mask: u32| {
+        let new = match operation {
+            StencilOperation::Keep => before,
+            StencilOperation::Zero => 0,
+            StencilOperation::Replace => reference,
+            StencilOperation::IncrementSaturate => (before + 1).min(255),
+            StencilOperation::DecrementSaturate => before.max(1) - 1,
+            StencilOperation::Invert => 255 - before,
+            StencilOperation::Increment => (before + 1) % 256,
+            StencilOperation::Decrement => (before + 255) % 256,
+        };
+        *stencil = (0..8).map(|bit| (if mask >> bit & 1 == 1 { new } else { before }) & 1 << bit).sum();
+    };
+    if let Some(test) = draw.stencil_test {
+        let (reference, mask) = (u32::from(test.reference), u32::from(test.mask));
+        if !test.function.passes(reference & mask, before & mask) {
+            store(test.fail, reference, test.write_mask.into());
+            return false;
+        }
+    }
+    let passed = match draw.depth_test {
+        None => true,
+        Some(test) => {
+            let new = incoming();
+            let passed = test.function.passes(new, *depth);
+            if passed && test.write {
+                *depth = new;
+            }
+            passed
+        }
+    };
+    if let Some(test) = draw.stencil_test {
+        let operation = if passed { test.pass } else { test.depth_fail };
+        store(operation, test.reference.into(), test.write_mask.into());
+    }
+    passed
 }

@@ -29,6 +29,10 @@ impl<'a> Units<'a> {
     pub fn registers(&self, i: i128, j: i128, sample: &Sample) -> Option<[[i128; 4]; 4]> {
         let kept = (0..4).all(|k| match self.draw.texture_shader[k].operation {
             ShaderOperation::CullFragment { drops_not_negative } => !self.culled(k, sample, drops_not_negative),
+            // KEY-1
+            operation if operation.samples() => {
+                self.images[k].as_ref().is_none_or(|image| !image.drops(&self.sampled(k, image, i, j, sample)))
+            }
             _ => true,
         });
         count("fragment", if kept { "kept" } else { "culled" });
@@ -59,9 +63,7 @@ impl<'a> Units<'a> {
             _ => {
                 // TEX-16
                 let Some(image) = &self.images[k] else { return Color::plain([0, 0, 0, 255]) };
-                let Some(place) = self.place(k, i, j, sample) else { return Color::plain([0, 0, 0, 255]) };
-                let lod = image.limited_lod(self.lod(k, image, i, j));
-                let color = image.sample(self.setup, sample, &place, lod);
+                let color = self.sampled(k, image, i, j, sample);
                 match stage.operation {
                     ShaderOperation::BumpEnvironment { luminance: Some(luminance), .. } => {
                         self.luminance(color, self.previous(k, i, j, sample)[0], luminance)
@@ -70,6 +72,13 @@ impl<'a> Units<'a> {
                 }
             }
         }
+    }
+
+    /// What a unit fetches, before a luminance.
+    fn sampled(&self, k: usize, image: &Image, i: i128, j: i128, sample: &Sample) -> Color {
+        let Some(place) = self.place(k, i, j, sample) else { return Color::plain([0, 0, 0, 255]) };
+        let lod = image.limited_lod(self.lod(k, image, i, j));
+        image.sample(self.setup, sample, &place, lod)
     }
 
     /// The bytes that a unit reads of an earlier one.

@@ -7,7 +7,8 @@ use super::tally::{count, count_named};
 use super::texel::{self, Color};
 use ninebit::frame::Surface;
 use ninebit::state::{
-    AddressMode, Filter, MipFilter, Named, Profile, Scene, TextureFormat, TextureImage, TextureKind, TextureUnit,
+    AddressMode, ColorKey, ColorKeyMode, Filter, MipFilter, Named, Profile, Scene, TextureFormat, TextureImage,
+    TextureKind, TextureUnit,
 };
 
 /// A bound unit and its texture's words as they stand when a draw begins.
@@ -164,6 +165,19 @@ impl Image {
         biased.max(self.unit.min_lod.into()).min(self.unit.max_lod.into())
     }
 
+    /// KEY-1: whether a texel, whose filter is nearest, is the key.
+    fn is_keyed(&self, value: [i128; 4]) -> bool {
+        use TextureFormat::{L8, R5G6B5, R6G5B5, X1R5G5B5, X8R8G8B8};
+        let channels = if [L8, R5G6B5, R6G5B5, X1R5G5B5, X8R8G8B8].contains(&self.format) { 3 } else { 4 };
+        self.unit.color_key.is_some_and(|key| (0..channels).all(|c| value[c] & 255 == key.color[c].into()))
+    }
+
+    /// KEY-1: whether a colour that was sampled drops the fragment: such a key changes no texel.
+    pub fn drops(&self, color: &Color) -> bool {
+        let drops = self.unit.color_key.is_some_and(|key| key.mode == ColorKeyMode::Texel);
+        drops && self.is_keyed(color.bytes)
+    }
+
     /// What is sampled at a place, at a lod that is already limited.
     pub fn sample(&self, setup: &Setup, sample: &Sample, place: &Place, lod: i128) -> Color {
         count_named(self.format);
@@ -194,6 +208,12 @@ impl Image {
                 let n = lod >> 8;
                 mix(level(min, last.min(n)), level(min, last.min(n + 1)), lod & 255)
             }
+        };
+        let keyed = self.is_keyed(value);
+        let value = match self.unit.color_key {
+            Some(ColorKey { mode: ColorKeyMode::Alpha, .. }) if keyed => [value[0], value[1], value[2], 0],
+            Some(ColorKey { mode: ColorKeyMode::Color, .. }) if keyed => [0; 4],
+            _ => value,
         };
         if texel::has_halves(self.format) {
             Color::of_halves([value[0], value[1]], self.half_flags())

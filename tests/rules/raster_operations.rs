@@ -3,7 +3,8 @@
 use crate::handbook::example;
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::combiner::direct::Direct;
-use ninebit::rop::{blend, surface};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::rop::{blend, stencil, surface};
 use ninebit::state::*;
 use ninebit::trace::Silent;
 
@@ -69,4 +70,56 @@ fn examples_of_raster_operations() {
     let rop6 = example("ROP-6", "A8R8G8B8 with R and A let through has the mask 0xffff0000.");
     let mask = surface::write_mask(SurfaceFormat::A8R8G8B8, [true, false, false, true]);
     rop6.gives("the mask", mask, 0xffff_0000);
+}
+
+/// The pixels that a draw may touch.
+fn touched(target: Target, draw: Draw) -> Vec<(u32, u32)> {
+    let draw = Draw { color_mask: [true; 4], ..draw };
+    let scene = Scene { targets: vec![target], draws: vec![draw], ..Scene::default() };
+    let plan = Plan::compile(&scene, &PlanOptions { prune: false, ..PlanOptions::default() }).unwrap();
+    let pixels = |w: &Rectangle| {
+        let (columns, rows) = (w.x..w.x + w.width, w.y..w.y + w.height);
+        rows.flat_map(move |y| columns.clone().map(move |x| (x, y)))
+    };
+    plan.draws[0].windows.iter().flat_map(pixels).collect()
+}
+
+#[test]
+fn examples_of_tests() {
+    let stn1 = example(
+        "STN-1",
+        "R = 127 replaces 128; incremented that is 128 again; 0 decremented is 255, and stays 0 if it saturates.",
+    );
+    use StencilOperation::*;
+    let test = StencilTest {
+        function: CompareFunction::Always,
+        reference: 127,
+        mask: 255,
+        write_mask: 255,
+        fail: Keep,
+        depth_fail: Keep,
+        pass: Keep,
+    };
+    let after = |operation, stored| stencil::written(&test, operation, stored);
+    stn1.gives("replaced", after(Replace, 128), 127).gives("incremented", after(Increment, 127), 128);
+    stn1.gives("decremented", after(Decrement, 0), 255).gives("saturated", after(DecrementSaturate, 0), 0);
+
+    let clp1 = example(
+        "CLP-1",
+        "registers (0, 0) to (1, 1) are 2 columns and 2 rows: 4 pixels of an 8 x 8 target inclusive, 60 exclusive.",
+    );
+    let clipped = |exclusive| {
+        let rectangles = vec![Rectangle { x: 0, y: 0, width: 2, height: 2 }];
+        let draw = Draw { window_clip: Some(WindowClip { rectangles, exclusive }), ..Draw::default() };
+        touched(Target::new(8, 8, SurfaceFormat::A8R8G8B8), draw).len()
+    };
+    clp1.gives("inclusive", clipped(false), 4).gives("exclusive", clipped(true), 60);
+
+    let clp2 = example("CLP-2", "x 2, width 3 of an 8 x 1 target: columns 2 to 4. Width 0: none.");
+    let columns = |width| {
+        let clip = Some(Rectangle { x: 2, y: 0, width, height: 1 });
+        let target = Target { clip, ..Target::new(8, 1, SurfaceFormat::R5G6B5) };
+        touched(target, Draw::default()).iter().map(|(x, _)| *x).collect::<Vec<_>>()
+    };
+    clp2.gives("columns", columns(3), vec![2, 3, 4]).gives("none", columns(0), vec![]);
 }

@@ -83,6 +83,15 @@ fn examples_of_texture_units() {
     let scene = scene(Profile::Nv10, SurfaceFormat::A8R8G8B8, [1, 2, 3, 4], vec![unbound]);
     tex16.gives("the word that shows it", Pixel::of(&scene, Policies::DEFAULT).word, 0xff00_0000);
 
+    let key1 = example("KEY-1", "the key 0xf00000ff does not match the texel 0xff0000ff. In X8R8G8B8 it does.");
+    let keyed = |format| {
+        let key = ColorKey { color: [0, 0, 255, 0xf0], mode: ColorKeyMode::Alpha };
+        let pixel = sampled(format, &[0xff00_00ff], 0.0, 1.0, |unit| unit.color_key = Some(key));
+        (pixel.value("unit0.key.matched"), pixel.value("texture0.a"))
+    };
+    key1.gives("A8R8G8B8", keyed(TextureFormat::A8R8G8B8), (0, 255));
+    key1.gives("X8R8G8B8", keyed(TextureFormat::X8R8G8B8), (1, 0));
+
     let tex18 = example("TEX-18", "bytes 0x7f and 0x80 enter as 254 and -256.");
     let signed = sampled(TextureFormat::A8R8G8B8, &[0xff7f_8000], 0.0, 1.0, |unit| unit.signed = [true; 4]);
     tex18.gives("0x7f", signed.value("texture0.r"), 254).gives("0x80", signed.value("texture0.g"), -256);

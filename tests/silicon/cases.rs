@@ -159,7 +159,7 @@ pub fn r3() -> Case {
     let mut quad = draw(Topology::Quads, vertices);
     quad.depth_test = Some(DepthTest { function: CompareFunction::Always, write: true });
     let mut scene = scene(background, vec![quad]);
-    scene.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff });
+    scene.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 });
     Case {
         name: "R3",
         capture: "Depth_buffer/DepthFmt_z24_Cn_FZn_Mffffff.png",

@@ -1,6 +1,6 @@
 //! Scenes drawn, and pictures put together.
 
-use ninebit::engine::{RenderOptions, render};
+use ninebit::engine::{RenderOptions, render, walk};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::interpolate::Sample;
@@ -160,12 +160,12 @@ impl Covered<'_> {
 /// Visits every pixel that a plan's triangles cover, in their order; each draw has unit 0.
 pub fn visit(plan: &Plan, mut visit: impl FnMut(&Covered<'_>)) {
     for (draw, planned) in plan.draws.iter().enumerate() {
-        let window = planned.window;
-        let columns = (i64::from(window.x), i64::from(window.x + window.width));
+        let whole = (0, i64::from(plan.targets[planned.target].height));
+        // None of its scenes clips.
+        let Some((rows, columns)) = walk::windows(planned, whole).next() else { continue };
         for number in 0..planned.assembly.triangles.len() {
             let vertices = planned.assembly.triangle(number);
             let Some(triangle) = Triangle::new(vertices.positions(), true, plan.profile) else { continue };
-            let rows = (i64::from(window.y), i64::from(window.y + window.height));
             for j in triangle.rows.0.max(rows.0)..triangle.rows.1.min(rows.1) {
                 let (low, high) = triangle.span(j, columns);
                 for i in low..high {

@@ -90,6 +90,12 @@ impl Failure {
         Failure { exit: Exit::Invalid, report: Report::message(Some(code), &message.into(), &help.into()) }
     }
 
+    /// A fault of this program.
+    pub(crate) fn fault(message: &str) -> Self {
+        let help = "please report it, with the command line";
+        Failure { exit: Exit::Internal, report: Report::message(Some("NB0801"), message, help) }
+    }
+
     /// Nothing of a scene can be measured.
     pub(crate) fn unseen(scene: &Path) -> Self {
         Failure::invalid(

@@ -1,6 +1,7 @@
 //! The command line: data on stdout, everything else on stderr, and an exit status that says which kind of thing happened.
 
 mod bench;
+mod captures;
 mod chart;
 mod check;
 mod compare;
@@ -86,6 +87,9 @@ enum Command {
     /// Conformance vectors: tables of what the units of the chip yield
     #[command(subcommand)]
     Vectors(vectors::Command),
+    /// Frames of a real NV2A, drawn again and compared with the captures
+    #[command(subcommand)]
+    Captures(captures::Command),
     /// Replay scenes: draw each and compare it with the expectation beside it
     ///
     /// Exit status: that of the worst scene, the highest number. 0: all are as expected; 1: one differs; 3: one is invalid; 4: something is
@@ -173,6 +177,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Op(command) => op::run(&command, context),
         Command::Texture(arguments) => texture::run(&arguments, context),
         Command::Vectors(command) => vectors::run(&command),
+        Command::Captures(command) => captures::run(&command),
         Command::Replay(arguments) => replay::run(&arguments, context),
         Command::Policies => policies::run(),
         Command::Limits => limits::run(),

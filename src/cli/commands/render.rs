@@ -134,11 +134,13 @@ fn depths(surface: &Surface, format: DepthFormat, destination: &Destination) -> 
     let bits = format.bits();
     match destination {
         Destination::File(path) if picture::is_png(path) => {
-            let grey: Vec<u16> = surface.depth.iter().map(|depth| (depth >> (bits - 16)) as u16).collect();
+            let grey: Vec<u16> = surface.depths().map(|depth| (depth >> (bits - 16)) as u16).collect();
             encode_grey_png(surface.width, surface.height, &grey)
         }
-        // The stencil is not modelled: 0.
-        _ if bits == 24 => Ok(little_endian(&surface.depth.iter().map(|depth| depth << 8).collect::<Vec<_>>(), 4)),
+        // The chip has the stencil in the low byte.
+        _ if bits == 24 => {
+            Ok(little_endian(&surface.depth.iter().map(|word| word.rotate_left(8)).collect::<Vec<_>>(), 4))
+        }
         _ => Ok(little_endian(&surface.depth, 2)),
     }
 }

@@ -215,8 +215,8 @@ impl<'a> Renderer<'a> {
             .map(|index| self.rows.as_ref().map(|rows| rows.draw(plan, index, &frames.surfaces)))
             .collect();
         let window = |index: usize| {
-            let window = &plan.draws[index].window;
-            window.width as usize * window.height as usize
+            let windows = &plan.draws[index].windows;
+            windows.iter().map(|window| window.width as usize * window.height as usize).sum::<usize>()
         };
         let alone = Team::new(1);
         let team = if draws.clone().map(window).sum::<usize>() >= SMALL { &self.team } else { &alone };
@@ -255,7 +255,7 @@ pub fn cleared(plan: &Plan) -> Frames {
             height: target.height,
             format: target.format,
             words: vec![surface::pack(target.format, target.clear_color); pixels],
-            depth: target.depth.map_or(Vec::new(), |d| vec![d.clear; pixels]),
+            depth: target.depth.map_or(Vec::new(), |depth| vec![depth.cleared(); pixels]),
         }
     };
     Frames { surfaces: plan.targets.iter().map(clear).collect() }

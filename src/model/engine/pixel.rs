@@ -10,8 +10,8 @@ use crate::raster::fog::FogPlane;
 use crate::raster::ideal;
 use crate::raster::interpolate::{self, Sample, Settled};
 use crate::raster::setup::{Triangle, centres};
-use crate::rop::{blend, surface};
-use crate::state::{Cull, FrontFace, Register, ShadeModel, TriangleVertices, VertexColor};
+use crate::rop::{blend, stencil, surface};
+use crate::state::{Cull, DEPTH_BITS, FrontFace, Register, STENCIL_SHIFT, ShadeModel, TriangleVertices, VertexColor};
 use crate::texture::chain::Chain;
 use crate::texture::place::{Coordinates, Interpolated};
 use crate::texture::stage::ShaderSetup;
@@ -50,10 +50,31 @@ pub struct Fragment {
     pub e: [i64; 3],
     /// What the surface holds.
     pub stored: u32,
-    /// What the depth buffer holds, as the lane keeps it.
-    pub stored_depth: i64,
     /// The ideal's weights of the vertices, where they are not those of the snapped triangle.
     pub weights: Option<[f64; 3]>,
+}
+
+/// What the depth buffer holds of a pixel; shading changes it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct DepthStencil {
+    /// The depth, as the lane keeps it.
+    pub depth: i64,
+    /// The stencil.
+    pub stencil: u8,
+}
+
+impl DepthStencil {
+    /// An entry of [`Surface::depth`](crate::frame::Surface::depth).
+    #[inline]
+    pub fn new(word: u32) -> Self {
+        DepthStencil { depth: i64::from(word & DEPTH_BITS), stencil: (word >> STENCIL_SHIFT) as u8 }
+    }
+
+    /// The entry, of a depth that is an integer.
+    #[inline]
+    pub fn word(self) -> u32 {
+        u32::from(self.stencil) << STENCIL_SHIFT | self.depth as u32
+    }
 }
 
 /// What a fragment leaves behind.
@@ -61,8 +82,6 @@ pub struct Fragment {
 pub struct Stored<L> {
     /// The surface's new word.
     pub word: u32,
-    /// The new depth, if it is written, as the lane keeps it.
-    pub depth: Option<i64>,
     /// The blended channels before the store, and which of them the mask lets through: what an ideal surface would hold.
     pub channels: [L; 4],
 }
@@ -178,13 +197,15 @@ impl<'a> TriangleContext<'a> {
         }
     }
 
-    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the texture shader, the alpha or the depth test.
+    /// Runs the whole pipe for one pixel. `None`: the fragment was dropped by the texture shader or a test.
     ///
+    /// `memory` is what the depth buffer holds; a dropped fragment can change its stencil.
     /// `destination` is the ideal's stored colour, where the lane has one; without it the stored word counts.
     #[inline]
     pub fn shade<L: Lane, O: Observer>(
         &self,
         fragment: &Fragment,
+        memory: &mut DepthStencil,
         destination: Option<[L; 4]>,
         textures: &[Image<'_, L>],
         observer: &mut O,
@@ -209,7 +230,8 @@ impl<'a> TriangleContext<'a> {
         }
         let source =
             final_combiner::run(&draw.final_combiner, self.plan.profile, &self.plan.policies, &mut registers, observer);
-        self.raster_operations(source, &sample, fragment, destination, observer)
+        self.depth_stencil_test(&source, &sample, memory, observer)?;
+        self.raster_operations(source, fragment, memory, destination, observer)
     }
 
     /// INT-2: PRIMARY, SECONDARY and FOG.
@@ -329,7 +351,7 @@ impl<'a> TriangleContext<'a> {
         registers.load(Register::Fog, [r, g, b, factor]);
     }
 
-    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). `None`: the texture shader drops the fragment.
+    /// TEXTURE0 to TEXTURE3, and SPARE0's alpha (CMB-13). `None`: the texture shader or a colour key drops the fragment.
     #[inline]
     pub(super) fn sample_textures<L: Lane, O: Observer>(
         &self,
@@ -368,7 +390,10 @@ impl<'a> TriangleContext<'a> {
         for planned in units {
             let Some(place) = self.place(planned, sample, pixel) else { continue };
             let image = &textures[planned.state.texture];
-            let value = unit::sample::<L, O>(planned, image, &place, observer);
+            let (value, dropped) = unit::sample::<L, O>(planned, image, &place, observer);
+            if dropped {
+                return None;
+            }
             registers.load(UNITS[planned.index], value);
         }
         if O::ON {
@@ -412,35 +437,61 @@ impl<'a> TriangleContext<'a> {
         Some(Interpolated { unit, coordinates, at: sample, pixel, vertices: self.vertices(), w: self.w() })
     }
 
-    /// ROP-1 to ROP-6, DEP-1, DEP-2.
+    /// ROP-1, STN-1, DEP-1, DEP-2: the tests, in their order. `None`: the fragment is dropped.
     #[inline]
-    fn raster_operations<L: Lane, O: Observer>(
+    fn depth_stencil_test<L: Lane, O: Observer>(
         &self,
-        source: [L; 4],
+        source: &[L; 4],
         sample: &Sample<'_>,
-        fragment: &Fragment,
-        destination: Option<[L; 4]>,
+        memory: &mut DepthStencil,
         observer: &mut O,
-    ) -> Option<Stored<L>> {
+    ) -> Option<()> {
         let draw = self.draw;
         if let Some(test) = &draw.alpha_test
             && !blend::alpha_test(test, source[3], observer)
         {
             return None;
         }
-        let mut depth = None;
-        if let Some(test) = &draw.depth_test {
-            let z = L::depth(sample.depth(self.z, draw.depth_full), || self.ideal_depth(sample));
-            let passed = test.function.passes(z, fragment.stored_depth);
-            observer.decided(Decision::DepthTest, i64::from(passed), || i64::from(passed));
-            if O::ON {
-                self.report_depth(sample, z, fragment.stored_depth, passed, observer);
-            }
-            if !passed {
-                return None;
-            }
-            depth = test.write.then_some(z);
+        let stencil_passed = draw.stencil_test.is_none_or(|test| stencil::passes(&test, memory.stencil));
+        if let Some(test) = &draw.stencil_test
+            && O::ON
+        {
+            reports::stencil_test(test, memory.stencil, stencil_passed, observer);
         }
+        let mut depth_passed = true;
+        if let Some(test) = draw.depth_test.filter(|_| stencil_passed) {
+            let z = L::depth(sample.depth(self.z, draw.depth_full), || self.ideal_depth(sample));
+            depth_passed = test.function.passes(z, memory.depth);
+            observer.decided(Decision::DepthTest, i64::from(depth_passed), || i64::from(depth_passed));
+            if O::ON {
+                self.report_depth(sample, z, memory.depth, depth_passed, observer);
+            }
+            if depth_passed && test.write {
+                memory.depth = z;
+            }
+        }
+        if let Some(test) = &draw.stencil_test {
+            let operation = stencil::operation(test, stencil_passed, depth_passed);
+            let written = stencil::written(test, operation, memory.stencil);
+            if O::ON {
+                reports::stencil(test, operation, memory.stencil, written, observer);
+            }
+            memory.stencil = written;
+        }
+        (stencil_passed && depth_passed).then_some(())
+    }
+
+    /// ROP-2 to ROP-6.
+    #[inline]
+    fn raster_operations<L: Lane, O: Observer>(
+        &self,
+        source: [L; 4],
+        fragment: &Fragment,
+        memory: &DepthStencil,
+        destination: Option<[L; 4]>,
+        observer: &mut O,
+    ) -> Option<Stored<L>> {
+        let draw = self.draw;
         let channels = match &draw.blend {
             None => source,
             Some(state) => {
@@ -465,9 +516,9 @@ impl<'a> TriangleContext<'a> {
             observer.count(Work::BytesWritten, u64::from(draw.surface.bytes()));
         }
         if O::ON {
-            self.report_store(&channels, fragment.stored, word, depth, observer);
+            self.report_store(&channels, fragment.stored, word, memory, observer);
         }
-        Some(Stored { word, depth, channels })
+        Some(Stored { word, channels })
     }
 
     /// The ideal's depth in units of the buffer's last bit.

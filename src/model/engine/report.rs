@@ -1,6 +1,6 @@
 //! What a pixel tells an observer outside the blocks that report for themselves. Nothing here computes a value that is used.
 
-use super::pixel::TriangleContext;
+use super::pixel::{DepthStencil, TriangleContext};
 use crate::combiner::registers::{self, channel_name};
 use crate::number::{Lane, convert, light};
 use crate::plan::PlannedDraw;
@@ -8,7 +8,7 @@ use crate::raster::fog::{FogFactor, FogPlane, FogStep};
 use crate::raster::interpolate::{Sample, Settled};
 use crate::raster::setup;
 use crate::rop::{blend, surface};
-use crate::state::{FogFunction, FogMode, Named, Profile, Register, VertexColor};
+use crate::state::{FogFunction, FogMode, Named, Profile, Register, StencilOperation, StencilTest, VertexColor};
 use crate::trace::{Observer, Operand, Step, byte, part, plain, report};
 use crate::vertex::fog as vertex_fog;
 
@@ -348,7 +348,7 @@ impl TriangleContext<'_> {
         channels: &[L; 4],
         old: u32,
         word: u32,
-        depth: Option<i64>,
+        memory: &DepthStencil,
         observer: &mut O,
     ) {
         const BLOCK: &str = "store";
@@ -384,11 +384,60 @@ impl TriangleContext<'_> {
                     .ideal(ideal),
             );
         }
-        if let Some(z) = depth {
+        if draw.depth_test.is_some_and(|test| test.write) {
+            let z = memory.depth;
             let inputs = vec![Operand { per_one: draw.depth_full, ..plain("z", z) }];
             observer.step(Step::given(BLOCK, "DEP-2", "stored.z", z).per(draw.depth_full).by("write", inputs));
         }
     }
+}
+
+const STENCIL_BLOCK: &str = "stencil test";
+
+/// STN-1: what is compared, and whether it passes.
+pub(super) fn stencil_test<O: Observer>(test: &StencilTest, stored: u8, passed: bool, observer: &mut O) {
+    let mut masked = |name: &str, value: u8| {
+        let given = Step::given(STENCIL_BLOCK, "", name, i64::from(value));
+        observer.step(given.note(Some(format!("{value:#04x}"))));
+        let inputs = vec![plain(name, i64::from(value)), plain("stencil_test.mask", i64::from(test.mask))];
+        let (name, value) = (format!("{name}.masked"), i64::from(value & test.mask));
+        observer.step(Step::given(STENCIL_BLOCK, "STN-1", name.clone(), value).by("and", inputs));
+        plain(name, value)
+    };
+    let inputs = vec![masked("stencil_test.reference", test.reference), masked("stencil.stored", stored)];
+    observer.step(
+        Step::given(STENCIL_BLOCK, "STN-1", "stencil_test.passed", i64::from(passed))
+            .by(blend::compare_operation(test.function), inputs)
+            .note(Some(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string())),
+    );
+}
+
+/// STN-1: what is stored.
+pub(super) fn stencil<O: Observer>(
+    test: &StencilTest,
+    operation: StencilOperation,
+    stored: u8,
+    written: u8,
+    observer: &mut O,
+) {
+    let inputs = [
+        ("stencil.stored", stored),
+        ("stencil_test.reference", test.reference),
+        ("stencil_test.write_mask", test.write_mask),
+    ];
+    let inputs = inputs.map(|(name, value)| plain(name, i64::from(value))).to_vec();
+    let name = match operation {
+        StencilOperation::Keep => "stencil_keep",
+        StencilOperation::Zero => "stencil_zero",
+        StencilOperation::Replace => "stencil_replace",
+        StencilOperation::IncrementSaturate => "stencil_increment_saturate",
+        StencilOperation::DecrementSaturate => "stencil_decrement_saturate",
+        StencilOperation::Invert => "stencil_invert",
+        StencilOperation::Increment => "stencil_increment",
+        StencilOperation::Decrement => "stencil_decrement",
+    };
+    let step = Step::given(STENCIL_BLOCK, "STN-1", "stencil", i64::from(written));
+    observer.step(step.by(name, inputs).note(Some(format!("{written:#04x}"))));
 }
 
 /// The constants of the stage that comes at or after number `next`, or of the final combiner.

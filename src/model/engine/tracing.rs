@@ -3,13 +3,13 @@
 use std::convert::Infallible;
 use std::fmt;
 
-use super::pixel::{Fragment, TriangleContext};
+use super::pixel::{DepthStencil, Fragment, TriangleContext};
 use super::{cleared, cleared_colors, draw_defined, images};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Piece;
 use crate::rop::surface;
-use crate::state::{StageOrigin, Target, TextureImage};
+use crate::state::{Rectangle, StageOrigin, Target, TextureImage};
 use crate::texture::unit::Image;
 use crate::trace::{Observer, Recorder, Silent, Step};
 
@@ -223,10 +223,10 @@ impl<'a> Tracer<'a> {
     fn draws(&self) -> impl Iterator<Item = (usize, &'a PlannedDraw)> {
         let (target, (x, y)) = (self.target, self.pixel);
         self.plan.draws.iter().enumerate().filter(move |(_, planned)| {
-            let window = &planned.window;
-            let inside =
-                (window.x..window.x + window.width).contains(&x) && (window.y..window.y + window.height).contains(&y);
-            planned.target == target && inside
+            let inside = |window: &Rectangle| {
+                (window.x..window.x + window.width).contains(&x) && (window.y..window.y + window.height).contains(&y)
+            };
+            planned.target == target && planned.windows.iter().any(inside)
         })
     }
 
@@ -242,6 +242,7 @@ impl<'a> Tracer<'a> {
         let at = self.pixel.1 as usize * description.width as usize + self.pixel.0 as usize;
         let word = frames.surfaces[self.target].words[at];
         let depth = frames.surfaces[self.target].depth.get(at).copied().unwrap_or(0);
+        let depth = DepthStencil::new(depth);
         let mut pixel = Pixel { word, depth, ideal: cleared_colors(description).map(f64::from) };
         let mut passed_over = self.left_out;
         let mut finished = 0;
@@ -291,7 +292,7 @@ fn covered(context: &mut TriangleContext<'_>, number: usize, (x, y): (u32, u32))
 /// The traced pixel's memory.
 struct Pixel {
     word: u32,
-    depth: u32,
+    depth: DepthStencil,
     /// What a surface of real numbers would hold, R, G, B, A in 255ths.
     ideal: [f64; 4],
 }
@@ -308,12 +309,12 @@ impl Pixel {
         observer: &mut O,
     ) -> bool {
         let pixel = (i64::from(x), i64::from(y));
-        let fragment = Fragment { pixel, e, stored: self.word, stored_depth: i64::from(self.depth), weights: None };
+        let fragment = Fragment { pixel, e, stored: self.word, weights: None };
         let fixed = surface::read(planned.surface, self.word);
         let destination = std::array::from_fn(|n| Paired { fixed: i32::from(fixed[n]), ideal: self.ideal[n] });
-        let Some(stored) = context.shade(&fragment, Some(destination), textures, observer) else { return false };
+        let stored = context.shade(&fragment, &mut self.depth, Some(destination), textures, observer);
+        let Some(stored) = stored else { return false };
         self.word = stored.word;
-        self.depth = stored.depth.map_or(self.depth, |depth| depth as u32);
         for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
             self.ideal[n] = stored.channels[n].ideal.clamp(0.0, 255.0);
         }

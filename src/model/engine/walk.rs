@@ -1,6 +1,6 @@
 //! The walk: triangles in order, rows in pairs, 2x2 quads from left to right.
 
-use super::pixel::{Fragment, TriangleContext};
+use super::pixel::{DepthStencil, Fragment, TriangleContext};
 use crate::plan::{Plan, PlannedDraw};
 use crate::texture::unit::Image;
 use crate::trace::Observer;
@@ -14,7 +14,7 @@ pub struct Band<'a> {
     pub width: usize,
     /// The rows' words.
     pub words: &'a mut [u32],
-    /// The rows' depths; empty without a depth buffer.
+    /// The rows' depths and stencils, as [`Surface::depth`](crate::frame::Surface::depth); empty without a depth buffer.
     pub depth: &'a mut [u32],
 }
 
@@ -44,11 +44,14 @@ pub(super) fn draw<O: Observer>(
 /// Some rows and columns, as half-open ranges.
 pub type Window = ((i64, i64), (i64, i64));
 
-/// The part of some rows that lies in a draw's window, and its columns.
-pub fn window(planned: &PlannedDraw, rows: (i64, i64)) -> Window {
-    let window = &planned.window;
-    let columns = (i64::from(window.x), i64::from(window.x + window.width));
-    ((rows.0.max(i64::from(window.y)), rows.1.min(i64::from(window.y + window.height))), columns)
+/// The parts of some rows that a draw may touch, in its windows; none if nothing of it can be seen.
+pub fn windows(planned: &PlannedDraw, rows: (i64, i64)) -> impl Iterator<Item = Window> {
+    let visible = planned.folded.invisible.is_none();
+    planned.windows.iter().filter(move |_| visible).filter_map(move |window| {
+        let columns = (i64::from(window.x), i64::from(window.x + window.width));
+        let rows = (rows.0.max(i64::from(window.y)), rows.1.min(i64::from(window.y + window.height)));
+        (rows.0 < rows.1).then_some((rows, columns))
+    })
 }
 
 /// Visits every pixel of some rows that a draw covers, once for each triangle that covers it.
@@ -59,13 +62,18 @@ pub fn covered(
     rows: (i64, i64),
     mut visit: impl FnMut(&TriangleContext<'_>, i64, i64),
 ) {
-    if planned.folded.invisible.is_some() {
-        return;
+    for window in windows(planned, rows) {
+        covered_in(plan, planned, window, &mut visit);
     }
-    let (rows, columns) = window(planned, rows);
-    if rows.0 >= rows.1 || columns.0 >= columns.1 {
-        return;
-    }
+}
+
+#[inline(always)]
+fn covered_in(
+    plan: &Plan,
+    planned: &PlannedDraw,
+    (rows, columns): Window,
+    visit: &mut impl FnMut(&TriangleContext<'_>, i64, i64),
+) {
     for number in 0..planned.assembly.triangles.len() {
         let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
         let triangle = &context.triangle;
@@ -104,18 +112,13 @@ pub fn pixel<O: Observer>(
     observer: &mut O,
 ) -> bool {
     let at = (j as usize - band.first_row) * band.width + i as usize;
-    let depth = band.depth.get(at).copied();
-    let fragment = Fragment {
-        pixel: (i, j),
-        e: context.triangle.edges(i, j),
-        stored: band.words[at],
-        stored_depth: i64::from(depth.unwrap_or(0)),
-        weights: None,
-    };
-    let Some(result) = context.shade::<i32, O>(&fragment, None, textures, observer) else { return false };
-    band.words[at] = result.word;
-    if let (Some(depth), Some(slot)) = (result.depth, band.depth.get_mut(at)) {
-        *slot = depth as u32;
+    let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
+    let fragment = Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
+    let result = context.shade::<i32, O>(&fragment, &mut depth, None, textures, observer);
+    if let Some(slot) = band.depth.get_mut(at) {
+        *slot = depth.word();
     }
+    let Some(result) = result else { return false };
+    band.words[at] = result.word;
     true
 }

@@ -14,6 +14,7 @@ use crate::rop::surface;
 use crate::state::{
     AddressMode, CUBE_FACES, Draw, FinalRegister, Level, Named, Palette, Profile, Scale, Scene, ShaderOperation,
     ShaderStage, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
+    WINDOW_CLIP_RECTANGLES,
 };
 
 /// At most this many errors of one kind of thing: the rest would say the same.
@@ -107,6 +108,13 @@ impl Check<'_> {
             {
                 let message = format!("target `{name}` clears its depth to {:#x}", depth.clear);
                 self.refuse("DEP-2", message, format!("take at most {} bits", depth.format.bits()));
+            }
+            if let Some(depth) = depth
+                && depth.clear_stencil != 0
+                && !depth.format.has_stencil()
+            {
+                let message = format!("target `{name}` clears a stencil that {} does not have", depth.format.name());
+                self.refuse("STN-1", message, "take Z24S8, or clear the stencil to 0");
             }
         }
     }
@@ -242,6 +250,16 @@ impl Check<'_> {
             let message = format!("target `{}` has no depth buffer", target.name);
             self.refuse("DEP-2", message, "give the target `depth`, or leave the depth test out");
         }
+        if draw.stencil_test.is_some() && !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
+            let message = format!("target `{}` has no stencil", target.name);
+            self.refuse("STN-1", message, "give the target `depth` Z24S8, or leave the stencil test out");
+        }
+        if let Some(clip) = &draw.window_clip
+            && !(1..=WINDOW_CLIP_RECTANGLES).contains(&clip.rectangles.len())
+        {
+            let message = format!("the window clip has {} rectangles", clip.rectangles.len());
+            self.refuse("CLP-1", message, format!("take 1 to {WINDOW_CLIP_RECTANGLES}"));
+        }
         let Some(blend) = draw.blend else { return };
         if !surface::blends(target.format) {
             let message = format!("surface format {} cannot be blended", target.format.name());
@@ -344,6 +362,14 @@ impl Check<'_> {
         {
             let message = format!("unit {index} samples the target that the draw goes into");
             self.refuse(None, message, "draw into another target and sample that one");
+        }
+        if unit.color_key.is_some() && !unit.is_nearest() {
+            let message = format!("unit {index} has a colour key and a filter: what comes out is not known");
+            self.refuse("KEY-1", message, "take the filter Nearest for minification and magnification");
+        }
+        if unit.color_key.is_some() && matches!(format, TextureFormat::R16B16 | TextureFormat::Y16) {
+            let message = format!("a colour key on the format {} is not known", format.name());
+            self.refuse("KEY-1", message, "take a format of bytes");
         }
         let modes = [unit.address_s, unit.address_t];
         if profile == Profile::Nv10 {

@@ -6,8 +6,8 @@ use crate::combiner::general::{self, PlannedPortion, PlannedStage};
 use crate::combiner::registers::{REGISTERS, Registers, bit, initially_undefined};
 use crate::rop::blend;
 use crate::state::{
-    Blend, Combiners, DotMapping, Draw, FinalInput, Named, Portion, Register, ShaderOperation, ShaderStage,
-    SurfaceFormat, TEXTURE_UNITS,
+    Blend, Combiners, DotMapping, Draw, FinalInput, Named, Portion, Register, ShaderOperation, SurfaceFormat,
+    TEXTURE_UNITS,
 };
 
 const RGB: u8 = 7;
@@ -143,7 +143,7 @@ impl<'d> Computed<'d> {
         };
         let mut units = [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3].map(channels);
         let spare0_alpha = channels(Register::Spare0) & ALPHA != 0;
-        let dots = shader_liveness(&draw.texture_shader, &mut units);
+        let dots = shader_liveness(draw, &mut units);
         let live = (0..REGISTERS).fold(0, |live, n| live | u64::from(channels(Register::ALL[n])) << (4 * n));
         Liveness {
             stages,
@@ -171,10 +171,16 @@ fn planned(portion: &Portion, channels: u8, sites: u64) -> PlannedPortion {
 }
 
 /// What the stages of a texture shader read of one another, backwards: adds the channels to `units`, and says whose dot products are needed.
-fn shader_liveness(shader: &[ShaderStage; TEXTURE_UNITS], units: &mut [u8; TEXTURE_UNITS]) -> [bool; TEXTURE_UNITS] {
+/// What a colour key compares counts as read, and one that drops fragments always compares (KEY-1).
+fn shader_liveness(draw: &Draw, units: &mut [u8; TEXTURE_UNITS]) -> [bool; TEXTURE_UNITS] {
+    let shader = &draw.texture_shader;
     let mut dots = [false; TEXTURE_UNITS];
     for index in (0..TEXTURE_UNITS).rev() {
         let stage = &shader[index];
+        let keyed = draw.textures[index].filter(|unit| unit.color_key.is_some() && stage.operation.samples());
+        if keyed.is_some_and(|unit| unit.kills() || units[index] != 0) {
+            units[index] = RGB | ALPHA;
+        }
         if units[index] != 0 {
             let channels = match stage.operation {
                 ShaderOperation::BumpEnvironment { luminance: Some(_), .. } if units[index] & RGB != 0 => RGB,

@@ -7,18 +7,19 @@
 mod check;
 mod fold;
 mod liveness;
+mod windows;
 
 use crate::combiner::final_combiner::PlannedFinal;
 use crate::combiner::general::PlannedStage;
 use crate::limits::Limits;
 use crate::raster::TEXEL_LIMIT;
 use crate::raster::assemble::{Assembly, assemble};
-use crate::rop::surface;
+use crate::rop::{stencil, surface};
 use crate::state::named;
 use crate::state::{
     AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies,
-    Positions, Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, SurfaceFormat,
-    TEXTURE_UNITS, Target, Texture, TextureImage, TextureKind, TextureUnit,
+    Positions, Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, StencilTest,
+    SurfaceFormat, TEXTURE_UNITS, Target, Texture, TextureImage, TextureKind, TextureUnit,
 };
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
 use crate::texture::unit::PlannedUnit;
@@ -96,8 +97,8 @@ pub struct PlannedDraw {
     pub target: usize,
     /// Format of the target.
     pub surface: SurfaceFormat,
-    /// Pixels that may be drawn: the scissor within the target.
-    pub window: Rectangle,
+    /// Pixels that may be drawn: rectangles that do not overlap, none of them empty (CLP-1, CLP-2).
+    pub windows: Vec<Rectangle>,
     /// Vertices in window coordinates and triangles.
     pub assembly: Assembly,
     /// Smooth or flat.
@@ -138,6 +139,8 @@ pub struct PlannedDraw {
     pub final_combiner: PlannedFinal,
     /// Alpha test, unless it always passes.
     pub alpha_test: Option<AlphaTest>,
+    /// Stencil test, unless it always passes and changes nothing.
+    pub stencil_test: Option<StencilTest>,
     /// Depth test.
     pub depth_test: Option<DepthTest>,
     /// Largest depth of the target's buffer; 0 without one.
@@ -158,6 +161,13 @@ pub struct PlannedDraw {
     pub folded: Folded,
 }
 
+impl PlannedDraw {
+    /// Whether texture units can drop fragments: the texture shader (TSH-10), or a colour key (KEY-1).
+    pub fn kills(&self) -> bool {
+        self.shader.as_ref().is_some_and(PlannedShader::kills) || self.units.iter().any(|unit| unit.state.kills())
+    }
+}
+
 /// Constants of a draw's state that settle something for every pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Folded {
@@ -176,10 +186,10 @@ named! {
     pub enum Invisible {
         /// It has no triangles.
         NoTriangles = "it has no triangles",
-        /// Its window is empty.
-        NoPixels = "its scissor leaves no pixel",
-        /// Neither colour nor depth is written.
-        NothingWritten = "it writes neither colour nor depth",
+        /// It has no window.
+        NoPixels = "its clips leave no pixel",
+        /// Neither colour nor depth nor stencil is written.
+        NothingWritten = "it writes neither colour nor depth nor stencil",
         /// Its fragments are 0 and are added.
         AddsZero = "its source is 0 in every channel and blending keeps what is there",
         /// Its blend keeps the destination.
@@ -314,15 +324,13 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
 
 fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], options: &PlanOptions) -> PlannedDraw {
     let target = &scene.targets[draw.target];
-    let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
-    let window = draw.scissor.map_or(whole, |s| {
-        let x = s.x.min(target.width);
-        let y = s.y.min(target.height);
-        Rectangle { x, y, width: s.width.min(target.width - x), height: s.height.min(target.height - y) }
-    });
+    let windows = windows::windows(draw, target);
     let state_mask = surface::write_mask(target.format, draw.color_mask);
     let state_blend = draw.blend.filter(|_| surface::blends(target.format));
     let depth_test = draw.depth_test.filter(|_| target.depth.is_some());
+    let idle = |test: &StencilTest| test.function == CompareFunction::Always && !stencil::writes(test);
+    let has_stencil = target.depth.is_some_and(|depth| depth.format.has_stencil());
+    let stencil_test = draw.stencil_test.filter(|test| has_stencil && !(options.prune && idle(test)));
     let mut folded = Folded::default();
     let computed = Computed::new(&draw.combiners, fold::initially_zero(draw, black));
     if options.prune {
@@ -336,9 +344,9 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
         }
         folded.invisible = if assembly.triangles.is_empty() {
             Some(Invisible::NoTriangles)
-        } else if window.width == 0 || window.height == 0 {
+        } else if windows.is_empty() {
             Some(Invisible::NoPixels)
-        } else if depth_test.is_some_and(|test| test.write) {
+        } else if depth_test.is_some_and(|test| test.write) || stencil_test.is_some_and(|test| stencil::writes(&test)) {
             None
         } else if written == 0 {
             Some(Invisible::NothingWritten)
@@ -373,7 +381,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
         name: draw.name.clone(),
         target: draw.target,
         surface: target.format,
-        window,
+        windows,
         assembly,
         shade_model: draw.shade_model,
         perspective: draw.perspective,
@@ -394,6 +402,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
         mux_select: draw.combiners.mux_select,
         final_combiner: liveness.final_combiner,
         alpha_test,
+        stencil_test,
         depth_test,
         depth_full: target.depth.map_or(0, |d| (1 << d.format.bits()) - 1),
         depth_bits: target.depth.map_or(0, |d| d.format.bits()),

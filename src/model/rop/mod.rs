@@ -1,4 +1,5 @@
-//! Raster operations: alpha test, depth test, blend, colour mask, surfaces.
+//! Raster operations: alpha test, stencil test, depth test, blend, colour mask, surfaces.
 
 pub mod blend;
+pub mod stencil;
 pub mod surface;

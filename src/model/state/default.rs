@@ -17,7 +17,7 @@ impl Default for Scene {
 impl Target {
     /// A target of so many columns and rows, cleared to zero, without a depth buffer.
     pub fn new(width: u32, height: u32, format: SurfaceFormat) -> Self {
-        Target { name: "frame".into(), width, height, format, clear_color: [0; 4], depth: None }
+        Target { name: "frame".into(), width, height, format, clear_color: [0; 4], depth: None, clip: None }
     }
 }
 
@@ -39,6 +39,7 @@ impl Default for Draw {
             cull: Cull::None,
             front_face: FrontFace::CounterClockwise,
             scissor: None,
+            window_clip: None,
             fog: Fog::default(),
             textures: [None; TEXTURE_UNITS],
             texture_shader: std::array::from_fn(|unit| ShaderStage::conventional(unit, false)),
@@ -46,6 +47,7 @@ impl Default for Draw {
             program_origin: vec![],
             vertex_program: None,
             alpha_test: None,
+            stencil_test: None,
             depth_test: None,
             blend: None,
             blend_constant: [0; 4],

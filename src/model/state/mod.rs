@@ -32,13 +32,13 @@ pub use primitive::{
     Vertex, VertexColor, VertexProgram, Viewport,
 };
 pub use rop::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthBuffer, DepthFormat, DepthTest, SurfaceFormat,
-    Target,
+    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DEPTH_BITS, DepthBuffer, DepthFormat, DepthTest,
+    STENCIL_SHIFT, StencilOperation, StencilTest, SurfaceFormat, Target, WINDOW_CLIP_RECTANGLES, WindowClip,
 };
 pub use shader::{DotMapping, ShaderOperation, ShaderStage};
 pub use texture::{
-    AddressMode, BORDER_TEXELS, CUBE_FACES, Filter, Level, MipFilter, Palette, TEXTURE_UNITS, Texels, Texture,
-    TextureFormat, TextureImage, TextureKind, TextureUnit,
+    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, ColorKeyMode, Filter, Level, MipFilter, Palette, TEXTURE_UNITS,
+    Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
 };
 pub use vertices::{TriangleVertices, Vertices};
 
@@ -116,6 +116,8 @@ pub struct Draw {
     pub front_face: FrontFace,
     /// Pixels outside are not drawn. `None`: the whole target.
     pub scissor: Option<Rectangle>,
+    /// Rectangles that pixels are drawn inside of, or outside (CLP-1). `None`: the test is off.
+    pub window_clip: Option<WindowClip>,
     /// Fog colour and whether the vertices' fog factor is used.
     pub fog: Fog,
     /// Texture units; `None` is an unbound unit (TEX-16).
@@ -130,6 +132,8 @@ pub struct Draw {
     pub vertex_program: Option<VertexProgram>,
     /// Alpha test (ROP-1). `None`: every fragment passes.
     pub alpha_test: Option<AlphaTest>,
+    /// Stencil test (STN-1). `None`: neither test nor write.
+    pub stencil_test: Option<StencilTest>,
     /// Depth test (DEP-1, DEP-2). `None`: neither test nor write.
     pub depth_test: Option<DepthTest>,
     /// Blend (ROP-2 to ROP-4). `None`: the source replaces the destination.

@@ -1,6 +1,6 @@
 //! Raster operations and the surfaces they write.
 
-use super::{TextureFormat, named};
+use super::{Rectangle, TextureFormat, named};
 
 named! {
     /// A comparison of two unsigned integers, incoming value on the left.
@@ -113,6 +113,59 @@ pub struct DepthTest {
     pub write: bool,
 }
 
+named! {
+    /// What a stencil test stores (STN-1). S is what is stored, R the reference.
+    pub enum StencilOperation {
+        /// S.
+        Keep,
+        /// 0.
+        Zero,
+        /// R.
+        Replace,
+        /// min(S + 1, 255).
+        IncrementSaturate,
+        /// max(S - 1, 0).
+        DecrementSaturate,
+        /// 255 - S.
+        Invert,
+        /// S + 1, and 0 after 255.
+        Increment,
+        /// S - 1, and 255 after 0.
+        Decrement,
+    }
+}
+
+/// Stencil test (STN-1): `function(reference & mask, stored & mask)`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilTest {
+    /// Comparison.
+    pub function: CompareFunction,
+    /// Reference byte.
+    pub reference: u8,
+    /// Bits that are compared.
+    pub mask: u8,
+    /// Bits that are written.
+    pub write_mask: u8,
+    /// Where the stencil test fails.
+    pub fail: StencilOperation,
+    /// Where it passes and the depth test fails.
+    pub depth_fail: StencilOperation,
+    /// Where both pass; without a depth test that passes.
+    pub pass: StencilOperation,
+}
+
+/// Window clip (CLP-1): pixels of a draw that are left out by rectangles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WindowClip {
+    /// One to [`WINDOW_CLIP_RECTANGLES`] of them; their right and bottom edges are outside.
+    pub rectangles: Vec<Rectangle>,
+    /// Pixels inside any rectangle are left out; otherwise those inside none are.
+    pub exclusive: bool,
+}
+
+/// Rectangles that the window clip has.
+pub const WINDOW_CLIP_RECTANGLES: usize = 8;
+
 /// Blend function. Factors are ignored by Min, Max and the signed equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Blend {
@@ -203,7 +256,7 @@ named! {
     pub enum DepthFormat {
         /// 16 bits.
         Z16,
-        /// 24 bits of depth; the stencil byte is not modelled.
+        /// 24 bits of depth, eight of stencil.
         Z24S8,
     }
 }
@@ -216,6 +269,11 @@ impl DepthFormat {
             DepthFormat::Z24S8 => 24,
         }
     }
+
+    /// Whether it has a stencil byte.
+    pub fn has_stencil(self) -> bool {
+        self == DepthFormat::Z24S8
+    }
 }
 
 /// A depth buffer and what it is cleared to.
@@ -225,7 +283,22 @@ pub struct DepthBuffer {
     pub format: DepthFormat,
     /// Integer written by the clear, below 2^bits.
     pub clear: u32,
+    /// Stencil byte written by the clear; 0 where the format has none.
+    pub clear_stencil: u8,
 }
+
+impl DepthBuffer {
+    /// The cleared pixel as a surface holds it: the depth in the low 24 bits, the stencil above.
+    pub fn cleared(&self) -> u32 {
+        u32::from(self.clear_stencil) << STENCIL_SHIFT | self.clear
+    }
+}
+
+/// Where a surface's depth and stencil words have the stencil; below stands the depth.
+pub const STENCIL_SHIFT: u32 = 24;
+
+/// The bits of a surface's depth and stencil words that are the depth.
+pub const DEPTH_BITS: u32 = (1 << STENCIL_SHIFT) - 1;
 
 /// A render target.
 #[derive(Clone, Debug, PartialEq)]
@@ -242,4 +315,6 @@ pub struct Target {
     pub clear_color: [u8; 4],
     /// Depth buffer, if there is one.
     pub depth: Option<DepthBuffer>,
+    /// Surface clip (CLP-2): nothing is drawn outside. `None`: the whole target.
+    pub clip: Option<Rectangle>,
 }

@@ -101,6 +101,19 @@ named! {
 }
 
 impl TextureFormat {
+    /// Whether texels have an alpha of their own.
+    pub fn has_alpha(self) -> bool {
+        !matches!(
+            self,
+            TextureFormat::X8R8G8B8
+                | TextureFormat::R5G6B5
+                | TextureFormat::R6G5B5
+                | TextureFormat::X1R5G5B5
+                | TextureFormat::L8
+                | TextureFormat::Y16
+        )
+    }
+
     /// Bytes of one texel, or of one block of a compressed format.
     pub fn bytes(self) -> u32 {
         match self {
@@ -292,6 +305,27 @@ impl Palette {
     pub const LENGTHS: [usize; 4] = [32, 64, 128, 256];
 }
 
+named! {
+    /// What a texel that equals the colour key becomes (KEY-1).
+    pub enum ColorKeyMode {
+        /// Its alpha is 0.
+        Alpha,
+        /// All of its channels are 0.
+        Color,
+        /// Nothing: the fragment is dropped, whether or not anything reads the unit.
+        Texel,
+    }
+}
+
+/// A colour key (KEY-1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ColorKey {
+    /// The colour that texels are compared with, R, G, B, A bytes; without A where the format has none.
+    pub color: [u8; 4],
+    /// What those that are equal become.
+    pub mode: ColorKeyMode,
+}
+
 /// A texture unit's state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureUnit {
@@ -319,9 +353,21 @@ pub struct TextureUnit {
     pub border_color: [u8; 4],
     /// Channels (R, G, B, A) read as two's complement (TEX-18; nv2a).
     pub signed: [bool; 4],
+    /// Colour key; the unit's filters are then nearest (KEY-1).
+    pub color_key: Option<ColorKey>,
 }
 
 impl TextureUnit {
+    /// Whether a texel can drop the fragment (KEY-1).
+    pub fn kills(&self) -> bool {
+        self.color_key.is_some_and(|key| key.mode == ColorKeyMode::Texel)
+    }
+
+    /// Whether the unit reads texels as they are, one at a time, from one level.
+    pub fn is_nearest(&self) -> bool {
+        (self.min_filter, self.mag_filter) == (Filter::Nearest, Filter::Nearest) && self.mip_filter != MipFilter::Linear
+    }
+
     /// The unit as it is unless a scene says otherwise: wraps, bilinear without levels, no bias, all lods, nothing signed.
     pub fn new(texture: usize) -> TextureUnit {
         TextureUnit {
@@ -337,6 +383,7 @@ impl TextureUnit {
             max_lod: 4095,
             border_color: [0; 4],
             signed: [false; 4],
+            color_key: None,
         }
     }
 }

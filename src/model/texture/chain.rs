@@ -72,7 +72,7 @@ fn black<L: Lane>() -> [L; 4] {
 }
 
 impl<L: Lane> Chain<'_, L> {
-    /// Runs the stages; the four texture registers. `None`: the fragment is dropped (TSH-10).
+    /// Runs the stages; the four texture registers. `None`: the fragment is dropped (TSH-10, KEY-1).
     pub fn run<O: Observer>(
         &self,
         sample: &Sample<'_>,
@@ -112,6 +112,11 @@ impl<L: Lane> Chain<'_, L> {
         if planned.dots {
             self.dot(index, at, state, observer);
         }
+        let mut kept = true;
+        let mut sampled = |(register, dropped): ([L; 4], bool)| {
+            kept = !dropped;
+            register
+        };
         let register = match operation {
             ShaderOperation::None => black(),
             ShaderOperation::PassThrough => self.pass_through(index, at, observer),
@@ -129,11 +134,11 @@ impl<L: Lane> Chain<'_, L> {
                 }
                 [L::ZERO; 4]
             }
-            ShaderOperation::Sample => self.sampled(index, at, observer),
-            _ => self.dependent(index, at, state, observer),
+            ShaderOperation::Sample => sampled(self.sampled(index, at, observer)),
+            _ => sampled(self.dependent(index, at, state, observer)),
         };
         state.registers[index] = register;
-        true
+        kept
     }
 
     /// The vertices' coordinate set of a stage.
@@ -153,9 +158,9 @@ impl<L: Lane> Chain<'_, L> {
     }
 
     /// Ordinary sampling.
-    fn sampled<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> [L; 4] {
+    fn sampled<O: Observer>(&self, index: usize, at: At<'_>, observer: &mut O) -> ([L; 4], bool) {
         let (Some(unit), StageSetup::Places(coordinates)) = (self.unit(index), &self.setup.0[index]) else {
-            return black();
+            return (black(), false);
         };
         let (vertices, w) = (self.vertices, self.w);
         let place = Interpolated { unit, coordinates, at: at.sample, pixel: at.pixel, vertices, w };
@@ -342,8 +347,14 @@ impl<L: Lane> Chain<'_, L> {
     }
 
     /// A stage that samples where an earlier one sends it.
-    fn dependent<O: Observer>(&self, index: usize, at: At<'_>, state: &mut State<L>, observer: &mut O) -> [L; 4] {
-        let Some(unit) = self.unit(index) else { return black() };
+    fn dependent<O: Observer>(
+        &self,
+        index: usize,
+        at: At<'_>,
+        state: &mut State<L>,
+        observer: &mut O,
+    ) -> ([L; 4], bool) {
+        let Some(unit) = self.unit(index) else { return (black(), false) };
         let (target, own) = self.target(index, at, state, observer);
         let real = if Self::wants_real::<O>() { self.followed(index, &target, own, at.sample) } else { own };
         if O::MEASURES {
@@ -359,13 +370,14 @@ impl<L: Lane> Chain<'_, L> {
         }
         let quad = if unit.needs_lod() { self.quad(index, unit, at) } else { None };
         let place = Dependent { unit, target, real, quad };
-        let color = unit::sample::<L, O>(unit, &self.textures[unit.state.texture], &place, observer);
-        match self.shader.stages[index].state.operation {
+        let (color, dropped) = unit::sample::<L, O>(unit, &self.textures[unit.state.texture], &place, observer);
+        let color = match self.shader.stages[index].state.operation {
             ShaderOperation::BumpEnvironment { luminance: Some(luminance), .. } => {
                 self.luminance(index, color, luminance, state, observer)
             }
             _ => color,
-        }
+        };
+        (color, dropped)
     }
 
     /// What the ideal samples with: its own coordinates where it decides, else the definition's.

@@ -2,6 +2,7 @@
 
 pub mod address;
 pub mod chain;
+pub mod color_key;
 pub mod compressed;
 pub mod cube;
 pub mod dependent;

@@ -1,5 +1,6 @@
 //! What a texture unit tells an observer. Nothing here computes a value that is used.
 
+use super::color_key;
 use super::fetch::{self, Slice, Texel};
 use super::filter::lerp;
 use super::lod::{Choice, Quad};
@@ -7,7 +8,7 @@ use super::unit::PlannedUnit;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::interpolate::Settled;
-use crate::state::{AddressMode, Filter, MipFilter, TextureFormat};
+use crate::state::{AddressMode, ColorKey, ColorKeyMode, Filter, MipFilter, TextureFormat};
 use crate::trace::{Observer, Operand, Step, part, plain, report};
 
 /// How many make one texel in the coordinates of a quad.
@@ -316,6 +317,40 @@ impl Report<'_> {
     }
 
     /// A channel of the register, from the lane of the name `from`.
+    /// KEY-1: so many channels of a texel against the key, and what it becomes.
+    pub(super) fn color_key<L: Lane, O: Observer>(
+        &self,
+        key: &ColorKey,
+        (compared, matched): (usize, bool),
+        (texel, keyed): (&[L; 4], &[L; 4]),
+        observer: &mut O,
+    ) {
+        let name = |of: &str, n: usize| self.name(&format!("{of}.{}", channel_name(n)));
+        let texel = |n: usize| self.lane_operand(name("texel", n), texel[n]);
+        let wanted = color_key::as_lanes(self.unit, key);
+        let mut inputs: Vec<Operand> = (0..compared).map(texel).collect();
+        for (n, value) in wanted.into_iter().enumerate().take(compared) {
+            let part = Operand { name: name("key", n), value: i64::from(value), ..texel(n) };
+            observer.step(Step::given(&self.block(), "KEY-1", part.name.clone(), part.value).per(part.per_one));
+            inputs.push(part);
+        }
+        let matches = (self.name("key.matched"), i64::from(matched));
+        let step = Step::given(&self.block(), "KEY-1", matches.0.clone(), matches.1).by("equals_key", inputs);
+        observer.step(step.note(match (matched, key.mode) {
+            (true, ColorKeyMode::Texel) => Some("the fragment is dropped".to_string()),
+            _ => None,
+        }));
+        let cleared = color_key::cleared(key.mode);
+        for n in (0..4).filter(|n| self.unit.live >> n & 1 != 0) {
+            let mut inputs = vec![texel(n)];
+            let operation = if cleared[n] { "zero_if" } else { "write" };
+            inputs.extend(cleared[n].then(|| plain(matches.0.clone(), matches.1)));
+            let (value, ideal) = keyed[n].observe();
+            let step = Step::given(&self.block(), "KEY-1", name("keyed", n), value);
+            observer.step(step.per(texel(n).per_one).by(operation, inputs).ideal(ideal));
+        }
+    }
+
     pub(super) fn register<L: Lane, O: Observer>(
         &self,
         from: &str,

@@ -1,5 +1,6 @@
 //! One texture unit: place, level, address, fetch, filter, register.
 
+use super::color_key;
 use super::cube::Face;
 use super::fetch::{Slice, Texel, lanes};
 use super::filter::{bilinear, lerp, linear, nearest};
@@ -63,14 +64,14 @@ struct Chosen<L: Lane> {
     weight: L::Weight,
 }
 
-/// Samples a unit at a place.
+/// Samples a unit at a place, and says whether its colour key drops the fragment.
 #[inline]
 pub fn sample<L: Lane, O: Observer>(
     unit: &PlannedUnit,
     image: &Image<'_, L>,
     place: &impl Place,
     observer: &mut O,
-) -> [L; 4] {
+) -> ([L; 4], bool) {
     let wants_ideal = O::ON || O::MEASURES || L::DECIDES;
     let mut face = Face::PositiveX;
     if unit.kind == TextureKind::Cube {
@@ -107,7 +108,9 @@ pub fn sample<L: Lane, O: Observer>(
             (trilinear(unit, [first, second], weight, choice, observer), "levels.")
         }
     };
-    load(unit, value, from, observer)
+    let Some(key) = &unit.state.color_key else { return (load(unit, value, from, observer), false) };
+    let (value, dropped) = color_key::apply(unit, key, value, observer);
+    (load(unit, value, "keyed.", observer), dropped)
 }
 
 /// TEX-9 to TEX-11.

@@ -6,6 +6,7 @@ use super::{
     ChannelError, CompareOptions, Comparison, Decided, Histogram, Mode, RuleError, Statistics, WorstPixel, bound,
 };
 use ninebit::engine::cleared_colors;
+use ninebit::engine::pixel::DepthStencil;
 use ninebit::number::Lane;
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::rop::surface;
@@ -24,8 +25,8 @@ const WORST: usize = 8;
 /// What is known of a pixel beside its colour.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct State {
-    /// The ideal's depth.
-    pub(super) depth: i64,
+    /// The ideal's depth and stencil.
+    pub(super) depth: DepthStencil,
     /// A fragment was stored.
     pub(super) drawn: bool,
     /// A decision has differed.
@@ -102,15 +103,15 @@ impl<L: Lane> Surface<L> {
     fn new(plan: &Plan, target: usize, (first, end): (usize, usize)) -> Self {
         let target = &plan.targets[target];
         let (width, pixels) = (target.width as usize, (end - first) * target.width as usize);
-        let clear = target.depth.map_or(0, |d| d.clear);
-        let depth = L::depth(i64::from(clear), || f64::from(clear));
+        let (clear, word) = target.depth.map_or((0, 0), |depth| (depth.clear, depth.cleared()));
+        let memory = DepthStencil { depth: L::depth(i64::from(clear), || f64::from(clear)), ..DepthStencil::new(word) };
         Surface {
             first_row: first,
             width,
             words: vec![surface::pack(target.format, target.clear_color); pixels],
-            depth: target.depth.map_or(Vec::new(), |_| vec![clear; pixels]),
+            depth: target.depth.map_or(Vec::new(), |_| vec![word; pixels]),
             held: vec![cleared_colors(target).map(L::byte); pixels],
-            states: vec![State { depth, ..State::default() }; pixels],
+            states: vec![State { depth: memory, ..State::default() }; pixels],
         }
     }
 

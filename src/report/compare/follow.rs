@@ -2,7 +2,7 @@
 
 use super::draw::{Band, Images, Method};
 use super::meter::{Counts, Meter};
-use ninebit::engine::pixel::Fragment;
+use ninebit::engine::pixel::{DepthStencil, Fragment};
 use ninebit::engine::walk;
 use ninebit::number::{Ideal, Paired, STRANDS, Strands};
 use ninebit::plan::{Plan, PlannedDraw};
@@ -67,22 +67,18 @@ fn draw<I: Ideal>(
 ) {
     walk::covered(plan, planned, band.rows(), |context, i, j| {
         let at = band.at(i, j);
-        let stored_depth = band.depth.get(at).copied().unwrap_or(0);
-        let fragment = Fragment {
-            pixel: (i, j),
-            e: context.triangle.edges(i, j),
-            stored: band.words[at],
-            stored_depth: i64::from(stored_depth),
-            weights: None,
-        };
+        let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
+        let fragment =
+            Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
         let read = surface::read(planned.surface, band.words[at]);
         let destination = std::array::from_fn(|n| Paired { fixed: i32::from(read[n]), ..band.held[at][n] });
-        let Some(stored) = context.shade(&fragment, Some(destination), &images.lane, observer) else { return };
+        let stored = context.shade(&fragment, &mut depth, Some(destination), &images.lane, observer);
+        if let Some(slot) = band.depth.get_mut(at) {
+            *slot = depth.word();
+        }
+        let Some(stored) = stored else { return };
         band.words[at] = stored.word;
         band.states[at].drawn = true;
-        if let (Some(depth), Some(slot)) = (stored.depth, band.depth.get_mut(at)) {
-            *slot = depth as u32;
-        }
         for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
             band.held[at][n] = stored.channels[n];
         }

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 
 use super::draw::{Band, Images, Method};
 use super::meter::{Counts, Log};
-use ninebit::engine::pixel::{Fragment, TriangleContext};
+use ninebit::engine::pixel::{DepthStencil, Fragment, TriangleContext};
 use ninebit::engine::walk;
 use ninebit::number::{Ideal, Lane};
 use ninebit::plan::{Plan, PlannedDraw};
@@ -26,11 +26,10 @@ impl Method for Free {
         band: &mut Band<'_, f64>,
         counts: &mut Counts,
     ) {
-        let (rows, columns) = walk::window(planned, band.rows());
-        if planned.folded.invisible.is_some() || rows.0 >= rows.1 || columns.0 >= columns.1 {
-            return;
-        }
-        for number in 0..planned.assembly.triangles.len() {
+        let triangles = 0..planned.assembly.triangles.len();
+        let windows =
+            walk::windows(planned, band.rows()).flat_map(|window| triangles.clone().map(move |n| (window, n)));
+        for ((rows, columns), number) in windows {
             let fixed = TriangleContext::new(plan, planned, number, rows);
             let outline = outline(planned, number);
             let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows);
@@ -86,19 +85,15 @@ fn pixel(
     let mut logs = [(); 2].map(|()| Log { diverged: &images.states, ..Log::default() });
     let [definition, ideal] = &mut logs;
     if let (true, Some(context)) = (covered.0, fixed) {
-        let fragment = Fragment {
-            pixel: (i, j),
-            e: context.triangle.edges(i, j),
-            stored: band.words[at],
-            stored_depth: i64::from(band.depth.get(at).copied().unwrap_or(0)),
-            weights: None,
-        };
-        if let Some(stored) = context.shade::<i32, _>(&fragment, None, &images.words, definition) {
+        let fragment =
+            Fragment { pixel: (i, j), e: context.triangle.edges(i, j), stored: band.words[at], weights: None };
+        let mut depth = DepthStencil::new(band.depth.get(at).copied().unwrap_or(0));
+        if let Some(stored) = context.shade::<i32, _>(&fragment, &mut depth, None, &images.words, definition) {
             band.words[at] = stored.word;
             band.states[at].drawn = true;
-            if let (Some(depth), Some(slot)) = (stored.depth, band.depth.get_mut(at)) {
-                *slot = depth as u32;
-            }
+        }
+        if let Some(slot) = band.depth.get_mut(at) {
+            *slot = depth.word();
         }
     }
     // Where the definition has no such triangle the pixel is left out whatever the ideal holds.
@@ -133,12 +128,11 @@ fn real_side<L: Lane>(
         // Any sample will do: the ideal goes by its own weights.
         e: [context.triangle.doubled_area, 0, 0],
         stored: band.words[at],
-        stored_depth: band.states[at].depth,
         weights: Some(outline.weights(i, j)),
     };
-    if let Some(stored) = context.shade::<L, _>(&fragment, Some(band.held[at]), &images.lane, observer) {
+    let (memory, held) = (&mut band.states[at].depth, band.held[at]);
+    if let Some(stored) = context.shade::<L, _>(&fragment, memory, Some(held), &images.lane, observer) {
         band.states[at].drawn = true;
-        band.states[at].depth = stored.depth.unwrap_or(band.states[at].depth);
         for n in (0..4).filter(|n| planned.written >> n & 1 != 0) {
             band.held[at][n] = stored.channels[n];
         }
@@ -152,11 +146,10 @@ impl<L: Ideal + Send + Sync> Method for Real<L> {
     type Lane = L;
 
     fn draw(plan: &Plan, planned: &PlannedDraw, images: &Images<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
-        let (rows, columns) = walk::window(planned, band.rows());
-        if planned.folded.invisible.is_some() || rows.0 >= rows.1 || columns.0 >= columns.1 {
-            return;
-        }
-        for number in 0..planned.assembly.triangles.len() {
+        let triangles = 0..planned.assembly.triangles.len();
+        let windows =
+            walk::windows(planned, band.rows()).flat_map(|window| triangles.clone().map(move |n| (window, n)));
+        for ((rows, columns), number) in windows {
             let Some(outline) = outline(planned, number) else { continue };
             let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
             for j in rows.0.max(outline.rows.0)..rows.1.min(outline.rows.1) {

@@ -4,7 +4,7 @@ use ninebit::combiner::general::{BLUE, PlannedPortion};
 use ninebit::plan::PlannedDraw;
 use ninebit::state::{DotRounding, Filter, LerpRounding, MipFilter, Named, Policies, ShaderOperation, SumRounding};
 use ninebit::texture::dot::{DOT_OPERATIONS, REFLECTION_OPERATIONS};
-use ninebit::texture::stage::{PlannedShader, PlannedShaderStage};
+use ninebit::texture::stage::PlannedShaderStage;
 use ninebit::texture::unit::PlannedUnit;
 use ninebit::trace::Work;
 
@@ -27,7 +27,7 @@ pub struct Cost {
     pub fragments: u64,
     /// A test decides which of them are stored: [`total`](Self::total) is then the most that it can be.
     pub tested: bool,
-    /// The texture shader drops fragments before they are shaded (TSH-10): all of the work is then the most that it can be.
+    /// Texture units drop fragments before they are shaded (TSH-10, KEY-1): all of the work is then the most that it can be.
     pub kills: bool,
     /// The lod decides how much texture units read (TEX-9): texels and filter steps are then the most that they can be.
     pub lod_decides: bool,
@@ -41,9 +41,10 @@ impl Cost {
         Cost {
             fragments,
             tested: planned.alpha_test.is_some()
+                || planned.stencil_test.is_some()
                 || planned.depth_test.is_some()
-                || planned.shader.as_ref().is_some_and(PlannedShader::kills),
-            kills: planned.shader.as_ref().is_some_and(PlannedShader::kills),
+                || planned.kills(),
+            kills: planned.kills(),
             lod_decides: planned.units.iter().any(PlannedUnit::needs_lod),
             fragment,
         }

@@ -15,10 +15,10 @@ pub use report::{explanation_json, explanation_text};
 use crate::planes;
 use ninebit::engine;
 use ninebit::plan::{Plan, PlannedDraw};
-use ninebit::rop::surface;
+use ninebit::rop::{self, surface};
 use ninebit::state::{
-    Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, StageOrigin, TEXTURE_UNITS,
-    TextureKind, VertexProgram,
+    Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, StageOrigin,
+    StencilOperation, StencilTest, TEXTURE_UNITS, TextureKind, VertexProgram,
 };
 use ninebit::texture::unit::PlannedUnit;
 use ninebit_program::text::print;
@@ -113,6 +113,9 @@ fn equations(scene: &Scene, plan: &Plan, planned: &PlannedDraw) -> Vec<String> {
     if let Some(test) = &planned.alpha_test {
         lines.push(format!("pass if fragment.a {} {}", comparison(test.function), test.reference));
     }
+    if let Some(test) = &planned.stencil_test {
+        lines.extend(stencil(test));
+    }
     if let Some(test) = &planned.depth_test {
         let write = if test.write { ", then store z" } else { "" };
         lines.push(format!("pass if z {} stored z{write}", comparison(test.function)));
@@ -193,6 +196,26 @@ fn filters(unit: &PlannedUnit) -> String {
         MipFilter::Nearest if unit.levels.len() > 1 => format!("{mag} or {min} of the nearest level"),
         _ => format!("{mag} or, minified, {min}"),
     }
+}
+
+/// The stencil test: what passes, and what is stored.
+fn stencil(test: &StencilTest) -> Vec<String> {
+    let masked = |name: &str, mask: u8| if mask == 255 { name.to_string() } else { format!("({name} & {mask:#04x})") };
+    let reference = test.reference & test.mask;
+    let mut lines = Vec::new();
+    if test.function != CompareFunction::Always {
+        let stored = masked("stored stencil", test.mask);
+        lines.push(format!("pass if {reference} {} {stored}", comparison(test.function)));
+    }
+    if rop::stencil::writes(test) {
+        let bits = if test.write_mask == 255 { String::new() } else { format!(", bits {:#04x}", test.write_mask) };
+        let [fail, depth_fail, pass] = [test.fail, test.depth_fail, test.pass].map(|operation| match operation {
+            StencilOperation::Replace => format!("{}", test.reference),
+            operation => operation.name().to_string(),
+        });
+        lines.push(format!("store stencil: {pass}; {depth_fail} where z fails; {fail} where the stencil fails{bits}"));
+    }
+    lines
 }
 
 fn comparison(function: CompareFunction) -> &'static str {

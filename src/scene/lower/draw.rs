@@ -12,8 +12,8 @@ use super::texture::Textures;
 use super::*;
 use crate::mesh::Mesh;
 use ninebit::state::{
-    Combiners, Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, ShadeModel, ShaderOperation, Texture,
-    TextureImage, Topology, Vertices,
+    Combiners, Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, Rectangle, ShadeModel, ShaderOperation,
+    Texture, TextureImage, Topology, Vertices,
 };
 
 /// A draw and what else is known of it.
@@ -108,6 +108,9 @@ fn draw<'a>(
         Some(raw) => targets.find(reader, raw),
         None => Some(0),
     };
+    if let Some(raw) = &fields.clear {
+        return clear(reader, names, targets, (fields, raw), header, target?);
+    }
     let truth = fields.truth.as_ref().and_then(|raw| Some((reader.read(raw)?, reader.span(raw))));
     let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
     let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
@@ -161,7 +164,8 @@ fn draw<'a>(
         perspective: reader.or(&fields.perspective, true),
         cull: reader.name_or(&fields.cull, Cull::None),
         front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
-        scissor: target.and_then(|target| raster::scissor(reader, targets, target, &fields.scissor)),
+        scissor: scissor(reader, targets, target, fields),
+        window_clip: None,
         fog: fog.state(),
         textures: units.bound,
         texture_shader,
@@ -169,6 +173,7 @@ fn draw<'a>(
         program_origin,
         vertex_program: None,
         alpha_test: None,
+        stencil_test: None,
         depth_test: None,
         blend: None,
         blend_constant: [0; 4],
@@ -202,6 +207,40 @@ fn draw<'a>(
     Some(Drawn { draw, spans, mesh: geometry.mesh, truth })
 }
 
+/// Reads a clear among the draws.
+fn clear<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    (fields, raw): (&source::Draw<'a>, &Raw<'a, source::ClearDraw<'a>>),
+    header: Header,
+    target: usize,
+) -> Option<Drawn> {
+    if let Some((name, text)) = fields.written().find(|(name, _)| !["name", "target", "clear"].contains(name)) {
+        let place = reader.range(text);
+        reader.push(
+            Diagnostic::error("NB0225", place, format!("a clear has no `{name}`"))
+                .label("belongs to a draw")
+                .related(reader.span(raw), "the clear")
+                .help("write the clear and the draw as two entries of `draws`; only `name` and `target` stand beside `clear`"),
+        );
+    }
+    let mut draw = Draw { name: header.name, target, ..Draw::default() };
+    raster::clear(reader, names, targets, raw, &mut draw)?;
+    let spans = DrawSpans { draw: header.place.clone(), vertices: VertexSpans::All(header.place) };
+    Some(Drawn { draw, spans, mesh: None, truth: None })
+}
+
+/// The scissor of a draw.
+fn scissor<'a>(
+    reader: &mut Reader<'a>,
+    targets: &Targets,
+    target: Option<usize>,
+    fields: &source::Draw<'a>,
+) -> Option<Rectangle> {
+    raster::clip(reader, targets.list.get(target?)?, "scissor", fields.scissor.as_ref()?)
+}
+
 /// Warns of states in the text of a program that the draw does not say: each once, though several draws may share the program.
 fn asides(reader: &mut Reader<'_>, fields: &source::Draw<'_>, program: &Program) {
     for (finding, field) in &program.asides {
@@ -209,6 +248,7 @@ fn asides(reader: &mut Reader<'_>, fields: &source::Draw<'_>, program: &Program)
             "blend" => fields.blend.is_some(),
             "alpha_test" => fields.alpha_test.is_some(),
             "depth_test" => fields.depth_test.is_some(),
+            "stencil_test" => fields.stencil_test.is_some(),
             "fog" => fields.fog.is_some(),
             "cull" => fields.cull.is_some(),
             "shade_model" => fields.shade_model.is_some(),

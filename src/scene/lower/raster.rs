@@ -6,7 +6,11 @@ use super::*;
 use crate::raw::{Numbers, Tuple};
 use ninebit::number::convert::constant;
 use ninebit::rop::surface;
-use ninebit::state::{AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, DepthTest, Draw, Rectangle};
+use ninebit::state::{
+    AlphaTest, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, DepthTest, Draw, Rectangle,
+    StencilOperation, StencilTest, Target, Topology, Vertex, VertexColor, WINDOW_CLIP_RECTANGLES, WindowClip,
+};
+use std::sync::Arc;
 
 /// Reads a blend function.
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
@@ -38,21 +42,21 @@ pub(super) fn operations<'a>(
     if let Some(raw) = &fields.depth_test {
         draw.depth_test = depth_test(reader, raw);
         if target.depth.is_none() {
-            let mut finding = Diagnostic::error(
-                "NB0216",
-                reader.span(raw),
-                format!("target \"{}\" has no depth buffer", target.name),
-            )
-            .label("tests depth")
-            .rule("DEP-2")
-            .help("add `depth: Z24S8` (or `Z16`) to the target");
-            let place = targets.place(draw.target);
-            if !place.is_empty() {
-                finding = finding.related(place, "the target");
-            }
-            reader.push(finding);
+            let message = format!("target \"{}\" has no depth buffer", target.name);
+            let finding = Diagnostic::error("NB0216", reader.span(raw), message).label("tests depth").rule("DEP-2");
+            reader.push(targets.beside(draw.target, finding.help("add `depth: Z24S8` (or `Z16`) to the target")));
         }
     }
+    if let Some(raw) = &fields.stencil_test {
+        draw.stencil_test = stencil_test(reader, raw);
+        if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
+            let message = format!("target \"{}\" has no stencil", target.name);
+            let finding =
+                Diagnostic::error("NB0216", reader.span(raw), message).label("tests the stencil").rule("STN-1");
+            reader.push(targets.beside(draw.target, finding.help("give the target `depth: Z24S8`")));
+        }
+    }
+    draw.window_clip = fields.window_clip.as_ref().and_then(|raw| window_clip(reader, raw));
     if let Some(raw) = &fields.blend {
         draw.blend = names.blend(reader, raw);
         if !surface::blends(target.format) {
@@ -80,7 +84,6 @@ pub(super) fn operations<'a>(
                 .help("leave it out, or write `dither: false`"),
         );
     }
-    reader.reserve(&fields.stencil_test, "the stencil test");
     reader.reserve(&fields.logic_op, "logic operations");
 }
 
@@ -133,6 +136,40 @@ fn depth_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthTest<'a>>)
     Some(DepthTest { function, write: reader.or(&fields.write, true) })
 }
 
+fn stencil_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StencilTest<'a>>) -> Option<StencilTest> {
+    let fields = reader.read(raw)?;
+    Some(StencilTest {
+        function: reader.name_or(&fields.function, CompareFunction::Always),
+        reference: reader.or(&fields.reference, 0),
+        mask: reader.or(&fields.mask, 255),
+        write_mask: reader.or(&fields.write_mask, 255),
+        fail: reader.name_or(&fields.fail, StencilOperation::Keep),
+        depth_fail: reader.name_or(&fields.depth_fail, StencilOperation::Keep),
+        pass: reader.name_or(&fields.pass, StencilOperation::Keep),
+    })
+}
+
+fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>>) -> Option<WindowClip> {
+    let fields = reader.read(raw)?;
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let list = reader.required(&fields.rectangles, "rectangles", "window clip", opening)?;
+    let rectangles = reader.read(&list)?;
+    if !(1..=WINDOW_CLIP_RECTANGLES).contains(&rectangles.len()) {
+        let message = format!("a window clip has 1 to {WINDOW_CLIP_RECTANGLES} rectangles, not {}", rectangles.len());
+        let finding = Diagnostic::error("NB0211", reader.span(&list), message);
+        reader.push(
+            finding
+                .label(format!("{} here", rectangles.len()))
+                .rule("CLP-1")
+                .help("leave `window_clip` out to draw everywhere, or draw in several draws"),
+        );
+        return None;
+    }
+    let rectangles = rectangles.iter().map(|raw| rectangle(reader, raw, ("window clip's rectangle", 1)));
+    let rectangles = rectangles.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()?;
+    Some(WindowClip { rectangles, exclusive: reader.or(&fields.exclusive, false) })
+}
+
 /// Four flags for R, G, B, A.
 pub(super) fn four_flags<'a>(
     reader: &mut Reader<'a>,
@@ -157,30 +194,80 @@ pub(super) fn four_flags<'a>(
     flags
 }
 
-/// Reads the scissor: a part of the target.
-pub(super) fn scissor<'a>(
+/// Reads a rectangle that clips: a part of the target.
+pub(super) fn clip<'a>(
     reader: &mut Reader<'a>,
-    targets: &Targets,
-    target: usize,
-    raw: &Option<Raw<'a, source::Rectangle<'a>>>,
+    target: &Target,
+    what: &'static str,
+    raw: &Raw<'a, source::Rectangle<'a>>,
 ) -> Option<Rectangle> {
-    let raw = raw.as_ref()?;
-    let fields = reader.read(raw)?;
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-    let (x, y) = (reader.or(&fields.x, 0), reader.or(&fields.y, 0));
-    let width = reader.required(&fields.width, "width", "scissor", opening.clone());
-    let height = reader.required(&fields.height, "height", "scissor", opening);
-    let width = width.and_then(|raw| reader.whole(&raw, "the width of a scissor", 1..=65535));
-    let height = height.and_then(|raw| reader.whole(&raw, "the height of a scissor", 1..=65535));
-    let (width, height) = (width?, height?);
-    let target = targets.list.get(target)?;
+    let clip = rectangle(reader, raw, (what, 0))?;
     let inside = |at: u32, size: u32, whole: u32| at.checked_add(size).is_some_and(|end| end <= whole);
-    if !inside(x, width, target.width) || !inside(y, height, target.height) {
+    if !inside(clip.x, clip.width, target.width) || !inside(clip.y, clip.height, target.height) {
         reader.push(
-            Diagnostic::error("NB0215", reader.span(raw), "the scissor reaches outside the target")
+            Diagnostic::error("NB0215", reader.span(raw), format!("the {what} reaches outside the target"))
                 .label(format!("target \"{}\" is {} x {}", shorten(&target.name), target.width, target.height))
                 .help("x + width and y + height must not exceed the target"),
         );
     }
-    Some(Rectangle { x, y, width, height })
+    Some(clip)
+}
+
+/// Reads a rectangle of pixels, of so many columns and rows at least.
+fn rectangle<'a>(
+    reader: &mut Reader<'a>,
+    raw: &Raw<'a, source::Rectangle<'a>>,
+    (what, least): (&'static str, u32),
+) -> Option<Rectangle> {
+    let fields = reader.read(raw)?;
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let (x, y) = (reader.or(&fields.x, 0), reader.or(&fields.y, 0));
+    let width = reader.required(&fields.width, "width", what, opening.clone());
+    let height = reader.required(&fields.height, "height", what, opening);
+    let width = width.and_then(|raw| reader.whole(&raw, &format!("the width of a {what}"), least..=65535));
+    let height = height.and_then(|raw| reader.whole(&raw, &format!("the height of a {what}"), least..=65535));
+    Some(Rectangle { x, y, width: width?, height: height? })
+}
+
+/// A clear among the draws, as the draw that does it: a rectangle of one colour and depth, which every test lets through.
+pub(super) fn clear<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    targets: &Targets,
+    raw: &Raw<'a, source::ClearDraw<'a>>,
+    draw: &mut Draw,
+) -> Option<()> {
+    let fields = reader.read(raw)?;
+    let target = targets.list.get(draw.target)?;
+    let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
+    let area =
+        fields.rectangle.as_ref().map_or(Some(whole), |raw| clip(reader, target, "rectangle of a clear", raw))?;
+    let color = fields.color.as_ref().map(|raw| color::constant(reader, names, raw));
+    draw.color_mask = [color.is_some(); 4];
+    if let (Some(_), Some(raw)) = (color, &fields.color_mask) {
+        draw.color_mask = four_flags(reader, raw, "color_mask", true);
+    }
+    let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw));
+    draw.depth_test = depth.map(|_| DepthTest { function: CompareFunction::Always, write: true });
+    let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw));
+    draw.stencil_test = stencil.map(|reference| StencilTest {
+        function: CompareFunction::Always,
+        reference: reference.unwrap_or_default(),
+        mask: 255,
+        write_mask: 255,
+        fail: StencilOperation::Keep,
+        depth_fail: StencilOperation::Keep,
+        pass: StencilOperation::Replace,
+    });
+    let (color, z) = (color.flatten().unwrap_or_default(), depth.flatten().unwrap_or(0.0));
+    let columns = [area.x, area.x.saturating_add(area.width)];
+    let rows = [area.y, area.y.saturating_add(area.height)];
+    for (x, y) in [(0, 0), (1, 0), (1, 1), (0, 1)] {
+        // At most 2^17: exact.
+        let position = [columns[x] as f32, rows[y] as f32, z, 1.0];
+        draw.vertices.push(Vertex { position, diffuse: VertexColor::Bytes(color), ..Vertex::default() });
+    }
+    (draw.topology, draw.indices) = (Topology::Quads, Arc::new([0, 1, 2, 3]));
+    draw.combiners = Combiners::default();
+    Some(())
 }

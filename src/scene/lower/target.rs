@@ -30,6 +30,12 @@ impl Targets {
         found
     }
 
+    /// A finding with the target's place beside it.
+    pub(super) fn beside(&self, index: usize, finding: Diagnostic) -> Diagnostic {
+        let place = self.place(index);
+        if place.is_empty() { finding } else { finding.related(place, "the target") }
+    }
+
     /// Where the target is described.
     pub(super) fn place(&self, index: usize) -> Range<usize> {
         self.places.get(index).cloned().unwrap_or_default()
@@ -112,7 +118,15 @@ impl Targets {
 }
 
 fn default_target(name: String) -> Target {
-    Target { name, width: 640, height: 480, format: SurfaceFormat::A8R8G8B8, clear_color: [0, 0, 0, 255], depth: None }
+    Target {
+        name,
+        width: 640,
+        height: 480,
+        format: SurfaceFormat::A8R8G8B8,
+        clear_color: [0, 0, 0, 255],
+        depth: None,
+        clip: None,
+    }
 }
 
 fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Target<'a>, name: String) -> Target {
@@ -153,32 +167,60 @@ fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Targe
     }
     let depth = fields.depth.as_ref().and_then(|raw| reader.name(raw));
     let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw));
-    target.depth = depth.map(|format| DepthBuffer { format, clear: all_ones(format) });
+    target.depth = depth.map(|format| DepthBuffer { format, clear: all_ones(format), clear_stencil: 0 });
     if let Some(clear) = clear {
         target.clear_color = color::constant_or(reader, names, &clear.color, target.clear_color);
-        reader.reserve(&clear.stencil, "the stencil buffer");
-        if let Some(raw) = &clear.depth {
-            let place = reader.span(raw);
-            match (reader.finite(raw), &mut target.depth) {
-                (Some(value), Some(buffer)) if (0.0..=1.0).contains(&value) => {
-                    // A scene's 0..1 becomes floor(z (2^n - 1)); both factors are exact in f64.
-                    buffer.clear = (f64::from(value) * f64::from(all_ones(buffer.format))) as u32;
-                }
-                (Some(value), Some(_)) => reader.push(
-                    Diagnostic::error("NB0206", place, format!("a depth cannot be {value}"))
-                        .label("out of range")
-                        .help("write 0.0 (near) to 1.0 (far)"),
-                ),
-                (Some(_), None) => reader.push(
-                    Diagnostic::error("NB0216", place, "this target has no depth buffer to clear")
-                        .label("no depth buffer")
-                        .help("add `depth: Z24S8` (or `Z16`) to the target, or leave this out"),
-                ),
-                (None, _) => {}
-            }
+        if let Some(raw) = &clear.depth
+            && let (Some(depth), Some(buffer)) = (clear_depth(reader, &target, raw), &mut target.depth)
+        {
+            // A scene's 0..1 becomes floor(z (2^n - 1)); both factors are exact in f64.
+            buffer.clear = (f64::from(depth) * f64::from(all_ones(buffer.format))) as u32;
+        }
+        if let Some(raw) = &clear.stencil
+            && let (Some(stencil), Some(buffer)) = (clear_stencil(reader, &target, raw), &mut target.depth)
+        {
+            buffer.clear_stencil = stencil;
         }
     }
+    target.clip = fields.clip.as_ref().and_then(|raw| raster::clip(reader, &target, "clip of a target", raw));
     target
+}
+
+/// The depth that a clear stores, 0 to 1, into a target that has a depth buffer.
+pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, f32>) -> Option<f32> {
+    let (place, value) = (reader.span(raw), reader.finite(raw)?);
+    if target.depth.is_none() {
+        reader.push(
+            Diagnostic::error("NB0216", place, "this target has no depth buffer to clear")
+                .label("no depth buffer")
+                .help("add `depth: Z24S8` (or `Z16`) to the target, or leave this out"),
+        );
+        return None;
+    }
+    if !(0.0..=1.0).contains(&value) {
+        reader.push(
+            Diagnostic::error("NB0206", place, format!("a depth cannot be {value}"))
+                .label("out of range")
+                .help("write 0.0 (near) to 1.0 (far)"),
+        );
+        return None;
+    }
+    Some(value)
+}
+
+/// The stencil that a clear stores, into a target that has one.
+pub(super) fn clear_stencil<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, u8>) -> Option<u8> {
+    let stencil = reader.read(raw)?;
+    if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
+        reader.push(
+            Diagnostic::error("NB0216", reader.span(raw), "this target has no stencil to clear")
+                .label("no stencil")
+                .rule("STN-1")
+                .help("give the target `depth: Z24S8`, or leave this out"),
+        );
+        return None;
+    }
+    Some(stencil)
 }
 
 fn all_ones(format: DepthFormat) -> u32 {

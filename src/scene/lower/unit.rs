@@ -3,7 +3,7 @@
 use super::names::Names;
 use super::texture::Textures;
 use super::*;
-use ninebit::state::{AddressMode, Filter, MipFilter, ShaderStage, TEXTURE_UNITS, TextureUnit};
+use ninebit::state::{AddressMode, ColorKey, Filter, MipFilter, ShaderStage, TEXTURE_UNITS, TextureUnit};
 
 /// The units of a draw.
 pub(super) struct Units {
@@ -103,7 +103,7 @@ fn unit<'a>(
     }
     lod(reader, &fields, &mut unit);
     unknown_rules(reader, &fields);
-    reader.reserve(&fields.color_key, "colour keys");
+    unit.color_key = fields.color_key.as_ref().and_then(|raw| color_key(reader, names, raw, &unit));
     unit.texture = found?;
     let place = texture.map_or(0..0, |raw| reader.span(&raw));
     unit_texture::check(reader, textures, Some(&fields), &mut unit, place.clone());
@@ -152,6 +152,29 @@ fn lod<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut T
                 .help("give a `min_lod` that is at most `max_lod`"),
         );
     }
+}
+
+/// KEY-1: the key of a unit whose filters are known.
+fn color_key<'a>(
+    reader: &mut Reader<'a>,
+    names: &Names<'a>,
+    raw: &Raw<'a, source::ColorKey<'a>>,
+    unit: &TextureUnit,
+) -> Option<ColorKey> {
+    let fields = reader.read(raw)?;
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let color = reader.required(&fields.color, "color", "colour key", opening.clone());
+    let mode = reader.required(&fields.mode, "mode", "colour key", opening);
+    if !unit.is_nearest() {
+        reader.push(
+            Diagnostic::error("NB0402", reader.span(raw), "it is not known what a colour key does under a filter")
+                .label("cannot be modelled")
+                .rule("KEY-1")
+                .help("write `min_filter: Nearest, mag_filter: Nearest`, as programs with keyed textures did"),
+        );
+    }
+    let color = color.and_then(|raw| color::constant(reader, names, &raw));
+    Some(ColorKey { mode: reader.name(&mode?)?, color: color? })
 }
 
 /// What the chip does, nobody knows how.

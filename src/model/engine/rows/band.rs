@@ -85,11 +85,7 @@ pub(crate) struct Job<'a> {
 pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let Job { plan, draw, compiled, .. } = job;
     let mut shaded = 0;
-    if draw.folded.invisible.is_some() {
-        return shaded;
-    }
-    let (rows, columns) = walk::window(draw, band.rows());
-    if rows.0 >= rows.1 || columns.0 >= columns.1 {
+    if walk::windows(draw, band.rows()).next().is_none() {
         return shaded;
     }
     block.rows.resize(compiled.rows.len(), Row::of(0));
@@ -111,17 +107,35 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
         block.taken.resize(block.taken.len().max(band.words.len().div_ceil(64)), 0);
     }
     let mut context = TriangleContext::vacant(plan, draw);
+    for window in walk::windows(draw, band.rows()) {
+        shaded += draw_window::<T>(job, window, &mut context, band, block);
+    }
+    finish::<T>(job, block, band);
+    shaded
+}
+
+/// Draws what of a draw falls into some rows and columns of a band; covered pixels.
+#[inline(always)]
+fn draw_window<T: Text>(
+    job: Job<'_>,
+    (rows, columns): Window,
+    context: &mut TriangleContext<'_>,
+    band: &mut Band<'_>,
+    block: &mut Block,
+) -> u64 {
+    let Job { draw, compiled, .. } = job;
+    let mut shaded = 0;
     let count = job.triangles.map_or(draw.assembly.triangles.len(), <[u32]>::len);
     for n in 0..count {
         let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
-        match T::enter(&mut context, number, (rows, columns), &mut block.patch) {
+        match T::enter(context, number, (rows, columns), &mut block.patch) {
             Entered::Nothing => {}
-            Entered::Box => shaded += draw_patch::<T>(job, &mut context, band, block),
+            Entered::Box => shaded += draw_patch::<T>(job, context, band, block),
             Entered::Boxes => {
                 for window in boxes(common(&context.triangle, (rows, columns))) {
                     T::cover(&context.triangle, window, &mut block.patch);
                     if block.patch.count > 0 {
-                        shaded += draw_patch::<T>(job, &mut context, band, block);
+                        shaded += draw_patch::<T>(job, context, band, block);
                     }
                 }
             }
@@ -129,7 +143,7 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
                 context.complete();
                 let triangle = &context.triangle;
                 let (rows, columns) = common(triangle, (rows, columns));
-                let setup = Setup::new(&context, compiled, std::mem::take(&mut block.planes));
+                let setup = Setup::new(context, compiled, std::mem::take(&mut block.planes));
                 for j in rows.0..rows.1 {
                     let (mut i, end) = triangle.span(j, columns);
                     if i == end {
@@ -161,7 +175,6 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
             }
         }
     }
-    finish::<T>(job, block, band);
     shaded
 }
 
@@ -387,6 +400,9 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     let (Some(words), Some(stored)) = (words.first_chunk_mut::<BLOCK>(), stored.first_chunk_mut::<BLOCK>()) else {
         return;
     };
+    if compiled.drops {
+        *alive = *varying.alive.first_chunk().unwrap_or(&[true; BLOCK]);
+    }
     // The sampler whose coordinates' entries are found already, and the pitch of its table: axes are the same where coordinates are.
     let mut found = None;
     let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
@@ -407,6 +423,9 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
         }
         found = Some((at, table.pitch));
         fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
+        if let Some(key) = sampler.key {
+            fetch::drop_keyed(key, work, alive);
+        }
     }
     if compiled.reads_surface {
         for run in runs.iter() {
@@ -428,20 +447,15 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     }
     store::pack(draw, compiled, rows, 0, words);
     if compiled.drops {
-        *alive = *varying.alive.first_chunk().unwrap_or(&[true; BLOCK]);
         if let Some(test) = &draw.alpha_test {
             let (alpha, reference) = (rows[usize::from(compiled.alpha)].block(), i16::from(test.reference));
             store::test(test.function, |n| alpha[n].clamp(0, 255), |_| reference, alive);
         }
-        if let Some(test) = &draw.depth_test {
+        if draw.stencil_test.is_some() || draw.depth_test.is_some() {
             for run in runs.iter() {
                 depth[run.lane..][..run.count].copy_from_slice(&band.depth[run.at..][..run.count]);
             }
-            store::test(test.function, |n| varying.depth[n], |n| depth[n], alive);
-            if test.write {
-                for ((depth, incoming), alive) in depth.iter_mut().zip(&varying.depth).zip(&*alive) {
-                    *depth = if *alive { *incoming } else { *depth };
-                }
+            if store::test_depth_stencil(draw, &varying.depth[..], depth, alive) {
                 for run in runs.iter() {
                     band.depth[run.at..][..run.count].copy_from_slice(&depth[run.lane..][..run.count]);
                 }

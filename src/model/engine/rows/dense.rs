@@ -193,6 +193,8 @@ fn scene(
         },
         program_origin: vec![],
         alpha_test: None,
+        stencil_test: None,
+        window_clip: None,
         depth_test: Some(DepthTest { function: CompareFunction::Always, write: true }),
         blend: None,
         blend_constant: [0; 4],
@@ -204,7 +206,8 @@ fn scene(
         height: HEIGHT,
         format: SurfaceFormat::A8R8G8B8,
         clear_color: [0; 4],
-        depth: Some(DepthBuffer { format: depth, clear: 0 }),
+        depth: Some(DepthBuffer { format: depth, clear: 0, clear_stencil: 0 }),
+        clip: None,
     };
     Scene {
         profile: Profile::Nv2a,

@@ -109,6 +109,14 @@ pub(super) fn sample(
     load(signed, wanted, rows);
 }
 
+/// KEY-1: drops lanes whose single texel, just sampled, is the key in the bits that are compared.
+#[inline(always)]
+pub(super) fn drop_keyed((key, mask): (u32, u32), work: &Workspace, alive: &mut [bool; BLOCK]) {
+    for (alive, texel) in alive.iter_mut().zip(&work.texels) {
+        *alive &= texel & mask != key;
+    }
+}
+
 /// TEX-9 of what lanes read of levels; `both`: of two.
 #[inline(always)]
 pub(super) fn sample_levels(

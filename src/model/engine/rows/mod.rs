@@ -104,6 +104,8 @@ pub(crate) struct Sampler {
     signed: [bool; 4],
     /// The lod counts.
     mixes: bool,
+    /// Texels that drop the fragment (KEY-1): what entries of its table are compared with, and in which bits.
+    key: Option<(u32, u32)>,
     /// A stage of the texture shader makes its coordinates.
     depends: bool,
     /// An earlier sampler whose coordinates are this one's.
@@ -199,7 +201,7 @@ impl Rows {
 
 /// Pixels that a draw covers, more or less: not more than its window for each triangle.
 fn pixels(draw: &PlannedDraw) -> u64 {
-    let window = u64::from(draw.window.width) * u64::from(draw.window.height);
+    let window = draw.windows.iter().map(|window| u64::from(window.width) * u64::from(window.height)).sum::<u64>();
     let all = &draw.assembly.corners;
     let area = |t: Assembled| {
         let [a, b, c] = t.vertices.map(|v| all[v as usize].position.map(i64::from));
@@ -250,7 +252,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         }
     }
     let textures = compiled.textures;
-    compiled.samplers.retain(|sampler| textures[sampler.unit].iter().any(Option::is_some));
+    compiled.samplers.retain(|sampler| textures[sampler.unit].iter().any(Option::is_some) || sampler.key.is_some());
     if draw.shader.is_some() && !samples_pixels {
         let shader = shader::Shader::new(draw, &compiled.samplers, plan.policies.dependent_scale);
         samples_pixels = shader.is_none();
@@ -265,8 +267,8 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         let (earlier, later) = compiled.samplers.split_at_mut(n);
         later[0].shares = earlier.iter().position(|other| share(draw, other, &later[0]));
     }
-    let kills = draw.shader.as_ref().is_some_and(crate::texture::stage::PlannedShader::kills);
-    compiled.drops = kills || draw.alpha_test.is_some() || draw.depth_test.is_some();
+    let kills = draw.kills();
+    compiled.drops = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some() || draw.depth_test.is_some();
     let whole = surface::write_mask(draw.surface, [true; 4]);
     let reads = compiled.destination.iter().any(Option::is_some);
     compiled.merges = compiled.drops || draw.write_mask != whole;
@@ -298,10 +300,14 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
     let mut samplers = Vec::with_capacity(draw.units.len());
     for (index, unit) in draw.units.iter().enumerate() {
         let axes = table::axes(unit)?;
+        let key = unit.state.color_key.filter(|_| unit.state.kills()).map(|key| table::entry_of_key(unit, &key));
+        if key.is_some() && (draw.shader.is_some() || unit.needs_lod()) {
+            return None;
+        }
         let folds = draw.shader.is_none();
-        let key = Key::of(unit, folds);
+        let table_key = Key::of(unit, folds);
         let texture = &plan.textures[unit.state.texture];
-        let known = tables.iter().find(|(other, _)| *other == key).map(|(_, table)| Arc::clone(table));
+        let known = tables.iter().find(|(other, _)| *other == table_key).map(|(_, table)| Arc::clone(table));
         let size = table::size(unit, &axes);
         let held: u64 = tables.iter().map(|(_, table)| table.entries()).sum();
         if known.is_none() && (size > PAYS * pixels || size + held > MOST_ENTRIES) {
@@ -312,7 +318,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             (TextureImage::Texels(texels), None) => {
                 let image = Image { words: &texels.words, memory: None };
                 let table = Arc::new(Table::new(unit, &axes, &image, folds));
-                tables.push((key, Arc::clone(&table)));
+                tables.push((table_key, Arc::clone(&table)));
                 Some(table)
             }
             (TextureImage::Target { .. }, None) => None,
@@ -326,6 +332,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             sides: unit.scale(&unit.levels[0]),
             signed: [0, 1, 2, 3].map(|n| crate::texture::chain::holds_double(unit, n)),
             mixes: unit.needs_lod(),
+            key,
             depends: draw.shader.is_some() && shader::is_dependent(&unit.stage.operation),
             shares: None,
             table,

@@ -1,10 +1,10 @@
-//! ROP-1, ROP-5, ROP-6 and DEP-2 on rows.
+//! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows.
 
 use super::kernels::Row;
 use super::{BLOCK, Compiled};
 use crate::plan::PlannedDraw;
-use crate::rop::surface;
-use crate::state::{CompareFunction, SurfaceFormat};
+use crate::rop::{stencil, surface};
+use crate::state::{CompareFunction, DEPTH_BITS, STENCIL_SHIFT, StencilOperation, StencilTest, SurfaceFormat};
 
 /// What blending reads of the surface's words, into the rows that want it.
 #[inline(always)]
@@ -78,4 +78,65 @@ pub(super) fn test<T: Copy + PartialOrd>(
     for (n, alive) in alive.iter_mut().enumerate() {
         *alive &= function.passes(incoming(n), stored(n));
     }
+}
+
+/// STN-1 and DEP-2: drops fragments and changes the words of depth and stencil; whether any of those can be another now.
+#[inline(always)]
+pub(super) fn test_depth_stencil(
+    draw: &PlannedDraw,
+    incoming: &[u32],
+    memory: &mut [u32; BLOCK],
+    alive: &mut [bool; BLOCK],
+) -> bool {
+    let tested = *alive;
+    if let Some(state) = &draw.stencil_test {
+        let reference = state.reference & state.mask;
+        test(state.function, |_| reference, |n| stencil_of(memory[n]) & state.mask, alive);
+    }
+    let passed = *alive;
+    if let Some(state) = &draw.depth_test {
+        test(state.function, |n| incoming[n], |n| memory[n] & DEPTH_BITS, alive);
+    }
+    let writes_depth = draw.depth_test.is_some_and(|test| test.write);
+    let writes_stencil = draw.stencil_test.filter(stencil::writes);
+    if let Some(test) = &writes_stencil {
+        let stencils = memory.map(stencil_of);
+        let mut written = stencils;
+        for (operation, outcome) in
+            [(test.fail, (false, false)), (test.depth_fail, (true, false)), (test.pass, (true, true))]
+        {
+            let new = operate(test, operation, &stencils);
+            for n in 0..BLOCK {
+                written[n] = if tested[n] && (passed[n], alive[n]) == outcome { new[n] } else { written[n] };
+            }
+        }
+        for (word, stencil) in memory.iter_mut().zip(written) {
+            *word = *word & DEPTH_BITS | u32::from(stencil) << STENCIL_SHIFT;
+        }
+    }
+    if writes_depth {
+        for ((word, incoming), alive) in memory.iter_mut().zip(incoming).zip(&*alive) {
+            *word = if *alive { *word & !DEPTH_BITS | *incoming } else { *word };
+        }
+    }
+    writes_depth || writes_stencil.is_some()
+}
+
+#[inline(always)]
+fn stencil_of(word: u32) -> u8 {
+    (word >> STENCIL_SHIFT) as u8
+}
+
+/// What an operation leaves: loops that know which.
+#[inline(always)]
+fn operate(test: &StencilTest, operation: StencilOperation, stencils: &[u8; BLOCK]) -> [u8; BLOCK] {
+    use StencilOperation::*;
+    macro_rules! each {
+        ($($name:ident)*) => {
+            match operation {
+                $($name => stencils.map(|stored| stencil::written(test, $name, stored)),)*
+            }
+        };
+    }
+    each!(Keep Zero Replace IncrementSaturate DecrementSaturate Invert Increment Decrement)
 }

@@ -1,7 +1,8 @@
 //! Textures laid out for rows: texels decoded once, every address mode reduced to limits and a mask.
 
 use crate::number::Lane;
-use crate::state::{AddressMode, BORDER_TEXELS, CUBE_FACES, Filter, Level, Named, TextureKind};
+use crate::state::{AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, Filter, Level, Named, TextureKind};
+use crate::texture::color_key;
 use crate::texture::cube::Face;
 use crate::texture::fetch::{Slice, lanes};
 use crate::texture::unit::{Image, PlannedUnit};
@@ -163,6 +164,7 @@ pub(super) struct Key {
     folds: bool,
     border_color: [u8; 4],
     signed: [bool; 4],
+    color_key: Option<ColorKey>,
 }
 
 impl Key {
@@ -177,6 +179,7 @@ impl Key {
             folds,
             border_color: state.border_color,
             signed: state.signed,
+            color_key: state.color_key,
         }
     }
 }
@@ -286,18 +289,29 @@ impl Table {
 /// A texel's bytes, which may lie outside, signed ones with 128 added; or its halves, signed ones with 32,768.
 fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, x: i32, y: i32) -> u32 {
     let texel = slice.texel(image.words, i64::from(x), i64::from(y));
-    let channels = lanes::<i32, Silent>(slice.unit, image, &texel, &mut Silent);
-    if slice.unit.is_wide() {
+    let unit = slice.unit;
+    let channels = lanes::<i32, Silent>(unit, image, &texel, &mut Silent);
+    if unit.is_wide() {
         let half = |lane: usize| {
-            let bias = if slice.unit.signed_lane(lane) { 32_768 } else { 0 };
+            let bias = if unit.signed_lane(lane) { 32_768 } else { 0 };
             (channels[lane].decision() + bias) as u32 & 0xffff
         };
         return half(0) << 16 | half(1);
     }
+    let key = unit.state.color_key;
+    // What drops fragments is compared where it is fetched.
+    let keyed = key.map_or(channels, |key| color_key::apply(unit, &key, channels, &mut Silent).0);
     u32::from_le_bytes(std::array::from_fn(|n| {
-        let bias = if slice.unit.state.signed[n] { 128 } else { 0 };
-        (channels[n].decision() + bias) as u8
+        let bias = if unit.state.signed[n] { 128 } else { 0 };
+        (keyed[n].decision() + bias) as u8
     }))
+}
+
+/// A colour key as an entry of single texels, and the bits that are compared.
+pub(super) fn entry_of_key(unit: &PlannedUnit, key: &ColorKey) -> (u32, u32) {
+    let (word, mask) = color_key::as_word(unit, key);
+    let biased = unit.state.signed.map(|signed| if signed { 128 } else { 0 });
+    ((word ^ u32::from_le_bytes(biased)) & mask, mask)
 }
 
 #[cfg(test)]

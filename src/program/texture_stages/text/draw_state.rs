@@ -14,7 +14,7 @@ struct Group {
     written: fn(&Values) -> Option<String>,
 }
 
-const GROUPS: [Group; 7] = [
+const GROUPS: [Group; 8] = [
     Group {
         field: "blend",
         states: &[("AlphaBlendEnable", 27), ("SrcBlend", 19), ("DestBlend", 20), ("BlendOp", 171)],
@@ -26,6 +26,20 @@ const GROUPS: [Group; 7] = [
         written: alpha_test,
     },
     Group { field: "depth_test", states: &[("ZEnable", 7), ("ZWriteEnable", 14), ("ZFunc", 23)], written: depth_test },
+    Group {
+        field: "stencil_test",
+        states: &[
+            ("StencilEnable", 52),
+            ("StencilFail", 53),
+            ("StencilZFail", 54),
+            ("StencilPass", 55),
+            ("StencilFunc", 56),
+            ("StencilRef", 57),
+            ("StencilMask", 58),
+            ("StencilWriteMask", 59),
+        ],
+        written: stencil_test,
+    },
     Group {
         field: "fog",
         states: &[
@@ -57,6 +71,14 @@ pub(super) const NAMES: &[&str] = &[
     "ZEnable",
     "ZWriteEnable",
     "ZFunc",
+    "StencilEnable",
+    "StencilFail",
+    "StencilZFail",
+    "StencilPass",
+    "StencilFunc",
+    "StencilRef",
+    "StencilMask",
+    "StencilWriteMask",
     "FogEnable",
     "FogColor",
     "FogTableMode",
@@ -82,14 +104,6 @@ pub(super) const OTHER_STATES: &[&str] = &[
     "AmbientMaterialSource",
     "EmissiveMaterialSource",
     "DitherEnable",
-    "StencilEnable",
-    "StencilFail",
-    "StencilZFail",
-    "StencilPass",
-    "StencilFunc",
-    "StencilRef",
-    "StencilMask",
-    "StencilWriteMask",
     "FillMode",
     "LastPixel",
     "LinePattern",
@@ -314,6 +328,39 @@ fn depth_test(values: &Values) -> Option<String> {
     }
     let function = named(values, "ZFunc", FUNCTIONS, "LessOrEqual");
     Some(format!("depth_test: (function: {function}, write: {})", !off(values, "ZWriteEnable")))
+}
+
+fn stencil_test(values: &Values) -> Option<String> {
+    const OPERATIONS: &[(&str, &str)] = &[
+        ("KEEP", "Keep"),
+        ("ZERO", "Zero"),
+        ("REPLACE", "Replace"),
+        ("INCRSAT", "IncrementSaturate"),
+        ("DECRSAT", "DecrementSaturate"),
+        ("INVERT", "Invert"),
+        ("INCR", "Increment"),
+        ("DECR", "Decrement"),
+    ];
+    if off(values, "StencilEnable") {
+        return None;
+    }
+    let mut fields = Vec::new();
+    let mut field = |name: &str, state: &'static str, names: &[(&str, &'static str)]| {
+        let Some(told) = find(values, state) else { return };
+        fields.push(match told {
+            _ if !names.is_empty() => format!("{name}: {}", named(values, state, names, "...")),
+            Told::Number(number) => format!("{name}: {}", number & 255),
+            Told::Word(_) | Told::Other => format!("{name}: ..."),
+        });
+    };
+    field("function", "StencilFunc", FUNCTIONS);
+    field("reference", "StencilRef", &[]);
+    field("mask", "StencilMask", &[]);
+    field("write_mask", "StencilWriteMask", &[]);
+    field("fail", "StencilFail", OPERATIONS);
+    field("depth_fail", "StencilZFail", OPERATIONS);
+    field("pass", "StencilPass", OPERATIONS);
+    Some(format!("stencil_test: ({})", fields.join(", ")))
 }
 
 fn fog(values: &Values) -> Option<String> {

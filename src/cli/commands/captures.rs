@@ -1,0 +1,195 @@
+//! `ninebit captures`.
+
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+use ninebit::engine::RenderOptions;
+use ninebit::shown;
+use ninebit_files::output::{write_json, write_text};
+use ninebit_scene::image::{self, ImageLimits, Rgba};
+use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
+use rayon::prelude::*;
+use serde_json::json;
+
+use super::Format;
+use super::engine::EngineArguments;
+use super::exit::Failure;
+use crate::diff::{self, Difference, Options};
+
+/// Frames of a real NV2A, drawn again.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// List the suites: how many frames of each are drawn here
+    List,
+    /// Draw captured frames and compare them with the captures
+    ///
+    /// No picture is needed: a table has the digest of every captured frame, without the text that the programs printed into it. With the pictures,
+    /// which anybody may have (CC0), the pixels that differ are shown.
+    ///
+    /// Exit status 0: all frames are exact; 1: some differ; 4: a picture is missing.
+    Check(CheckArguments),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    /// Draw this suite only; may be given several times
+    #[arg(long = "suite", value_name = "SUITE")]
+    suites: Vec<String>,
+    /// The folder `results` of the captures: compare with its pictures, SUITE/FRAME.png
+    #[arg(long, value_name = "DIR")]
+    captures: Option<PathBuf>,
+    #[command(flatten)]
+    engine: EngineArguments,
+    /// How to print the result
+    #[arg(long, value_enum, value_name = "FORMAT", default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Differing frames that are told one by one.
+const SHOWN: usize = 20;
+
+/// Runs one of them.
+pub(crate) fn run(command: &Command) -> Result<(), Failure> {
+    match command {
+        Command::List => list(),
+        Command::Check(arguments) => check(arguments),
+    }
+}
+
+fn frames(suites: &[&str]) -> Result<Vec<Frame>, Failure> {
+    captures::frames(suites).map_err(|unmatched| Failure::fault(&unmatched.to_string()))
+}
+
+fn list() -> Result<(), Failure> {
+    let all = frames(&[])?;
+    let mut text = format!("source  {SOURCE}\n\nsuite           frames\n");
+    for suite in captures::suites() {
+        let count = all.iter().filter(|frame| frame.suite() == suite).count();
+        let _ = writeln!(text, "{suite:<16}{count:>6}");
+    }
+    Ok(write_text(&text)?)
+}
+
+/// What became of a frame.
+struct Outcome {
+    frame: Frame,
+    exact: bool,
+    /// With the capture at hand: where the two differ, and what stands there.
+    difference: Option<(Difference, [[u8; 4]; 2])>,
+}
+
+fn check(arguments: &CheckArguments) -> Result<(), Failure> {
+    let known: Vec<&str> = captures::suites().collect();
+    if let Some(unknown) = arguments.suites.iter().find(|suite| !known.contains(&suite.as_str())) {
+        return Err(Failure::usage(
+            format!("there is no suite `{}`", shown::name(unknown)),
+            format!("the suites are {}", known.join(", ")),
+        ));
+    }
+    let suites: Vec<&str> = arguments.suites.iter().map(String::as_str).collect();
+    let options = RenderOptions { threads: 1, ..arguments.engine.options()? };
+    let team = rayon::ThreadPoolBuilder::new().num_threads(arguments.engine.threads).build();
+    let team = team.map_err(|error| Failure::fault(&error.to_string()))?;
+    let outcomes: Vec<Outcome> = team.install(|| {
+        let drawn = frames(&suites)?.into_par_iter().map(|frame| draw(frame, &options, arguments.captures.as_deref()));
+        drawn.collect::<Result<_, Failure>>()
+    })?;
+    match arguments.format {
+        Format::Text => write_text(&text(&outcomes, arguments.captures.is_some()))?,
+        Format::Json => write_json(&format!("{:#}", report(&outcomes)))?,
+    }
+    if outcomes.iter().all(|outcome| outcome.exact) { Ok(()) } else { Err(Failure::difference()) }
+}
+
+fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Result<Outcome, Failure> {
+    let pixels = frame.render(options).map_err(|errors| {
+        let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
+        Failure::fault(&format!("{}/{}: {}", frame.suite(), frame.name(), errors.join("; ")))
+    })?;
+    let mut outcome = Outcome { exact: frame.is(&pixels), difference: None, frame };
+    let Some(folder) = captures else { return Ok(outcome) };
+    let path = folder.join(outcome.frame.suite()).join(format!("{}.png", outcome.frame.name()));
+    let capture = image::load(&path, &ImageLimits::default())?;
+    let invalid = |message: String| {
+        Failure::invalid("NB0524", message, "take the pictures of the source that `ninebit captures list` names")
+    };
+    if (capture.width, capture.height) != SIZE {
+        return Err(invalid(format!("`{}` is {} x {}", shown::path(&path), capture.width, capture.height)));
+    }
+    if !outcome.frame.is(&capture.pixels) {
+        return Err(invalid(format!("`{}` is not the picture that was measured", shown::path(&path))));
+    }
+    // Text is the same in both.
+    let mut masked = Rgba { width: SIZE.0, height: SIZE.1, pixels };
+    for at in outcome.frame.text().iter().flat_map(captures::pixels) {
+        masked.pixels[at] = capture.pixels[at];
+    }
+    let difference = diff::compare(&masked, &capture, &Options { regions: 1, ..Options::default() });
+    let difference = difference.map_err(|error| invalid(error.to_string()))?;
+    outcome.exact = difference.different == 0;
+    if let Some(region) = difference.regions.first() {
+        let at = region.first.1 as usize * SIZE.0 as usize + region.first.0 as usize;
+        outcome.difference = Some((difference, [masked.pixels[at], capture.pixels[at]]));
+    }
+    Ok(outcome)
+}
+
+fn text(outcomes: &[Outcome], has_captures: bool) -> String {
+    let mut text = String::from("suite           frames   exact         pixels\n");
+    for suite in captures::suites() {
+        let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.frame.suite() == suite).collect();
+        if of.is_empty() {
+            continue;
+        }
+        let exact = of.iter().filter(|outcome| outcome.exact).count();
+        let pixels: u64 = of.iter().map(|outcome| outcome.frame.compared()).sum();
+        let _ = writeln!(text, "{suite:<16}{:>6}{exact:>8}{pixels:>15}", of.len());
+    }
+    let differing: Vec<&Outcome> = outcomes.iter().filter(|outcome| !outcome.exact).collect();
+    for Outcome { frame, difference, .. } in differing.iter().take(SHOWN) {
+        let _ = match difference {
+            None => writeln!(text, "{}/{}: another picture than the captured one", frame.suite(), frame.name()),
+            Some((difference, [here, captured])) => {
+                let (x, y) = difference.regions[0].first;
+                let pixels = diff::pixels(difference.different);
+                writeln!(
+                    text,
+                    "{}/{}: {pixels} differ; {x},{y} is {here:?}, captured {captured:?}",
+                    frame.suite(),
+                    frame.name()
+                )
+            }
+        };
+    }
+    if differing.len() > SHOWN {
+        let _ = writeln!(text, "and {} more", differing.len() - SHOWN);
+    }
+    if !differing.is_empty() && !has_captures {
+        text.push_str("with the captured pictures (`--captures DIR`) it is said which pixels\n");
+    }
+    let _ = match differing.len() {
+        0 => writeln!(text, "{} frames: all exact", outcomes.len()),
+        count => writeln!(text, "{} frames: {count} differ", outcomes.len()),
+    };
+    text
+}
+
+fn report(outcomes: &[Outcome]) -> serde_json::Value {
+    let frame = |outcome: &Outcome| {
+        let frame = &outcome.frame;
+        json!({
+            "suite": frame.suite(),
+            "frame": frame.name(),
+            "compared_pixels": frame.compared(),
+            "exact": outcome.exact,
+            "differing_pixels": outcome.difference.as_ref().map(|(difference, _)| difference.different),
+        })
+    };
+    json!({
+        "format": "ninebit-captures-1",
+        "version": env!("CARGO_PKG_VERSION"),
+        "source": SOURCE,
+        "frames": outcomes.iter().map(frame).collect::<Vec<_>>(),
+    })
+}

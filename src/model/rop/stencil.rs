@@ -1,0 +1,97 @@
+//! STN-1: the stencil test.
+
+use crate::state::{StencilOperation, StencilTest};
+
+/// Whether a stored byte passes.
+#[inline(always)]
+pub fn passes(test: &StencilTest, stored: u8) -> bool {
+    test.function.passes(test.reference & test.mask, stored & test.mask)
+}
+
+/// What is done with the stored byte after the stencil test and, where that passed, the depth test.
+#[inline]
+pub fn operation(test: &StencilTest, passed: bool, depth_passed: bool) -> StencilOperation {
+    match (passed, depth_passed) {
+        (false, _) => test.fail,
+        (true, false) => test.depth_fail,
+        (true, true) => test.pass,
+    }
+}
+
+/// What an operation leaves of a stored byte.
+#[inline(always)]
+pub fn written(test: &StencilTest, operation: StencilOperation, stored: u8) -> u8 {
+    let new = match operation {
+        StencilOperation::Keep => stored,
+        StencilOperation::Zero => 0,
+        StencilOperation::Replace => test.reference,
+        StencilOperation::IncrementSaturate => stored.saturating_add(1),
+        StencilOperation::DecrementSaturate => stored.saturating_sub(1),
+        StencilOperation::Invert => !stored,
+        StencilOperation::Increment => stored.wrapping_add(1),
+        StencilOperation::Decrement => stored.wrapping_sub(1),
+    };
+    (stored & !test.write_mask) | (new & test.write_mask)
+}
+
+/// Whether the test can change a stored byte.
+pub fn writes(test: &StencilTest) -> bool {
+    test.write_mask != 0 && [test.fail, test.depth_fail, test.pass].iter().any(|o| *o != StencilOperation::Keep)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::{CompareFunction, Named};
+
+    /// The captured stacks of Stencil_func: zero, then operations, on bytes that were 0.
+    #[test]
+    fn operations_wrap_or_saturate() {
+        let test = StencilTest {
+            function: CompareFunction::Always,
+            reference: 0x7f,
+            mask: 255,
+            write_mask: 255,
+            fail: StencilOperation::Keep,
+            depth_fail: StencilOperation::Keep,
+            pass: StencilOperation::Keep,
+        };
+        use StencilOperation::*;
+        for (operations, expected) in [
+            (&[Zero][..], 0),
+            (&[Replace, Decrement], 0x7e),
+            (&[Replace], 0x7f),
+            (&[Replace, Increment], 0x80),
+            (&[Zero, Invert], 255),
+            (&[Zero, Decrement], 255),
+            (&[Zero, DecrementSaturate], 0),
+            (&[Zero, Invert, Increment], 0),
+            (&[Zero, Invert, IncrementSaturate], 255),
+        ] {
+            let stored = operations.iter().fold(0x80, |stored, operation| written(&test, *operation, stored));
+            assert_eq!(stored, expected, "{operations:?}");
+        }
+    }
+
+    /// Masked bits neither change nor count.
+    #[test]
+    fn masks_hold() {
+        for operation in StencilOperation::ALL {
+            for stored in 0..=255_u8 {
+                for mask in [0, 1, 0x0f, 0x80, 0xff] {
+                    let test = StencilTest {
+                        function: CompareFunction::Equal,
+                        reference: 0x35,
+                        mask,
+                        write_mask: mask,
+                        fail: *operation,
+                        depth_fail: *operation,
+                        pass: *operation,
+                    };
+                    assert_eq!(written(&test, *operation, stored) & !mask, stored & !mask);
+                    assert_eq!(passes(&test, stored), (stored ^ 0x35) & mask == 0);
+                }
+            }
+        }
+    }
+}

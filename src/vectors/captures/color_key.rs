@@ -1,0 +1,110 @@
+//! KEY-1: four units, each with a key and with an opposite that shares its alpha, in every mode.
+
+use super::draws::{frame_buffer, linear_texture, nearest, opaque, quads, scene, textured};
+use super::{Drawn, Frames, Shown};
+use ninebit::state::{
+    ColorKey, ColorKeyMode, Combiners, Draw, FinalRegister, Scene, Texture, TextureFormat, TextureUnit, VertexColor,
+};
+
+/// The keys of the four units, A8R8G8B8.
+const KEYS: [u32; 4] = [0xf000_00ff, 0xf1ff_00ff, 0xf280_0080, 0xf3ff_0000];
+/// Words with a key's place in the second quad.
+const OTHERS: [u32; 4] = [0xf470_7071, 0xf570_7072, 0xf670_7073, 0xf770_7074];
+const GREYS: [u32; 2] = [0xfdcc_cccc, 0xfe99_9999];
+
+const REGISTERS: [FinalRegister; 4] =
+    [FinalRegister::Texture0, FinalRegister::Texture1, FinalRegister::Texture2, FinalRegister::Texture3];
+
+/// How a chequered field of some size goes on.
+fn checker(x: u32, y: u32, [first, second]: [u32; 2], size: u32) -> u32 {
+    if (x / size + y / size).is_multiple_of(2) { first } else { second }
+}
+
+/// A quarter each: a grey and the key; a grey and the other word; the key's colour with either alpha; another unit's key's colour likewise.
+fn texture(unit: usize) -> Texture {
+    let (key, other) = (KEYS[unit], OTHERS[unit]);
+    let next = KEYS[usize::from(unit == 0)];
+    let with_alpha = |color: u32, alpha: u32| color & 0xff_ffff | alpha & 0xff00_0000;
+    linear_texture(TextureFormat::A8R8G8B8, 64, |x, y| match (x / 32, y / 32) {
+        (0, 0) => checker(x, y, [GREYS[0], key], 8),
+        (_, 0) => checker(x - 32, y, [GREYS[1], other], 4),
+        (0, _) => checker(x, y - 32, [with_alpha(key, other), key | 0xff00_0000], 8),
+        _ => checker(x - 32, y - 32, [with_alpha(next, key), with_alpha(next, other)], 8),
+    })
+}
+
+fn key(word: u32, mode: ColorKeyMode) -> ColorKey {
+    let [b, g, r, a] = word.to_le_bytes();
+    ColorKey { color: [r, g, b, a], mode }
+}
+
+/// A square around a point of the plane z = 0.1, seen from z = -7 through an angle of 45 degrees; `offset`: of the viewport, in pixels.
+fn square(center: [f32; 2], offset: f32) -> Vec<[f32; 2]> {
+    // 240 / tan(22.5 degrees) pixels at the distance 1.
+    const SCALE: f32 = 579.411_2 / 7.1;
+    let corners = [[-0.75, 0.75], [0.75, 0.75], [0.75, -0.75], [-0.75, -0.75]];
+    let place = |[x, y]: [f32; 2]| {
+        let (right, up) = (x + center[0], y + center[1]);
+        [320.0 + SCALE * right + offset, 240.0 - SCALE * up + offset]
+    };
+    corners.map(place).to_vec()
+}
+
+fn keyed(unit: usize, place: Vec<[f32; 2]>, state: TextureUnit, combiners: Combiners) -> Draw {
+    let texels = [[0.0, 0.0], [64.0, 0.0], [64.0, 64.0], [0.0, 64.0]];
+    let draw = quads(&place, VertexColor::Bytes([255; 4]), REGISTERS[unit]);
+    Draw { combiners, ..textured(draw, unit, state, texels) }
+}
+
+fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> Drawn {
+    let scene: Scene = scene(vec![frame_buffer(clear)], textures, draws);
+    Drawn { scene, view: None, shown: Shown::Colors }
+}
+
+/// Color_key.
+pub(super) fn frames() -> Frames {
+    let textures: Vec<Texture> = (0..4).map(texture).collect();
+    let centers = [
+        [[-2.6, 1.25], [-1.0, 1.25]],
+        [[1.0, 1.25], [2.6, 1.25]],
+        [[-2.6, -1.25], [-1.0, -1.25]],
+        [[1.0, -1.25], [2.6, -1.25]],
+    ];
+    let modes = [
+        ("Disabled", None),
+        ("Alpha", Some(ColorKeyMode::Alpha)),
+        ("Color", Some(ColorKeyMode::Color)),
+        ("AlphaColor", Some(ColorKeyMode::Texel)),
+    ];
+    let mut frames = Frames::new();
+    for (prefix, ignores_alpha) in [("", false), ("IgnAlphaCh_", true)] {
+        for (suffix, mode) in modes {
+            for (kind, offset) in [("FixedTex", 0.53125), ("ProgTex", 0.0)] {
+                let mut draws = Vec::new();
+                for unit in 0..4 {
+                    for (center, word) in centers[unit].into_iter().zip([KEYS[unit], OTHERS[unit]]) {
+                        let color_key = mode.map(|mode| key(word, mode));
+                        let state = TextureUnit { color_key, ..nearest(unit) };
+                        let register = REGISTERS[unit];
+                        let combiners = if ignores_alpha { opaque(register) } else { Combiners::showing(register) };
+                        draws.push(keyed(unit, square(center, offset), state, combiners));
+                    }
+                }
+                frames.push((format!("{prefix}{kind}_{suffix}"), drawn(0xff00_cc00, textures.clone(), draws)));
+            }
+        }
+    }
+    let shown = || Combiners::showing(FinalRegister::Texture0);
+    let texel =
+        |unit: usize, word: u32| TextureUnit { color_key: Some(key(word, ColorKeyMode::Texel)), ..nearest(unit) };
+    let plain = keyed(0, square([-1.6, 0.0], 0.0), texel(0, KEYS[0]), shown());
+    let mut unread = keyed(0, square([1.6, 0.0], 0.0), texel(0, KEYS[0]), shown());
+    unread.textures[1] = Some(texel(1, KEYS[1] | 0xff00_0000));
+    unread.texture_shader[1] = ninebit::state::ShaderStage::conventional(1, true);
+    frames.push(("UnsampledTex".to_owned(), drawn(0xff00_cc00, textures, vec![plain, unread])));
+    let opposites = [0xcc00_ff00, 0x0000_ff00];
+    let without_alpha = linear_texture(TextureFormat::X8R8G8B8, 64, |x, y| checker(x, y, opposites, 16));
+    let draw = keyed(0, square([0.0, 0.0], 0.0), texel(0, 0xcc00_ff00), shown());
+    frames.push(("XAlphaFormat".to_owned(), drawn(0xff99_9999, vec![without_alpha], vec![draw])));
+    frames
+}

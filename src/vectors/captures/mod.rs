@@ -1,0 +1,213 @@
+//! Captured frames of a real NV2A, drawn again: what the programs drew stands here, what came out as a digest.
+//!
+//! The frames are those of [nxdk_pgraph_tests_golden_results](https://github.com/abaire/nxdk_pgraph_tests_golden_results) (CC0), drawn by
+//! the programs of [nxdk_pgraph_tests](https://github.com/abaire/nxdk_pgraph_tests) (MIT). `vectors/captures/frames.tsv` has a row for each: where
+//! the programs printed their text, which is left out, and the SHA-256 of the captured pixels outside.
+
+mod clip;
+mod color_key;
+mod draws;
+mod stencil;
+
+use ninebit::engine::{RenderOptions, Renderer, render};
+use ninebit::frame::Surface;
+use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanError, PlanOptions};
+use ninebit::rop::surface;
+use ninebit::state::{Rectangle, Scene, SurfaceFormat};
+use ninebit_files::picture::hexadecimal;
+use sha2::{Digest, Sha256};
+use std::fmt;
+
+/// Columns and rows of every frame.
+pub const SIZE: (u32, u32) = (640, 480);
+
+/// The captures' state.
+pub const SOURCE: &str = "abaire/nxdk_pgraph_tests_golden_results (CC0-1.0), commit 902343e2";
+
+const TABLE: &str = include_str!("../../../vectors/captures/frames.tsv");
+
+/// What a capture shows of the frame buffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shown {
+    Colors,
+    /// The words of depth and stencil, as if they were A8R8G8B8.
+    DepthStencil,
+}
+
+/// What a program drew: a scene whose first target is the frame buffer.
+#[derive(Clone, Debug)]
+struct Drawn {
+    scene: Scene,
+    /// Draws on the same memory in another format, whose rows begin where they did.
+    view: Option<Scene>,
+    shown: Shown,
+}
+
+/// A frame that was captured.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    suite: &'static str,
+    name: String,
+    drawn: Drawn,
+    text: Vec<Rectangle>,
+    digest: &'static str,
+}
+
+/// Frames of the table that nothing here draws, or the other way round: an error of this crate.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unmatched(pub Vec<String>);
+
+impl fmt::Display for Unmatched {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} frames and rows do not meet: {}", self.0.len(), self.0[..self.0.len().min(3)].join("; "))
+    }
+}
+
+impl std::error::Error for Unmatched {}
+
+/// All suites, in the order of the table.
+pub fn suites() -> impl Iterator<Item = &'static str> {
+    SUITES.iter().map(|(name, _)| *name)
+}
+
+type Frames = Vec<(String, Drawn)>;
+
+const SUITES: [(&str, fn() -> Frames); 5] = [
+    ("Color_key", color_key::frames),
+    ("Stencil", stencil::operations),
+    ("Stencil_func", stencil::functions),
+    ("Surface_clip", clip::surface_clip),
+    ("Window_clip", clip::window_clip),
+];
+
+/// The frames of some suites, in the order of the table; of all, where none is named.
+///
+/// # Errors
+/// A frame without its row, or a row without its frame.
+pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
+    let mut all = Vec::new();
+    let mut unmatched = Vec::new();
+    let rows: Vec<_> = TABLE.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
+    for (suite, make) in SUITES.iter().filter(|(suite, _)| wanted.is_empty() || wanted.contains(suite)) {
+        let mut drawn = make();
+        for (_, name, text, digest) in rows.iter().filter(|row| row.0 == *suite) {
+            match drawn.iter().position(|(other, _)| other == name) {
+                Some(at) => {
+                    let (name, drawn) = drawn.swap_remove(at);
+                    all.push(Frame { suite, name, drawn, text: text.clone(), digest });
+                }
+                None => unmatched.push(format!("{suite}/{name} of the table is drawn by nothing")),
+            }
+        }
+        unmatched.extend(drawn.iter().map(|(name, _)| format!("{suite}/{name} is not in the table")));
+    }
+    if unmatched.is_empty() { Ok(all) } else { Err(Unmatched(unmatched)) }
+}
+
+/// Suite, frame, rectangles of text, digest.
+fn row(line: &'static str) -> Option<(&'static str, &'static str, Vec<Rectangle>, &'static str)> {
+    let mut fields = line.split('\t');
+    let (suite, name, text) = (fields.next()?, fields.next()?, fields.next()?);
+    let rectangle = |text: &str| {
+        let mut numbers = text.split(',').map(|number| number.parse().ok());
+        let mut number = || numbers.next()?;
+        Some(Rectangle { x: number()?, y: number()?, width: number()?, height: number()? })
+    };
+    Some((suite, name, text.split(' ').filter_map(rectangle).collect(), fields.next()?))
+}
+
+impl Frame {
+    /// The suite of the test programs.
+    pub fn suite(&self) -> &'static str {
+        self.suite
+    }
+
+    /// The frame's name: that of the picture, without its ending.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where the programs printed text: pixels there are not compared.
+    pub fn text(&self) -> &[Rectangle] {
+        &self.text
+    }
+
+    /// Draws it: R, G, B, A of every pixel, row by row from the top.
+    ///
+    /// # Errors
+    /// The scene cannot be planned.
+    pub fn render(&self, options: &RenderOptions) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
+        let plan = |scene: &Scene| Plan::compile_within(scene, &PlanOptions::default(), &Limits::default());
+        let mut frames = render(&plan(&self.drawn.scene)?, options);
+        let mut words = std::mem::take(&mut frames.surfaces[0].words);
+        if let Some(scene) = &self.drawn.view {
+            let view = plan(scene)?;
+            let format = view.targets[0].format;
+            let (renderer, mut frames) = (Renderer::new(&view, options), ninebit::engine::cleared(&view));
+            frames.surfaces[0].words = seen_as(&words, format);
+            renderer.redraw(&mut frames);
+            put_back(&frames.surfaces[0], &mut words);
+        }
+        if self.drawn.shown == Shown::DepthStencil {
+            // The chip has the stencil in the low byte.
+            words = frames.surfaces[0].depth.iter().map(|word| word.rotate_left(8)).collect();
+        }
+        Ok(words.into_iter().map(|word| surface::show(SurfaceFormat::A8R8G8B8, word)).collect())
+    }
+
+    /// Whether a picture is the captured one, text aside.
+    pub fn is(&self, pixels: &[[u8; 4]]) -> bool {
+        digest(pixels, &self.text) == self.digest
+    }
+
+    /// Pixels that are compared.
+    pub fn compared(&self) -> u64 {
+        let area = |r: &Rectangle| u64::from(r.width) * u64::from(r.height);
+        u64::from(SIZE.0) * u64::from(SIZE.1) - self.text.iter().map(area).sum::<u64>()
+    }
+}
+
+/// The indices of a rectangle's pixels in a frame.
+pub fn pixels(of: &Rectangle) -> impl Iterator<Item = usize> + use<> {
+    let Rectangle { x, y, width, height } = *of;
+    (y..y + height).flat_map(move |row| (x..x + width).map(move |column| (row * SIZE.0 + column) as usize))
+}
+
+/// Column and row of a pixel.
+fn place(at: usize) -> (u32, u32) {
+    (at as u32 % SIZE.0, at as u32 / SIZE.0)
+}
+
+fn holds(text: &[Rectangle], (x, y): (u32, u32)) -> bool {
+    text.iter().any(|r| (r.x..r.x + r.width).contains(&x) && (r.y..r.y + r.height).contains(&y))
+}
+
+/// The first 16 hexadecimal digits of the SHA-256 of the pixels outside the text, R, G, B, A, row by row.
+fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
+    let outside = pixels.iter().enumerate().filter(|(at, _)| !holds(text, place(*at)));
+    let bytes: Vec<u8> = outside.flat_map(|(_, pixel)| *pixel).collect();
+    hexadecimal(&Sha256::digest(bytes)[..8])
+}
+
+/// Words of 32 bits as a surface of narrower ones sees the beginning of each row.
+fn seen_as(words: &[u32], format: SurfaceFormat) -> Vec<u32> {
+    let bytes = format.bytes() as usize;
+    let row = |row: &[u32]| {
+        let memory: Vec<u8> = row.iter().flat_map(|word| word.to_le_bytes()).collect();
+        let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
+        memory.chunks(bytes).take(row.len()).map(word).collect::<Vec<_>>()
+    };
+    words.chunks(SIZE.0 as usize).flat_map(row).collect()
+}
+
+/// The other way: what a narrower surface holds, in the beginnings of rows of 32 bits.
+fn put_back(surface: &Surface, words: &mut [u32]) {
+    let (bytes, width) = (surface.format.bytes() as usize, SIZE.0 as usize);
+    for (narrow, row) in surface.words.chunks(width).zip(words.chunks_mut(width)) {
+        let memory: Vec<u8> = narrow.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
+        for (word, four) in row.iter_mut().zip(memory.as_chunks::<4>().0) {
+            *word = u32::from_le_bytes(*four);
+        }
+    }
+}

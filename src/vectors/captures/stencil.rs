@@ -1,0 +1,112 @@
+//! STN-1: what is stored by zero and replace, with and without either test; stacks of operations, seen through all functions.
+
+use super::draws::{frame_buffer, rectangle, scene};
+use super::{Drawn, Frames, Shown};
+use ninebit::state::{
+    CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, Named, StencilOperation, StencilTest, Target,
+    VertexColor,
+};
+
+fn target(stencil: u8) -> Target {
+    let depth = DepthBuffer { format: DepthFormat::Z24S8, clear: 0xffff, clear_stencil: stencil };
+    Target { depth: Some(depth), ..frame_buffer(0xff00_0000) }
+}
+
+fn color(r: f32, g: f32, b: f32) -> VertexColor {
+    VertexColor::Floats([r, g, b, 1.0])
+}
+
+fn test(function: CompareFunction, reference: u8, pass: StencilOperation) -> StencilTest {
+    let keep = StencilOperation::Keep;
+    StencilTest { function, reference, mask: 255, write_mask: 255, fail: keep, depth_fail: keep, pass }
+}
+
+/// A frame as colours, and as words of depth and stencil.
+fn both(name: &str, target: Target, draws: Vec<Draw>) -> [(String, Drawn); 2] {
+    let scene = scene(vec![target], vec![], draws);
+    let drawn = |shown| Drawn { scene: scene.clone(), view: None, shown };
+    [(name.to_owned(), drawn(Shown::Colors)), (format!("{name}_ZB"), drawn(Shown::DepthStencil))]
+}
+
+/// A square around the centre; the programs draw it as two triangles, which have no other pixels.
+fn square(side: f32, color: VertexColor) -> Draw {
+    let half = side / 2.0;
+    rectangle([320.0 - half, 240.0 - half, 320.0 + half, 240.0 + half], color)
+}
+
+/// Stencil.
+pub(super) fn operations() -> Frames {
+    let mut frames = Frames::new();
+    for (stencil_on, depth_on) in [(true, false), (false, true), (true, true), (false, false)] {
+        for (operation, cleared, reference) in [(StencilOperation::Zero, 255, 0), (StencilOperation::Replace, 0, 1)] {
+            let mut second = square(100.0, color(0.0, 0.0, 1.0));
+            second.color_mask = [false; 4];
+            second.stencil_test = stencil_on.then(|| test(CompareFunction::Always, reference, operation));
+            second.depth_test = depth_on.then_some(DepthTest { function: CompareFunction::Always, write: false });
+            let mut third = square(200.0, color(0.0, 1.0, 0.0));
+            third.stencil_test = Some(test(CompareFunction::Equal, reference, StencilOperation::Keep));
+            let name = format!(
+                "Stencil_{}{}{}",
+                operation.name().to_uppercase(),
+                if stencil_on { "_ST" } else { "" },
+                if depth_on { "_DT" } else { "" }
+            );
+            let draws = vec![square(200.0, color(1.0, 0.0, 0.0)), second, third];
+            frames.extend(both(&name, target(cleared), draws));
+        }
+    }
+    frames
+}
+
+/// The reference of Stencil_func.
+const REFERENCE: u8 = 0x7f;
+
+/// Stencil_func.
+pub(super) fn functions() -> Frames {
+    use StencilOperation::*;
+    let upper: [&[StencilOperation]; 5] =
+        [&[Zero], &[Replace, Decrement], &[Replace], &[Replace, Increment], &[Zero, Invert]];
+    let lower: [&[StencilOperation]; 4] = [
+        &[Zero, Decrement],
+        &[Zero, DecrementSaturate],
+        &[Zero, Invert, Increment],
+        &[Zero, Invert, IncrementSaturate],
+    ];
+    let mut stacks = Vec::new();
+    for (top, row) in [(44.0, &upper[..]), (286.0, &lower[..])] {
+        let mut left = 125.0;
+        for operations in row {
+            let patch = |color| rectangle([left, top, left + 80.0, top + 80.0], color);
+            let mut first = patch(color(0.0, 0.0, 1.0));
+            first.color_mask = [true, true, true, false];
+            first.stencil_test =
+                Some(StencilTest { write_mask: REFERENCE, ..test(CompareFunction::Always, REFERENCE, Invert) });
+            stacks.push(first);
+            for operation in *operations {
+                let mut next = patch(color(1.0, 1.0, 1.0));
+                next.color_mask = [false; 4];
+                next.stencil_test = Some(test(CompareFunction::Always, REFERENCE, *operation));
+                stacks.push(next);
+            }
+            left += 81.0;
+        }
+    }
+    let mut frames = Frames::new();
+    for (name, function) in [
+        ("Never", CompareFunction::Never),
+        ("Less", CompareFunction::Less),
+        ("Equal", CompareFunction::Equal),
+        ("LessThanOrEqual", CompareFunction::LessOrEqual),
+        ("Greater", CompareFunction::Greater),
+        ("NotEqual", CompareFunction::NotEqual),
+        ("GreaterThanOrEqual", CompareFunction::GreaterOrEqual),
+        ("Always", CompareFunction::Always),
+    ] {
+        let mut last = rectangle([120.0, 40.0, 530.0, 450.0], color(0.0, 0.75, 0.0));
+        last.color_mask = [true, true, true, false];
+        last.stencil_test = Some(test(function, REFERENCE, Keep));
+        let draws = stacks.iter().cloned().chain([last]).collect();
+        frames.extend(both(name, target(0), draws));
+    }
+    frames
+}
