@@ -118,11 +118,12 @@ fn plans_are_explained() {
     );
     let text = bench.run("explain scene.ron --count").text();
     assert!(text.contains("fragment.rgb = ") && text.contains("cost: 36 fragments"), "{text}");
-    assert!(text.contains("bytes written        4 each           144   counted 144"), "{text}");
+    assert!(text.contains("bytes written        4 each       144             144   counted 144"), "{text}");
     let json = bench.run("explain scene.ron --format json --count").text();
     let value: serde_json::Value = serde_json::from_str(&json).unwrap();
     assert_eq!(value["draws"][0]["cost"]["total"], value["draws"][0]["counted"]["work"]);
     assert_eq!(value["draws"][0]["counted"]["fragments"], 36);
+    assert_eq!(value["draws"][0]["cost_as_asked"]["counts"]["passes"], 1);
     bench.run("explain missing.ron").failed(4, "NB0111");
 }
 

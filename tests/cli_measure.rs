@@ -15,10 +15,10 @@ fn scenes_are_measured_as_text_and_as_json() {
     assert!(bench.path("truth.png").exists());
     let document: serde_json::Value =
         serde_json::from_str(&bench.run("measure a.ron a.ron --format json").text()).unwrap();
-    assert_eq!(document["format"], "ninebit-accuracy-1");
+    assert_eq!(document["format"], "ninebit-accuracy-2");
     assert_eq!(document["scenes"][1]["scene"], "a.ron");
     assert_eq!(document["scenes"][0]["channels"]["r"]["max"], 1.0);
-    assert_eq!(document["scenes"][0]["cost"]["per_final_pixel"]["frame_buffer_bytes"], 4.0);
+    assert_eq!(document["scenes"][0]["cost"]["as_asked"]["per_final_pixel"]["frame_buffer_bytes"], 4.0);
 }
 
 #[test]

@@ -37,6 +37,7 @@ fn every_kind_of_file_has_a_limit() {
     beyond(&bench, "check scene.ron", "NB0610", "program_bytes");
     beyond(&bench, "diff sparse sparse", "NB0514", "image_file_bytes");
     beyond(&bench, "op combiner --inputs sparse", "NB0534", "operation_table_bytes");
+    beyond(&bench, "chart --evaluators sparse", "NB0538", "evaluators_bytes");
     beyond(&bench, "vectors digest sparse", "NB1013", "tree_bytes");
     sparse(&bench, "pack/MANIFEST.json");
     beyond(&bench, "vectors check pack", "NB1013", "manifest_bytes");

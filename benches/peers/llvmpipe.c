@@ -1,6 +1,8 @@
 /* The workloads of vectors/scenes/bench by a software OpenGL, timed without a window.
  *
  *   llvmpipe FOLDER [FRAMES]   median ns a shaded pixel of each workload; FOLDER holds the pictures
+ *   llvmpipe FOLDER FRAMES WORKLOAD PICTURE.png
+ *                              the same of one workload, then its frame against a picture: rms over R, G and B, and the largest difference
  *   llvmpipe --mesh            the scene of W6 in RON, from the numbers that are drawn here
  *
  * Which renderer runs is the environment's choice (GALLIUM_DRIVER, LP_NUM_THREADS): compare.sh sets it.
@@ -492,13 +494,37 @@ static void measure(int workload, int frames)
     free(times);
 }
 
+/* The frame of a workload, which has been drawn, against a picture of it. */
+static void compare(const char *path)
+{
+    static unsigned char drawn[WIDTH * HEIGHT * 4], wanted[WIDTH * HEIGHT * 4];
+    png_image image = { .version = PNG_IMAGE_VERSION };
+    if (!png_image_begin_read_from_file(&image, path)) fail(path);
+    image.format = PNG_FORMAT_RGBA;
+    if (image.width != WIDTH || image.height != HEIGHT) fail("the picture has another size");
+    if (!png_image_finish_read(&image, NULL, wanted, 0, NULL)) fail(path);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, WIDTH, HEIGHT, GL_RGBA, GL_UNSIGNED_BYTE, drawn);
+    double squares = 0;
+    int largest = 0;
+    for (int y = 0; y < HEIGHT; y++)
+        for (int x = 0; x < WIDTH; x++)
+            for (int n = 0; n < 3; n++) {
+                /* Rows of OpenGL begin below. */
+                int off = drawn[((HEIGHT - 1 - y) * WIDTH + x) * 4 + n] - wanted[(y * WIDTH + x) * 4 + n];
+                squares += off * off;
+                largest = abs(off) > largest ? abs(off) : largest;
+            }
+    printf("rms %.4f largest %d\n", sqrt(squares / (3.0 * WIDTH * HEIGHT)), largest);
+}
+
 int main(int count, char **arguments)
 {
     if (count == 2 && !strcmp(arguments[1], "--mesh")) {
         print_mesh();
         return 0;
     }
-    if (count < 2) fail("usage: llvmpipe FOLDER [FRAMES] | llvmpipe --mesh");
+    if (count < 2) fail("usage: llvmpipe FOLDER [FRAMES [WORKLOAD PICTURE.png]] | llvmpipe --mesh");
     int frames = count > 2 ? atoi(arguments[2]) : 60;
     EGLDisplay display = eglGetPlatformDisplay(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
     if (frames < 1 || !eglInitialize(display, NULL, NULL) || !eglBindAPI(EGL_OPENGL_API)) fail("no OpenGL");
@@ -516,6 +542,9 @@ int main(int count, char **arguments)
     glDisable(GL_DITHER);
     glViewport(0, 0, WIDTH, HEIGHT);
     load_textures(arguments[1]);
-    for (int workload = 1; workload <= WORKLOADS; workload++) measure(workload, frames);
+    int only = count > 4 ? atoi(arguments[3]) : 0;
+    for (int workload = 1; workload <= WORKLOADS; workload++)
+        if (!only || workload == only) measure(workload, frames);
+    if (only) compare(arguments[4]);
     return 0;
 }

@@ -138,8 +138,8 @@ impl Diagnostic {
     /// What a caller does about it.
     pub fn kind(&self) -> ErrorKind {
         match self.code {
-            "NB0111" | "NB0502" | "NB0510" | "NB0530" => ErrorKind::Missing,
-            "NB0514" | "NB0515" | "NB0516" | "NB0534" => ErrorKind::Limit,
+            "NB0111" | "NB0502" | "NB0510" | "NB0530" | "NB0536" => ErrorKind::Missing,
+            "NB0514" | "NB0515" | "NB0516" | "NB0534" | "NB0538" => ErrorKind::Limit,
             code if code.starts_with("NB06") => ErrorKind::Limit,
             _ => ErrorKind::Invalid,
         }

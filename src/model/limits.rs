@@ -41,6 +41,9 @@ pub const TREE: FileLimit = FileLimit { name: "tree_bytes", bytes: 16 << 20, cou
 /// Of the device file of results.
 pub const DEVICE: FileLimit =
     FileLimit { name: "device_bytes", bytes: 1 << 20, counted: "bytes of the device file of results" };
+/// A file of evaluators that were measured elsewhere.
+pub const EVALUATORS: FileLimit =
+    FileLimit { name: "evaluators_bytes", bytes: 1 << 20, counted: "bytes of a file of evaluators" };
 /// Of a list of waivers.
 pub const WAIVERS: FileLimit =
     FileLimit { name: "waivers_bytes", bytes: 1 << 20, counted: "bytes of a list of waivers" };
@@ -49,8 +52,8 @@ pub const PAGE: FileLimit =
     FileLimit { name: "page_bytes", bytes: 4 << 20, counted: "bytes of a page that a chart reads" };
 
 /// Limits of files that are neither scenes nor named by one.
-pub const FILES: [FileLimit; 9] =
-    [EXPECTATION, OPERATION_TABLE, MANIFEST, VECTOR_TABLE, LEAF, TREE, DEVICE, WAIVERS, PAGE];
+pub const FILES: [FileLimit; 10] =
+    [EXPECTATION, OPERATION_TABLE, MANIFEST, VECTOR_TABLE, LEAF, TREE, DEVICE, EVALUATORS, WAIVERS, PAGE];
 
 /// Upper bounds on everything that a scene chooses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,9 +4,11 @@ use std::cell::Cell;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use ninebit::limits::EVALUATORS;
 use ninebit::shown;
 use ninebit_files::output::{OutputError, make_folder, write_below, write_file};
-use ninebit_files::read;
+use ninebit_files::read::{self, Kind, ReadError};
+use ninebit_lab::chart::evaluators::Evaluator;
 use ninebit_lab::chart::page::{File, replace_section};
 use ninebit_lab::chart::report::Measured;
 use ninebit_lab::chart::techniques::{self, TechniqueError};
@@ -49,6 +51,9 @@ pub(crate) struct Arguments {
     /// Time few frames: shows that everything works, the times mean little
     #[arg(long)]
     quick: bool,
+    /// Further ways of evaluating a scene, measured elsewhere: a JSON file, as `benches/peers/evaluators.sh` writes
+    #[arg(long, value_name = "FILE.json")]
+    evaluators: Option<PathBuf>,
     /// Make one page alone
     #[arg(long, value_enum, value_name = "PAGE")]
     only: Option<Page>,
@@ -78,10 +83,12 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     for page in [Page::Speed, Page::Stability].into_iter().filter(|page| wanted(*page) && !arguments.overwrite) {
         keep_versioned(&arguments.out, page)?;
     }
+    let elsewhere = arguments.evaluators.as_deref().map_or(Ok(Vec::new()), measured_elsewhere)?;
     let (mut files, mut page) = (Vec::new(), None);
     let mut failed = 0;
     if wanted(Page::Speed) {
-        let measured = speed(arguments, context)?;
+        let mut measured = speed(arguments, context)?;
+        measured.evaluators.extend(elsewhere);
         failed += measured.failed.len();
         files.extend(measured.files()?);
     }
@@ -105,6 +112,22 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         write_file(&arguments.out.join(&page.path), &page.bytes)?;
     }
     if failed > 0 { Err(Failure { exit: Exit::Internal, report: Report::Silent }) } else { Ok(()) }
+}
+
+/// Evaluators of a file.
+fn measured_elsewhere(path: &Path) -> Result<Vec<Evaluator>, Failure> {
+    const HELP: &str = "`benches/peers/evaluators.sh` writes such a file";
+    let bytes = read::bytes(path, Kind::Stream, EVALUATORS).map_err(|error| {
+        let message = format!("the evaluators of `{}` cannot be read: {error}", shown::path(path));
+        match error {
+            ReadError::Missing => Failure { exit: Exit::Missing, ..Failure::invalid("NB0536", message, HELP) },
+            ReadError::TooLarge(_) => Failure { exit: Exit::Limit, ..Failure::invalid("NB0538", message, HELP) },
+            _ => Failure::invalid("NB0537", message, HELP),
+        }
+    })?;
+    evaluators::parse(&bytes).map_err(|reason| {
+        Failure::invalid("NB0537", format!("`{}` holds no evaluators: {reason}", shown::path(path)), HELP)
+    })
 }
 
 /// Refuses to write over a page that is under version control, before anything is measured.

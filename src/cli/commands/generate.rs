@@ -11,6 +11,7 @@ use ninebit_scene::generate::normal_map::{self, HeightChannel};
 use ninebit_scene::generate::sky::{self, HemisphereLight};
 use ninebit_scene::generate::{SIDES, dds, half_components, height_field, hemisphere, occlusion, power_table};
 use ninebit_scene::image::{self, ImageLimits, Rgba};
+use ninebit_scene::vector::{Vector, cross, dot, unit_or_zero};
 
 use super::exit::Failure;
 use super::picture;
@@ -96,6 +97,16 @@ pub(crate) struct Occlusion {
 
 #[derive(Debug, Args)]
 pub(crate) struct NormalisationCube {
+    #[command(flatten)]
+    cube: Cube,
+    /// Sixteen bits for x and for y, to be read as `R16B16` with the mapping `HiloHemisphere`, which takes z for positive
+    #[arg(long)]
+    halves: bool,
+}
+
+/// A cube map that is written.
+#[derive(Debug, Args)]
+pub(crate) struct Cube {
     /// The cube map, a DDS file; `-` is stdout
     #[arg(short, long, value_name = "CUBE.dds", value_parser = picture::dds())]
     output: Destination,
@@ -107,7 +118,7 @@ pub(crate) struct NormalisationCube {
 #[derive(Debug, Args)]
 pub(crate) struct HalfVectorCube {
     #[command(flatten)]
-    cube: NormalisationCube,
+    cube: Cube,
     /// The direction to the light, of any length
     #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], required = true, value_parser = finite, allow_negative_numbers = true)]
     light: Vec<f64>,
@@ -119,7 +130,7 @@ pub(crate) struct HalfVectorCube {
 #[derive(Debug, Args)]
 pub(crate) struct SkyCube {
     #[command(flatten)]
-    cube: NormalisationCube,
+    cube: Cube,
     /// The direction to the middle of the sky, of any length
     #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], default_values = ["0", "1", "0"], value_parser = finite, allow_negative_numbers = true)]
     axis: Vec<f64>,
@@ -187,6 +198,12 @@ pub(crate) struct PowerTable {
 pub(crate) struct NormalMap {
     #[command(flatten)]
     field: HeightField,
+    /// Where the image's right is on the surface that the map lies on, of any length
+    #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], default_values = ["1", "0", "0"], value_parser = finite, allow_negative_numbers = true)]
+    tangent: Vec<f64>,
+    /// Where that surface faces: normals become directions around it; at right angles to the tangent
+    #[arg(long, num_args = 3, value_names = ["X", "Y", "Z"], default_values = ["0", "0", "1"], value_parser = finite, allow_negative_numbers = true)]
+    normal: Vec<f64>,
     /// The normal map, a PNG; `-` is stdout
     #[arg(short, long, value_name = "NORMAL.png", value_parser = picture::png())]
     output: Destination,
@@ -257,8 +274,9 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
     match command {
         Command::NormalMap(arguments) => {
             let destination = &arguments.output;
+            let frame = frame(&arguments.tangent, &arguments.normal)?;
             let (height, options) = arguments.field.load(destination)?;
-            write(&normal_map::from_height(&height, &options), destination)
+            write(&normal_map::from_height_along(&height, &options, &frame), destination)
         }
         Command::HeightNoise(arguments) => {
             let destination = &arguments.output;
@@ -266,7 +284,9 @@ pub(crate) fn run(command: &Command) -> Result<(), Failure> {
             write(&height_field::noise_field(*size, *cells, *octaves, *seed), destination)
         }
         Command::Occlusion(arguments) => occlude(arguments),
-        Command::NormalisationCube(arguments) => write_cube(arguments, Content::Direction),
+        Command::NormalisationCube(arguments) => {
+            write_cube(&arguments.cube, if arguments.halves { Content::Halves } else { Content::Direction })
+        }
         Command::HalfVectorCube(arguments) => {
             let light = direction(&arguments.light, "the light")?;
             write_cube(&arguments.cube, Content::Half { light, from_viewer: arguments.from_viewer })
@@ -343,7 +363,7 @@ fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
     write(&picture, destination)
 }
 
-fn write_cube(arguments: &NormalisationCube, content: Content) -> Result<(), Failure> {
+fn write_cube(arguments: &Cube, content: Content) -> Result<(), Failure> {
     let destination = &arguments.output;
     Ok(destination.write(&dds::cube(&cube::faces(arguments.size, content)))?)
 }
@@ -365,6 +385,16 @@ fn direction(values: &[f64], what: &str) -> Result<[f64; 3], Failure> {
         return Err(Failure::usage("the zero vector points nowhere", advice));
     }
     Ok(vector)
+}
+
+/// Tangent, binormal and normal of unit length, of which two are given.
+fn frame(tangent: &[f64], normal: &[f64]) -> Result<[Vector; 3], Failure> {
+    let [tangent, normal] = [direction(tangent, "the right")?, direction(normal, "the outside")?].map(unit_or_zero);
+    if !(-1e-6..=1e-6).contains(&dot(tangent, normal)) {
+        let advice = "write two directions whose products of components add up to 0";
+        return Err(Failure::usage("tangent and normal are not at right angles", advice));
+    }
+    Ok([tangent, cross(normal, tangent), normal])
 }
 
 /// Reads a finite number.

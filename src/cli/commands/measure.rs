@@ -65,7 +65,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
                 value
             };
             let document = json!({
-                "format": "ninebit-accuracy-1",
+                "format": "ninebit-accuracy-2",
                 "version": env!("CARGO_PKG_VERSION"),
                 "scenes": measured.made.iter().map(value).collect::<Vec<_>>(),
                 "failed": measured.failed,

@@ -1,18 +1,24 @@
 //! What a technique costs the modelled chip: counts, no cycles.
 
-use ninebit::engine;
-use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::plan::Plan;
 use ninebit::state::Scene;
 use ninebit::trace::Work;
-use ninebit_report::explain::explain;
+use ninebit_report::explain::{Cost, explain};
+
+/// What a frame costs, counted twice.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct HardwareCost {
+    /// As the program asks for it: what a chip pays, which runs what it is told.
+    pub asked: FrameCost,
+    /// Without what nothing can see: what the plan keeps, and what is drawn here.
+    pub pruned: FrameCost,
+}
 
 /// Counts of one frame. What tests or the lod may save is counted as if they saved nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct HardwareCost {
-    /// Draws of which something can be seen.
+pub struct FrameCost {
+    /// Draws.
     pub passes: u64,
-    /// Draws that are left out because nothing of them can be seen.
-    pub dropped_passes: u64,
     /// The most general stages that a pass has.
     pub most_stages: u64,
     /// The most texture units that a pass reads.
@@ -38,41 +44,61 @@ pub struct HardwareCost {
 impl HardwareCost {
     /// Of a frame with so many final pixels, which are at least 1.
     pub(super) fn of(scene: &Scene, plan: &Plan, pixels: u64) -> HardwareCost {
-        let seen = |planned: &PlannedDraw| planned.folded.invisible.is_none();
-        let visible: Vec<&PlannedDraw> = plan.draws.iter().filter(|planned| seen(planned)).collect();
-        let most = |of: fn(&PlannedDraw) -> usize| visible.iter().map(|planned| of(planned)).max().unwrap_or(0) as u64;
         let explained = explain(scene, plan);
+        let vertices = || scene.draws.iter().map(|draw| draw.vertices.len() as u64);
+        let asked: Vec<(&Cost, u64)> = explained.iter().map(|draw| &draw.asked).zip(vertices()).collect();
+        let pruned: Vec<(&Cost, u64)> = explained.iter().map(|draw| &draw.cost).zip(vertices()).collect();
+        HardwareCost { asked: FrameCost::of(&asked, pixels), pruned: FrameCost::of(&pruned, pixels) }
+    }
+}
+
+impl FrameCost {
+    /// Of draws, each with its vertices.
+    fn of(draws: &[(&Cost, u64)], pixels: u64) -> FrameCost {
+        let seen = || draws.iter().filter(|(cost, _)| cost.seen);
+        let per_pixel =
+            |of: &dyn Fn(&Cost) -> u64| seen().map(|(cost, _)| of(cost)).sum::<u64>() as f64 / pixels as f64;
         let work = |kinds: &[Work]| {
-            let total: u64 = explained
-                .iter()
-                .map(|draw| draw.cost.total())
-                .map(|n| kinds.iter().map(|k| n[*k as usize]).sum::<u64>())
-                .sum();
-            total as f64 / pixels as f64
+            per_pixel(&|cost| {
+                let total = cost.total();
+                kinds.iter().map(|kind| total[*kind as usize]).sum()
+            })
         };
-        let each = |of: &dyn Fn(&PlannedDraw) -> u64| {
-            let total: u64 = visible.iter().map(|planned| engine::fragments(plan, planned) * of(planned)).sum();
-            total as f64 / pixels as f64
-        };
-        HardwareCost {
-            passes: visible.len() as u64,
-            dropped_passes: (plan.draws.len() - visible.len()) as u64,
-            most_stages: most(|planned| planned.stages.len()),
-            most_units: most(|planned| planned.units.len()),
-            vertices: plan
-                .draws
-                .iter()
-                .zip(&scene.draws)
-                .filter(|(p, _)| seen(p))
-                .map(|(_, d)| d.vertices.len() as u64)
-                .sum(),
-            fragments: each(&|_| 1),
-            fetches: each(&|planned| planned.units.len() as u64),
+        FrameCost {
+            passes: seen().count() as u64,
+            most_stages: seen().map(|(cost, _)| cost.stages).max().unwrap_or(0),
+            most_units: seen().map(|(cost, _)| cost.units).max().unwrap_or(0),
+            vertices: seen().map(|(_, vertices)| vertices).sum(),
+            fragments: per_pixel(&|cost| cost.fragments),
+            fetches: per_pixel(&|cost| cost.fragments * cost.units),
             texels: work(&[Work::Texels]),
-            stages: each(&|planned| planned.stages.len() as u64),
+            stages: per_pixel(&|cost| cost.fragments * cost.stages),
             products: work(&[Work::Products]),
-            blends: each(&|planned| u64::from(planned.blend.is_some())),
+            blends: per_pixel(&|cost| cost.fragments * u64::from(cost.blended)),
             frame_buffer_bytes: work(&[Work::BytesRead, Work::BytesWritten]),
         }
+    }
+
+    /// Amounts for each final pixel, by name.
+    pub fn per_pixel(&self) -> [(&'static str, f64); 7] {
+        [
+            ("fragments", self.fragments),
+            ("texture fetches", self.fetches),
+            ("texels", self.texels),
+            ("general stages", self.stages),
+            ("products", self.products),
+            ("blends", self.blends),
+            ("frame buffer bytes", self.frame_buffer_bytes),
+        ]
+    }
+
+    /// Counts of the whole frame, by name.
+    pub fn counts(&self) -> [(&'static str, u64); 4] {
+        [
+            ("passes", self.passes),
+            ("most stages", self.most_stages),
+            ("most units", self.most_units),
+            ("vertices", self.vertices),
+        ]
     }
 }

@@ -26,7 +26,7 @@ use ninebit_report::compare::{CompareOptions, Comparison, Mode, Statistics, comp
 use ninebit_scene::truth::{Truth, TruthFrame, evaluate, evaluate_with_normals};
 
 pub use banding::Banding;
-pub use cost::HardwareCost;
+pub use cost::{FrameCost, HardwareCost};
 pub use normals::NormalError;
 pub use report::{accuracy_text, accuracy_value};
 
@@ -68,6 +68,21 @@ pub struct Accuracy {
     pub normals: Option<NormalError>,
     /// What it costs the chip.
     pub cost: HardwareCost,
+    /// What was compared.
+    pub pictures: Pictures,
+}
+
+/// A picture and its truth, pixel by pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pictures {
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// What is shown: R, G, B, A.
+    pub shown: Vec<[u8; 4]>,
+    /// What ought to be shown, 0 to 1; `None` where that is not measured.
+    pub truth: Vec<Option<[f64; 3]>>,
 }
 
 /// Measures a scene with its truth. `None` if no pixel with a truth is drawn.
@@ -101,6 +116,11 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
     let mut all = Statistics::default();
     errors.iter().for_each(|channel| all.merge(channel));
     let pixels = measured.len() as u64;
+    let mut wanted = vec![None; ideal.pixels.len()];
+    for at in &measured {
+        wanted[*at] = ideal.pixels[*at].as_ref().map(|pixel| pixel.color);
+    }
+    let banding = Banding::of(&ideal, &shown.0, &measured);
     Some(Accuracy {
         width: ideal.width,
         height: ideal.height,
@@ -109,9 +129,10 @@ pub fn measure(scene: &Scene, plan: &Plan, truth: &Truth) -> Option<Accuracy> {
         errors: all,
         channels: errors,
         causes: causes(read.is_some().then_some(inputs), method, &technique),
-        banding: Banding::of(&ideal, &shown.0, &measured),
+        banding,
         normals: read.map(|read| NormalError::of(&ideal, &read, &measured)),
         cost: HardwareCost::of(scene, plan, pixels),
+        pictures: Pictures { width: ideal.width, height: ideal.height, shown: shown.0, truth: wanted },
     })
 }
 

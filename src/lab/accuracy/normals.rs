@@ -86,7 +86,7 @@ impl NormalError {
 /// The angle between two unit vectors, in degrees; exact for small ones too.
 fn angle(a: Vector, b: Vector) -> f64 {
     let across = cross(a, b);
-    dot(across, across).sqrt().atan2(dot(a, b)).to_degrees()
+    libm::atan2(dot(across, across).sqrt(), dot(a, b)).to_degrees()
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! A measurement as text and as JSON.
 
-use super::Accuracy;
+use super::{Accuracy, FrameCost, HardwareCost};
 use ninebit_report::compare::{Statistics, statistics_value};
 use serde_json::{Map, Value, json};
 use std::fmt::Write;
@@ -47,34 +47,20 @@ fn write(out: &mut String, a: &Accuracy) -> std::fmt::Result {
     writeln!(out, "\nhighlight: {} pixels     picture    truth", b.pixels)?;
     writeln!(out, "levels{:>28}{:>9}", b.levels, b.truth_levels)?;
     writeln!(out, "longest flat run, pixels{:>10}{:>9}", b.flat_run, b.truth_flat_run)?;
-    let c = &a.cost;
-    write!(out, "\ncost: {} passes", c.passes)?;
-    if c.dropped_passes > 0 {
-        write!(out, " ({} more are left out)", c.dropped_passes)?;
-    }
-    writeln!(
-        out,
-        " of at most {} general stages and {} texture units, {} vertices",
-        c.most_stages, c.most_units, c.vertices
-    )?;
-    for (name, value) in per_pixel(a) {
-        writeln!(out, "  {:<20}{value:>9.3} a final pixel", name.replace('_', " "))?;
-    }
-    Ok(())
+    write_cost(out, &a.cost)
 }
 
-/// Amounts for each final pixel.
-fn per_pixel(a: &Accuracy) -> [(&'static str, f64); 7] {
-    let c = &a.cost;
-    [
-        ("fragments", c.fragments),
-        ("texture_fetches", c.fetches),
-        ("texels", c.texels),
-        ("general_stages", c.stages),
-        ("products", c.products),
-        ("blends", c.blends),
-        ("frame_buffer_bytes", c.frame_buffer_bytes),
-    ]
+/// What the program asks of the chip, beside what is left of it after pruning.
+fn write_cost(out: &mut String, cost: &HardwareCost) -> std::fmt::Result {
+    writeln!(out, "\ncost                     as asked  after pruning")?;
+    for ((name, asked), (_, pruned)) in cost.asked.counts().iter().zip(cost.pruned.counts()) {
+        writeln!(out, "{name:<24}{asked:>9}{pruned:>15}")?;
+    }
+    writeln!(out, "for each final pixel")?;
+    for ((name, asked), (_, pruned)) in cost.asked.per_pixel().iter().zip(cost.pruned.per_pixel()) {
+        writeln!(out, "  {name:<22}{asked:>9.3}{pruned:>15.3}")?;
+    }
+    Ok(())
 }
 
 /// The measurement for programs: an object of a JSON document.
@@ -97,8 +83,7 @@ pub fn accuracy_value(a: &Accuracy) -> Value {
             "shortest": lengths.low, "longest": lengths.high,
         })
     });
-    let per_pixel: Map<String, Value> = per_pixel(a).into_iter().map(|(name, n)| (name.to_owned(), n.into())).collect();
-    let (b, c) = (&a.banding, &a.cost);
+    let b = &a.banding;
     json!({
         "width": a.width, "height": a.height, "pixels": a.pixels, "without_truth": a.without,
         "errors": statistics_value(&a.errors),
@@ -109,9 +94,14 @@ pub fn accuracy_value(a: &Accuracy) -> Value {
             "pixels": b.pixels, "levels": b.levels, "truth_levels": b.truth_levels,
             "flat_run": b.flat_run, "truth_flat_run": b.truth_flat_run,
         },
-        "cost": {
-            "passes": c.passes, "dropped_passes": c.dropped_passes, "most_stages": c.most_stages, "most_units": c.most_units,
-            "vertices": c.vertices, "per_final_pixel": per_pixel,
-        },
+        "cost": { "as_asked": cost_value(&a.cost.asked), "after_pruning": cost_value(&a.cost.pruned) },
     })
+}
+
+fn cost_value(cost: &FrameCost) -> Value {
+    let key = |name: &str| name.replace(' ', "_");
+    let mut value: Map<String, Value> = cost.counts().iter().map(|(name, n)| (key(name), (*n).into())).collect();
+    let per_pixel: Map<String, Value> = cost.per_pixel().iter().map(|(name, n)| (key(name), (*n).into())).collect();
+    value.insert("per_final_pixel".to_owned(), per_pixel.into());
+    value.into()
 }

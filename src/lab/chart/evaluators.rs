@@ -1,31 +1,69 @@
 //! The ways in which a scene can be evaluated here: how long each takes, and how far it is from the stored bytes.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use super::surfaces::Surface;
 use super::timing::{Effort, Spread, frames};
 use ninebit::engine::{self, Engine, Isa, RenderOptions, render};
 use ninebit::number::Ideal;
 use ninebit::plan::Plan;
+use ninebit::shown;
 use ninebit::state::Named;
 use ninebit_report::compare::{CompareOptions, Mode, Statistics, compare, real_frame};
 use ninebit_scene::SceneError;
 
 /// A way of evaluating a scene.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Evaluator {
     /// Its name.
     pub name: String,
     /// What is drawn.
     pub surface: String,
     /// What comes out.
-    pub yields: &'static str,
+    pub yields: String,
     /// Nanoseconds per pixel, one thread.
     pub time: Spread,
     /// Root mean square of R, G, B against the stored bytes, in steps.
     pub error: f64,
     /// The largest such error.
     pub largest: f64,
+}
+
+/// Evaluators that were measured elsewhere, as a document.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Document {
+    format: String,
+    evaluators: Vec<Evaluator>,
+}
+
+/// The name of the form of such a document.
+const FORMAT: &str = "ninebit-evaluators-1";
+
+/// Reads evaluators that were measured elsewhere, from JSON: `format` and a list of [`Evaluator`].
+///
+/// # Errors
+/// What is wrong with it: the notation, a field, a name that is empty, or a number that no measurement yields.
+pub fn parse(text: &[u8]) -> Result<Vec<Evaluator>, String> {
+    let document: Document = serde_json::from_slice(text).map_err(|error| error.to_string())?;
+    if document.format != FORMAT {
+        return Err(format!("its format is not `{FORMAT}`"));
+    }
+    for evaluator in &document.evaluators {
+        let Evaluator { name, error, largest, time, .. } = evaluator;
+        let times = [time.lower, time.median, time.upper];
+        if name.is_empty() {
+            return Err("an evaluator has no name".to_owned());
+        }
+        if !(0.0..=255.0).contains(error) || !(0.0..=255.0).contains(largest) {
+            return Err(format!("`{}`: errors are steps from 0 to 255", shown::name(name)));
+        }
+        if !times.iter().all(|time| *time > 0.0) || !times.is_sorted() {
+            return Err(format!("`{}`: times are above 0 and in ascending order", shown::name(name)));
+        }
+    }
+    Ok(document.evaluators)
 }
 
 /// The surfaces that evaluators are timed on.
@@ -47,9 +85,9 @@ pub fn measure(side: usize, effort: &Effort, progress: &dyn Fn()) -> Result<Vec<
         let plan = state.plan(side)?;
         let definition = rendered(&plan, &RenderOptions { engine: Engine::Scalar, ..RenderOptions::default() });
         let pixels = plan.draws.iter().map(|draw| engine::fragments(&plan, draw)).sum::<u64>().max(1);
-        let mut add = |name: String, yields, time, errors: Statistics| {
+        let mut add = |name: String, yields: &str, time, errors: Statistics| {
             let (error, largest) = (errors.rms(), errors.max());
-            all.push(Evaluator { name, surface: surface.to_owned(), yields, time, error, largest });
+            all.push(Evaluator { name, surface: surface.to_owned(), yields: yields.to_owned(), time, error, largest });
             progress();
         };
         for isa in Isa::ALL.iter().rev().filter(|isa| isa.is_available()) {
@@ -128,4 +166,33 @@ fn traced(plan: &Plan, definition: &[[f64; 3]], side: usize, effort: &Effort) ->
         bytes.iter().zip(pixel.shown).for_each(|(byte, shown)| errors.add(f64::from(shown) - byte));
     }
     (time, errors)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn evaluators_of_a_file_are_read_and_what_is_wrong_is_said() {
+        let text = |error: &str, lower: &str, more: &str| {
+            format!(
+                r#"{{"format": "ninebit-evaluators-1", "evaluators": [{{"name": "a", "surface": "s", "yields": "y", "error": {error},
+                "largest": 2, "time": {{"median": 5, "lower": {lower}, "upper": 6}}{more}}}]}}"#
+            )
+        };
+        let read = parse(text("0.5", "4", "").as_bytes()).unwrap();
+        assert_eq!((read[0].name.as_str(), read[0].error, read[0].time.lower), ("a", 0.5, 4.0));
+        for (text, said) in [
+            (text("-1", "4", ""), "steps from 0 to 255"),
+            (text("1", "7", ""), "ascending"),
+            (text("1", "4", ", \"speed\": 1"), "unknown field"),
+            (text("1", "4", "").replace("-1\"", "-9\""), "format"),
+            (text("1", "4", "").replace("\"a\"", "\"\""), "no name"),
+            ("[".to_owned(), "EOF"),
+        ] {
+            let error = parse(text.as_bytes()).unwrap_err();
+            assert!(error.contains(said), "{said}: {error}");
+        }
+    }
 }

@@ -1,18 +1,15 @@
-//! Which of several ways nothing else beats at both.
+//! Which of several ways nothing else beats.
 
-/// Indices of the points that no other point equals or beats in both coordinates, smaller being better, from the smallest first coordinate
+/// Indices of the points that no other point equals or beats in every coordinate, smaller being better, from the smallest first coordinate
 /// to the largest. Of equal points the first counts; points with a NaN never do.
-pub fn front(points: &[[f64; 2]]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..points.len()).filter(|n| points[*n].iter().all(|v| !v.is_nan())).collect();
+pub fn front<const N: usize>(points: &[[f64; N]]) -> Vec<usize> {
+    let valid = |n: &usize| points[*n].iter().all(|value| !value.is_nan());
+    let covers = |a: usize, b: usize| points[a].iter().zip(&points[b]).all(|(a, b)| a <= b);
+    let beaten = |n: usize| (0..points.len()).filter(valid).any(|k| k != n && covers(k, n) && (!covers(n, k) || k < n));
+    let mut order: Vec<usize> = (0..points.len()).filter(valid).filter(|n| !beaten(*n)).collect();
     order.sort_by(|a, b| {
-        let ([ax, ay], [bx, by]) = (points[*a], points[*b]);
-        ax.total_cmp(&bx).then(ay.total_cmp(&by))
-    });
-    let mut least = f64::INFINITY;
-    order.retain(|n| {
-        let better = points[*n][1] < least;
-        least = least.min(points[*n][1]);
-        better
+        let by_coordinate = points[*a].iter().zip(&points[*b]).map(|(a, b)| a.total_cmp(b));
+        by_coordinate.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
     });
     order
 }
@@ -25,7 +22,8 @@ mod tests {
     fn only_what_nothing_beats_is_left() {
         let points = [[3.0, 1.0], [1.0, 5.0], [2.0, 5.0], [2.0, 2.0], [4.0, 1.0], [1.0, 5.0], [f64::NAN, 0.0]];
         assert_eq!(front(&points), [1, 3, 0]);
-        assert!(front(&[]).is_empty());
+        assert_eq!(front(&[[1.0, 2.0, 3.0], [1.0, 3.0, 2.0], [1.0, 3.0, 3.0]]), [0, 1]);
+        assert!(front::<2>(&[]).is_empty());
     }
 
     proptest::proptest! {

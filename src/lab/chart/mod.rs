@@ -8,18 +8,28 @@
 //! | `curves.rs` | how cost grows with pixels, draws, triangles and stages |
 //! | `timing.rs` | medians of frames |
 //! | `front.rs` | what nothing beats at both |
-//! | `picture.rs`, `labels.rs` | charts, and names that do not overlap |
-//! | `report.rs` | the files of the page |
+//! | `questions.rs` | which techniques mean the same picture, and what is asked about it |
+//! | `dots.rs`, `strip.rs` | what a chip pays for a light, and the pictures of all ways to it |
+//! | `picture.rs`, `labels.rs`, `canvas.rs` | drawings in both formats, and names that do not overlap |
+//! | `answers.rs` | what the figures say to five questions |
+//! | `report.rs`, `tables.rs`, `data.rs` | the files of the page |
 //! | `page.rs` | templates, tables, numbers as text |
 #![allow(clippy::float_arithmetic, reason = "times and errors; nothing of this is stored in a frame")]
 
+pub mod answers;
+pub mod canvas;
 pub mod curves;
+pub mod data;
+pub mod dots;
 pub mod evaluators;
 pub mod front;
 pub mod labels;
 pub mod page;
 pub mod picture;
+pub mod questions;
 pub mod report;
+pub mod strip;
 pub mod surfaces;
+pub mod tables;
 pub mod techniques;
 pub mod timing;

@@ -33,6 +33,11 @@ pub fn table(rows: &[Vec<String>]) -> String {
     line(heading) + &rule + &rows.iter().map(|row| line(row)).collect::<String>()
 }
 
+/// A table of words: every column is set left.
+pub fn words(rows: &[Vec<String>]) -> String {
+    table(rows).replacen("---:|", "---|", rows.first().map_or(0, Vec::len))
+}
+
 /// The same rows as comma-separated values; cells that need it are quoted.
 pub fn comma_separated(rows: &[Vec<String>]) -> String {
     let cell = |text: &String| {
@@ -89,6 +94,7 @@ mod tests {
         assert_eq!(table(&rows), "| way | ns |\n|---|---:|\n| a, b | 1.5 |\n");
         assert_eq!(comma_separated(&rows), "way,ns\n\"a, b\",1.5\n");
         assert_eq!(table(&[]), "");
+        assert_eq!(words(&rows), "| way | ns |\n|---|---|\n| a, b | 1.5 |\n");
     }
 
     #[test]

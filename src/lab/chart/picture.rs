@@ -51,7 +51,7 @@ impl Axis {
     }
 
     /// Where a value stands between the ends, 0 to 1.
-    fn share(&self, value: f64) -> f64 {
+    pub(super) fn share(&self, value: f64) -> f64 {
         if self.logarithmic {
             (value.max(self.low).ln() - self.low.ln()) / (self.high.ln() - self.low.ln())
         } else {
@@ -76,6 +76,22 @@ fn numbered_anew(svg: &str) -> String {
         text += &format!("plot-{place}{rest}");
     }
     text
+}
+
+/// The values of a logarithmic axis that are 1, 2 or 5 times a power of ten.
+pub(super) fn ticks(axis: &Axis) -> Vec<f64> {
+    let mut all = Vec::new();
+    let mut tick = tick_below(axis.low * 1.000_001);
+    while tick <= axis.high * 1.000_001 && all.len() < 64 {
+        all.push(tick);
+        tick = 1.0 / tick_below(1.0 / (tick * 1.01));
+    }
+    all
+}
+
+/// What says that a picture of that size has not become a PNG.
+pub(super) fn encode_error([width, height]: [u32; 2], reason: String) -> OutputError {
+    OutputError::Encode { width, height, reason }
 }
 
 /// The largest 1, 2 or 5 times a power of ten that is not above a positive number.
@@ -191,14 +207,14 @@ pub struct Picture {
 }
 
 /// Room around the plot: left, right, top, bottom.
-const MARGINS: [f64; 4] = [78.0, 24.0, 44.0, 62.0];
+const MARGINS: [f64; 4] = [58.0, 24.0, 58.0, 56.0];
 /// Height of a letter of names.
 const NAME: u32 = 11;
 const BODY: u32 = 12;
 /// Lines of the grid, pale: names stand on them.
 const GRID: &str = "#e4e4e4";
 /// Columns of the PNG for one of the SVG.
-const SCALE: f32 = 2.0;
+pub(super) const SCALE: f32 = 2.0;
 
 impl Drawing {
     /// Draws it.
@@ -221,7 +237,6 @@ impl Drawing {
             .with_y_axis_max(self.y.high)
             .with_title(self.title.as_str())
             .with_x_label(self.x.label.as_str())
-            .with_y_label(self.y.label.as_str())
             .with_title_size(15)
             .with_label_size(13)
             .with_tick_size(11)
@@ -245,11 +260,19 @@ impl Drawing {
         let mut scene = render_multiple(plots, layout);
         let plot = Rect { x: left, y: top, width: self.size[0] - left - right, height: self.size[1] - top - bottom };
         self.write_names(&mut scene, &plot);
-        let png = PngBackend::new().with_scale(SCALE).render_scene(&scene).map_err(|reason| OutputError::Encode {
-            width: (self.size[0] * f64::from(SCALE)) as u32,
-            height: (self.size[1] * f64::from(SCALE)) as u32,
-            reason,
-        })?;
+        // What the vertical axis shows stands above it, as people read.
+        scene.add(Primitive::Text {
+            x: 12.0,
+            y: top - 10.0,
+            content: self.y.label.clone(),
+            size: BODY,
+            anchor: TextAnchor::Start,
+            rotate: None,
+            bold: false,
+            color: None,
+        });
+        let fail = |reason| encode_error(self.size.map(|side| (side * f64::from(SCALE)) as u32), reason);
+        let png = PngBackend::new().with_scale(SCALE).render_scene(&scene).map_err(fail)?;
         Ok(Picture { svg: numbered_anew(&SvgBackend::new().render_scene(&scene)) + "\n", png })
     }
 
@@ -351,6 +374,11 @@ mod tests {
         assert_eq!(axis(&[1.06, 1.5, 0.0, f64::NAN]), (1.0, 2.0));
         assert_eq!(axis(&[1.0, 20.0]), (0.5, 50.0));
         assert_eq!(axis(&[]), (0.5, 2.0));
+        let ticks = ticks(&Axis::logarithmic("", [0.3, 70.0].into_iter()));
+        assert_eq!(
+            ticks.iter().copied().map(plain).collect::<Vec<_>>(),
+            ["0.2", "0.5", "1", "2", "5", "10", "20", "50", "100"]
+        );
     }
 
     #[test]

@@ -6,8 +6,10 @@ use std::path::{Path, PathBuf};
 
 use super::timing::{Effort, Spread, frames};
 use crate::accuracy::{self, Accuracy};
-use ninebit::engine::RenderOptions;
+use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::{Positions, Scene};
 use ninebit_files::read::page;
 use ninebit_scene::truth::Truth;
 use ninebit_scene::{SceneError, load};
@@ -43,8 +45,18 @@ pub struct Technique {
     pub truth: Truth,
     /// How far its picture is from its truth, and what it costs the chip.
     pub accuracy: Accuracy,
-    /// Drawing it here, nanoseconds per final pixel, fast engine, one thread.
+    /// Drawing it here on a [large picture](LARGE), nanoseconds per final pixel, fast engine, one thread.
     pub time: Spread,
+}
+
+/// Columns and rows of the pictures that are timed: so many that setting up draws and triangles does not count.
+pub const LARGE: u32 = 512;
+
+impl Technique {
+    /// The error that charts show, in 8-bit steps.
+    pub fn rms(&self) -> f64 {
+        self.accuracy.errors.rms()
+    }
 }
 
 /// Why a scene was not measured.
@@ -108,15 +120,62 @@ pub fn measure(entry: &Entry, effort: &Effort) -> Result<Option<Technique>, Tech
     let Some(accuracy) = accuracy::measure(&loaded.scene, &loaded.plan, truth) else {
         return Err(TechniqueError::Unseen(entry.path.clone()));
     };
-    let time = frames(&loaded.plan, &RenderOptions::default(), accuracy.pixels, effort);
+    let large = enlarged(&loaded.scene, LARGE);
+    let options = PlanOptions { policies: loaded.plan.policies, ..PlanOptions::default() };
+    let plan = large.and_then(|scene| Plan::compile(&scene, &options).ok());
+    let plan = plan.as_ref().unwrap_or(&loaded.plan);
+    let time = frames(plan, &RenderOptions::default(), final_pixels(plan), effort);
     let truth = Truth { shading_normal: None, meshes: Vec::new(), ..truth.clone() };
     Ok(Some(Technique { entry: entry.clone(), truth, accuracy, time }))
+}
+
+/// The scene with its one target so many pixels wide, and as much higher; `None` if it cannot be told what else that changes.
+fn enlarged(scene: &Scene, width: u32) -> Option<Scene> {
+    let [target] = &scene.targets[..] else { return None };
+    let factor = width as f32 / target.width as f32;
+    let mut large = scene.clone();
+    large.targets[0].width = width;
+    large.targets[0].height = (target.height as f32 * factor) as u32;
+    for draw in &mut large.draws {
+        match &mut draw.positions {
+            Positions::Clip(port) if draw.scissor.is_none() => {
+                for side in [&mut port.x, &mut port.y, &mut port.width, &mut port.height] {
+                    *side *= factor;
+                }
+            }
+            _ => return None,
+        }
+    }
+    Some(large)
+}
+
+/// Pixels of the first target on which something is drawn; at least 1.
+fn final_pixels(plan: &Plan) -> u64 {
+    let most = plan.draws.iter().filter(|draw| draw.target == 0).map(|draw| engine::fragments(plan, draw)).max();
+    most.unwrap_or(1).max(1)
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_larger_picture_is_the_same_picture() {
+        let text = "(version: 1, profile: Nv10, targets: [(width: 16, height: 8)], draws: [(vertices: Matrix(matrix: \
+                    Scale(0.5, 0.5, 1), mesh: Grid(columns: 1, rows: 1)))])";
+        let loaded = ninebit_scene::parse(text, Path::new("a.ron"), &Limits::default()).unwrap();
+        assert_eq!(final_pixels(&loaded.plan), 32);
+        let large = enlarged(&loaded.scene, 512).unwrap();
+        assert_eq!((large.targets[0].width, large.targets[0].height), (512, 256));
+        assert_eq!(final_pixels(&Plan::compile(&large, &PlanOptions::default()).unwrap()), 256 * 128);
+        let window = text.replace(
+            "Matrix(matrix: Scale(0.5, 0.5, 1), mesh: Grid(columns: 1, rows: 1))",
+            "Window([(position: (0, 0)), (position: (8, 0)), (position: (0, 8))])",
+        );
+        let loaded = ninebit_scene::parse(&window, Path::new("a.ron"), &Limits::default()).unwrap();
+        assert!(enlarged(&loaded.scene, 512).is_none());
+    }
 
     #[test]
     fn scenes_are_found_with_family_technique_and_parameter() {

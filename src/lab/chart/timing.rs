@@ -3,13 +3,14 @@
 use std::time::Duration;
 
 use cpu_time::ProcessTime;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use ninebit::engine::{RenderOptions, Renderer};
 use ninebit::plan::Plan;
 
 /// The middle of some times and where the middle half of them lies, in nanoseconds per final pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Spread {
     /// The median.
     pub median: f64,
@@ -42,7 +43,7 @@ pub struct Effort {
 
 impl Effort {
     /// For figures that are kept.
-    pub const FULL: Effort = Effort { times: 21, duration: Duration::from_millis(120) };
+    pub const FULL: Effort = Effort { times: 9, duration: Duration::from_millis(100) };
     /// To see that everything works.
     pub const QUICK: Effort = Effort { times: 1, duration: Duration::ZERO };
 

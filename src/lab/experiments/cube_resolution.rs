@@ -1,5 +1,6 @@
 //! Highlights stored in a cube map: how many texels a face they need.
 
+use super::portable::pow;
 use super::strip::{WIDTH, byte, byte_texels, centre, draw, errors, largest, row, scene};
 use super::{Method, Scale, Sweep};
 
@@ -34,7 +35,7 @@ pub(super) fn sweep() -> Sweep {
 fn highlight(direction: [f64; 3], exponent: i32) -> f64 {
     let dot = |a: [f64; 3], b: [f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let cosine = dot(direction, AXIS) / (dot(direction, direction) * dot(AXIS, AXIS)).sqrt();
-    cosine.max(0.0).powi(exponent)
+    pow(cosine.max(0.0), f64::from(exponent))
 }
 
 /// Directions along a face; only that face holds anything.

@@ -1,5 +1,6 @@
 //! Numbers that are gathered in destination alpha, eight bits a pass.
 
+use super::portable::pow;
 use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, scene, whole_row};
 use super::{Method, Scale, Sweep};
 
@@ -24,7 +25,7 @@ pub(super) fn sweep() -> Sweep {
         methods: vec![
             method("sum of equal parts", "(source: One, destination: One)", |value, passes| value / passes),
             method("product of equal factors", "(source: Zero, destination: SourceAlpha)", |value, passes| {
-                value.powf(1.0 / passes)
+                pow(value, 1.0 / passes)
             }),
         ],
     }

@@ -1,5 +1,6 @@
 //! Embossing: the slope of a height field as the difference of two fetches.
 
+use super::portable::{cos, sin};
 use super::strip::{WIDTH, byte, bytes, draw, errors, largest, row, scene};
 use super::{Method, Scale, Sweep};
 
@@ -36,13 +37,13 @@ pub(super) fn sweep() -> Sweep {
 
 /// Rise a texel of the height field at a place in texels.
 fn slope(at: f64) -> f64 {
-    0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE * (std::f64::consts::TAU * at / WAVE).cos()
+    0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE * cos(std::f64::consts::TAU * at / WAVE)
 }
 
 fn text(offset: f64, back: f64) -> String {
     let height = |n: usize| {
         let at = n as f64 + 0.5;
-        byte(0.5 + 0.5 * AMPLITUDE * (std::f64::consts::TAU * at / WAVE).sin())
+        byte(0.5 + 0.5 * AMPLITUDE * sin(std::f64::consts::TAU * at / WAVE))
     };
     let heights: Vec<u8> = (0..TEXELS).map(height).collect();
     let [near, far] = [-back * offset, (1.0 - back) * offset].map(|texels| texels / TEXELS as f64);

@@ -1,5 +1,6 @@
 //! Normals between two texels, shortened by the filter.
 
+use super::portable::{cos, pow, sin};
 use super::strip::{WIDTH, colors, draw, errors, largest, row, scene};
 use super::{Method, Scale, Sweep, steps};
 use ninebit_scene::generate::normal_map::encode;
@@ -20,8 +21,8 @@ pub(super) fn sweep() -> Sweep {
             let pixels = draw(&text(half, dot, squarings))?;
             Ok(largest(&errors(&pixels, 0, |at| {
                 // The mix of the exact normals, brought to unit length.
-                let (x, z) = (half.sin() * (2.0 * at - 1.0), half.cos());
-                (z / (x * x + z * z).sqrt()).powi(1 << squarings)
+                let (x, z) = (sin(half) * (2.0 * at - 1.0), cos(half));
+                pow(z / (x * x + z * z).sqrt(), f64::from(1 << squarings))
             })))
         }),
         works: 5.0,
@@ -46,7 +47,7 @@ pub(super) fn sweep() -> Sweep {
 /// Two normals that lean away from one another by `half` each, mixed along the strip.
 fn text(half: f64, dot: &str, squarings: usize) -> String {
     let normals =
-        colors("normals", [-1.0, 1.0].into_iter().map(|side: f64| encode([side * half.sin(), 0.0, half.cos()])));
+        colors("normals", [-1.0, 1.0].into_iter().map(|side: f64| encode([side * sin(half), 0.0, cos(half)])));
     let draw = format!(
         "({}, textures: [(texture: \"normals\", address: ClampToEdge)], program: Combiners(constants: ((128, 128, 255)), \
          stages: [{dot}{}], final_combiner: (d: Spare0)))",

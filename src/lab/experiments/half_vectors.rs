@@ -1,5 +1,6 @@
 //! Half vectors that are computed at the vertices and interpolated.
 
+use super::portable::{exp2, pow};
 use super::strip::{WIDTH, draw, errors, largest, scene};
 use super::{Method, Scale, Sweep};
 use std::fmt::Write;
@@ -15,7 +16,7 @@ pub(super) fn sweep() -> Sweep {
         name: name.to_owned(),
         measure: Box::new(move |extent| {
             let pixels = draw(&text(extent, parts))?;
-            Ok(largest(&errors(&pixels, 0, |at| half_vector(place(at, extent))[1].powi(1 << SQUARINGS))))
+            Ok(largest(&errors(&pixels, 0, |at| pow(half_vector(place(at, extent))[1], f64::from(1 << SQUARINGS)))))
         }),
         works: 0.1,
         fails: 8.0,
@@ -27,7 +28,7 @@ pub(super) fn sweep() -> Sweep {
         error: "largest error of (N . H)^8, 8-bit steps",
         limit: 32.0,
         scale: Scale::Real(0.01),
-        shown: (0..=36).map(|n| 0.1 * (f64::from(n) / 5.7).exp2()).collect(),
+        shown: (0..=36).map(|n| 0.1 * exp2(f64::from(n) / 5.7)).collect(),
         methods: vec![method("one quad", 1), method("2 quads", 2), method("4 quads", 4), method("16 quads", 16)],
     }
 }

@@ -1,5 +1,6 @@
 //! A directional light that sinks to the horizon of a bumpy surface and below it.
 
+use super::portable::{cos, sin};
 use super::strip::{WIDTH, angle, centre, colors, draw, errors, largest, root_mean_square, scene, whole_row};
 use super::{Method, Scale, Sweep, steps};
 use ninebit_scene::SceneError;
@@ -66,10 +67,10 @@ fn light(elevation: f64, bumps: f64, shadow: Shadow) -> Result<(Vec<f64>, Vec<f6
         "normals",
         (0..WIDTH).map(|x| {
             let tilt = tilt(centre(x, WIDTH));
-            encode([tilt.sin(), 0.0, tilt.cos()])
+            encode([sin(tilt), 0.0, cos(tilt)])
         }),
     );
-    let [r, g, b] = encode([elevation.cos(), 0.0, elevation.sin()]);
+    let [r, g, b] = encode([cos(elevation), 0.0, sin(elevation)]);
     let dot = "a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true";
     let stages = match shadow {
         Shadow::None => format!("(rgb: ({dot}))"),
@@ -85,7 +86,7 @@ fn light(elevation: f64, bumps: f64, shadow: Shadow) -> Result<(Vec<f64>, Vec<f6
     );
     let pixels = draw(&scene("Nv2a", WIDTH, "", &normals, &draw_text))?;
     let ideal =
-        |at: f64| if elevation <= 0.0 { 0.0 } else { (tilt(at) - (std::f64::consts::FRAC_PI_2 - elevation)).cos() };
+        |at: f64| if elevation <= 0.0 { 0.0 } else { cos(tilt(at) - (std::f64::consts::FRAC_PI_2 - elevation)) };
     let wanted = (0..WIDTH).map(|x| 255.0 * ideal(centre(x, WIDTH)).max(0.0)).collect();
     Ok((errors(&pixels, 0, ideal), wanted))
 }

@@ -1,6 +1,7 @@
 //! Light vectors longer than one.
 
 use super::order::pass;
+use super::portable::{cos, sin};
 use super::strip::{WIDTH, angle, byte, bytes, centre, colors, draw, errors, largest, scene, whole_row};
 use super::{Method, Scale, Sweep, steps};
 use ninebit_scene::generate::normal_map::encode;
@@ -35,8 +36,8 @@ pub(super) fn sweep() -> Sweep {
 /// From facing away in y to facing it, between x and z.
 fn normal(at: f64) -> [f64; 3] {
     let tilt = angle(-90.0, 90.0, at);
-    let side = tilt.cos() * std::f64::consts::FRAC_1_SQRT_2;
-    [side, tilt.sin(), side]
+    let side = cos(tilt) * std::f64::consts::FRAC_1_SQRT_2;
+    [side, sin(tilt), side]
 }
 
 fn combined(length: f64) -> String {

@@ -1,5 +1,6 @@
 //! Highlights of a bumpy surface that moves away.
 
+use super::portable::{cos, exp2, pow, sin};
 use super::strip::{angle, centre, colors, draw, errors, root_mean_square, row, scene};
 use super::{Method, Scale, Sweep};
 use ninebit_scene::generate::normal_map::encode;
@@ -27,7 +28,7 @@ pub(super) fn sweep() -> Sweep {
         error: "rms error, 8-bit steps",
         limit: 20.0,
         scale: Scale::Real(0.02),
-        shown: (0..=40).map(|n| (f64::from(n) / 8.0).exp2()).collect(),
+        shown: (0..=40).map(|n| exp2(f64::from(n) / 8.0)).collect(),
         methods: vec![
             method("N . H, levels", 0, "mip_filter: Linear"),
             method("(N . H)^8, levels", 3, "mip_filter: Linear"),
@@ -39,7 +40,7 @@ pub(super) fn sweep() -> Sweep {
 /// How a texel's normal leans: waves of two lengths, about a dozen texels and thirty.
 fn tilt(texel: usize) -> f64 {
     let at = std::f64::consts::TAU * texel as f64 / TEXELS as f64;
-    angle(-TILT, TILT, 0.5 + 0.25 * ((41.0 * at).sin() + (17.0 * at + 1.0).sin()))
+    angle(-TILT, TILT, 0.5 + 0.25 * (sin(41.0 * at) + sin(17.0 * at + 1.0)))
 }
 
 /// The mean of the highlight over the texels that a pixel covers.
@@ -52,18 +53,18 @@ fn seen(at: f64, texels: f64, squarings: u32) -> f64 {
         let weight = place - 0.5 - left;
         let normal = |texel: f64| {
             let tilt = tilt(texel.rem_euclid(TEXELS as f64) as usize);
-            [tilt.sin(), tilt.cos()]
+            [sin(tilt), cos(tilt)]
         };
         let (a, b) = (normal(left), normal(left + 1.0));
         let mixed = [0, 1].map(|k| a[k] + (b[k] - a[k]) * weight);
         let cosine = mixed[1] / (mixed[0] * mixed[0] + mixed[1] * mixed[1]).sqrt();
-        cosine.powi(1 << squarings)
+        pow(cosine, f64::from(1 << squarings))
     };
     (0..SAMPLES).map(sample).sum::<f64>() / SAMPLES as f64
 }
 
 fn text(texels: f64, squarings: u32, filter: &str) -> String {
-    let normals = colors("normals", (0..TEXELS).map(|n| encode([tilt(n).sin(), 0.0, tilt(n).cos()])));
+    let normals = colors("normals", (0..TEXELS).map(|n| encode([sin(tilt(n)), 0.0, cos(tilt(n))])));
     let normals = normals.replacen("(source:", "(levels: All, source:", 1);
     let right = format!("t0: ({}, 0)", texels * PIXELS as f64 / TEXELS as f64);
     let draw = format!(

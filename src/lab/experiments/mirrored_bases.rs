@@ -1,5 +1,6 @@
 //! Tangent bases where a texture is mirrored.
 
+use super::portable::{cos, sin};
 use super::strip::{WIDTH, colors, draw, errors, root_mean_square, scene};
 use super::{Method, Scale, Sweep, steps};
 use ninebit_scene::generate::normal_map::encode;
@@ -18,7 +19,7 @@ pub(super) fn sweep() -> Sweep {
         measure: Box::new(move |degrees: f64| {
             let tilt = degrees.to_radians();
             let pixels = draw(&text(tilt, &vertices()))?;
-            Ok(root_mean_square(&errors(&pixels, 0, |_| tilt.sin() * LIGHT[1] + tilt.cos() * LIGHT[2])))
+            Ok(root_mean_square(&errors(&pixels, 0, |_| sin(tilt) * LIGHT[1] + cos(tilt) * LIGHT[2])))
         }),
         works: 0.05,
         fails: 45.0,
@@ -62,7 +63,7 @@ fn listed(left: [f64; 2], right: [f64; 2]) -> String {
 
 /// A map of one normal that leans along the binormal.
 fn text(tilt: f64, vertices: &str) -> String {
-    let normals = colors("normals", std::iter::once(encode([0.0, tilt.sin(), tilt.cos()])));
+    let normals = colors("normals", std::iter::once(encode([0.0, sin(tilt), cos(tilt)])));
     let draw = format!(
         "({vertices}, textures: [\"normals\"], program: Combiners(stages: [(rgb: (a: ExpandNormal(Texture0), \
          b: ExpandNormal(PrimaryColor), ab: Spare0, ab_dot: true))], final_combiner: (d: Spare0)))"

@@ -16,12 +16,14 @@ mod minified_normals;
 mod mirrored_bases;
 mod order;
 pub mod page;
+mod portable;
 mod power_table;
 mod squaring;
 mod strip;
 mod subtraction;
 
 use ninebit_scene::SceneError;
+use portable::{exp2, log2};
 
 /// How far a picture is off for a value of the parameter.
 pub type Measure = Box<dyn Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync>;
@@ -92,6 +94,17 @@ pub enum Threshold {
     Fails,
 }
 
+impl Threshold {
+    /// Where a method still works, and where it fails no more than just; `None`: nowhere.
+    pub fn ends(self, method: &Method) -> (Option<f64>, Option<f64>) {
+        match self {
+            Threshold::Between { works, fails } => (Some(works), Some(fails)),
+            Threshold::Holds => (Some(method.fails), None),
+            Threshold::Fails => (None, Some(method.works)),
+        }
+    }
+}
+
 impl Scale {
     /// A value between two others, or `None` if there is none that matters.
     fn between(self, a: f64, b: f64) -> Option<f64> {
@@ -101,7 +114,7 @@ impl Scale {
                 let middle = (0.5 * (a + b)).floor();
                 (middle != a && middle != b).then_some(middle)
             }
-            Scale::Doubling => Scale::Whole.between(a.log2().round(), b.log2().round()).map(f64::exp2),
+            Scale::Doubling => Scale::Whole.between(log2(a).round(), log2(b).round()).map(exp2),
         }
     }
 }

@@ -1,5 +1,6 @@
 //! A signed dot product as passes that add and passes that subtract.
 
+use super::portable::{cos, sin};
 use super::strip::{WIDTH, angle, byte, bytes, centre, draw, errors, largest, scene, whole_row};
 use super::{Method, Scale, Sweep, steps};
 
@@ -8,7 +9,7 @@ pub(super) fn sweep() -> Sweep {
         name: name.to_owned(),
         measure: Box::new(move |tilt: f64| {
             let pixels = draw(&text(tilt.to_radians(), additions_first))?;
-            Ok(largest(&errors(&pixels, 0, |at| (angle(-90.0, 90.0, at) - tilt.to_radians()).cos())))
+            Ok(largest(&errors(&pixels, 0, |at| cos(angle(-90.0, 90.0, at) - tilt.to_radians()))))
         }),
         works: 0.0,
         fails: 45.0,
@@ -31,8 +32,8 @@ fn text(tilt: f64, additions_first: bool) -> String {
         let texels: Vec<u8> = (0..WIDTH).map(|x| byte(of(angle(-90.0, 90.0, centre(x, WIDTH))).max(0.0))).collect();
         bytes(name, WIDTH, &texels)
     };
-    let textures = component("+x", f64::sin) + &component("-x", |angle| -angle.sin()) + &component("+z", f64::cos);
-    let (across, up) = (byte(tilt.sin()), byte(tilt.cos()));
+    let textures = component("+x", sin) + &component("-x", |angle| -sin(angle)) + &component("+z", cos);
+    let (across, up) = (byte(sin(tilt)), byte(cos(tilt)));
     let mut passes = [pass("+x", across, "Add"), pass("+z", up, "Add"), pass("-x", across, "ReverseSubtract")];
     if !additions_first {
         passes.reverse();

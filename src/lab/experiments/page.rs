@@ -59,6 +59,12 @@ pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
         files.push(File::text(path.clone(), drawing(measured).draw()?.svg));
         let text = format!("![{}]({path})\n\n{}", sweep.title, table(&measured.rows()));
         parts.push((sweep.name.to_owned(), text));
+        parts.push((format!("{}.limit", sweep.name), plain(sweep.limit)));
+        for (n, (method, threshold)) in sweep.methods.iter().zip(&measured.thresholds).enumerate() {
+            let (works, fails) = threshold.ends(method);
+            parts.push((format!("{}.{n}.works", sweep.name), works.map_or("nowhere".to_owned(), plain)));
+            parts.push((format!("{}.{n}.fails", sweep.name), fails.map_or("nowhere".to_owned(), plain)));
+        }
     }
     files.push(File::text(format!("{FOLDER}/curves.csv"), comma_separated(&curve_rows(all))));
     let document: Vec<Record> = all.iter().map(Record::of).collect();
@@ -76,12 +82,9 @@ impl Measured {
         let heading = vec!["method".to_owned(), works, "fails at".to_owned()];
         let mut rows = vec![heading];
         for (method, threshold) in self.sweep.methods.iter().zip(&self.thresholds) {
-            let (works, fails) = match threshold {
-                Threshold::Between { works, fails } => (plain(*works), plain(*fails)),
-                Threshold::Holds => (plain(method.fails), "holds".to_owned()),
-                Threshold::Fails => ("nowhere".to_owned(), plain(method.works)),
-            };
-            rows.push(vec![method.name.clone(), works, fails]);
+            let (works, fails) = threshold.ends(method);
+            let works = works.map_or("nowhere".to_owned(), plain);
+            rows.push(vec![method.name.clone(), works, fails.map_or("holds".to_owned(), plain)]);
         }
         rows
     }
@@ -154,11 +157,7 @@ impl Record {
     fn of(measured: &Measured) -> Record {
         let Sweep { name, parameter, error, limit, ref methods, .. } = measured.sweep;
         let methods = methods.iter().zip(&measured.thresholds).map(|(method, threshold)| {
-            let (works, fails) = match *threshold {
-                Threshold::Between { works, fails } => (Some(works), Some(fails)),
-                Threshold::Holds => (Some(method.fails), None),
-                Threshold::Fails => (None, Some(method.works)),
-            };
+            let (works, fails) = threshold.ends(method);
             MethodRecord { method: method.name.clone(), works, fails }
         });
         Record { sweep: name, parameter, error, limit, methods: methods.collect() }

@@ -1,5 +1,6 @@
 //! Highlights by a table of powers in a texture.
 
+use super::portable::{exp2, pow};
 use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, row, scene};
 use super::{Method, Scale, Sweep};
 
@@ -13,7 +14,7 @@ pub(super) fn sweep() -> Sweep {
         name: format!("{texels} texels, filtered"),
         measure: Box::new(move |exponent| {
             let pixels = draw(&text(texels, exponent))?;
-            Ok(largest(&errors(&pixels, 0, |at| (FROM + (1.0 - FROM) * at).powf(exponent))))
+            Ok(largest(&errors(&pixels, 0, |at| pow(FROM + (1.0 - FROM) * at, exponent))))
         }),
         works: 1.0,
         fails: 4096.0,
@@ -25,14 +26,14 @@ pub(super) fn sweep() -> Sweep {
         error: "largest error, 8-bit steps",
         limit: 32.0,
         scale: Scale::Whole,
-        shown: (0..=24).map(|n| (f64::from(n) / 2.0).exp2().round()).collect(),
+        shown: (0..=24).map(|n| exp2(f64::from(n) / 2.0).round()).collect(),
         methods: [32, 64, 128, 256, 512, 1024].map(method).into(),
     }
 }
 
 /// The cosine along the strip looks its power up.
 fn text(texels: usize, exponent: f64) -> String {
-    let table: Vec<u8> = (0..texels).map(|n| byte(centre(n, texels).powf(exponent))).collect();
+    let table: Vec<u8> = (0..texels).map(|n| byte(pow(centre(n, texels), exponent))).collect();
     let draw = format!(
         "({}, textures: [(texture: \"powers\", address: ClampToEdge)], \
          program: Combiners(stages: [()], final_combiner: (d: Texture0)))",

@@ -1,5 +1,6 @@
 //! Highlights by squaring a dot product again and again.
 
+use super::portable::{cos, log2, pow, sin};
 use super::strip::{self, WIDTH, angle, colors, draw, errors, largest, scene, whole_row};
 use super::{Method, Scale, Sweep};
 use ninebit_scene::generate::normal_map::encode;
@@ -12,7 +13,7 @@ const TILT: f64 = 50.0;
 pub(super) fn sweep() -> Sweep {
     let method = |name: &str, of: fn(&[[u8; 4]], f64) -> f64| Method {
         name: name.to_owned(),
-        measure: Box::new(move |exponent| Ok(of(&draw(&text(exponent.log2().round() as usize))?, exponent))),
+        measure: Box::new(move |exponent| Ok(of(&draw(&text(log2(exponent).round() as usize))?, exponent))),
         works: 2.0,
         fails: 128.0,
     };
@@ -27,7 +28,7 @@ pub(super) fn sweep() -> Sweep {
         methods: vec![
             method("largest step between neighbouring pixels", |pixels, _| band(pixels)),
             method("largest error", |pixels, exponent| {
-                largest(&errors(pixels, 0, |at| angle(-TILT, TILT, at).cos().powf(exponent)))
+                largest(&errors(pixels, 0, |at| pow(cos(angle(-TILT, TILT, at)), exponent)))
             }),
         ],
     }
@@ -37,7 +38,7 @@ pub(super) fn sweep() -> Sweep {
 fn text(squarings: usize) -> String {
     let normals = (0..PIXELS).map(|x| {
         let tilt = angle(-TILT, TILT, strip::centre(x, PIXELS));
-        encode([tilt.sin(), 0.0, tilt.cos()])
+        encode([sin(tilt), 0.0, cos(tilt)])
     });
     let squares = "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ".repeat(squarings);
     let program = format!(

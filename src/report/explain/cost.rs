@@ -33,11 +33,21 @@ pub struct Cost {
     pub lod_decides: bool,
     /// Of one fragment.
     pub fragment: FragmentCost,
+    /// The draw is a pass over the target: something of it is drawn.
+    pub seen: bool,
+    /// General stages that it runs; 0 if nothing of it is drawn.
+    pub stages: u64,
+    /// Texture units that it reads; 0 if nothing of it is drawn.
+    pub units: u64,
+    /// Its fragments are blended with what the target holds.
+    pub blended: bool,
 }
 
 impl Cost {
     pub(super) fn of(planned: &PlannedDraw, policies: &Policies, fragments: u64) -> Cost {
         let fragment = FragmentCost { shaded: shaded(planned, policies), stored: stored(planned) };
+        let seen = planned.folded.invisible.is_none();
+        let if_seen = |count: usize| if seen { count as u64 } else { 0 };
         Cost {
             fragments,
             tested: planned.alpha_test.is_some()
@@ -47,7 +57,21 @@ impl Cost {
             kills: planned.kills(),
             lod_decides: planned.units.iter().any(PlannedUnit::needs_lod),
             fragment,
+            seen,
+            stages: if_seen(planned.stages.len()),
+            units: if_seen(planned.units.len()),
+            blended: seen && planned.blend.is_some(),
         }
+    }
+
+    /// Passes, stages, units and blended passes with their names: what the draw is as a whole.
+    pub fn counts(&self) -> [(&'static str, u64); 4] {
+        [
+            ("passes", self.seen.into()),
+            ("general stages", self.stages),
+            ("texture units", self.units),
+            ("blended passes", self.blended.into()),
+        ]
     }
 
     /// The work if `stored` fragments pass the tests.

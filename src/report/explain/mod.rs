@@ -14,7 +14,7 @@ pub use report::{explanation_json, explanation_text};
 
 use crate::planes;
 use ninebit::engine;
-use ninebit::plan::{Plan, PlannedDraw};
+use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
 use ninebit::rop::{self, surface};
 use ninebit::state::{
     Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, StageOrigin,
@@ -43,15 +43,21 @@ pub struct DrawExplanation {
     pub clipping: Option<String>,
     /// What nothing can see, and why.
     pub dropped: Vec<String>,
-    /// What it will cost.
+    /// What it will cost: what the plan has kept.
     pub cost: Cost,
+    /// What it would cost as the program asks for it, nothing left out: what a chip pays, which runs what it is told.
+    pub asked: Cost,
 }
 
 /// Explains a plan of a scene, draw by draw.
 pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
-    let draws = scene.draws.iter().zip(&plan.draws);
+    // A scene that has a plan has this one too: leaving things out is not what makes scenes legal.
+    let whole = Plan::compile(scene, &PlanOptions { policies: plan.policies, prune: false });
+    let whole = whole.as_ref().unwrap_or(plan);
+    let cost = |plan: &Plan, planned| Cost::of(planned, &plan.policies, engine::fragments(plan, planned));
+    let draws = scene.draws.iter().zip(&plan.draws).zip(&whole.draws);
     draws
-        .map(|(draw, planned)| DrawExplanation {
+        .map(|((draw, planned), asked)| DrawExplanation {
             name: planned.name.clone(),
             target: plan.targets[planned.target].name.clone(),
             vertex_program: draw.vertex_program.clone().map(|program| (program, draw.vertices.len())),
@@ -60,7 +66,8 @@ pub fn explain(scene: &Scene, plan: &Plan) -> Vec<DrawExplanation> {
             equations: equations(scene, plan, planned),
             clipping: clipping(planned),
             dropped: dropped(scene, draw, planned),
-            cost: Cost::of(planned, &plan.policies, engine::fragments(plan, planned)),
+            cost: cost(plan, planned),
+            asked: cost(whole, asked),
         })
         .collect()
 }

@@ -59,29 +59,52 @@ fn write(out: &mut String, plan: &Plan, draws: &[DrawExplanation], counted: Opti
                 writeln!(out, "    {}", shown::name(line))?;
             }
         }
-        let cost = &draw.cost;
-        let most = if cost.tested { ", at most, because tests decide" } else { "" };
-        let lod = if cost.lod_decides { "; texels and filter steps at most, because the lod decides" } else { "" };
-        writeln!(out, "  cost: {} fragments{most}{lod}", cost.fragments)?;
-        let counted = counted.map(|all| &all[number]);
-        let total = cost.total();
-        for (n, work) in Work::ALL.iter().enumerate().filter(|(n, _)| total[*n] > 0) {
-            let each = cost.fragment.shaded[n] + cost.fragment.stored[n];
-            write!(out, "    {:<18}{each:>4} each{:>14}", work.name(), total[n])?;
-            match counted {
-                Some(counts) => writeln!(out, "   counted {}", counts.work[n])?,
-                None => writeln!(out)?,
-            }
-        }
+        write_cost(out, draw, counted.map(|all| &all[number]))?;
     }
-    writeln!(out, "\nall draws")?;
-    for (n, work) in Work::ALL.iter().enumerate() {
-        let total: u64 = draws.iter().map(|draw| draw.cost.total()[n]).sum();
-        if total > 0 {
-            writeln!(out, "    {:<18}{total:>23}", work.name())?;
+    writeln!(out, "\nall draws{:>32}{:>16}", "after pruning", "as asked")?;
+    let (kept, asked) = (total(draws, |draw| &draw.cost), total(draws, |draw| &draw.asked));
+    for ((name, kept), (_, asked)) in kept.iter().zip(&asked).filter(|((_, kept), (_, asked))| kept + asked > 0) {
+        writeln!(out, "    {name:<18}{kept:>19}{asked:>16}")?;
+    }
+    Ok(())
+}
+
+/// What a draw costs, as far as the plan has kept it and as it was asked for.
+fn write_cost(out: &mut String, draw: &DrawExplanation, counted: Option<&DrawCounts>) -> std::fmt::Result {
+    let (cost, asked) = (&draw.cost, &draw.asked);
+    let most = if cost.tested { ", at most, because tests decide" } else { "" };
+    let lod = if cost.lod_decides { "; texels and filter steps at most, because the lod decides" } else { "" };
+    writeln!(out, "  cost: {} fragments{most}{lod}", cost.fragments)?;
+    writeln!(out, "{:>41}{:>16}", "after pruning", "as asked")?;
+    for ((name, kept), (_, asked)) in cost.counts().iter().zip(asked.counts()).filter(|((_, n), (_, m))| n + m > 0) {
+        writeln!(out, "    {name:<18}{kept:>19}{asked:>16}")?;
+    }
+    let (total, whole) = (cost.total(), asked.total());
+    for (n, work) in Work::ALL.iter().enumerate().filter(|(n, _)| total[*n] + whole[*n] > 0) {
+        let each = cost.fragment.shaded[n] + cost.fragment.stored[n];
+        write!(out, "    {:<18}{each:>4} each{:>10}{:>16}", work.name(), total[n], whole[n])?;
+        match counted {
+            Some(counts) => writeln!(out, "   counted {}", counts.work[n])?,
+            None => writeln!(out)?,
         }
     }
     Ok(())
+}
+
+/// What all draws are and cost together, by name.
+fn total(draws: &[DrawExplanation], of: fn(&DrawExplanation) -> &Cost) -> Vec<(&'static str, u64)> {
+    let mut all: Vec<(&'static str, u64)> = Vec::new();
+    for draw in draws {
+        let cost = of(draw);
+        let work = Work::ALL.iter().map(|work| work.name()).zip(cost.total());
+        for (n, (name, amount)) in cost.counts().into_iter().chain(work).enumerate() {
+            match all.get_mut(n) {
+                Some((_, sum)) => *sum += amount,
+                None => all.push((name, amount)),
+            }
+        }
+    }
+    all
 }
 
 /// The explanation for programs: one JSON document.
@@ -90,7 +113,10 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
         Work::ALL.iter().zip(amounts).map(|(work, n)| (work.name().replace(' ', "_"), (*n).into())).collect()
     };
     let cost = |cost: &Cost| {
+        let counts: Map<String, Value> =
+            cost.counts().iter().map(|(name, n)| (name.replace(' ', "_"), (*n).into())).collect();
         json!({
+            "counts": counts,
             "fragments": cost.fragments,
             "tested": cost.tested,
             "kills": cost.kills,
@@ -106,7 +132,7 @@ pub fn explanation_json(plan: &Plan, draws: &[DrawExplanation], counted: Option<
         .map(|(number, draw)| {
             let mut value = json!({
                 "name": draw.name, "target": draw.target, "program": draw.program, "equations": draw.equations, "left_out": draw.dropped,
-                "cost": cost(&draw.cost),
+                "cost": cost(&draw.cost), "cost_as_asked": cost(&draw.asked),
             });
             if let Some(clipping) = &draw.clipping {
                 value["clipping"] = json!(clipping);

@@ -23,6 +23,9 @@ pub const CUBE_SIDES: std::ops::RangeInclusive<u32> = 1..=1024;
 pub enum Content {
     /// The direction that meets it.
     Direction,
+    /// The same with sixteen bits for x and y, two's complement of which 32768 stand for 1, as `R16B16` holds them and the remap
+    /// `HiloHemisphere` reads them (TSH-3), which takes z for positive.
+    Halves,
     /// The unit vector half-way between the direction, which points to the viewer, and that to a light.
     Half {
         /// Toward the light, of any length but zero.
@@ -39,10 +42,7 @@ pub fn faces(side: u32, content: Content) -> Vec<Rgba> {
     let side = side.clamp(*CUBE_SIDES.start(), *CUBE_SIDES.end());
     let face = |face: &Face| {
         let texels = (0..side).flat_map(|row| (0..side).map(move |column| (column, row)));
-        let pixels = texels.map(|(column, row)| {
-            let [r, g, b] = texel(direction(*face, column, row, side), content);
-            [r, g, b, 255]
-        });
+        let pixels = texels.map(|(column, row)| texel(direction(*face, column, row, side), content));
         Rgba { width: side, height: side, pixels: pixels.collect() }
     };
     Face::ALL.iter().map(face).collect()
@@ -59,12 +59,22 @@ fn direction(face: Face, column: u32, row: u32, side: u32) -> Vector {
 }
 
 /// The bytes for a unit direction.
-fn texel(direction: Vector, content: Content) -> [u8; 3] {
-    match content {
+fn texel(direction: Vector, content: Content) -> [u8; 4] {
+    let [r, g, b] = match content {
+        Content::Halves => return halves(direction),
         Content::Direction => encode(direction),
         Content::Half { light, from_viewer } => encode(half(direction, light, from_viewer)),
         Content::Sky(light) => light.at(direction).map(byte),
-    }
+    };
+    [r, g, b, 255]
+}
+
+/// x in alpha and red, y in green and blue, the high byte first. A direction with a z below 0 keeps the x and y that are left of it.
+fn halves([x, y, _]: Vector) -> [u8; 4] {
+    // In range but for 1 itself, where the conversion saturates; the offset makes truncation a floor.
+    let half = |n: f64| (((n * 32768.0 + 32768.5) as u32).min(65535) as u16 ^ 0x8000).to_be_bytes();
+    let ([x_high, x_low], [y_high, y_low]) = (half(x), half(y));
+    [x_low, y_high, y_low, x_high]
 }
 
 /// The unit vector half-way between a direction, toward the viewer or from it, and that to a light; zero if nothing lies half-way.
@@ -91,6 +101,18 @@ mod tests {
                 assert!((place[1] - f64::from(row) - 0.5).abs() < 1e-12, "{place:?}");
             }
         }
+    }
+
+    #[test]
+    fn halves_are_two_s_complement() {
+        let of = |x: f64, y: f64| {
+            let [r, g, b, a] = halves([x, y, 0.0]);
+            [[a, r], [g, b]].map(i16::from_be_bytes)
+        };
+        assert_eq!(of(0.0, 0.0), [0, 0]);
+        assert_eq!(of(0.6, -0.8), [19661, -26214]);
+        assert_eq!(of(1.0, -1.0), [32767, -32768]);
+        assert_eq!(faces(1, Content::Halves)[4].pixels[0], [0; 4]);
     }
 
     #[test]

@@ -15,6 +15,7 @@
 )]
 
 use crate::image::Rgba;
+use crate::vector::Vector;
 
 /// Which channel of the input is the height, 0 the lowest.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -48,9 +49,15 @@ impl Default for Options {
 ///
 /// `options.scale` must be finite; its magnitude is limited to 2^20.
 pub fn from_height(height: &Rgba, options: &Options) -> Rgba {
+    from_height_along(height, options, &[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+}
+
+/// The same on a surface of which tangent, binormal and normal are given: the normals become directions around it.
+pub fn from_height_along(height: &Rgba, options: &Options, frame: &[Vector; 3]) -> Rgba {
     let texels = normals(height, options).into_iter().zip(&height.pixels);
+    let along = |n: Vector| [0, 1, 2].map(|axis| n[0] * frame[0][axis] + n[1] * frame[1][axis] + n[2] * frame[2][axis]);
     let pixels = texels.map(|(normal, height)| {
-        let [r, g, b] = encode(normal);
+        let [r, g, b] = encode(along(normal));
         [r, g, b, byte(*height, options.channel)]
     });
     Rgba { width: height.width, height: height.height, pixels: pixels.collect() }
@@ -138,6 +145,10 @@ mod tests {
     fn a_flat_field_points_out_of_the_image() {
         let map = from_height(&field(2, &[&[9, 9], &[9, 9]]), &Options::default());
         assert_eq!(map.pixels, [[128, 128, 255, 9]; 4]);
+        // A ceiling, whose normal points down.
+        let ceiling = [[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]];
+        let map = from_height_along(&field(2, &[&[9, 9], &[9, 9]]), &Options::default(), &ceiling);
+        assert_eq!(map.pixels, [[128, 1, 128, 9]; 4]);
     }
 
     #[test]

@@ -1,0 +1,37 @@
+#!/bin/sh
+# Measures Mesa's llvmpipe as an evaluator of W1, a dot product of a filtered normal map: nanoseconds a pixel on one thread, and how far its own
+# frame is from ninebit's bytes. Prints the file that `ninebit chart --evaluators FILE` reads.
+#   benches/peers/evaluators.sh [ROUNDS] >benches/peers/evaluators.json
+# Needs what compare.sh installs. NINEBIT may name the program.
+set -eu
+rounds=${1:-9}
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+scenes=$root/vectors/scenes/bench
+ninebit=${NINEBIT:-$root/target/release/ninebit}
+work=$(mktemp -d)
+trap 'rm -r "$work"' EXIT
+gcc -O2 -Wall -Wextra "$here/llvmpipe.c" -o "$work/llvmpipe" -lEGL -lGL -lpng -lm
+"$ninebit" render "$scenes/w1.ron" -o "$work/w1.png"
+# The peer counts the caller's thread as none of its own.
+export LIBGL_ALWAYS_SOFTWARE=1 EGL_LOG_LEVEL=fatal GALLIUM_DRIVER=llvmpipe LP_NUM_THREADS=0
+pin=
+if command -v taskset >/dev/null; then pin="taskset -c $(taskset -cp $$ | sed 's/.*[ ,-]//')"; fi
+round=0
+while [ "$round" -lt "$rounds" ]; do
+    round=$((round + 1))
+    # shellcheck disable=SC2086 # a command and its arguments, or nothing
+    $pin "$work/llvmpipe" "$scenes" 60 1 "$work/w1.png" 2>/dev/null >>"$work/all"
+done
+grep '^w1' "$work/all" | awk '{ print $3 }' | sort -n >"$work/times"
+awk -v renderer="$(grep -m 1 '^#' "$work/all" | sed 's/^# //; s/["\\]//g')" -v against="$(grep -m 1 '^rms' "$work/all")" '
+    { all[NR] = $1 }
+    function at(share) { return all[1 + int((NR - 1) * share + 0.5)] }
+    END {
+        split(against, of, " ")
+        printf "{\n  \"format\": \"ninebit-evaluators-1\",\n  \"evaluators\": [\n    {\n"
+        printf "      \"name\": \"llvmpipe\",\n      \"surface\": \"one unit, one stage\",\n"
+        printf "      \"yields\": \"bytes by floats, W1 of the benches (%s)\",\n", renderer
+        printf "      \"error\": %s,\n      \"largest\": %s,\n", of[2], of[4]
+        printf "      \"time\": { \"median\": %s, \"lower\": %s, \"upper\": %s }\n    }\n  ]\n}\n", at(0.5), at(0.25), at(0.75)
+    }' "$work/times"

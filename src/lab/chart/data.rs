@@ -1,0 +1,161 @@
+//! What was measured, as data: one table as comma-separated values, and everything as one document.
+
+use serde_json::{Value, json};
+
+use super::questions::Light;
+use super::report::Measured;
+use super::tables::{cause, causes, degrees};
+use super::techniques::Technique;
+use crate::accuracy::{FrameCost, accuracy_value};
+use ninebit::engine::Isa;
+use ninebit::state::Named;
+
+/// A column: its name, what it holds, and its value; empty where there is none.
+struct Column {
+    name: String,
+    meaning: String,
+    of: Box<dyn Fn(&Technique) -> String>,
+}
+
+/// A column of the costs: its name, its meaning and its value.
+type Count = (&'static str, &'static str, fn(&FrameCost) -> f64);
+
+const COUNTS: [Count; 10] = [
+    ("passes", "draws, a whole number", |cost| cost.passes as f64),
+    ("most_stages", "the most general stages of a pass, a whole number", |cost| cost.most_stages as f64),
+    ("most_units", "the most texture units of a pass, a whole number", |cost| cost.most_units as f64),
+    ("stages", "general stages run, per final pixel", |cost| cost.stages),
+    ("fetches", "texture units read, per final pixel", |cost| cost.fetches),
+    ("blends", "fragments blended with the frame buffer, per final pixel", |cost| cost.blends),
+    ("fragments", "fragments of all passes, per final pixel", |cost| cost.fragments),
+    ("texels", "texels looked up, per final pixel", |cost| cost.texels),
+    ("products", "products of combiners, per final pixel", |cost| cost.products),
+    ("frame_buffer_bytes", "bytes of colour read and written, per final pixel", |cost| cost.frame_buffer_bytes),
+];
+
+impl Measured {
+    /// The columns after those that say which technique it is.
+    fn columns(&self) -> Vec<Column> {
+        let mut all = Vec::new();
+        let mut add = |name: &str, meaning: &str, of: Box<dyn Fn(&Technique) -> String>| {
+            all.push(Column { name: name.to_owned(), meaning: meaning.to_owned(), of });
+        };
+        add("rms", "root mean square of the error, 8-bit steps", Box::new(|t| real(t.rms())));
+        add("max", "largest error, steps", Box::new(|t| real(t.accuracy.errors.max())));
+        add("bias", "mean error with its sign, steps", Box::new(|t| real(t.accuracy.errors.bias())));
+        add("psnr_db", "20 log10(255 / rms); empty if nothing is off", Box::new(|t| real(t.accuracy.errors.psnr())));
+        add("levels", "different bytes over the highlight", Box::new(|t| t.accuracy.banding.levels.to_string()));
+        add("truth_levels", "those of the truth, rounded", Box::new(|t| t.accuracy.banding.truth_levels.to_string()));
+        add("flat_run", "longest row of equal pixels there", Box::new(|t| t.accuracy.banding.flat_run.to_string()));
+        add(
+            "degrees",
+            "mean angle by which normals are turned; empty if not measured",
+            Box::new(|t| degrees(t).map_or_else(String::new, real)),
+        );
+        for name in causes(self.techniques.iter()) {
+            let meaning = format!("what {name} adds to the error, rms; empty if it has no part in it");
+            let of = move |t: &Technique| cause(t, name).map_or_else(String::new, real);
+            add(&format!("cause_{}", name.replace(' ', "_")), &meaning, Box::new(of));
+        }
+        for (name, meaning, of) in COUNTS {
+            add(
+                &format!("asked_{name}"),
+                &format!("as the program asks: {meaning}"),
+                Box::new(move |t| real(of(&t.accuracy.cost.asked))),
+            );
+        }
+        for (name, meaning, of) in COUNTS {
+            add(
+                &format!("pruned_{name}"),
+                &format!("after pruning: {meaning}"),
+                Box::new(move |t| real(of(&t.accuracy.cost.pruned))),
+            );
+        }
+        add(
+            "ns",
+            "nanoseconds per final pixel here, median; one thread, 512 columns",
+            Box::new(|t| real(t.time.median)),
+        );
+        add("ns_lower", "a quarter of the frames took less", Box::new(|t| real(t.time.lower)));
+        add("ns_upper", "a quarter took more", Box::new(|t| real(t.time.upper)));
+        all
+    }
+
+    /// One row a technique under a heading.
+    pub(super) fn data_rows(&self, lights: &[Light<'_>]) -> Vec<Vec<String>> {
+        let columns = self.columns();
+        let heading = ["family", "technique", "parameter", "truth"].into_iter().map(str::to_owned);
+        let row = |technique: &Technique| {
+            let entry = &technique.entry;
+            let parameter = entry.parameter.map_or_else(String::new, |parameter| parameter.to_string());
+            let means = |light: &&Light<'_>| light.ways.iter().any(|way| way.entry == *entry);
+            let truth = lights.iter().find(means).map_or_else(String::new, |light| light.name.clone());
+            let cells = columns.iter().map(|column| (column.of)(technique));
+            [entry.family.clone(), entry.technique.clone(), parameter, truth].into_iter().chain(cells).collect()
+        };
+        let heading = heading.chain(columns.iter().map(|column| column.name.clone())).collect();
+        std::iter::once(heading).chain(self.techniques.iter().map(row)).collect()
+    }
+
+    /// What the columns hold.
+    pub(super) fn column_rows(&self) -> Vec<Vec<String>> {
+        let fixed = [
+            ["column", "what it holds"],
+            ["`family`", "the folder of the scene"],
+            ["`technique`", "its file's name without the parameter"],
+            ["`parameter`", "the number that the name ends in; empty if there is none"],
+            ["`truth`", "which light was meant: techniques of one truth are ways to the same picture"],
+        ];
+        let fixed = fixed.map(|row| row.map(str::to_owned).to_vec());
+        let columns = self.columns().into_iter().map(|column| vec![format!("`{}`", column.name), column.meaning]);
+        fixed.into_iter().chain(columns).collect()
+    }
+
+    /// Everything.
+    pub(super) fn document(&self, lights: &[Light<'_>]) -> Value {
+        let technique = |technique: &Technique| {
+            let mut value = accuracy_value(&technique.accuracy);
+            let entry = &technique.entry;
+            value["family"] = entry.family.as_str().into();
+            value["technique"] = entry.technique.as_str().into();
+            value["parameter"] = entry.parameter.into();
+            let means = |light: &&Light<'_>| light.ways.iter().any(|way| way.entry == *entry);
+            value["truth"] = lights.iter().find(means).map(|light| light.name.as_str()).into();
+            value["nanoseconds_per_pixel"] = json!(technique.time);
+            value
+        };
+        json!({
+            "format": "ninebit-chart-2",
+            "version": env!("CARGO_PKG_VERSION"),
+            "isa": Isa::best().name(),
+            "quick": self.quick,
+            "techniques": self.techniques.iter().map(technique).collect::<Vec<Value>>(),
+            "evaluators": self.evaluators,
+            "surfaces": self.surfaces,
+            "curves": self.curves,
+            "failed": self.failed,
+        })
+    }
+}
+
+/// A number as data: at most four decimals, none if it is whole; nothing if it is not finite.
+fn real(value: f64) -> String {
+    if !value.is_finite() {
+        return String::new();
+    }
+    let text = format!("{value:.4}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::real;
+
+    #[test]
+    fn whole_numbers_have_no_decimals() {
+        assert_eq!(
+            [12.0, 0.5, 1.23456, -0.25, 0.0, f64::INFINITY].map(real),
+            ["12", "0.5", "1.2346", "-0.25", "0", ""]
+        );
+    }
+}

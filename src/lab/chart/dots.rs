@@ -1,0 +1,145 @@
+//! Charts of what a chip pays: a row a method, its error on an axis, its counts beside it.
+
+use super::canvas::{Canvas, Side};
+use super::labels::{Rect, text_width};
+use super::page::{number, plain};
+use super::picture::{Axis, ticks};
+use super::questions::Light;
+use super::techniques::Technique;
+
+/// What is counted, per final pixel but for the passes.
+const COUNTS: [&str; 4] = ["passes", "stages", "fetches", "blends"];
+const WIDTH: f64 = 930.0;
+const ROW: f64 = 23.0;
+/// Where names end.
+const NAMES: f64 = 226.0;
+/// Ends of the axis.
+const AXIS: [f64; 2] = [242.0, 540.0];
+/// Where the first column of counts begins, and how far apart they are.
+const COLUMNS: [f64; 2] = [568.0, 84.0];
+/// The longest bar.
+const BAR: f64 = 30.0;
+const INK: &str = "#222222";
+const PALE: &str = "#767676";
+const GRID: &str = "#e4e4e4";
+const BEST: &str = "#1f5fa8";
+const SPARED: &str = "#b9cde6";
+
+/// Methods under a heading.
+struct Group<'a> {
+    heading: Option<&'a str>,
+    /// Each method, and whether nothing beats it.
+    rows: Vec<(&'a Technique, bool)>,
+}
+
+/// One light: every way to it, with the front within it.
+pub fn of_light(light: &Light<'_>) -> Canvas {
+    let front = light.front_by_counts();
+    let rows = light.shown().iter().enumerate().map(|(n, way)| (*way, front.contains(&n))).collect();
+    let says = [
+        "Filled: no other way asks no more of the chip and is as exact. Counts as the program asks; of a → b, b is left after pruning.",
+    ];
+    chart(&light.title, &says, &[Group { heading: None, rows }])
+}
+
+/// Several lights: of each what nothing beats, and the way that is furthest off.
+pub fn overview(lights: &[&Light<'_>]) -> Canvas {
+    let groups: Vec<Group<'_>> = lights
+        .iter()
+        .map(|light| {
+            let front = light.front_by_counts();
+            let last = light.shown().len().saturating_sub(1);
+            let kept = |n: &usize| front.contains(n) || *n == last;
+            let rows = (0..=last).filter(kept).filter_map(|n| Some((*light.shown().get(n)?, front.contains(&n))));
+            Group { heading: Some(&light.title), rows: rows.collect() }
+        })
+        .collect();
+    let says = [
+        "Each block is one picture that was meant. Filled: no other way to it asks no more of the chip and is as exact.",
+        "Hollow: the way that is furthest off. Counts are for each final pixel, as the program asks; of a → b, b is left after pruning.",
+    ];
+    chart("What accuracy costs the chip", &says, &groups)
+}
+
+fn chart(title: &str, says: &[&str], groups: &[Group<'_>]) -> Canvas {
+    let all = || groups.iter().flat_map(|group| &group.rows).map(|(way, _)| *way);
+    let lines: usize = groups.iter().map(|group| group.rows.len() + usize::from(group.heading.is_some())).sum();
+    let top = 66.0 + 16.0 * says.len() as f64;
+    let bottom = top + ROW * lines as f64 + 6.0;
+    let mut canvas = Canvas::new(WIDTH, bottom + 30.0);
+    canvas.text([16.0, 26.0], Side::Left, 15, INK, title);
+    for (n, line) in says.iter().enumerate() {
+        canvas.text([16.0, 46.0 + 16.0 * n as f64], Side::Left, 11, PALE, line);
+    }
+    let axis = Axis::logarithmic("", all().map(Technique::rms));
+    let at = |value: f64| AXIS[0] + (AXIS[1] - AXIS[0]) * axis.share(value);
+    canvas.text([AXIS[0], top - 10.0], Side::Left, 11, INK, "rms error against the truth, 8-bit steps");
+    for tick in ticks(&axis) {
+        canvas.line([at(tick), top], [at(tick), bottom], GRID, 1.0);
+        canvas.text([at(tick), bottom + 16.0], Side::Middle, 11, PALE, &plain(tick));
+    }
+    for (n, name) in COUNTS.iter().enumerate() {
+        canvas.text([column(n), top - 10.0], Side::Left, 11, INK, name);
+    }
+    let most = all().flat_map(|way| counts(way).map(|[asked, _]| asked)).fold(1.0, f64::max);
+    let mut y = top + ROW / 2.0;
+    for group in groups {
+        if let Some(heading) = group.heading {
+            canvas.text([16.0, y + 5.0], Side::Left, 12, INK, heading);
+            canvas.line([16.0, y + ROW / 2.0], [WIDTH - 16.0, y + ROW / 2.0], GRID, 1.0);
+            y += ROW;
+        }
+        let best = group.rows.iter().enumerate().filter(|(_, (_, best))| *best);
+        let best: Vec<[f64; 2]> = best.map(|(n, (way, _))| [at(way.rms()), y + ROW * n as f64]).collect();
+        for pair in best.windows(2) {
+            canvas.line(pair[0], pair[1], SPARED, 2.0);
+        }
+        for (way, best) in &group.rows {
+            row(&mut canvas, way, *best, at(way.rms()), y, most);
+            y += ROW;
+        }
+    }
+    canvas
+}
+
+fn row(canvas: &mut Canvas, way: &Technique, best: bool, x: f64, y: f64, most: f64) {
+    let color = if best { BEST } else { PALE };
+    canvas.text([NAMES, y + 4.0], Side::Right, 11, color, &way.entry.name());
+    canvas.disc([x, y], 4.5, color, best);
+    let (side, beside) = if x > AXIS[1] - 50.0 { (Side::Right, x - 9.0) } else { (Side::Left, x + 9.0) };
+    let rms = number(way.rms());
+    let width = text_width(&rms, 10.0);
+    let left = if side == Side::Right { beside - width } else { beside };
+    // The line of the front does not cross the number.
+    canvas.rectangle(Rect { x: left, y: y - 6.0, width, height: 12.0 }, "#ffffff");
+    canvas.text([beside, y + 4.0], side, 10, INK, &rms);
+    for (n, [asked, pruned]) in counts(way).into_iter().enumerate() {
+        let x = column(n);
+        let length = |count: f64| BAR * count / most;
+        let bar = |count| Rect { x, y: y - 5.0, width: length(count), height: 10.0 };
+        canvas.rectangle(bar(asked), SPARED);
+        canvas.rectangle(bar(pruned), color);
+        let text = if number(asked) == number(pruned) {
+            number(asked)
+        } else {
+            format!("{} → {}", number(asked), number(pruned))
+        };
+        let color = if asked == 0.0 { PALE } else { INK };
+        canvas.text([x + length(asked) + if asked == 0.0 { 0.0 } else { 4.0 }, y + 4.0], Side::Left, 10, color, &text);
+    }
+}
+
+fn column(n: usize) -> f64 {
+    COLUMNS[0] + COLUMNS[1] * n as f64
+}
+
+/// Of each column: as asked, and after pruning.
+fn counts(way: &Technique) -> [[f64; 2]; 4] {
+    let both = [&way.accuracy.cost.asked, &way.accuracy.cost.pruned];
+    [
+        both.map(|cost| cost.passes as f64),
+        both.map(|cost| cost.stages),
+        both.map(|cost| cost.fetches),
+        both.map(|cost| cost.blends),
+    ]
+}

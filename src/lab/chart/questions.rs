@@ -1,0 +1,121 @@
+//! Which methods mean the same picture: the lights of charts, and the questions that they answer.
+
+use super::front::front;
+use super::techniques::Technique;
+
+/// A light that is asked for, and what is asked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Question {
+    /// The name of its files, and of its truth in the data.
+    pub name: &'static str,
+    /// Above its charts.
+    pub title: &'static str,
+    /// Family and technique, with the parameter, of a scene that means this light; every scene of an equal truth is a way to it.
+    like: (&'static str, &'static str),
+}
+
+/// The questions, in the order of the page.
+pub const QUESTIONS: [Question; 6] = [
+    Question {
+        name: "diffuse",
+        title: "Diffuse light on bumps",
+        like: ("per-pixel-lighting", "tangent space diffuse"),
+    },
+    Question {
+        name: "highlight",
+        title: "A highlight on bumps, exponent 8",
+        like: ("per-pixel-lighting", "specular 8"),
+    },
+    Question {
+        name: "hemisphere",
+        title: "Light of sky and ground on bumps",
+        like: ("per-pixel-lighting", "hemisphere exact"),
+    },
+    Question {
+        name: "signed-arithmetic",
+        title: "A dot product of signed vectors",
+        like: ("orthogonal-illumination-mapping", "height 12"),
+    },
+    Question {
+        name: "normalisation",
+        title: "A highlight on a coarse ball: vectors brought to unit length",
+        like: ("normalisation", "smooth plain"),
+    },
+    Question { name: "normalisation-bumps", title: "The same ball with bumps", like: ("normalisation", "bumps plain") },
+];
+
+/// The most methods that a chart shows; the most exact ones of more.
+pub const MOST: usize = 12;
+
+/// What some techniques all mean to show.
+#[derive(Clone, Debug)]
+pub struct Light<'a> {
+    /// The name of its files, and of its truth in the data.
+    pub name: String,
+    /// Above its charts.
+    pub title: String,
+    /// A question asks for it.
+    pub asked: bool,
+    /// The ways to it, the most exact first.
+    pub ways: Vec<&'a Technique>,
+}
+
+/// The lights that techniques mean, those that questions ask for first. `title` is the name of a family.
+pub fn lights<'a>(techniques: &'a [Technique], title: impl Fn(&str) -> String) -> Vec<Light<'a>> {
+    let mut left: Vec<&Technique> = techniques.iter().collect();
+    let mut all = Vec::new();
+    for question in &QUESTIONS {
+        let (family, name) = question.like;
+        let like = techniques.iter().find(|way| way.entry.family == family && way.entry.name() == name);
+        let Some(like) = like else { continue };
+        let (ways, others) = left.into_iter().partition(|way| way.truth == like.truth);
+        left = others;
+        all.push(Light { name: question.name.to_owned(), title: question.title.to_owned(), asked: true, ways });
+    }
+    for way in left {
+        let same = |light: &&mut Light<'_>| {
+            !light.asked
+                && light.ways.iter().all(|other| other.truth == way.truth && other.entry.family == way.entry.family)
+        };
+        if let Some(light) = all.iter_mut().find(same) {
+            light.ways.push(way);
+            continue;
+        }
+        let family = &way.entry.family;
+        let before =
+            all.iter().filter(|light| !light.asked && light.ways.iter().all(|other| other.entry.family == *family));
+        let number = before.count() + 1;
+        let (name, title) = (format!("{family}-{number}"), format!("{}, {number}", title(family)));
+        all.push(Light { name, title, asked: false, ways: vec![way] });
+    }
+    for light in &mut all {
+        light.ways.sort_by(|a, b| a.rms().total_cmp(&b.rms()));
+    }
+    all
+}
+
+impl<'a> Light<'a> {
+    /// The ways that a chart shows.
+    pub fn shown(&self) -> &[&'a Technique] {
+        &self.ways[..self.ways.len().min(MOST)]
+    }
+
+    /// Which of the shown ways nothing beats at all of error, passes, stages, fetches and blended pixels.
+    pub fn front_by_counts(&self) -> Vec<usize> {
+        let point = |way: &&Technique| {
+            let cost = &way.accuracy.cost.asked;
+            [way.rms(), cost.passes as f64, cost.stages, cost.fetches, cost.blends]
+        };
+        front(&self.shown().iter().map(point).collect::<Vec<_>>())
+    }
+
+    /// Which of the shown ways nothing beats at both error and time, from the fastest on.
+    pub fn front_by_time(&self) -> Vec<usize> {
+        front(&self.shown().iter().map(|way| [way.time.median, way.rms()]).collect::<Vec<_>>())
+    }
+
+    /// The way of that name.
+    pub fn way(&self, name: &str) -> Option<&'a Technique> {
+        self.ways.iter().copied().find(|way| way.entry.name() == name)
+    }
+}

@@ -1,0 +1,168 @@
+//! The tables of the page on speed and accuracy.
+
+use super::evaluators::Evaluator;
+use super::page::{number, table};
+use super::questions::{Light, MOST};
+use super::report::{FOLDER, Measured};
+use super::surfaces::SurfaceCost;
+use super::techniques::Technique;
+use super::timing::Spread;
+use crate::accuracy::FrameCost;
+
+/// Errors that a reader may allow, rms in steps.
+const BUDGETS: [f64; 5] = [1.0, 2.0, 4.0, 8.0, 16.0];
+
+/// A row of words.
+type Row = Vec<String>;
+
+impl Measured {
+    /// A light with its charts: what each way to it costs, and what it shows.
+    pub(super) fn light_section(light: &Light<'_>) -> String {
+        let (name, title) = (&light.name, &light.title);
+        let picture = |end: &str, what: &str| format!("![{title}: {what}]({FOLDER}/{name}-{end}.png)\n\n");
+        let more = match light.ways.len() {
+            n if n > MOST => format!("The {MOST} most exact of {n} ways.\n\n"),
+            _ => String::new(),
+        };
+        format!(
+            "### {title}\n\n{more}{}{}{}",
+            picture("chip", "what the chip pays"),
+            picture("pictures", "the pictures and their errors"),
+            picture("here", "what this program takes")
+        )
+    }
+
+    /// A family: how exact each technique is, at what cost, and why.
+    pub(super) fn family_section(&self, family: &str) -> String {
+        let title = self.titles.get(family).map_or(family, String::as_str);
+        format!(
+            "### {title}\n\nHow exact, in 8-bit steps:\n\n{}\nAt what cost, per final pixel, as the program asks; after an arrow what pruning \
+             leaves of it:\n\n{}\nWhere the error comes from, rms:\n\n{}\n",
+            table(&self.accuracy_rows(family)),
+            table(&self.cost_rows(family)),
+            table(&self.cause_rows(family))
+        )
+    }
+
+    fn of<'a>(&'a self, family: &'a str) -> impl Iterator<Item = &'a Technique> {
+        self.techniques.iter().filter(move |technique| technique.entry.family == family)
+    }
+
+    fn accuracy_rows(&self, family: &str) -> Vec<Row> {
+        let row = |technique: &Technique| {
+            let (errors, banding) = (&technique.accuracy.errors, &technique.accuracy.banding);
+            let steps = [errors.rms(), errors.max(), errors.bias(), errors.psnr()].map(number);
+            let counts = [banding.levels, banding.truth_levels, banding.flat_run].map(|count| count.to_string());
+            std::iter::once(technique.entry.name()).chain(steps).chain(counts).collect()
+        };
+        let names = ["technique", "rms", "max", "bias", "PSNR, dB", "levels", "of the truth", "flat run"];
+        heading(&names).chain(self.of(family).map(row)).collect()
+    }
+
+    fn cost_rows(&self, family: &str) -> Vec<Row> {
+        let row = |technique: &Technique| {
+            let cost = &technique.accuracy.cost;
+            let both = |of: fn(&FrameCost) -> f64| {
+                let [asked, pruned] = [&cost.asked, &cost.pruned].map(|cost| number(of(cost)));
+                if asked == pruned { asked } else { format!("{asked} → {pruned}") }
+            };
+            let counts = [
+                both(|cost| cost.passes as f64),
+                both(|cost| cost.stages),
+                both(|cost| cost.fetches),
+                both(|cost| cost.blends),
+                both(|cost| cost.texels),
+                both(|cost| cost.products),
+                both(|cost| cost.frame_buffer_bytes),
+            ];
+            std::iter::once(technique.entry.name()).chain(counts).chain([spread(technique.time)]).collect()
+        };
+        let names = ["technique", "passes", "stages", "fetches", "blends", "texels", "products", "bytes", "ns here"];
+        heading(&names).chain(self.of(family).map(row)).collect()
+    }
+
+    /// What each cause adds to the error.
+    fn cause_rows(&self, family: &str) -> Vec<Row> {
+        let causes = causes(self.of(family));
+        let names: Vec<&str> =
+            ["technique"].into_iter().chain(causes.iter().copied()).chain(["normals off by, degrees"]).collect();
+        let row = |technique: &Technique| {
+            let of = |name: &&str| cause(technique, name).map_or("-".to_owned(), number);
+            let degrees = degrees(technique).map_or("-".to_owned(), number);
+            std::iter::once(technique.entry.name()).chain(causes.iter().map(of)).chain([degrees]).collect()
+        };
+        heading(&names).chain(self.of(family).map(row)).collect()
+    }
+
+    /// Of each light that there are several ways to, the fastest one within each budget.
+    pub(super) fn budget_rows(lights: &[Light<'_>]) -> Vec<Row> {
+        let names = ["ways to the same light".to_owned(), "most exact".to_owned()]
+            .into_iter()
+            .chain(BUDGETS.iter().map(|budget| format!("rms up to {}", number(*budget))));
+        let named =
+            |way: &Technique, value: f64, unit: &str| format!("{} ({} {unit})", way.entry.name(), number(value));
+        let row = |light: &Light<'_>| {
+            let names: Vec<String> = light.ways.iter().map(|way| way.entry.name()).collect();
+            let exact = light.ways.first().map_or(String::new(), |best| named(best, best.rms(), "steps"));
+            let fastest = |budget: &f64| {
+                let within = light.ways.iter().filter(|way| way.rms() <= *budget);
+                let best = within.min_by(|a, b| a.time.median.total_cmp(&b.time.median));
+                best.map_or("none".to_owned(), |best| named(best, best.time.median, "ns"))
+            };
+            [names.join(", "), exact].into_iter().chain(BUDGETS.iter().map(fastest)).collect()
+        };
+        let several = lights.iter().filter(|light| light.ways.len() > 1);
+        std::iter::once(names.collect()).chain(several.map(row)).collect()
+    }
+
+    pub(super) fn evaluator_rows(&self) -> Vec<Row> {
+        let names = ["evaluator", "surface", "ns per pixel", "rms error, steps", "largest", "what it yields"];
+        let row = |e: &Evaluator| {
+            [&e.name, &e.surface, &spread(e.time), &number(e.error), &number(e.largest), &e.yields]
+                .map(String::clone)
+                .to_vec()
+        };
+        heading(&names).chain(self.evaluators.iter().map(row)).collect()
+    }
+
+    pub(super) fn surface_rows(&self) -> Vec<Row> {
+        let names = ["surface", "texels", "operations", "bytes", "ns, fast engine", "ns, definition"];
+        let row = |s: &SurfaceCost| {
+            let counts = [s.texels, s.operations, s.bytes].map(number);
+            [s.name.clone()].into_iter().chain(counts).chain([s.fast, s.scalar].map(spread)).collect()
+        };
+        heading(&names).chain(self.surfaces.iter().map(row)).collect()
+    }
+}
+
+fn heading(names: &[&str]) -> impl Iterator<Item = Row> {
+    std::iter::once(names.iter().map(|name| (*name).to_owned()).collect())
+}
+
+/// The causes that any of some techniques have, in the order of the way from the truth to the picture.
+pub(super) fn causes<'a>(techniques: impl Iterator<Item = &'a Technique>) -> Vec<&'static str> {
+    let mut causes: Vec<&'static str> = Vec::new();
+    for cause in techniques.flat_map(|technique| &technique.accuracy.causes) {
+        if !causes.contains(&cause.name) {
+            causes.push(cause.name);
+        }
+    }
+    // Not every technique has normals that bytes hold: that cause comes first all the same.
+    causes.sort_by_key(|name| usize::from(*name != "quantised normals"));
+    causes
+}
+
+/// What a cause adds to a technique's error, rms.
+pub(super) fn cause(technique: &Technique, name: &str) -> Option<f64> {
+    technique.accuracy.causes.iter().find(|cause| cause.name == name).map(|cause| cause.errors.rms())
+}
+
+/// How far a technique's normals are turned, on average.
+pub(super) fn degrees(technique: &Technique) -> Option<f64> {
+    technique.accuracy.normals.as_ref().map(|normals| normals.degrees.mean())
+}
+
+/// A median with the ends of the middle half.
+pub(super) fn spread(spread: Spread) -> String {
+    format!("{} ({} to {})", number(spread.median), number(spread.lower), number(spread.upper))
+}
