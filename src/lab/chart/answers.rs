@@ -191,7 +191,7 @@ fn one_pass(light: &Light<'_>) -> Option<String> {
     let work = |way: &Technique| way.accuracy.cost.asked.stages + way.accuracy.cost.asked.fetches;
     let exact = ways().next()?;
     let cheap = ways().min_by(|a, b| work(a).total_cmp(&work(b)).then(a.rms().total_cmp(&b.rms())))?;
-    let worst = ways().last()?;
+    let worst = ways().next_back()?;
     Some(format!("{}. Most exact: {}. Furthest off: {}", capital(&told(cheap)), told(exact), told(worst)))
 }
 
