@@ -85,11 +85,19 @@ impl Measured {
         });
         let exponents: Vec<_> = exponents.collect();
         let (first, ..) = exponents.iter().find(|(_, squared, table, _)| table.rms() < squared.rms())?;
+        let nearer = exponents
+            .iter()
+            .rfind(|(_, _, table, renormalised)| renormalised.is_some_and(|way: &Technique| way.rms() < table.rms()));
+        let but = nearer.map_or(String::new(), |(exponent, ..)| {
+            format!("; squares of renormalised vectors are nearer up to {exponent}, but keep the bands")
+        });
         let told = exponents.iter().map(|(exponent, squared, table, renormalised)| {
-            let also = renormalised.map_or(String::new(), |way| format!(", renormalised {}", number(way.rms())));
+            let also = renormalised.map_or(String::new(), |way| {
+                format!(", renormalised {} and {}", number(way.rms()), way.accuracy.banding.levels)
+            });
             let levels = |way: &Technique| way.accuracy.banding.levels;
             format!(
-                "exponent {exponent}: squared {} rms and {} levels{also}, table {} and {}",
+                "exponent {exponent}: squared {} rms and {} levels{also}, table {} rms and {} levels",
                 number(squared.rms()),
                 levels(squared),
                 number(table.rms()),
@@ -97,10 +105,7 @@ impl Measured {
             )
         });
         let told: Vec<String> = told.collect();
-        Some(format!(
-            "From exponent {first} on, the least one drawn both ways where it does. {}",
-            capital(&told.join("; "))
-        ))
+        Some(format!("At every exponent from {first} on{but}. {}", capital(&told.join("; "))))
     }
 
     /// The same passes with and without a subtracting blend.
