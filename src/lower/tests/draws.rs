@@ -36,7 +36,7 @@ fn given(steps: &HashMap<&str, (i64, &str)>, draw: &Draw, input: Input) -> i64 {
         let next = if at < 4 { "" } else { "next." };
         let of = |suffix: &str| steps.get(format!("unit{n}.{next}texel{suffix}.word").as_str()).copied();
         // A single texel is the first.
-        of(["00", "10", "01", "11"][at % 4]).or_else(|| of("").filter(|_| at % 4 == 0)).unwrap_or((0, ""))
+        of(["00", "10", "01", "11"][at % 4]).or_else(|| of("").filter(|_| at.is_multiple_of(4))).unwrap_or((0, ""))
     };
     match input {
         Input::Primary(c) => said(format!("primary.{}", channel_name(c))),

@@ -62,7 +62,7 @@ fn functions(count: usize, seed: u64) -> Vec<Function> {
         let policies = if random.once_in(2) { Policies::DEFAULT } else { any_policies(&mut random) };
         let textures = if random.once_in(3) { Textures::Registers } else { Textures::Words };
         let options = Options { policies, uniform: random.once_in(3), textures, fragment: random.once_in(8) };
-        if functions.len() % 2 == 0 {
+        if functions.len().is_multiple_of(2) {
             let mut program = programs.new_tree(&mut runner).unwrap().current();
             // No chip has more, and no place is kept for their constants.
             program.stages.truncate(8);
