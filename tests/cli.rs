@@ -109,6 +109,69 @@ fn programs_are_printed_in_other_forms() {
     bench.run("check lit-text-file.ron").failed(4, "NB0502");
 }
 
+/// A program in each language that has files of its own, and the texts that it is printed as.
+#[test]
+fn programs_are_printed_as_functions() {
+    let bench = Bench::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    for name in ["lit-words-file.ron", "lit.words", "lit.rc", "dot3.txt", "hemisphere-normal.png"] {
+        fs::copy(folder.join(name), bench.path(name)).unwrap();
+    }
+    for form in ["c99", "glsl", "wgsl", "verilog"] {
+        let printed = bench.run(&format!("lower lit-words-file.ron --to {form} --textures words")).text();
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("tests/cli/lower-{form}.txt"));
+        assert_data_eq!(printed, snapbox::Data::read_from(&path, None));
+    }
+    // The words, the program that they are, and the scene with them are one function.
+    let body = |text: String| text.split_once("_program(").unwrap().1.to_owned();
+    let words = body(bench.run("lower lit.words --profile nv10 --to glsl").text());
+    assert_eq!(body(bench.run("lower lit.rc --profile nv10 --to glsl").text()), words);
+    let fragment = bench.run("lower lit-words-file.ron --to glsl --fragment").text();
+    let lines = |text: &str| text.lines().filter(|line| line.starts_with("    int stage")).count();
+    assert_eq!(lines(&fragment), lines(&words));
+    assert!(bench.run("lower lit.words --profile nv10 --to wgsl --uniform").text().contains("constants.stage[0].r"));
+    bench.write("bump.psh", "ps.1.1\ntex t0\ntexm3x3pad t1, t0\ntexm3x3pad t2, t0\ntexm3x3tex t3, t0\nmov r0, t3\n");
+    assert!(bench.run("lower bump.psh --to c99").text().contains("pixel->texture[3][0]"));
+    bench.run("lower bump.psh --to c99 --profile nv10").failed(3, "NB");
+    let stages = bench.run("lower dot3.txt --from texture-stages --profile nv10 --to combiners").text();
+    assert!(stages.contains("expand(tex0) . expand(const0)"), "{stages}");
+    bench.write("wrong.words", "RC_IN_RGB 1 2 3\n");
+    bench.run("lower wrong.words --profile nv10 --to c99").failed(3, "wrong.words:1:15");
+    bench.run("registers gone.words").failed(4, "NB0502");
+    assert!(bench.run("registers lit.words --profile nv10").text().contains("0c040220"));
+}
+
+#[test]
+fn whole_programs_run_without_a_scene() {
+    let bench = Bench::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    fs::copy(folder.join("lit.words"), bench.path("lit.words")).unwrap();
+    let one =
+        bench.run("op program --words lit.words --profile nv10 --in tex0=166,115,248 --in primary=0xff,190,120").text();
+    assert!(one.ends_with("result: fragment.r 155  fragment.g 120  fragment.b 103  fragment.a 255\n"), "{one}");
+    bench.write("rows.tsv", "tex0.r\ttex0.g\ttex0.b\tprimary.r\n0x80\t128\t255\t0xff\n166\t115\t248\t255\n");
+    let rows = bench.run("op program lit.words --profile nv10 --inputs rows.tsv").text();
+    assert_eq!(rows.lines().nth(1).unwrap(), "0x80\t128\t255\t0xff\t220\t80\t92\t255");
+    bench.run("op program lit.words --profile nv10 --in const0=3").failed(2, "is no input of a program");
+    bench.run("op program lit.txt").failed(2, "--from");
+}
+
+/// A scene from standard input is the scene of the file.
+#[test]
+fn scenes_come_from_standard_input() {
+    let bench = Bench::new();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/programs");
+    for name in ["lit.words", "lit-words-file.ron", "hemisphere-normal.png"] {
+        fs::copy(folder.join(name), bench.path(name)).unwrap();
+    }
+    let mut command = bench.command("render - -o piped.png");
+    let given = fs::File::open(bench.path("lit-words-file.ron")).unwrap();
+    Run::of(command.stdin(given).output().unwrap()).data();
+    bench.run("render lit-words-file.ron -o named.png").data();
+    assert_eq!(fs::read(bench.path("piped.png")).unwrap(), fs::read(bench.path("named.png")).unwrap());
+    bench.run("render - -o none.png").failed(3, "error");
+}
+
 #[test]
 fn plans_are_explained() {
     let bench = Bench::new();

@@ -30,6 +30,7 @@ mod settings;
 #[path = "common/third_party.rs"]
 mod third_party;
 
+mod answers;
 mod architecture;
 mod assets_images;
 mod assets_output;

@@ -62,7 +62,8 @@ impl Loaded {
     }
 }
 
-/// Reads and checks the scene file at `path`; the files it names are looked for in its folder.
+/// Reads and checks the scene file at `path`; the files it names are looked for in its folder. `-` is standard input, whose files are looked for in the current
+/// folder.
 ///
 /// # Errors
 /// The file is missing, too large or not UTF-8; the scene is not one; a file that it names cannot be used.
@@ -73,7 +74,12 @@ pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
         suppressed: 0,
         source: Source { name: name.clone(), text },
     };
-    let bytes = match read::bytes(path, Kind::Stream, limits.scene_file()) {
+    let bytes = if path == Path::new("-") {
+        read::all(std::io::stdin(), limits.scene_file())
+    } else {
+        read::bytes(path, Kind::Stream, limits.scene_file())
+    };
+    let bytes = match bytes {
         Ok(bytes) => bytes,
         Err(error) => {
             let finding = match error {

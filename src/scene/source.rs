@@ -395,7 +395,7 @@ source! {
         destination: Name<state::BlendFactor>,
     }
     struct ProgramFile { file: String }
-    struct RegisterWords { nv10: Nv10Words<'a>, nv20: Nv20Words<'a> }
+    struct RegisterWords { nv10: Nv10Words<'a>, nv20: Nv20Words<'a>, text: String, file: String }
     struct Nv10Words {
         rc_in_alpha: List<'a, u32>,
         rc_in_rgb: List<'a, u32>,

@@ -1,58 +1,162 @@
 //! `ninebit lower`.
 
+use std::path::PathBuf;
+
 use clap::{Args, ValueEnum};
+use ninebit::plan::{Plan, PlanOptions};
 use ninebit::shown;
+use ninebit::state::{Draw, Scene};
 use ninebit_files::output::write_text;
+use ninebit_lower::{Function, Language, Named, Options, Textures};
 use ninebit_program::{registers, text};
 use ninebit_scene::register_words;
 
 use super::Context;
 use super::exit::Failure;
-use super::scene::{SceneArguments, chosen_draws};
+use super::program_file::ProgramArguments;
+use super::scene::{PolicyArguments, chosen_draws, load};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
+    /// The scene file, or a pixel program in a file of its own
+    #[arg(value_name = "SCENE|PROGRAM")]
+    source: PathBuf,
     #[command(flatten)]
-    scene: SceneArguments,
+    program: ProgramArguments,
+    #[command(flatten)]
+    policies: PolicyArguments,
     /// Only this draw, numbered from 0
     #[arg(long, value_name = "N")]
     draw: Option<usize>,
     /// The form
     #[arg(long, value_enum, value_name = "FORM")]
     to: Form,
+    /// Functions: constants of the draw are given, so that one text serves every draw that differs in nothing else
+    #[arg(long)]
+    uniform: bool,
+    /// Functions of a scene's draws: what is given of textures
+    #[arg(long, value_enum, value_name = "FORM", default_value_t = Given::Registers)]
+    textures: Given,
+    /// Functions of a scene's draws: end with the fragment, before alpha test, blend and store. A program alone always does
+    #[arg(long)]
+    fragment: bool,
 }
 
 /// Forms of programs.
-#[derive(Clone, Copy, Debug, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Form {
     /// The combiner language
     Combiners,
     /// Words of the registers of the scene's chip, as a scene has them
     Registers,
+    /// A function of C99 for each draw, integers only
+    C99,
+    /// A function of GLSL 3.30 and GLSL ES 3.00
+    Glsl,
+    /// A function of WGSL
+    Wgsl,
+    /// A combinational module of Verilog-2001
+    Verilog,
 }
 
-/// Prints the programs of a scene in another form.
+/// What functions are given of textures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Given {
+    /// What each unit yields
+    Registers,
+    /// Fetched words and weights: the filter is part of the function
+    Words,
+}
+
+impl Form {
+    /// The language of its functions.
+    fn language(self) -> Option<Language> {
+        match self {
+            Form::Combiners | Form::Registers => None,
+            Form::C99 => Some(Language::C99),
+            Form::Glsl => Some(Language::Glsl),
+            Form::Wgsl => Some(Language::Wgsl),
+            Form::Verilog => Some(Language::Verilog),
+        }
+    }
+}
+
+/// Prints programs in another form.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let (scene, _) = arguments.scene.load(context)?;
+    let (path, program) = (&arguments.source, &arguments.program);
+    let alone = program.language(path);
+    let scene = match alone {
+        Some(language) => program.read(path, language, context)?.0,
+        None => load(path, &arguments.policies, context)?.0,
+    };
+    let draws = chosen_draws(&scene, arguments.draw)?;
+    let out = match arguments.to.language() {
+        Some(language) => functions(arguments, language, &scene, &draws, alone.is_some())?,
+        None => programs(arguments, &scene, &draws, alone.is_some()),
+    };
+    Ok(write_text(&out)?)
+}
+
+/// The programs of draws as text or as words.
+fn programs(arguments: &Arguments, scene: &Scene, draws: &[(usize, &Draw)], alone: bool) -> String {
     let mut out = String::new();
-    for (number, draw) in chosen_draws(&scene, arguments.draw)? {
+    for (number, draw) in draws {
         if !out.is_empty() {
             out.push('\n');
         }
-        // The name could be anything: not in a comment that it would end.
-        let name = shown::name(&draw.name);
-        out.push_str(&format!("// draw {number} `{name}`\n"));
+        if !alone {
+            // The name could be anything: not in a comment that it would end.
+            out.push_str(&format!("// draw {number} `{}`\n", shown::name(&draw.name)));
+        }
         if let Some(program) = &draw.vertex_program {
             let counts = format!("{} instructions, {} slots", program.instructions, program.slots);
             out.push_str(&format!("// its vertices come from a vertex program: {counts}\n"));
         }
-        match arguments.to {
-            Form::Combiners => out.push_str(&text::print(&draw.combiners)),
-            Form::Registers => {
-                out.push_str(&register_words(&registers::encode(&draw.combiners, scene.profile)));
-                out.push('\n');
-            }
+        if arguments.to == Form::Combiners {
+            out.push_str(&text::print(&draw.combiners));
+        } else {
+            out.push_str(&register_words(&registers::encode(&draw.combiners, scene.profile)));
+            out.push('\n');
         }
     }
-    Ok(write_text(&out)?)
+    out
+}
+
+/// Draws, or a program alone, as functions.
+fn functions(
+    arguments: &Arguments,
+    language: Language,
+    scene: &Scene,
+    draws: &[(usize, &Draw)],
+    alone: bool,
+) -> Result<String, Failure> {
+    let options = Options {
+        policies: arguments.policies.policies()?,
+        uniform: arguments.uniform,
+        textures: if arguments.textures == Given::Words { Textures::Words } else { Textures::Registers },
+        fragment: arguments.fragment,
+    };
+    // Whatever a draw's constants settle is left in: with `--uniform` others may be given.
+    let plan = Plan::compile(scene, &PlanOptions { policies: options.policies, prune: false }).map_err(|errors| {
+        let message = errors.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ");
+        Failure::invalid("NB0322", message, "`ninebit check` says where")
+    })?;
+    let made: Vec<(String, String, Function)> = draws
+        .iter()
+        .map(|(number, draw)| {
+            if alone {
+                let about = format!("{} on {}", shown::path(&arguments.source), arguments.program.profile_name());
+                let function = Function::of_program(&draw.combiners, &options);
+                return ("ninebit_program".to_string(), about, function);
+            }
+            let about = format!("draw {number} `{}`", shown::name(&draw.name));
+            let function = Function::of_draw(scene, draw, &plan.draws[*number], &options);
+            (format!("ninebit_draw{number}"), about, function)
+        })
+        .collect();
+    let named: Vec<Named<'_>> = made
+        .iter()
+        .map(|(name, about, function)| Named { name: name.clone(), about: about.clone(), function })
+        .collect();
+    Ok(language.print(&named))
 }

@@ -17,11 +17,13 @@ mod measure;
 mod op;
 mod picture;
 mod policies;
+mod program_file;
 mod registers;
 mod render;
 mod replay;
 mod scene;
 mod signals;
+mod template;
 mod terminal;
 mod texture;
 mod trace;
@@ -68,9 +70,11 @@ enum Command {
     Measure(measure::Arguments),
     /// Print the plan of a scene: what each draw computes, what is left out and why, what it costs
     Explain(explain::Arguments),
-    /// Print the pixel programs of a scene in another form
+    /// Print pixel programs in another form: as text, as register words, or as functions of C, GLSL, WGSL or Verilog
+    ///
+    /// A function takes what a pixel brings and yields the stored word, or the fragment, in integers that are exactly the chip's.
     Lower(lower::Arguments),
-    /// Print the pixel programs of a scene as register words, each with its meaning
+    /// Print pixel programs as register words, each with its meaning
     Registers(registers::Arguments),
     /// Compare two pictures: where they differ, by how much, and how those pixels came to be
     ///

@@ -1,6 +1,7 @@
 //! `ninebit registers`.
 
 use std::fmt::Write;
+use std::path::PathBuf;
 
 use clap::Args;
 use ninebit::shown;
@@ -10,13 +11,19 @@ use ninebit_program::registers::{Description, describe, encode};
 use serde_json::{Value, json};
 
 use super::exit::Failure;
-use super::scene::{SceneArguments, chosen_draws};
+use super::program_file::ProgramArguments;
+use super::scene::{PolicyArguments, chosen_draws, load};
 use super::{Context, Format};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
+    /// The scene file, or a pixel program in a file of its own
+    #[arg(value_name = "SCENE|PROGRAM")]
+    source: PathBuf,
     #[command(flatten)]
-    scene: SceneArguments,
+    program: ProgramArguments,
+    #[command(flatten)]
+    policies: PolicyArguments,
     /// Only this draw, numbered from 0
     #[arg(long, value_name = "N")]
     draw: Option<usize>,
@@ -25,9 +32,13 @@ pub(crate) struct Arguments {
     format: Format,
 }
 
-/// Prints the programs of a scene as register words.
+/// Prints the programs of a scene, or one of a file of its own, as register words.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let (scene, _) = arguments.scene.load(context)?;
+    let (path, program) = (&arguments.source, &arguments.program);
+    let scene = match program.language(path) {
+        Some(language) => program.read(path, language, context)?.0,
+        None => load(path, &arguments.policies, context)?.0,
+    };
     let draws = chosen_draws(&scene, arguments.draw)?;
     let words =
         draws.iter().map(|(number, draw)| (*number, &draw.name, describe(&encode(&draw.combiners, scene.profile))));

@@ -19,7 +19,7 @@ use super::terminal::{self, Level};
 /// The scene and how to read it.
 #[derive(Debug, Args)]
 pub(crate) struct SceneArguments {
-    /// The scene file
+    /// The scene file, `-` for standard input
     pub(crate) scene: PathBuf,
     #[command(flatten)]
     policies: PolicyArguments,

@@ -8,6 +8,7 @@ pub mod output;
 pub mod registers;
 mod report;
 
+use crate::algebra::Algebra;
 use crate::state::{Combiners, Policies, Register};
 use crate::trace::Silent;
 use direct::Direct;
@@ -38,17 +39,36 @@ impl Combiners {
     /// registers.load(Register::PrimaryColor, [128, 200, 230, 255]);
     /// assert_eq!(program.run(registers, &Policies::DEFAULT), [203, 203, 203, 255]);
     /// ```
-    pub fn run(&self, mut registers: Registers<i32>, policies: &Policies) -> [u8; 4] {
-        registers.write(Register::Spare0, 3, registers.read(Register::Texture0, 3));
+    pub fn run(&self, registers: Registers<i32>, policies: &Policies) -> [u8; 4] {
         let mut observer = Silent;
-        let mut direct = Direct::new(policies, &mut observer);
+        let constants = |_: &mut _, of: [[u8; 4]; 2], _| of.map(|constant| constant.map(i32::from));
+        let fragment = self.evaluate(registers, constants, &mut Direct::new(policies, &mut observer));
+        fragment.map(|channel| channel.clamp(0, 255) as u8)
+    }
+
+    /// The program on values of any kind: R, G, B, A of the fragment.
+    ///
+    /// `registers` hold what a pixel brings; the alpha of SPARE0 begins as that of TEXTURE0 (CMB-13). `constants` says before each stage, by its number, and before
+    /// the final combiner (`None`) what the two constant colours are, given the program's own bytes.
+    pub fn evaluate<A: Algebra>(
+        &self,
+        mut registers: Registers<A::Register>,
+        mut constants: impl FnMut(&mut A, [[u8; 4]; 2], Option<usize>) -> [[A::Register; 4]; 2],
+        a: &mut A,
+    ) -> [A::Register; 4] {
+        registers.write(Register::Spare0, 3, registers.read(Register::Texture0, 3));
+        let load = |registers: &mut Registers<A::Register>, [first, second]: [_; 2]| {
+            registers.load(Register::ConstantColor0, first);
+            registers.load(Register::ConstantColor1, second);
+        };
         for (index, stage) in self.stages.iter().enumerate() {
             let (rgb, alpha) = (PlannedPortion::whole(stage.rgb, 7), PlannedPortion::whole(stage.alpha, 8));
             let planned = PlannedStage { index, rgb, alpha, constants: stage.constants, reads_constants: true };
-            general::stage(&planned, self.mux_select, &mut registers, &mut direct);
+            load(&mut registers, constants(a, stage.constants, Some(index)));
+            let values = general::evaluate(&planned, self.mux_select, &registers, a);
+            general::write(&planned, &values, &mut registers, a);
         }
-        general::load_constants(self.final_combiner.constants, &mut registers, &mut direct);
-        let values = final_combiner::evaluate(&self.final_combiner, &registers, &mut direct);
-        values.fragment.map(|channel: i32| channel.clamp(0, 255) as u8)
+        load(&mut registers, constants(a, self.final_combiner.constants, None));
+        final_combiner::evaluate(&self.final_combiner, &registers, a).fragment
     }
 }

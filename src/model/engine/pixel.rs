@@ -511,7 +511,7 @@ impl<'a> TriangleContext<'a> {
             }
         };
         let word = surface::pack(draw.surface, channels.map(|c| c.decision().clamp(0, 255) as u8));
-        let word = (fragment.stored & !draw.write_mask) | (word & draw.write_mask);
+        let word = surface::masked(fragment.stored, word, draw.write_mask);
         if draw.write_mask != 0 {
             observer.count(Work::BytesWritten, u64::from(draw.surface.bytes()));
         }

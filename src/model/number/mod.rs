@@ -35,7 +35,22 @@ pub use scalar::{Halves, Quarters};
 pub use strands::{STRANDS, Strands};
 
 use crate::state::RegisterFloor;
-use std::ops::{Add, Sub};
+use std::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr, Sub};
+
+/// The bits of a stored word or of a texel: `u32`, or what stands for one where rules are printed. Nothing wraps: what is shifted out is not asked for, and
+/// products stay below 2^32.
+pub trait Word:
+    Copy
+    + From<u32>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + Mul<Output = Self>
+    + Shl<u32, Output = Self>
+    + Shr<u32, Output = Self>
+{
+}
+
+impl Word for u32 {}
 
 /// A value that is mixed by weights of 256ths: interpolated colours and filtered texels.
 pub trait Blend: Copy + Add<Output = Self> {

@@ -1,6 +1,6 @@
 //! Constant folding: what the state alone settles for every pixel of a draw. Nothing here depends on a policy.
 
-use crate::algebra::Trail;
+use crate::algebra::{Algebra, Trail};
 use crate::combiner::registers::{bit, bits, initially_undefined};
 use crate::rop::blend;
 use crate::state::{
@@ -15,7 +15,8 @@ pub(super) fn blend(blend: &Blend, blend_constant: [u8; 4], written: u8, zero: u
     let mut trail = Trail::folding();
     let source = [0, 1, 2, 3].map(|channel: u8| trail.input((zero >> channel & 1 != 0).then_some(0)));
     let destination = [0; 4].map(|_: u8| trail.input(None));
-    let stored = blend::blend(blend, written, blend_constant, &source, &destination, &mut trail);
+    let constant = blend_constant.map(|byte| trail.byte(byte));
+    let stored = blend::blend(blend, written, &constant, &source, &destination, &mut trail);
     let all = |of: [_; 4]| (0..4).filter(|c| written >> c & 1 != 0).all(|c| stored[c] == of[c]);
     (all(source), all(destination))
 }

@@ -109,7 +109,8 @@ impl<'d> Computed<'d> {
         if let Some(state) = &blend {
             let destination = [0; 4].map(|_: u8| self.trail.input(None));
             let source = blend::truncated(surface, self.fragment, &mut self.trail);
-            stored = blend::blend(state, written, draw.blend_constant, &source, &destination, &mut self.trail);
+            let constant = draw.blend_constant.map(|byte| self.trail.byte(byte));
+            stored = blend::blend(state, written, &constant, &source, &destination, &mut self.trail);
         }
         let mut roots: Vec<Value> = (0..4).filter(|c| written >> c & 1 != 0).map(|c| stored[c]).collect();
         roots.extend(alpha_test.then_some(self.fragment[3]));

@@ -131,15 +131,14 @@ pub fn evaluate<A: Algebra>(
 pub fn blend<A: Algebra>(
     blend: &Blend,
     channels: u8,
-    constant: [u8; 4],
+    constant: &[A::Register; 4],
     source: &[A::Register; 4],
     destination: &[A::Register; 4],
     a: &mut A,
 ) -> [A::Register; 4] {
-    let constant = constant.map(|byte| a.byte(byte));
     let mut out = *source;
     for channel in (0..4).filter(|c| channels >> c & 1 != 0) {
-        out[channel] = evaluate(blend, channel, source, destination, &constant, a).blended;
+        out[channel] = evaluate(blend, channel, source, destination, constant, a).blended;
     }
     out
 }

@@ -1,5 +1,6 @@
 //! ROP-5, ROP-6: what the surface formats store and what blending reads back.
 
+use crate::number::Word;
 use crate::state::{SurfaceFormat, TextureFormat};
 use crate::texture::format;
 
@@ -52,23 +53,31 @@ pub fn blends(format: SurfaceFormat) -> bool {
     !matches!(format, SurfaceFormat::B8 | SurfaceFormat::G8B8)
 }
 
-/// D and destination alpha, R, G, B, A bytes, as blending reads them: zero low bits, 255 where no alpha is stored.
-#[inline]
-pub fn read(format: SurfaceFormat, word: u32) -> [u8; 4] {
-    let byte = |shift: u32| (word >> shift) as u8;
-    let field = |shift: u32, bits: u32| ((word >> shift & ((1 << bits) - 1)) << (8 - bits)) as u8;
+/// D and destination alpha, R, G, B, A, each 0 to 255, as blending reads them: zero low bits, 255 where no alpha is stored.
+#[inline(always)]
+pub fn channels<W: Word>(format: SurfaceFormat, word: W) -> [W; 4] {
+    let [none, all] = [0, 255].map(W::from);
+    let bits = |shift: u32, mask: u32| word >> shift & W::from(mask);
+    let byte = |shift: u32| bits(shift, 255);
+    let five = |shift: u32| bits(shift, 31) << 3;
     match format {
         SurfaceFormat::A8R8G8B8 => [byte(16), byte(8), byte(0), byte(24)],
-        SurfaceFormat::X8R8G8B8Z | SurfaceFormat::X8R8G8B8O => [byte(16), byte(8), byte(0), 255],
+        SurfaceFormat::X8R8G8B8Z | SurfaceFormat::X8R8G8B8O => [byte(16), byte(8), byte(0), all],
         SurfaceFormat::X1A7R8G8B8Z | SurfaceFormat::X1A7R8G8B8O => {
-            let a = byte(24) & 127;
+            let a = bits(24, 127);
             [byte(16), byte(8), byte(0), a << 1 | a >> 6]
         }
-        SurfaceFormat::R5G6B5 => [field(11, 5), field(5, 6), field(0, 5), 255],
-        SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => [field(10, 5), field(5, 5), field(0, 5), 255],
-        SurfaceFormat::B8 => [0, 0, byte(0), 255],
-        SurfaceFormat::G8B8 => [0, byte(8), byte(0), 255],
+        SurfaceFormat::R5G6B5 => [five(11), bits(5, 63) << 2, five(0), all],
+        SurfaceFormat::X1R5G5B5Z | SurfaceFormat::X1R5G5B5O => [five(10), five(5), five(0), all],
+        SurfaceFormat::B8 => [none, none, byte(0), all],
+        SurfaceFormat::G8B8 => [none, byte(8), byte(0), all],
     }
+}
+
+/// [`channels`] as bytes.
+#[inline]
+pub fn read(format: SurfaceFormat, word: u32) -> [u8; 4] {
+    channels(format, word).map(|channel| channel as u8)
 }
 
 /// The bits of the stored word that belong to R, G, B and A. Unused bits are written together with alpha.
@@ -90,20 +99,31 @@ pub fn channel_bits(format: SurfaceFormat) -> [u32; 4] {
 /// R, G, B, A bytes as a stored word.
 #[inline]
 pub fn pack(format: SurfaceFormat, rgba: [u8; 4]) -> u32 {
-    let [r, g, b, a] = rgba.map(u32::from);
+    packed(format, rgba.map(u32::from))
+}
+
+/// R, G, B, A, each 0 to 255, as a stored word.
+#[inline(always)]
+pub fn packed<W: Word>(format: SurfaceFormat, [r, g, b, a]: [W; 4]) -> W {
     let rgb = r << 16 | g << 8 | b;
     match format {
         SurfaceFormat::A8R8G8B8 => a << 24 | rgb,
         SurfaceFormat::X8R8G8B8Z => rgb,
-        SurfaceFormat::X8R8G8B8O => 0xff00_0000 | rgb,
+        SurfaceFormat::X8R8G8B8O => W::from(0xff00_0000) | rgb,
         SurfaceFormat::X1A7R8G8B8Z => (a >> 1) << 24 | rgb,
-        SurfaceFormat::X1A7R8G8B8O => (0x80 | a >> 1) << 24 | rgb,
+        SurfaceFormat::X1A7R8G8B8O => (W::from(0x80) | a >> 1) << 24 | rgb,
         SurfaceFormat::R5G6B5 => (r >> 3) << 11 | (g >> 2) << 5 | b >> 3,
         SurfaceFormat::X1R5G5B5Z => (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
-        SurfaceFormat::X1R5G5B5O => 0x8000 | (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
+        SurfaceFormat::X1R5G5B5O => W::from(0x8000) | (r >> 3) << 10 | (g >> 3) << 5 | b >> 3,
         SurfaceFormat::B8 => b,
         SurfaceFormat::G8B8 => g << 8 | b,
     }
+}
+
+/// What a surface holds after a store: the bits of the mask are the new word's (ROP-6).
+#[inline(always)]
+pub fn masked<W: Word>(stored: W, word: W, write_mask: u32) -> W {
+    stored & W::from(!write_mask) | word & W::from(write_mask)
 }
 
 /// ROP-6: the bits of the stored word that a colour mask (R, G, B, A) lets through.

@@ -1,47 +1,66 @@
 //! TEX-1: the bits of a texel as channels.
 
-use crate::number::Lane;
+use crate::number::{Lane, Word};
 use crate::state::TextureFormat;
 
 /// 5 bits to 8 by replication.
 #[inline]
 pub fn replicate5(v: u32) -> u8 {
-    (v << 3 | v >> 2) as u8
+    five_to_eight(v) as u8
 }
 
 /// 6 bits to 8 by replication.
 #[inline]
 pub fn replicate6(v: u32) -> u8 {
-    (v << 2 | v >> 4) as u8
+    six_to_eight(v) as u8
 }
 
-/// R, G, B, A bytes of a raw texel. Texels of P8 are looked up first, and those of compressed formats
+#[inline(always)]
+fn five_to_eight<W: Word>(v: W) -> W {
+    v << 3 | v >> 2
+}
+
+#[inline(always)]
+fn six_to_eight<W: Word>(v: W) -> W {
+    v << 2 | v >> 4
+}
+
+/// R, G, B, A of a raw texel, each 0 to 255. Texels of P8 are looked up first, and those of compressed formats
 /// [decoded](super::compressed::decode): here they are zero.
 #[inline(always)]
-pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
-    let byte = |shift: u32| (word >> shift) as u8;
-    let five = |shift: u32| replicate5(word >> shift & 31);
-    let six = |shift: u32| replicate6(word >> shift & 63);
+pub fn channels<W: Word>(format: TextureFormat, word: W) -> [W; 4] {
+    let [none, all] = [0, 255].map(W::from);
+    let bits = |shift: u32, mask: u32| word >> shift & W::from(mask);
+    let byte = |shift: u32| bits(shift, 255);
+    let five = |shift: u32| five_to_eight(bits(shift, 31));
+    let six = |shift: u32| six_to_eight(bits(shift, 63));
+    let four = |shift: u32| bits(shift, 15) << 4 | bits(shift, 15);
     match format {
         TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => [byte(16), byte(8), byte(0), byte(24)],
-        TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), 255],
+        TextureFormat::X8R8G8B8 => [byte(16), byte(8), byte(0), all],
         TextureFormat::A8B8G8R8 => [byte(0), byte(8), byte(16), byte(24)],
         TextureFormat::B8G8R8A8 => [byte(8), byte(16), byte(24), byte(0)],
         TextureFormat::R8G8B8A8 => [byte(24), byte(16), byte(8), byte(0)],
-        TextureFormat::R5G6B5 => [five(11), six(5), five(0), 255],
-        TextureFormat::R6G5B5 => [six(10), five(5), five(0), 255],
-        TextureFormat::X1R5G5B5 => [five(10), five(5), five(0), 255],
-        TextureFormat::A1R5G5B5 => [five(10), five(5), five(0), if word >> 15 & 1 == 0 { 0 } else { 255 }],
-        TextureFormat::A4R4G4B4 => [8, 4, 0, 12].map(|shift| (word >> shift & 15) as u8 * 17),
-        TextureFormat::L8 => [byte(0), byte(0), byte(0), 255],
+        TextureFormat::R5G6B5 => [five(11), six(5), five(0), all],
+        TextureFormat::R6G5B5 => [six(10), five(5), five(0), all],
+        TextureFormat::X1R5G5B5 => [five(10), five(5), five(0), all],
+        TextureFormat::A1R5G5B5 => [five(10), five(5), five(0), bits(15, 1) * all],
+        TextureFormat::A4R4G4B4 => [four(8), four(4), four(0), four(12)],
+        TextureFormat::L8 => [byte(0), byte(0), byte(0), all],
         TextureFormat::I8 => [byte(0); 4],
-        TextureFormat::A8 => [255, 255, 255, byte(0)],
+        TextureFormat::A8 => [all, all, all, byte(0)],
         TextureFormat::A8L8 => [byte(0), byte(0), byte(0), byte(8)],
         TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
         TextureFormat::R8B8 => [byte(8), byte(0), byte(0), byte(8)],
-        TextureFormat::Y16 => [255, byte(8), byte(0), 255],
-        TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => [0; 4],
+        TextureFormat::Y16 => [all, byte(8), byte(0), all],
+        TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => [none; 4],
     }
+}
+
+/// [`channels`] as bytes.
+#[inline(always)]
+pub fn expand(format: TextureFormat, word: u32) -> [u8; 4] {
+    channels(format, word).map(|channel| channel as u8)
 }
 
 /// Whether channels of the format have 5 or 6 bits, whose widening is off; 1 and 4 bits widen exactly.

@@ -6,12 +6,14 @@
 mod code;
 mod describe;
 mod program;
+mod text;
 
 use ninebit::state::{Named, Profile, named};
 
 pub use code::{refusal, stored};
 pub use describe::{Description, describe};
 pub use program::{decode, encode, word_of};
+pub use text::{Written, read};
 
 named! {
     /// A register of the combiners, or an array of them.

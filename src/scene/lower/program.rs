@@ -90,8 +90,8 @@ pub(super) fn program<'a>(
             judge(reader, combiners, &places, &combiner_calls::Words, Some(&text))
         }
         _ => {
-            let (combiners, places) = register_words::register_words(reader, rest)?;
-            judge(reader, combiners, &places, &Words, None)
+            let (combiners, places, inside) = register_words::register_words(reader, names, rest)?;
+            judge(reader, combiners, &places, &Words, inside.as_ref())
         }
     };
     (reader.errors == errors).then_some(Program { form: Form::Combiners(data), asides })

@@ -9,10 +9,10 @@ use serde_json::json;
 
 use super::super::Context;
 use super::super::exit::Failure;
+use super::super::template::Template;
 use super::ProfileArgument;
 use super::inputs::set;
 use super::operation::{Column, Common, Operation, Results, drive};
-use super::template::Template;
 use super::words;
 
 #[derive(Debug, Args)]

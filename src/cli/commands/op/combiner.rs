@@ -12,10 +12,10 @@ use serde_json::json;
 use super::super::Context;
 use super::super::exit::Failure;
 use super::super::scene::PolicyArguments;
+use super::super::template::Template;
 use super::ProfileArgument;
 use super::inputs::{self, Assignment, Numbers};
 use super::operation::{Column, Common, Operation, Results, drive};
-use super::template::Template;
 use super::words::{self, Input};
 
 #[derive(Debug, Args)]

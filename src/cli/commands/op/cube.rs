@@ -16,10 +16,10 @@ use serde_json::json;
 
 use super::super::Context;
 use super::super::exit::Failure;
+use super::super::template::Template;
 use super::ProfileArgument;
 use super::inputs::set;
 use super::operation::{Column, Common, Operation, Results, drive};
-use super::template::Template;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {

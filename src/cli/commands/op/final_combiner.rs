@@ -12,11 +12,11 @@ use serde_json::json;
 use super::super::Context;
 use super::super::exit::Failure;
 use super::super::scene::PolicyArguments;
+use super::super::template::Template;
 use super::ProfileArgument;
 use super::combiner::constants;
 use super::inputs::{self, Assignment, Numbers};
 use super::operation::{Column, Common, Operation, Results, drive};
-use super::template::Template;
 use super::words::{self, Input};
 
 #[derive(Debug, Args)]
@@ -118,7 +118,7 @@ fn program(arguments: &Arguments) -> String {
 }
 
 /// The state, of which everything that is set is needed.
-fn planned(state: FinalCombiner, alpha: bool) -> PlannedFinal {
+pub(super) fn planned(state: FinalCombiner, alpha: bool) -> PlannedFinal {
     let reads = |register: FinalRegister| state.inputs[..4].iter().any(|input| input.register == register);
     let product = reads(FinalRegister::ETimesF) || state.inputs[4..].iter().any(|input| !input.is_zero());
     PlannedFinal {

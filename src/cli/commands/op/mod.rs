@@ -11,9 +11,9 @@ mod filter;
 mod final_combiner;
 mod inputs;
 mod operation;
+mod program;
 mod table;
-mod template;
-mod words;
+pub(crate) mod words;
 
 use clap::{Args, Subcommand};
 use ninebit::state::Profile;
@@ -40,6 +40,11 @@ pub(crate) enum Command {
     /// Inputs are written as for `ninebit op combiner`, with the mappings identity and invert; A to D may be ef (E times F) and
     /// spare0_plus_secondary (short: sum).
     Final(final_combiner::Arguments),
+    /// A whole pixel program on what a pixel brings, without a scene
+    ///
+    /// The program is a file: register words by name or by method, as logs of pushbuffers and the Xbox's shader definitions have them, or any other language of
+    /// `--from`.
+    Program(program::Arguments),
     /// One pixel's blend and store
     Blend(blend::Arguments),
     /// The bilinear mix of four texels
@@ -63,6 +68,7 @@ pub(crate) fn run(command: &Command, context: Context) -> Result<(), Failure> {
     match command {
         Command::Combiner(arguments) => combiner::run(arguments, context),
         Command::Final(arguments) => final_combiner::run(arguments, context),
+        Command::Program(arguments) => program::run(arguments, context),
         Command::Blend(arguments) => blend::run(arguments, context),
         Command::Filter(arguments) => filter::run(arguments),
         Command::Address(arguments) => address::run(arguments, context),

@@ -149,7 +149,7 @@ pub(super) fn mux_select(word: &str) -> Result<MuxSelect, String> {
 }
 
 /// A chip.
-pub(super) fn profile(word: &str) -> Result<Profile, String> {
+pub(crate) fn profile(word: &str) -> Result<Profile, String> {
     named("profile", word, &[])
 }
 

@@ -38,7 +38,8 @@ pub(super) fn build(draw: &PlannedDraw, policies: Policies, samplers: Option<&[S
         Some(state) => {
             let source = blend::truncated(draw.surface, fragment, &mut graph);
             let destination = destination(draw, &mut graph);
-            blend::blend(state, draw.blended, draw.blend_constant, &source, &destination, &mut graph)
+            let constant = draw.blend_constant.map(|byte| graph.byte(byte));
+            blend::blend(state, draw.blended, &constant, &source, &destination, &mut graph)
         }
     };
     let stored = blended.map(|v| graph.clamped(v));

@@ -1,30 +1,34 @@
 //! The scene that stands for an operation's settings.
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
 use ninebit::state::{Combiners, Draw, Named, Profile, Scene};
 use ninebit_scene as scene;
 
-use super::super::Context;
-use super::super::exit::{Failure, Report};
-use super::super::scene::refused;
+use super::Context;
+use super::exit::{Failure, Report};
+use super::scene::refused;
 
 /// One pixel covered by one triangle, and whatever the operation sets.
 #[derive(Debug, Default)]
-pub(super) struct Template {
+pub(crate) struct Template {
     /// Fields of the scene.
-    pub(super) scene: String,
+    pub(crate) scene: String,
     /// Fields of its target, of 1 x 1 pixel.
-    pub(super) target: String,
+    pub(crate) target: String,
     /// Fields of its draw.
-    pub(super) draw: String,
+    pub(crate) draw: String,
+    /// What is said under its findings, instead of that they are about options.
+    pub(crate) note: Option<&'static str>,
+    /// The folder of files that it names.
+    pub(crate) folder: PathBuf,
 }
 
 impl Template {
     /// Reads and checks the scene. What is illegal is refused in the scene's own words.
-    pub(super) fn read(&self, profile: Profile, context: Context) -> Result<(Scene, Plan), Failure> {
+    pub(crate) fn read(&self, profile: Profile, context: Context) -> Result<(Scene, Plan), Failure> {
         let text = format!(
             "(\n    version: 1,\n    profile: {},\n{}    targets: [(width: 1, height: 1{})],\n    draws: [(\n        \
              vertices: Window([(position: (0, 0)), (position: (0, 2)), (position: (2, 0))]),\n{}    )],\n)\n",
@@ -33,18 +37,20 @@ impl Template {
             self.target,
             self.draw
         );
-        match scene::parse(&text, Path::new("what is asked for, as a scene"), &Limits::default()) {
+        match scene::parse(&text, &self.folder.join("what is asked for, as a scene"), &Limits::default()) {
             Ok(loaded) => Ok((loaded.scene, loaded.plan)),
             Err(error) => {
-                let text = error.render(context.color)
-                    + "\nthe lines above are this command's options as a scene writes them; `--profile nv2a` chooses the other chip\n";
+                let note = self.note.unwrap_or(
+                    "the lines above are this command's options as a scene writes them; `--profile nv2a` chooses the other chip",
+                );
+                let text = format!("{}\n{note}\n", error.render(context.color));
                 Err(Failure { report: Report::Text(text), ..refused(error) })
             }
         }
     }
 
     /// The combiners that the draw is given.
-    pub(super) fn combiners(&self, profile: Profile, context: Context) -> Result<Combiners, Failure> {
+    pub(crate) fn combiners(&self, profile: Profile, context: Context) -> Result<Combiners, Failure> {
         let (scene, _) = self.read(profile, context)?;
         // The template has one draw.
         let none = || Failure::usage("the operation makes no draw", "please report this with the command line");

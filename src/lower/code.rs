@@ -1,0 +1,455 @@
+//! What a pixel comes to, as integer operations in order: each with its range, equal ones shared, those that change nothing left out.
+
+use std::cell::{Cell, RefCell};
+use std::collections::HashMap;
+
+use ninebit::state::CompareFunction;
+
+use crate::input::Input;
+
+/// A value: a constant, or what an earlier line yields.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Operand {
+    /// The same in every pixel.
+    Constant(i64),
+    /// The line of that number.
+    Line(u32),
+}
+
+/// What a value is: a number, or the bits of a stored word or texel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Two's complement, within 32 bits.
+    Number,
+    /// 32 bits without a sign.
+    Word,
+}
+
+/// A comparison of two numbers, the first on its left.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Test(pub CompareFunction, pub [Operand; 2]);
+
+/// How a value comes about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Operation {
+    /// Given.
+    Input(Input),
+    /// a + b.
+    Add(Operand, Operand),
+    /// a - b.
+    Subtract(Operand, Operand),
+    /// a times b.
+    Multiply(Operand, Operand),
+    /// The smaller.
+    Least(Operand, Operand),
+    /// The larger.
+    Greatest(Operand, Operand),
+    /// The whole part of a / b, where a is not negative.
+    Quotient(Operand, i64),
+    /// These bits of a, which is not negative.
+    Bits(Operand, i64),
+    /// a with this bit turned, where a is not negative and below twice the bit.
+    Flip(Operand, i64),
+    /// The first where the test holds, otherwise the second.
+    Select(Test, [Operand; 2]),
+    /// A word below 2^31 as a number.
+    Number(Operand),
+    /// A number that is not negative as a word.
+    Word(Operand),
+    /// Bits that both words have.
+    And(Operand, Operand),
+    /// Bits that any of two words has.
+    Or(Operand, Operand),
+    /// A word times another, below 2^32.
+    Times(Operand, Operand),
+    /// A word without its low bits, moved down.
+    Down(Operand, u32),
+    /// A word moved up, below 2^32.
+    Up(Operand, u32),
+}
+
+impl Operation {
+    /// What it yields.
+    pub fn kind(&self) -> Kind {
+        match self {
+            Operation::Input(input) => input.kind(),
+            Operation::Word(_)
+            | Operation::And(..)
+            | Operation::Or(..)
+            | Operation::Times(..)
+            | Operation::Down(..)
+            | Operation::Up(..) => Kind::Word,
+            _ => Kind::Number,
+        }
+    }
+
+    /// What its operands are.
+    pub fn takes(&self) -> Kind {
+        match self {
+            Operation::Number(_) => Kind::Word,
+            Operation::Word(_) => Kind::Number,
+            _ => self.kind(),
+        }
+    }
+
+    /// The values that it is made of.
+    pub fn operands(&self) -> Vec<Operand> {
+        match *self {
+            Operation::Input(_) => Vec::new(),
+            Operation::Add(a, b)
+            | Operation::Subtract(a, b)
+            | Operation::Multiply(a, b)
+            | Operation::Least(a, b)
+            | Operation::Greatest(a, b)
+            | Operation::And(a, b)
+            | Operation::Or(a, b)
+            | Operation::Times(a, b) => vec![a, b],
+            Operation::Quotient(a, _)
+            | Operation::Bits(a, _)
+            | Operation::Flip(a, _)
+            | Operation::Number(a)
+            | Operation::Word(a)
+            | Operation::Down(a, _)
+            | Operation::Up(a, _) => vec![a],
+            Operation::Select(Test(_, [a, b]), [c, d]) => vec![a, b, c, d],
+        }
+    }
+
+    /// The same of other values.
+    pub(crate) fn renamed(self, name: impl Fn(Operand) -> Operand) -> Operation {
+        match self {
+            Operation::Input(_) => self,
+            Operation::Add(a, b) => Operation::Add(name(a), name(b)),
+            Operation::Subtract(a, b) => Operation::Subtract(name(a), name(b)),
+            Operation::Multiply(a, b) => Operation::Multiply(name(a), name(b)),
+            Operation::Least(a, b) => Operation::Least(name(a), name(b)),
+            Operation::Greatest(a, b) => Operation::Greatest(name(a), name(b)),
+            Operation::Quotient(a, by) => Operation::Quotient(name(a), by),
+            Operation::Bits(a, mask) => Operation::Bits(name(a), mask),
+            Operation::Flip(a, bit) => Operation::Flip(name(a), bit),
+            Operation::Select(Test(function, operands), values) => {
+                Operation::Select(Test(function, operands.map(&name)), values.map(&name))
+            }
+            Operation::Number(a) => Operation::Number(name(a)),
+            Operation::Word(a) => Operation::Word(name(a)),
+            Operation::And(a, b) => Operation::And(name(a), name(b)),
+            Operation::Or(a, b) => Operation::Or(name(a), name(b)),
+            Operation::Times(a, b) => Operation::Times(name(a), name(b)),
+            Operation::Down(a, bits) => Operation::Down(name(a), bits),
+            Operation::Up(a, bits) => Operation::Up(name(a), bits),
+        }
+    }
+
+    /// The value, where those of its operands are known. Inputs are the caller's.
+    fn of(&self, value: impl Fn(Operand) -> i64) -> i64 {
+        match *self {
+            Operation::Input(_) => 0,
+            Operation::Add(a, b) => value(a) + value(b),
+            Operation::Subtract(a, b) => value(a) - value(b),
+            Operation::Multiply(a, b) | Operation::Times(a, b) => value(a) * value(b),
+            Operation::Least(a, b) => value(a).min(value(b)),
+            Operation::Greatest(a, b) => value(a).max(value(b)),
+            Operation::Quotient(a, by) => value(a).div_euclid(by),
+            Operation::Bits(a, mask) => value(a) & mask,
+            Operation::Flip(a, bit) => value(a) ^ bit,
+            Operation::Select(Test(function, [a, b]), [c, d]) => {
+                value(if function.passes(value(a), value(b)) { c } else { d })
+            }
+            Operation::Number(a) | Operation::Word(a) => value(a),
+            Operation::And(a, b) => value(a) & value(b),
+            Operation::Or(a, b) => value(a) | value(b),
+            Operation::Down(a, bits) => value(a) >> bits,
+            Operation::Up(a, bits) => value(a) << bits,
+        }
+    }
+}
+
+/// Least and largest.
+pub type Range = (i64, i64);
+
+/// An operation with what is known of it.
+#[derive(Clone, Debug)]
+pub struct Line {
+    /// How it comes about.
+    pub operation: Operation,
+    /// What it can be.
+    pub range: Range,
+    /// The rule that asks for it.
+    pub rule: &'static str,
+    /// Its name, where the chip's documents have one.
+    pub name: Option<String>,
+}
+
+/// Lines, each made of earlier ones.
+#[derive(Debug, Default)]
+pub struct Code {
+    lines: RefCell<Vec<Line>>,
+    known: RefCell<HashMap<Operation, u32>>,
+    rule: Cell<&'static str>,
+}
+
+impl Code {
+    /// The lines.
+    pub fn lines(self) -> Vec<Line> {
+        self.lines.into_inner()
+    }
+
+    /// What is made from here on is asked for by this rule.
+    pub fn by(&self, rule: &'static str) {
+        self.rule.set(rule);
+    }
+
+    /// Names a value that has no name.
+    pub fn name(&self, operand: Operand, name: impl FnOnce() -> String) {
+        if let Operand::Line(line) = operand {
+            let line = &mut self.lines.borrow_mut()[line as usize];
+            if line.name.is_none() && !matches!(line.operation, Operation::Input(_)) {
+                line.name = Some(name());
+            }
+        }
+    }
+
+    /// A value is known to stay within a range, whatever its operands by themselves would allow.
+    pub fn narrow(&self, operand: Operand, (low, high): Range) {
+        if let Operand::Line(line) = operand {
+            let range = &mut self.lines.borrow_mut()[line as usize].range;
+            *range = (range.0.max(low), range.1.min(high));
+        }
+    }
+
+    /// What a value can be.
+    pub fn range(&self, operand: Operand) -> Range {
+        match operand {
+            Operand::Constant(value) => (value, value),
+            Operand::Line(line) => self.lines.borrow()[line as usize].range,
+        }
+    }
+
+    /// How a line comes about.
+    pub(crate) fn operation_at(&self, line: u32) -> Operation {
+        self.lines.borrow()[line as usize].operation
+    }
+
+    fn operation(&self, operand: Operand) -> Option<Operation> {
+        match operand {
+            Operand::Constant(_) => None,
+            Operand::Line(line) => Some(self.operation_at(line)),
+        }
+    }
+
+    /// A value of an operation; a simpler one that is equal, if there is one.
+    pub fn make(&self, operation: Operation) -> Operand {
+        let constant = |operand: &Operand| matches!(operand, Operand::Constant(_));
+        if !matches!(operation, Operation::Input(_)) && operation.operands().iter().all(constant) {
+            return Operand::Constant(operation.of(|operand| value_of(&[], operand)));
+        }
+        let operation = match self.simpler(operation) {
+            Ok(operand) => return operand,
+            Err(operation) => operation,
+        };
+        let range = self.range_of(&operation);
+        if range.0 == range.1 {
+            return Operand::Constant(range.0);
+        }
+        let mut lines = self.lines.borrow_mut();
+        Operand::Line(*self.known.borrow_mut().entry(operation).or_insert_with(|| {
+            lines.push(Line { operation, range, rule: self.rule.get(), name: None });
+            lines.len() as u32 - 1
+        }))
+    }
+
+    /// A given value, of which it may be known that it stays within less than the input's range.
+    pub fn input(&self, input: Input, range: Range) -> Operand {
+        let mut lines = self.lines.borrow_mut();
+        Operand::Line(*self.known.borrow_mut().entry(Operation::Input(input)).or_insert_with(|| {
+            lines.push(Line { operation: Operation::Input(input), range, rule: "", name: None });
+            lines.len() as u32 - 1
+        }))
+    }
+
+    /// A value that equals the operation, or an operation to make.
+    fn simpler(&self, operation: Operation) -> Result<Operand, Operation> {
+        use Operand::Constant;
+        let range = |operand| self.range(operand);
+        match operation {
+            Operation::Input(_) => {}
+            Operation::Add(a, Constant(0)) | Operation::Add(Constant(0), a) | Operation::Subtract(a, Constant(0)) => {
+                return Ok(a);
+            }
+            // Constants go last, and become one.
+            Operation::Add(Constant(c), a) => return Ok(self.make(Operation::Add(a, Constant(c)))),
+            Operation::Add(a, Constant(c)) => match self.operation(a) {
+                Some(Operation::Add(a, Constant(d))) => return Ok(self.make(Operation::Add(a, Constant(c + d)))),
+                Some(Operation::Subtract(a, Constant(d))) => return Ok(self.make(Operation::Add(a, Constant(c - d)))),
+                _ if c < 0 => return Err(Operation::Subtract(a, Constant(-c))),
+                _ => {}
+            },
+            Operation::Subtract(a, Constant(c)) => match self.operation(a) {
+                Some(Operation::Add(a, Constant(d))) => return Ok(self.make(Operation::Add(a, Constant(d - c)))),
+                Some(Operation::Subtract(a, Constant(d))) => {
+                    return Ok(self.make(Operation::Subtract(a, Constant(c + d))));
+                }
+                _ if c < 0 => return Err(Operation::Add(a, Constant(-c))),
+                _ => {}
+            },
+            Operation::Subtract(Constant(c), a) => {
+                // c - (d - x) and c - (x + d).
+                match self.operation(a) {
+                    Some(Operation::Subtract(Constant(d), a)) => {
+                        return Ok(self.make(Operation::Add(a, Constant(c - d))));
+                    }
+                    Some(Operation::Add(a, Constant(d))) => {
+                        return Ok(self.make(Operation::Subtract(Constant(c - d), a)));
+                    }
+                    Some(Operation::Subtract(a, Constant(d))) => {
+                        return Ok(self.make(Operation::Subtract(Constant(c + d), a)));
+                    }
+                    _ => {}
+                }
+            }
+            Operation::Subtract(a, b) if a == b => return Ok(Constant(0)),
+            Operation::Multiply(a, Constant(1))
+            | Operation::Multiply(Constant(1), a)
+            | Operation::Times(a, Constant(1))
+            | Operation::Times(Constant(1), a)
+            | Operation::Quotient(a, 1)
+            | Operation::Down(a, 0)
+            | Operation::Up(a, 0)
+            | Operation::Or(a, Constant(0))
+            | Operation::Or(Constant(0), a) => return Ok(a),
+            Operation::Multiply(a, Constant(c)) => {
+                if let Some(Operation::Multiply(Constant(d), a)) = self.operation(a) {
+                    return Ok(self.make(Operation::Multiply(Constant(c * d), a)));
+                }
+                return Ok(self.make(Operation::Multiply(Constant(c), a)));
+            }
+            Operation::Multiply(Constant(c), a) => {
+                if let Some(Operation::Multiply(Constant(d), a)) = self.operation(a) {
+                    return Ok(self.make(Operation::Multiply(Constant(c * d), a)));
+                }
+            }
+            Operation::Least(a, b) if range(a).1 <= range(b).0 => return Ok(a),
+            Operation::Least(a, b) if range(b).1 <= range(a).0 => return Ok(b),
+            Operation::Greatest(a, b) if range(a).0 >= range(b).1 => return Ok(a),
+            Operation::Greatest(a, b) if range(b).0 >= range(a).1 => return Ok(b),
+            Operation::Bits(a, mask) | Operation::And(a, Constant(mask)) | Operation::And(Constant(mask), a) => {
+                let all = (mask + 1) & mask == 0 && range(a).1 <= mask;
+                if all {
+                    return Ok(a);
+                }
+            }
+            Operation::Select(test, [c, d]) => {
+                if c == d {
+                    return Ok(c);
+                }
+                if let Some(holds) = self.decided(test) {
+                    return Ok(if holds { c } else { d });
+                }
+            }
+            Operation::Number(a) => {
+                if let Some(Operation::Word(a)) = self.operation(a) {
+                    return Ok(a);
+                }
+            }
+            Operation::Word(a) => {
+                if let Some(Operation::Number(a)) = self.operation(a) {
+                    return Ok(a);
+                }
+            }
+            // Where 8 bits are repeated, nothing is left of the second.
+            Operation::Down(a, bits) if range(a).1 >> bits == 0 => return Ok(Constant(0)),
+            _ => {}
+        }
+        Err(operation)
+    }
+
+    /// Whether a test comes out the same in every pixel, and how.
+    pub fn decided(&self, Test(function, [a, b]): Test) -> Option<bool> {
+        let ((a0, a1), (b0, b1)) = (self.range(a), self.range(b));
+        let decided = |always: bool, never: bool| if always { Some(true) } else { never.then_some(false) };
+        match function {
+            CompareFunction::Never => Some(false),
+            CompareFunction::Always => Some(true),
+            CompareFunction::Less => decided(a1 < b0, a0 >= b1),
+            CompareFunction::LessOrEqual => decided(a1 <= b0, a0 > b1),
+            CompareFunction::Greater => decided(a0 > b1, a1 <= b0),
+            CompareFunction::GreaterOrEqual => decided(a0 >= b1, a1 < b0),
+            CompareFunction::Equal => decided(a0 == a1 && (a0, a1) == (b0, b1), a1 < b0 || a0 > b1),
+            CompareFunction::NotEqual => decided(a1 < b0 || a0 > b1, a0 == a1 && (a0, a1) == (b0, b1)),
+        }
+    }
+
+    fn range_of(&self, operation: &Operation) -> Range {
+        let range = |operand: Operand| self.range(operand);
+        // Of operations that are monotone in each operand.
+        let corners = |a: Range, b: Range| {
+            let of = |a: i64, b: i64| {
+                let operands = operation.operands();
+                operation.of(|operand| if operand == operands[0] { a } else { b })
+            };
+            let all = if operation.operands()[0] == operation.operands()[1] {
+                vec![of(a.0, a.0), of(a.1, a.1), if a.0 < 0 && a.1 > 0 { of(0, 0) } else { of(a.0, a.0) }]
+            } else {
+                vec![of(a.0, b.0), of(a.0, b.1), of(a.1, b.0), of(a.1, b.1)]
+            };
+            (all.iter().copied().fold(i64::MAX, i64::min), all.iter().copied().fold(i64::MIN, i64::max))
+        };
+        match *operation {
+            Operation::Input(input) => input.range(),
+            Operation::Add(a, b) => (range(a).0 + range(b).0, range(a).1 + range(b).1),
+            Operation::Subtract(a, b) => (range(a).0 - range(b).1, range(a).1 - range(b).0),
+            Operation::Multiply(a, b) | Operation::Times(a, b) => corners(range(a), range(b)),
+            Operation::Least(a, b) => (range(a).0.min(range(b).0), range(a).1.min(range(b).1)),
+            Operation::Greatest(a, b) => (range(a).0.max(range(b).0), range(a).1.max(range(b).1)),
+            Operation::Quotient(a, by) => (range(a).0.div_euclid(by), range(a).1.div_euclid(by)),
+            Operation::Bits(a, mask) => (0, mask.min(range(a).1)),
+            Operation::Flip(_, bit) => (0, 2 * bit - 1),
+            Operation::And(a, b) => (0, range(a).1.min(range(b).1)),
+            Operation::Or(a, b) => {
+                let most = range(a).1.max(range(b).1);
+                (range(a).0.max(range(b).0), (1_i64 << (64 - most.leading_zeros())) - 1)
+            }
+            Operation::Select(_, [c, d]) => (range(c).0.min(range(d).0), range(c).1.max(range(d).1)),
+            Operation::Number(a) | Operation::Word(a) => range(a),
+            Operation::Down(a, bits) => (range(a).0 >> bits, range(a).1 >> bits),
+            Operation::Up(a, bits) => (range(a).0 << bits, range(a).1 << bits),
+        }
+    }
+}
+
+/// The values of all lines, from those of the inputs.
+///
+/// # Panics
+/// In debug builds, where a value is outside its range.
+pub fn run(lines: &[Line], input: impl FnMut(Input) -> i64) -> Vec<i64> {
+    run_changed(lines, input, |line, value| {
+        let Line { range, .. } = &lines[line];
+        debug_assert!((range.0..=range.1).contains(&value), "{value} of {:?}", lines[line]);
+        value
+    })
+}
+
+/// [`run`] with values that `change` turns into others, given the number of their line: to see what depends on them. Ranges are not checked.
+pub fn run_changed(
+    lines: &[Line],
+    mut input: impl FnMut(Input) -> i64,
+    mut change: impl FnMut(usize, i64) -> i64,
+) -> Vec<i64> {
+    let mut values: Vec<i64> = Vec::with_capacity(lines.len());
+    for (n, line) in lines.iter().enumerate() {
+        let value = match line.operation {
+            Operation::Input(given) => input(given),
+            operation => operation.of(|operand| value_of(&values, operand)),
+        };
+        values.push(change(n, value));
+    }
+    values
+}
+
+/// The value of an operand among those of all lines.
+pub fn value_of(values: &[i64], operand: Operand) -> i64 {
+    match operand {
+        Operand::Constant(value) => value,
+        Operand::Line(line) => values[line as usize],
+    }
+}

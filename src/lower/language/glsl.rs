@@ -1,0 +1,109 @@
+//! GLSL 3.30 and GLSL ES 3.00.
+
+use super::{Body, Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
+use crate::code::{Kind, Line};
+use crate::input::Input;
+use crate::pixel::Result;
+
+pub(super) struct Glsl;
+
+impl Syntax for Glsl {
+    fn head(&self, functions: &[Named<'_>]) -> String {
+        let [.., constants] = needs(functions);
+        let mut out = ROUNDING.map(|line| format!("// {line}\n")).concat();
+        out.push_str("// For GLSL 3.30 and GLSL ES 3.00: the line that tells the version stands above.\nprecision highp int;\n\n");
+        out.push_str("// What one pixel brings. Colours are R, G, B, A. A function reads what it needs; the rest may be anything.\n");
+        out.push_str("struct NinebitPixel {\n    ivec4 primary;   // interpolated diffuse, 0 to 255\n");
+        out.push_str("    ivec4 secondary; // interpolated specular, 0 to 255\n");
+        out.push_str("    ivec4 fog;       // fog colour and, in alpha, factor: 0 to 255\n");
+        out.push_str("    // What each unit yields: 0 to 255, signed channels -256 to 254.\n");
+        (0..4).for_each(|n| out.push_str(&format!("    ivec4 texture{n};\n")));
+        out.push_str("    // Fetched words of each unit: the footprint of a level row by row, then that of the next; palettes looked up and blocks\n");
+        out.push_str("    // decoded to A8R8G8B8. A single texel is the first, with weights 0.\n");
+        (0..4).for_each(|n| out.push_str(&format!("    uint texel{n}[8];\n")));
+        out.push_str("    // Weights of right and lower texels, of the same on the next level, of that level: 0 to 255 of 256.\n");
+        (0..4).for_each(|n| out.push_str(&format!("    int weight{n}[5];\n")));
+        out.push_str("    ivec4 outside;    // bit n of a unit's: its texel n is the border colour\n");
+        out.push_str("    uint destination; // the word that the surface holds\n};\n");
+        if constants {
+            out.push_str("\n// Constants of a draw: R, G, B, A, 0 to 255.\nstruct NinebitConstants {\n");
+            out.push_str("    ivec4 stage[16]; // constant colours 0 and 1 of each general stage\n");
+            out.push_str("    ivec4 final[2];  // of the final combiner\n    ivec4 fog;       // fog colour\n");
+            out.push_str(
+                "    ivec4 blend;     // blend constant\n    ivec4 border[4]; // border colour of each unit\n",
+            );
+            out.push_str("    int alpha_reference;\n};\n");
+        }
+        out
+    }
+
+    fn function(&self, named: &Named<'_>) -> String {
+        let body = Body::new(self, named.function);
+        let constants = if named.function.uniform { ", NinebitConstants constants" } else { "" };
+        let (name, about) = (&named.name, comment(&named.about));
+        let mut out = match named.function.result {
+            Result::Fragment(_) => {
+                format!(
+                    "// {about}: R, G, B, A of the fragment, 0 to 255.\nivec4 {name}(NinebitPixel pixel{constants})\n{{\n"
+                )
+            }
+            Result::Stored { .. } => format!(
+                "// {about}: the word that the surface holds afterwards; false where the alpha test drops the fragment.\n\
+                 bool {name}(NinebitPixel pixel{constants}, out uint word)\n{{\n"
+            ),
+        };
+        body.declarations.iter().for_each(|line| out.push_str(&format!("    {line}\n")));
+        match named.function.result {
+            Result::Fragment(channels) => {
+                let channels = channels.map(|channel| body.operand(self, channel, Kind::Number).open());
+                out.push_str(&format!("    return ivec4({});\n", channels.join(", ")));
+            }
+            Result::Stored { word, test } => {
+                let word = body.operand(self, word, Kind::Word).open();
+                if let Some(test) = test {
+                    out.push_str(&format!("    if (!({})) {{ // ROP-1\n", body.test(self, test)));
+                    out.push_str("        word = pixel.destination;\n        return false;\n    }\n");
+                }
+                out.push_str(&format!("    word = {word};\n    return true;\n"));
+            }
+        }
+        out + "}\n"
+    }
+
+    fn input(&self, input: Input) -> String {
+        match input {
+            Input::Primary(c) => format!("pixel.primary.{}", letter(c)),
+            Input::Secondary(c) => format!("pixel.secondary.{}", letter(c)),
+            Input::Fog(c) => format!("pixel.fog.{}", letter(c)),
+            Input::Texture(n, c) => format!("pixel.texture{n}.{}", letter(c)),
+            Input::Texel(n, at) => format!("pixel.texel{n}[{at}]"),
+            Input::Weight(n, of) => format!("pixel.weight{n}[{}]", of as usize),
+            Input::Outside(n) => format!("pixel.outside[{n}]"),
+            Input::Destination => "pixel.destination".to_string(),
+            Input::StageConstant(stage, n, c) => format!("constants.stage[{}].{}", 2 * stage + n, letter(c)),
+            Input::FinalConstant(n, c) => format!("constants.final[{n}].{}", letter(c)),
+            Input::FogColor(c) => format!("constants.fog.{}", letter(c)),
+            Input::BlendConstant(c) => format!("constants.blend.{}", letter(c)),
+            Input::AlphaReference => "constants.alpha_reference".to_string(),
+            Input::BorderColor(n, c) => format!("constants.border[{n}].{}", letter(c)),
+        }
+    }
+
+    fn call(&self, call: Call, operands: &[String]) -> Text {
+        match (call, operands) {
+            (Call::Least, operands) => Text::Term(format!("min({})", operands.join(", "))),
+            (Call::Greatest, operands) => Text::Term(format!("max({})", operands.join(", "))),
+            (Call::Select, [test, then, otherwise]) => Text::Open(format!("{test} ? {then} : {otherwise}")),
+            (Call::Number, operands) => Text::Term(format!("int({})", operands.join(""))),
+            (_, operands) => Text::Term(format!("uint({})", operands.join(""))),
+        }
+    }
+
+    fn declare(&self, name: &str, line: &Line, value: &str, comment: &str) -> String {
+        let kind = match line.operation.kind() {
+            Kind::Number => "int",
+            Kind::Word => "uint",
+        };
+        format!("{kind} {name} = {value}; // {comment}")
+    }
+}

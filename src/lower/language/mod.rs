@@ -1,0 +1,299 @@
+//! The languages: what they have in common. A value has a line of its own where the chip's documents name it or where it is used twice; others stand where they
+//! are used.
+
+mod c;
+mod glsl;
+mod verilog;
+mod wgsl;
+
+use std::collections::BTreeSet;
+
+use ninebit::state::{CompareFunction, named};
+
+use crate::code::{Kind, Line, Operand, Operation, Test};
+use crate::input::Input;
+use crate::pixel::{Function, Result};
+
+named! {
+    /// A language that functions are printed in.
+    pub enum Language {
+        /// C99, without dependencies.
+        C99 = "c99",
+        /// GLSL 3.30, and GLSL ES 3.00.
+        Glsl = "glsl",
+        /// WGSL.
+        Wgsl = "wgsl",
+        /// Verilog-2001: combinational modules.
+        Verilog = "verilog",
+    }
+}
+
+/// A function with its name.
+#[derive(Debug)]
+pub struct Named<'f> {
+    /// Its name: a letter, then letters, digits and underlines.
+    pub name: String,
+    /// What it is, in one line; anything that would end a comment has been taken out of it.
+    pub about: String,
+    /// The function.
+    pub function: &'f Function,
+}
+
+impl Language {
+    /// A whole text: what all functions share, then the functions.
+    pub fn print(self, functions: &[Named<'_>]) -> String {
+        let syntax = self.syntax();
+        let mut out = syntax.head(functions);
+        for named in functions {
+            out.push('\n');
+            out.push_str(&syntax.function(named));
+        }
+        out
+    }
+
+    /// How a function of this language reads an input: as a member of `pixel` or `constants`, or as a port.
+    pub fn input(self, input: Input) -> String {
+        self.syntax().input(input)
+    }
+
+    fn syntax(self) -> &'static dyn Syntax {
+        match self {
+            Language::C99 => &c::C99,
+            Language::Glsl => &glsl::Glsl,
+            Language::Wgsl => &wgsl::Wgsl,
+            Language::Verilog => &verilog::Verilog,
+        }
+    }
+}
+
+/// What a language says differently.
+trait Syntax {
+    /// What stands before all functions.
+    fn head(&self, functions: &[Named<'_>]) -> String;
+    /// A whole function.
+    fn function(&self, named: &Named<'_>) -> String;
+    /// How an input is read.
+    fn input(&self, input: Input) -> String;
+    /// A constant.
+    fn constant(&self, value: i64, kind: Kind) -> String {
+        match kind {
+            Kind::Number => value.to_string(),
+            Kind::Word if value > 255 => format!("{value:#x}u"),
+            Kind::Word => format!("{value}u"),
+        }
+    }
+    /// An operation that is no infix in every language; operands are terms.
+    fn call(&self, call: Call, operands: &[String]) -> Text;
+    /// A value with a name.
+    fn declare(&self, name: &str, line: &Line, value: &str, comment: &str) -> String;
+    /// Whether operands of comparisons, and numbers that become words, have to be names: elsewhere the width of an expression is that of what surrounds it.
+    fn compares_names(&self) -> bool {
+        false
+    }
+}
+
+/// What languages write differently.
+#[derive(Clone, Copy, Debug)]
+enum Call {
+    Least,
+    Greatest,
+    /// Test, then, otherwise.
+    Select,
+    Number,
+    Word,
+}
+
+/// A piece of text.
+#[derive(Clone, Debug)]
+enum Text {
+    /// A name, a constant, a call: nothing binds into it.
+    Term(String),
+    /// Operators that nothing encloses.
+    Open(String),
+}
+
+impl Text {
+    fn term(self) -> String {
+        match self {
+            Text::Term(text) => text,
+            Text::Open(text) => format!("({text})"),
+        }
+    }
+
+    fn open(self) -> String {
+        match self {
+            Text::Term(text) | Text::Open(text) => text,
+        }
+    }
+}
+
+/// The lines of a function as text.
+struct Body<'f> {
+    /// Declarations, in order.
+    declarations: Vec<String>,
+    lines: &'f [Line],
+    texts: Vec<(Text, BTreeSet<&'static str>)>,
+}
+
+impl<'f> Body<'f> {
+    fn new(syntax: &(impl Syntax + ?Sized), function: &'f Function) -> Body<'f> {
+        let lines = &function.lines[..];
+        let mut uses = vec![0; lines.len()];
+        let all = lines.iter().flat_map(|line| line.operation.operands()).chain(function.result.operands());
+        for operand in all {
+            if let Operand::Line(line) = operand {
+                uses[line as usize] += 1;
+            }
+        }
+        let test = match function.result {
+            Result::Stored { test: Some(Test(_, operands)), .. } => operands.to_vec(),
+            _ => Vec::new(),
+        };
+        let compared = lines.iter().flat_map(|line| match line.operation {
+            Operation::Least(a, b) | Operation::Greatest(a, b) | Operation::Select(Test(_, [a, b]), _) => vec![a, b],
+            Operation::Word(a) => vec![a],
+            _ => Vec::new(),
+        });
+        let mut named = vec![false; lines.len()];
+        for operand in compared.chain(test) {
+            if let Operand::Line(line) = operand {
+                named[line as usize] = syntax.compares_names();
+            }
+        }
+        let mut body = Body { declarations: Vec::new(), lines, texts: Vec::with_capacity(lines.len()) };
+        let (mut names, mut unnamed) = (BTreeSet::new(), 0);
+        for (n, line) in lines.iter().enumerate() {
+            let (text, mut rules) = body.text(syntax, line);
+            let is_input = matches!(line.operation, Operation::Input(_));
+            if is_input || (line.name.is_none() && uses[n] < 2 && !named[n]) {
+                body.texts.push((text, rules));
+                continue;
+            }
+            let mut name = line.name.clone().unwrap_or_else(|| {
+                unnamed += 1;
+                format!("value{unnamed}")
+            });
+            // The same name twice: a value that a later rule asks for again in another form.
+            let stem = name.clone();
+            let mut nth = 1;
+            while !names.insert(name.clone()) {
+                nth += 1;
+                name = format!("{stem}_{nth}");
+            }
+            rules.remove("");
+            let rules: Vec<&str> = rules.into_iter().collect();
+            let range = match line.operation.kind() {
+                Kind::Number => format!("{}..{}", line.range.0, line.range.1),
+                Kind::Word => format!("0..{:#x}", line.range.1),
+            };
+            let comment = if rules.is_empty() { range } else { format!("{}: {range}", rules.join(", ")) };
+            body.declarations.push(syntax.declare(&name, line, &text.open(), &comment));
+            body.texts.push((Text::Term(name), BTreeSet::new()));
+        }
+        body
+    }
+
+    /// An operand of this kind.
+    fn operand(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, kind: Kind) -> Text {
+        match operand {
+            Operand::Constant(value) if value < 0 => Text::Open(syntax.constant(value, kind)),
+            Operand::Constant(value) => Text::Term(syntax.constant(value, kind)),
+            Operand::Line(line) => self.texts[line as usize].0.clone(),
+        }
+    }
+
+    fn test(&self, syntax: &(impl Syntax + ?Sized), Test(function, operands): Test) -> String {
+        let [a, b] = operands.map(|operand| self.operand(syntax, operand, Kind::Number).term());
+        let operator = match function {
+            CompareFunction::Never => return format!("{a} != {a}"),
+            CompareFunction::Always => return format!("{a} == {a}"),
+            CompareFunction::Less => "<",
+            CompareFunction::LessOrEqual => "<=",
+            CompareFunction::Equal => "==",
+            CompareFunction::NotEqual => "!=",
+            CompareFunction::Greater => ">",
+            CompareFunction::GreaterOrEqual => ">=",
+        };
+        format!("{a} {operator} {b}")
+    }
+
+    /// An operation as text, and the rules of what stands in it.
+    fn text(&self, syntax: &(impl Syntax + ?Sized), line: &Line) -> (Text, BTreeSet<&'static str>) {
+        let operation = line.operation;
+        let mut rules = BTreeSet::from([line.rule]);
+        for operand in operation.operands() {
+            if let Operand::Line(line) = operand {
+                rules.extend(&self.texts[line as usize].1);
+            }
+        }
+        let kind = operation.takes();
+        let term = |operand: Operand| self.operand(syntax, operand, kind).term();
+        let number = |value: i64| syntax.constant(value, kind);
+        let shift = |bits: u32| syntax.constant(bits.into(), Kind::Word);
+        let infix = |a: String, operator: &str, b: String| Text::Open(format!("{a} {operator} {b}"));
+        let text = match operation {
+            Operation::Input(input) => return (Text::Term(syntax.input(input)), BTreeSet::new()),
+            Operation::Add(a, b) => infix(self.summand(syntax, a, true), "+", self.summand(syntax, b, false)),
+            Operation::Subtract(a, b) => infix(self.summand(syntax, a, true), "-", self.summand(syntax, b, false)),
+            Operation::Multiply(a, b) | Operation::Times(a, b) => infix(term(a), "*", term(b)),
+            Operation::Quotient(a, by) => infix(term(a), "/", number(by)),
+            Operation::Bits(a, mask) => infix(term(a), "&", number(mask)),
+            Operation::Flip(a, bit) => infix(term(a), "^", number(bit)),
+            Operation::And(a, b) => infix(term(a), "&", term(b)),
+            Operation::Or(a, b) => infix(term(a), "|", term(b)),
+            Operation::Down(a, bits) => infix(term(a), ">>", shift(bits)),
+            Operation::Up(a, bits) => infix(term(a), "<<", shift(bits)),
+            Operation::Least(a, b) => syntax.call(Call::Least, &self.open([a, b], syntax, kind)),
+            Operation::Greatest(a, b) => syntax.call(Call::Greatest, &self.open([a, b], syntax, kind)),
+            Operation::Number(a) => syntax.call(Call::Number, &self.open([a], syntax, kind)),
+            Operation::Word(a) => syntax.call(Call::Word, &self.open([a], syntax, kind)),
+            Operation::Select(test, [c, d]) => syntax.call(Call::Select, &[self.test(syntax, test), term(c), term(d)]),
+        };
+        (text, rules)
+    }
+
+    fn open<const N: usize>(&self, operands: [Operand; N], syntax: &(impl Syntax + ?Sized), kind: Kind) -> [String; N] {
+        operands.map(|operand| self.operand(syntax, operand, kind).open())
+    }
+
+    /// An operand of a sum: products need no brackets there, and sums none at its beginning.
+    fn summand(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, first: bool) -> String {
+        let text = self.operand(syntax, operand, Kind::Number);
+        let binds = |line: u32| match self.lines[line as usize].operation {
+            Operation::Add(..) | Operation::Subtract(..) => first,
+            Operation::Multiply(..) | Operation::Quotient(..) => true,
+            _ => false,
+        };
+        match operand {
+            Operand::Line(line) if binds(line) => text.open(),
+            _ => text.term(),
+        }
+    }
+}
+
+/// Whether a text has functions that yield fragments, that yield stored words, and that are given constants.
+fn needs(functions: &[Named<'_>]) -> [bool; 3] {
+    let any = |has: fn(&Function) -> bool| functions.iter().any(|named| has(named.function));
+    [
+        any(|function| matches!(function.result, Result::Fragment(_))),
+        any(|function| matches!(function.result, Result::Stored { .. })),
+        any(|function| function.uniform),
+    ]
+}
+
+/// A channel's letter.
+fn letter(channel: usize) -> &'static str {
+    ninebit::combiner::registers::channel_name(channel)
+}
+
+/// What stands in a comment of one line.
+fn comment(text: &str) -> String {
+    text.replace("*/", "* /").replace(['\n', '\r'], " ")
+}
+
+/// The rule of division, for the heads.
+const ROUNDING: [&str; 3] = [
+    "Numbers are two's complement and stay within 32 bits: nothing overflows. Registers hold -256 to 255, 1.0 is 255. Where a",
+    "number below zero is divided, whole multiples of the divisor are added before and taken off after, because a quotient is",
+    "the floor: (2 n + 255) / 510 is the nearest 255th (NUM-2). Each line has its rules and its range.",
+];

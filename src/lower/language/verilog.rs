@@ -1,0 +1,109 @@
+//! Verilog-2001: a combinational module a function.
+
+use super::{Body, Call, Named, ROUNDING, Syntax, Text, comment, letter};
+use crate::code::{Kind, Line, Range};
+use crate::input::Input;
+use crate::pixel::Result;
+
+pub(super) struct Verilog;
+
+/// Bits of two's complement that hold a range.
+fn width((low, high): Range) -> u32 {
+    let bits = |value: i64| 64 - if value < 0 { !value } else { value }.leading_zeros() + 1;
+    bits(low).max(bits(high))
+}
+
+impl Syntax for Verilog {
+    fn head(&self, _functions: &[Named<'_>]) -> String {
+        let lines = ROUNDING.map(|line| format!("// {line}\n")).concat();
+        lines
+            + "// Ports are what the pixel brings, as far as the module reads it: colours of 9 bits, of which textures alone are ever negative; weights\n\
+               // of 256ths; words of 32 bits. Constants of the draw, where they are ports, are bytes in 9 bits.\n"
+    }
+
+    fn function(&self, named: &Named<'_>) -> String {
+        let body = Body::new(self, named.function);
+        let about = comment(&named.about);
+        let mut ports: Vec<String> = named
+            .function
+            .inputs()
+            .into_iter()
+            .map(|input| match input.kind() {
+                Kind::Word => format!("input [31:0] {}", self.input(input)),
+                Kind::Number => format!("input signed [{}:0] {}", width(input.range()) - 1, self.input(input)),
+            })
+            .collect();
+        let mut ends = Vec::new();
+        match named.function.result {
+            Result::Fragment(channels) => {
+                for (n, channel) in channels.into_iter().enumerate() {
+                    ports.push(format!("output [7:0] out_{}", letter(n)));
+                    let value = body.operand(self, channel, Kind::Number).open();
+                    ends.push(format!("assign out_{} = {value};", letter(n)));
+                }
+            }
+            Result::Stored { word, test } => {
+                ports.extend(["output passed".to_string(), "output [31:0] word".to_string()]);
+                let word = body.operand(self, word, Kind::Word).open();
+                match test {
+                    Some(test) => ends.extend([
+                        format!("assign passed = {}; // ROP-1", body.test(self, test)),
+                        format!("assign word = passed ? {word} : destination;"),
+                    ]),
+                    None => ends.extend(["assign passed = 1'b1;".to_string(), format!("assign word = {word};")]),
+                }
+            }
+        }
+        let mut out = format!("// {about}\nmodule {} (\n    {}\n);\n", named.name, ports.join(",\n    "));
+        body.declarations.iter().chain(&ends).for_each(|line| out.push_str(&format!("    {line}\n")));
+        out + "endmodule\n"
+    }
+
+    fn input(&self, input: Input) -> String {
+        match input {
+            Input::Primary(c) => format!("primary_{}", letter(c)),
+            Input::Secondary(c) => format!("secondary_{}", letter(c)),
+            Input::Fog(c) => format!("fog_{}", letter(c)),
+            Input::Texture(n, c) => format!("texture{n}_{}", letter(c)),
+            Input::Texel(n, at) => format!("texel{n}_{at}"),
+            Input::Weight(n, of) => format!("weight{n}_{}", of.name()),
+            Input::Outside(n) => format!("outside{n}"),
+            Input::Destination => "destination".to_string(),
+            Input::StageConstant(stage, n, c) => format!("stage{stage}_constant{n}_{}", letter(c)),
+            Input::FinalConstant(n, c) => format!("final_constant{n}_{}", letter(c)),
+            Input::FogColor(c) => format!("fog_color_{}", letter(c)),
+            Input::BlendConstant(c) => format!("blend_constant_{}", letter(c)),
+            Input::AlphaReference => "alpha_reference".to_string(),
+            Input::BorderColor(n, c) => format!("border{n}_{}", letter(c)),
+        }
+    }
+
+    fn constant(&self, value: i64, kind: Kind) -> String {
+        match kind {
+            Kind::Number => value.to_string(),
+            Kind::Word if value > 255 => format!("32'h{value:x}"),
+            Kind::Word => format!("32'd{value}"),
+        }
+    }
+
+    fn call(&self, call: Call, operands: &[String]) -> Text {
+        match (call, operands) {
+            (Call::Least, [a, b]) => Text::Term(format!("({a} < {b} ? {a} : {b})")),
+            (Call::Greatest, [a, b]) => Text::Term(format!("({a} > {b} ? {a} : {b})")),
+            (Call::Select, [test, then, otherwise]) => Text::Term(format!("({test} ? {then} : {otherwise})")),
+            (Call::Number, operands) => Text::Term(format!("$signed({{1'b0, {}}})", operands.join(""))),
+            (_, operands) => Text::Term(format!("(32'd0 | $unsigned({}))", operands.join(""))),
+        }
+    }
+
+    fn declare(&self, name: &str, line: &Line, value: &str, comment: &str) -> String {
+        match line.operation.kind() {
+            Kind::Number => format!("wire signed [{}:0] {name} = {value}; // {comment}", width(line.range) - 1),
+            Kind::Word => format!("wire [31:0] {name} = {value}; // {comment}"),
+        }
+    }
+
+    fn compares_names(&self) -> bool {
+        true
+    }
+}

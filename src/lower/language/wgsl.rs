@@ -1,0 +1,98 @@
+//! WGSL.
+
+use super::{Body, Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
+use crate::code::{Kind, Line};
+use crate::input::Input;
+use crate::pixel::Result;
+
+pub(super) struct Wgsl;
+
+impl Syntax for Wgsl {
+    fn head(&self, functions: &[Named<'_>]) -> String {
+        let [_, stored, constants] = needs(functions);
+        let mut out = ROUNDING.map(|line| format!("// {line}\n")).concat();
+        out.push_str("\n// What one pixel brings. Colours are R, G, B, A. A function reads what it needs; the rest may be anything.\n");
+        out.push_str("struct NinebitPixel {\n    primary: vec4<i32>,   // interpolated diffuse, 0 to 255\n");
+        out.push_str("    secondary: vec4<i32>, // interpolated specular, 0 to 255\n");
+        out.push_str("    fog: vec4<i32>,       // fog colour and, in alpha, factor: 0 to 255\n");
+        out.push_str("    // What each unit yields: 0 to 255, signed channels -256 to 254.\n");
+        (0..4).for_each(|n| out.push_str(&format!("    texture{n}: vec4<i32>,\n")));
+        out.push_str("    // Fetched words of each unit: the footprint of a level row by row, then that of the next; palettes looked up and blocks\n");
+        out.push_str("    // decoded to A8R8G8B8. A single texel is the first, with weights 0.\n");
+        (0..4).for_each(|n| out.push_str(&format!("    texel{n}: array<u32, 8>,\n")));
+        out.push_str("    // Weights of right and lower texels, of the same on the next level, of that level: 0 to 255 of 256.\n");
+        (0..4).for_each(|n| out.push_str(&format!("    weight{n}: array<i32, 5>,\n")));
+        out.push_str("    outside: vec4<i32>,   // bit n of a unit's: its texel n is the border colour\n");
+        out.push_str("    destination: u32,     // the word that the surface holds\n}\n");
+        if constants {
+            out.push_str("\n// Constants of a draw: R, G, B, A, 0 to 255.\nstruct NinebitConstants {\n");
+            out.push_str("    stage: array<vec4<i32>, 16>,       // constant colours 0 and 1 of each general stage\n");
+            out.push_str(
+                "    final_combiner: array<vec4<i32>, 2>,\n    fog: vec4<i32>,                    // fog colour\n",
+            );
+            out.push_str("    blend: vec4<i32>,                  // blend constant\n");
+            out.push_str(
+                "    border: array<vec4<i32>, 4>,       // border colour of each unit\n    alpha_reference: i32,\n}\n",
+            );
+        }
+        if stored {
+            out.push_str("\n// The word that the surface holds afterwards, and whether the alpha test passed.\n");
+            out.push_str("struct NinebitStored {\n    passed: bool,\n    word: u32,\n}\n");
+        }
+        out
+    }
+
+    fn function(&self, named: &Named<'_>) -> String {
+        let body = Body::new(self, named.function);
+        let constants = if named.function.uniform { ", constants: NinebitConstants" } else { "" };
+        let (name, about) = (&named.name, comment(&named.about));
+        let mut out = match named.function.result {
+            Result::Fragment(_) => format!(
+                "// {about}: R, G, B, A of the fragment, 0 to 255.\nfn {name}(pixel: NinebitPixel{constants}) -> vec4<i32> {{\n"
+            ),
+            Result::Stored { .. } => {
+                format!(
+                    "// {about}: the word that the surface holds afterwards.\nfn {name}(pixel: NinebitPixel{constants}) -> NinebitStored {{\n"
+                )
+            }
+        };
+        body.declarations.iter().for_each(|line| out.push_str(&format!("    {line}\n")));
+        match named.function.result {
+            Result::Fragment(channels) => {
+                let channels = channels.map(|channel| body.operand(self, channel, Kind::Number).open());
+                out.push_str(&format!("    return vec4<i32>({});\n", channels.join(", ")));
+            }
+            Result::Stored { word, test } => {
+                let word = body.operand(self, word, Kind::Word).open();
+                if let Some(test) = test {
+                    out.push_str(&format!("    if !({}) {{ // ROP-1\n", body.test(self, test)));
+                    out.push_str("        return NinebitStored(false, pixel.destination);\n    }\n");
+                }
+                out.push_str(&format!("    return NinebitStored(true, {word});\n"));
+            }
+        }
+        out + "}\n"
+    }
+
+    fn input(&self, input: Input) -> String {
+        match input {
+            Input::FinalConstant(n, c) => format!("constants.final_combiner[{n}].{}", letter(c)),
+            // What has a place in an array is written the same.
+            input => super::glsl::Glsl.input(input),
+        }
+    }
+
+    fn call(&self, call: Call, operands: &[String]) -> Text {
+        Text::Term(match (call, operands) {
+            (Call::Least, operands) => format!("min({})", operands.join(", ")),
+            (Call::Greatest, operands) => format!("max({})", operands.join(", ")),
+            (Call::Select, [test, then, otherwise]) => format!("select({otherwise}, {then}, {test})"),
+            (Call::Number, operands) => format!("i32({})", operands.join("")),
+            (_, operands) => format!("u32({})", operands.join("")),
+        })
+    }
+
+    fn declare(&self, name: &str, _line: &Line, value: &str, comment: &str) -> String {
+        format!("let {name} = {value}; // {comment}")
+    }
+}

@@ -1,0 +1,27 @@
+//! The rules as text for other languages: a pixel of a draw, or of a program alone, as one function of C99, GLSL, WGSL or Verilog.
+//!
+//! Nothing of a rule stands here twice. The order of a pixel is that of [`Algebra`](ninebit::algebra::Algebra), read by one more reader, whose values are lines of
+//! integer operations; rules of numbers are read in a lane of their own. Each line knows its range, so that what cannot happen is left out and no width is guessed.
+//! What the four languages write differently is all that they have of their own.
+//!
+//! ```
+//! use ninebit::state::{Combiners, GeneralStage};
+//! use ninebit_lower::{Function, Language, Named, Options};
+//!
+//! let program = Combiners { stages: vec![GeneralStage::initial([[0; 4]; 2])], ..Combiners::default() };
+//! let function = Function::of_program(&program, &Options::default());
+//! let named = Named { name: "shade".to_string(), about: "the initial program".to_string(), function: &function };
+//! println!("{}", Language::Glsl.print(&[named]));
+//! ```
+
+pub mod code;
+mod input;
+mod language;
+mod number;
+mod order;
+mod pixel;
+mod texel;
+
+pub use input::{Input, Weight};
+pub use language::{Language, Named};
+pub use pixel::{Function, Options, Result, Textures};

@@ -1,0 +1,325 @@
+//! A lane whose values are lines of [`Code`]: the rules that are written over the traits of [`ninebit::number`] print themselves in it.
+
+use std::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr, Sub};
+
+use ninebit::number::{self, Blend, Factor as _, Register};
+use ninebit::state::{CompareFunction, RegisterFloor};
+
+use crate::code::{Code, Operand, Operation, Range, Test};
+
+/// A number: a constant, or a line of a code.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Number<'a> {
+    /// The same in every pixel.
+    Constant(i64),
+    /// A line.
+    Of(&'a Code, u32),
+}
+
+use Number::Constant;
+
+impl<'a> Number<'a> {
+    pub(crate) fn new(code: &'a Code, operand: Operand) -> Number<'a> {
+        match operand {
+            Operand::Constant(value) => Constant(value),
+            Operand::Line(line) => Number::Of(code, line),
+        }
+    }
+
+    pub(crate) fn operand(self) -> Operand {
+        match self {
+            Constant(value) => Operand::Constant(value),
+            Number::Of(_, line) => Operand::Line(line),
+        }
+    }
+
+    fn code(self) -> Option<&'a Code> {
+        match self {
+            Constant(_) => None,
+            Number::Of(code, _) => Some(code),
+        }
+    }
+
+    pub(crate) fn range(self) -> Range {
+        match self {
+            Constant(value) => (value, value),
+            Number::Of(code, line) => code.range(Operand::Line(line)),
+        }
+    }
+
+    /// This, which lies between the others: it is a mix of them.
+    pub(crate) fn between(self, others: &[Number<'a>]) -> Number<'a> {
+        if let Number::Of(code, _) = self {
+            let ranges = others.iter().map(|other| other.range());
+            let range = ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)));
+            code.narrow(self.operand(), range);
+        }
+        self
+    }
+
+    /// An operation on this and others. Without a line among them it is computed.
+    fn made(self, others: &[Number<'a>], operation: Operation) -> Number<'a> {
+        let code = self.code().or_else(|| others.iter().find_map(|other| other.code()));
+        match code {
+            Some(code) => Number::new(code, code.make(operation)),
+            None => {
+                // Constants alone need no code of the caller's.
+                match Code::default().make(operation) {
+                    Operand::Constant(value) => Constant(value),
+                    Operand::Line(_) => Constant(0),
+                }
+            }
+        }
+    }
+
+    pub(crate) fn multiplied(self, other: Number<'a>) -> Number<'a> {
+        self.made(&[other], Operation::Multiply(self.operand(), other.operand()))
+    }
+
+    pub(crate) fn least(self, other: Number<'a>) -> Number<'a> {
+        self.made(&[other], Operation::Least(self.operand(), other.operand()))
+    }
+
+    pub(crate) fn greatest(self, other: Number<'a>) -> Number<'a> {
+        self.made(&[other], Operation::Greatest(self.operand(), other.operand()))
+    }
+
+    pub(crate) fn limited(self, low: i64, high: i64) -> Number<'a> {
+        self.least(Constant(high)).greatest(Constant(low))
+    }
+
+    /// The nearest whole number below or at a quotient. Division is of numbers that are not negative: whole multiples are added before and taken off after.
+    pub(crate) fn floor_divided(self, by: i64) -> Number<'a> {
+        let above = (-self.range().0).max(0).div_euclid(by) + i64::from((-self.range().0).max(0) % by != 0);
+        let positive = self + Constant(above * by);
+        positive.made(&[], Operation::Quotient(positive.operand(), by)) - Constant(above)
+    }
+
+    /// These low bits in two's complement, which bits above the mask do not concern.
+    pub(crate) fn low_bits(self, mask: i64) -> Number<'a> {
+        let period = 1 << (64 - mask.leading_zeros());
+        let above = (-self.range().0).max(0);
+        let positive = self + Constant((above + period - 1) / period * period);
+        positive.made(&[], Operation::Bits(positive.operand(), mask))
+    }
+
+    /// A number of 0 to 2^bits - 1 read as two's complement.
+    pub(crate) fn signed(self, bits: u32) -> Number<'a> {
+        let sign = 1 << (bits - 1);
+        self.made(&[], Operation::Flip(self.operand(), sign)) - Constant(sign)
+    }
+
+    /// This where the test holds, otherwise the other.
+    pub(crate) fn selected(self, test: Test, code: &'a Code, other: Number<'a>) -> Number<'a> {
+        Number::new(code, code.make(Operation::Select(test, [self.operand(), other.operand()])))
+    }
+
+    /// A comparison with another number.
+    pub(crate) fn compared(self, function: CompareFunction, other: Number<'a>) -> Test {
+        Test(function, [self.operand(), other.operand()])
+    }
+
+    /// As a word: it is not negative.
+    pub(crate) fn word(self) -> Word<'a> {
+        Word(self.made(&[], Operation::Word(self.operand())))
+    }
+}
+
+impl<'a> Add for Number<'a> {
+    type Output = Number<'a>;
+    fn add(self, other: Number<'a>) -> Number<'a> {
+        self.made(&[other], Operation::Add(self.operand(), other.operand()))
+    }
+}
+
+impl<'a> Sub for Number<'a> {
+    type Output = Number<'a>;
+    fn sub(self, other: Number<'a>) -> Number<'a> {
+        self.made(&[other], Operation::Subtract(self.operand(), other.operand()))
+    }
+}
+
+impl<'a> Blend for Number<'a> {
+    type Weight = Number<'a>;
+    const WHOLE: Number<'a> = Constant(256);
+    fn times(self, weight: Number<'a>) -> Number<'a> {
+        self.multiplied(weight)
+    }
+    fn round8(self) -> Number<'a> {
+        (self + Constant(128)).floor_divided(256)
+    }
+}
+
+/// A factor of a product: a number in steps of 1/255, or of half of that (CMB-4=127.5).
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Factor<'a> {
+    pub(crate) value: Number<'a>,
+    pub(crate) halves: bool,
+}
+
+/// A sum of products in steps of 1/65025, halved so many times.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sum<'a> {
+    pub(crate) value: Number<'a>,
+    pub(crate) halvings: u32,
+}
+
+impl<'a> Sum<'a> {
+    /// Both in the finer steps of the two.
+    pub(crate) fn alike(self, other: Sum<'a>) -> [Sum<'a>; 2] {
+        let halvings = self.halvings.max(other.halvings);
+        [self, other].map(|sum| {
+            let times = 1 << (halvings - sum.halvings);
+            Sum { value: sum.value.multiplied(Constant(times)), halvings }
+        })
+    }
+
+    /// NUM-2 of the sum divided by `more`: floor((2 n + d) / (2 d)) in steps of 1/d.
+    pub(crate) fn rounded_to(self, more: i64) -> Number<'a> {
+        let steps = (255 * more) << self.halvings;
+        if let Some(whole) = over(self.value, steps) {
+            return whole;
+        }
+        // An even number of steps needs no doubling.
+        if steps % 2 == 0 {
+            return (self.value + Constant(steps / 2)).floor_divided(steps);
+        }
+        (self.value.multiplied(Constant(2)) + Constant(steps)).floor_divided(2 * steps)
+    }
+}
+
+/// The quotient of a number that is a multiple by its form.
+fn over(value: Number<'_>, steps: i64) -> Option<Number<'_>> {
+    match value {
+        Constant(value) => (value % steps == 0).then_some(Constant(value / steps)),
+        Number::Of(code, line) => {
+            let of = |operand| over(Number::new(code, operand), steps);
+            match code.operation_at(line) {
+                Operation::Multiply(Operand::Constant(by), x) if by % steps == 0 => {
+                    Some(Number::new(code, x).multiplied(Constant(by / steps)))
+                }
+                Operation::Add(a, b) => Some(of(a)? + of(b)?),
+                Operation::Subtract(a, b) => Some(of(a)? - of(b)?),
+                _ => None,
+            }
+        }
+    }
+}
+
+impl<'a> Add for Sum<'a> {
+    type Output = Sum<'a>;
+    fn add(self, other: Sum<'a>) -> Sum<'a> {
+        let [a, b] = self.alike(other);
+        Sum { value: a.value + b.value, halvings: a.halvings }
+    }
+}
+
+impl<'a> Sub for Sum<'a> {
+    type Output = Sum<'a>;
+    fn sub(self, other: Sum<'a>) -> Sum<'a> {
+        let [a, b] = self.alike(other);
+        Sum { value: a.value - b.value, halvings: a.halvings }
+    }
+}
+
+impl<'a> Register for Number<'a> {
+    type Factor = Factor<'a>;
+    type Expanded = Factor<'a>;
+    const ZERO: Number<'a> = Constant(0);
+    const ONE: Number<'a> = Constant(255);
+    const HALF: Number<'a> = Constant(128);
+    fn max0(self) -> Number<'a> {
+        self.greatest(Constant(0))
+    }
+    fn factor(self) -> Factor<'a> {
+        Factor { value: self, halves: false }
+    }
+    fn twice(self) -> Factor<'a> {
+        self.multiplied(Constant(2)).factor()
+    }
+    fn halved(self) -> Number<'a> {
+        (self + Constant(1)).floor_divided(2)
+    }
+    fn saturated(self, floor: RegisterFloor) -> Number<'a> {
+        self.limited(if floor == RegisterFloor::Full { -256 } else { -255 }, 255)
+    }
+}
+
+impl<'a> number::Factor for Factor<'a> {
+    type Sum = Sum<'a>;
+    type Register = Number<'a>;
+    fn product(self, other: Factor<'a>) -> Sum<'a> {
+        let halvings = u32::from(self.halves) + u32::from(other.halves);
+        Sum { value: self.value.multiplied(other.value), halvings }
+    }
+}
+
+impl<'a> number::Sum for Sum<'a> {
+    type Register = Number<'a>;
+    fn rounded(self) -> Number<'a> {
+        self.rounded_to(1)
+    }
+}
+
+/// A register at the width of a sum.
+pub(crate) fn widened(x: Number<'_>) -> Sum<'_> {
+    x.factor().product(Constant(255).factor())
+}
+
+/// The bits of a stored word or of a texel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Word<'a>(pub(crate) Number<'a>);
+
+impl<'a> Word<'a> {
+    /// As a number: it is below 2^31.
+    pub(crate) fn number(self) -> Number<'a> {
+        self.0.made(&[], Operation::Number(self.0.operand()))
+    }
+
+    fn with(self, other: Word<'a>, operation: impl Fn(Operand, Operand) -> Operation) -> Word<'a> {
+        Word(self.0.made(&[other.0], operation(self.0.operand(), other.0.operand())))
+    }
+}
+
+impl From<u32> for Word<'_> {
+    fn from(value: u32) -> Self {
+        Word(Constant(value.into()))
+    }
+}
+
+impl<'a> BitAnd for Word<'a> {
+    type Output = Word<'a>;
+    fn bitand(self, other: Word<'a>) -> Word<'a> {
+        self.with(other, Operation::And)
+    }
+}
+
+impl<'a> BitOr for Word<'a> {
+    type Output = Word<'a>;
+    fn bitor(self, other: Word<'a>) -> Word<'a> {
+        self.with(other, Operation::Or)
+    }
+}
+
+impl<'a> Mul for Word<'a> {
+    type Output = Word<'a>;
+    fn mul(self, other: Word<'a>) -> Word<'a> {
+        self.with(other, Operation::Times)
+    }
+}
+
+impl<'a> Shl<u32> for Word<'a> {
+    type Output = Word<'a>;
+    fn shl(self, bits: u32) -> Word<'a> {
+        self.with(self, |a, _| Operation::Up(a, bits))
+    }
+}
+
+impl<'a> Shr<u32> for Word<'a> {
+    type Output = Word<'a>;
+    fn shr(self, bits: u32) -> Word<'a> {
+        self.with(self, |a, _| Operation::Down(a, bits))
+    }
+}
+
+impl number::Word for Word<'_> {}

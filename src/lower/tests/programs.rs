@@ -1,0 +1,94 @@
+//! Printed programs against the model: their lines, run by themselves, and their text, compiled by what is installed.
+#![allow(
+    missing_docs,
+    unreachable_pub,
+    dead_code,
+    clippy::unwrap_used,
+    clippy::float_arithmetic,
+    reason = "tests fail by panicking, and modules share files of which each uses its part"
+)]
+
+#[path = "../../../tests/common/random_program.rs"]
+mod random_program;
+
+use ninebit::combiner::registers::Registers;
+use ninebit::random::Random;
+use ninebit::state::{Combiners, POLICIES, Policies, Register};
+use ninebit_lower::code::{run, value_of};
+use ninebit_lower::{Function, Input, Options, Result};
+use proptest::strategy::{Strategy, ValueTree};
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+
+/// The registers that a pixel brings.
+const GIVEN: [Register; 7] = [
+    Register::PrimaryColor,
+    Register::SecondaryColor,
+    Register::Fog,
+    Register::Texture0,
+    Register::Texture1,
+    Register::Texture2,
+    Register::Texture3,
+];
+
+/// Random programs; the same ones every time.
+fn programs() -> impl Iterator<Item = Combiners> {
+    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[23; 32]);
+    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    std::iter::repeat_with(move || random_program::combiners().new_tree(&mut runner).unwrap().current())
+}
+
+/// Numbers that a register can hold: colours are bytes, textures may be signed. Ends occur more often than others.
+fn registers(random: &mut Random) -> Registers<i32> {
+    let mut registers = Registers::of(0);
+    for register in GIVEN {
+        let low = if register as usize >= Register::Texture0 as usize { -256 } else { 0 };
+        let channel = |_: usize| match random.below(8) {
+            0 => 255,
+            1 => low,
+            2 => 128,
+            _ => low + random.below((256 - low) as u128) as i32,
+        };
+        registers.load(register, [0, 1, 2, 3].map(channel));
+    }
+    registers
+}
+
+fn given(registers: &Registers<i32>, input: Input, program: &Combiners) -> i64 {
+    let read = |register: Register, channel: usize| i64::from(registers.read(register, channel));
+    match input {
+        Input::Primary(c) => read(Register::PrimaryColor, c),
+        Input::Secondary(c) => read(Register::SecondaryColor, c),
+        Input::Fog(c) => read(Register::Fog, c),
+        Input::Texture(n, c) => read(GIVEN[3 + n], c),
+        Input::StageConstant(stage, n, c) => program.stages[stage].constants[n][c].into(),
+        Input::FinalConstant(n, c) => program.final_combiner.constants[n][c].into(),
+        input => panic!("a program does not read {input:?}"),
+    }
+}
+
+/// Any policies: each of its alternatives as often as the others.
+fn policies(random: &mut Random) -> Policies {
+    let mut policies = Policies::DEFAULT;
+    for policy in POLICIES {
+        let (value, _) = random.pick(policy.values).unwrap();
+        policies.set(&format!("{}={}", policy.rule, value)).unwrap();
+    }
+    policies
+}
+
+#[test]
+fn lines_yield_what_the_model_does() {
+    let mut random = Random::seeded(23);
+    for (n, program) in programs().take(3000).enumerate() {
+        let policies = if n % 2 == 0 { Policies::DEFAULT } else { policies(&mut random) };
+        let options = Options { policies, uniform: n % 3 == 0, ..Options::default() };
+        let function = Function::of_program(&program, &options);
+        let Result::Fragment(fragment) = function.result else { panic!("a program yields a fragment") };
+        for _ in 0..32 {
+            let registers = registers(&mut random);
+            let values = run(&function.lines, |input| given(&registers, input, &program));
+            let got = fragment.map(|channel| value_of(&values, channel) as u8);
+            assert_eq!(got, program.run(registers, &policies), "program {n} {program:?} {registers:?} {policies:?}");
+        }
+    }
+}

@@ -1,0 +1,33 @@
+"""Draws every shader of a folder by OpenGL without a window and compares its pixels with what is expected of them."""
+import sys
+
+import moderngl
+import numpy
+
+COLUMNS = 64
+count = int(sys.argv[1])
+pool = numpy.fromfile("pool.bin", "<i4").reshape(-1, COLUMNS)
+rows = len(pool)
+expected = numpy.fromfile("expected.bin", "<u4").reshape(count, rows, 4)
+context = moderngl.create_context(standalone=True, require=330, backend="egl", libgl="libGL.so.1", libegl="libEGL.so.1")
+given = context.texture((COLUMNS, rows), 1, pool.tobytes(), dtype="i4", alignment=4)
+given.filter = (moderngl.NEAREST, moderngl.NEAREST)
+given.use(0)
+target = context.framebuffer([context.texture((64, rows // 64), 4, dtype="u4", alignment=4)])
+target.use()
+corners = context.buffer(numpy.array([-1, -1, 3, -1, -1, 3], "f4").tobytes())
+vertex = "#version 330\nin vec2 at;\nvoid main() { gl_Position = vec4(at, 0.0, 1.0); }\n"
+for case in range(count):
+    program = context.program(vertex_shader=vertex, fragment_shader=open(f"{case:05}.glsl").read())
+    if "pool" in program:
+        program["pool"] = 0
+    array = context.vertex_array(program, [(corners, "2f", "at")])
+    array.render(moderngl.TRIANGLES)
+    got = numpy.frombuffer(target.read(components=4, dtype="u4"), "<u4").reshape(rows, 4)
+    wrong = numpy.flatnonzero((got != expected[case]).any(axis=1))
+    if len(wrong):
+        row = wrong[0]
+        sys.exit(f"case {case}, row {row}: {got[row]}, not {expected[case][row]}; {len(wrong)} of {rows} differ")
+    array.release()
+    program.release()
+print(f"{count} shaders, {rows} pixels each, on {context.info['GL_RENDERER']}")

@@ -1,0 +1,329 @@
+//! Register words as text: lines of a name or a method and its words, as drivers, logs of pushbuffers and the Xbox's shader definitions have them.
+
+use std::ops::Range;
+
+use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{Combiners, Named, Profile};
+
+use super::{RegisterWords, Word, decode, word_of};
+use crate::{Part, Place, Places};
+
+/// Words, and where each stands in a text.
+#[derive(Clone, Debug)]
+pub struct Written {
+    /// The words.
+    pub words: RegisterWords,
+    places: Vec<(Word, usize, Range<usize>)>,
+    /// What stands for words that are not written.
+    opening: Range<usize>,
+}
+
+impl Written {
+    /// None yet; `opening` stands for those that are not written.
+    pub fn new(chip: Profile, opening: Range<usize>) -> Written {
+        Written { words: RegisterWords::new(chip), places: Vec::new(), opening }
+    }
+
+    /// A word that stands there.
+    pub fn set(&mut self, word: Word, index: usize, value: u32, place: Range<usize>) {
+        self.places.push((word, index, place));
+        self.words.set(word, index, value);
+    }
+
+    /// Where a word stands last; the opening if it does not.
+    fn place(&self, word: Word, index: usize) -> Range<usize> {
+        let found = self.places.iter().rev().find(|(known, n, _)| (*known, *n) == (word, index));
+        found.map_or(self.opening.clone(), |(_, _, place)| place.clone())
+    }
+
+    /// The program of the words, and where its parts stand.
+    ///
+    /// # Errors
+    /// Every word that the chip does not take.
+    pub fn program(&self) -> Result<(Combiners, Places), Vec<Diagnostic>> {
+        match decode(&self.words) {
+            Ok(combiners) => {
+                let places = self.parts(&combiners);
+                Ok((combiners, places))
+            }
+            Err(refusals) => Err(refusals
+                .into_iter()
+                .map(|refusal| {
+                    let place = self.place(refusal.word, refusal.index);
+                    Diagnostic::error(refusal.code, place, refusal.message)
+                        .label("this word")
+                        .rule("CMB-12")
+                        .help(refusal.help)
+                })
+                .collect()),
+        }
+    }
+
+    /// Where the parts of the program stand: in their words.
+    fn parts(&self, combiners: &Combiners) -> Places {
+        let mut places = Places::default();
+        let mut note = |place| {
+            let (word, index) = word_of(place, self.words.chip);
+            places.set(place, self.place(word, index));
+        };
+        note(Place::Stages);
+        for (stage, state) in combiners.stages.iter().enumerate() {
+            note(Place::Stage(stage));
+            if state.constants != combiners.final_combiner.constants {
+                note(Place::StageConstants(stage));
+            }
+            for alpha in [false, true] {
+                let products = [0, 1].into_iter().flat_map(|n| [Part::Dot(n), Part::BlueToAlpha(n)]);
+                let outputs = (0..3).map(Part::Output);
+                let parts = (0..4).map(Part::Input).chain(outputs).chain(products).chain([Part::Scale, Part::Bias]);
+                parts.for_each(|part| note(Place::General { stage, alpha, part }));
+            }
+        }
+        (0..7).for_each(|n| note(Place::FinalInput(n)));
+        places
+    }
+}
+
+/// What a name stands for besides the words of [`Word`]: a first word, and which of them. Upper case.
+///
+/// Methods are those of the Xbox's headers, fields those of its shader definitions.
+const NAMES: [(&str, Word, usize); 23] = [
+    ("SET_COMBINER_ALPHA_ICW", Word::RcInAlpha, 0),
+    ("SET_COMBINER_COLOR_ICW", Word::RcInRgb, 0),
+    ("SET_COMBINER_ALPHA_OCW", Word::RcOutAlpha, 0),
+    ("SET_COMBINER_COLOR_OCW", Word::RcOutRgb, 0),
+    ("SET_COMBINER_FACTOR0", Word::RcConstantColor0, 0),
+    ("SET_COMBINER_FACTOR1", Word::RcConstantColor1, 0),
+    ("SET_COMBINER_CONTROL", Word::RcConfig, 0),
+    ("SET_COMBINER_SPECULAR_FOG_CW0", Word::RcFinal0, 0),
+    ("SET_COMBINER_SPECULAR_FOG_CW1", Word::RcFinal1, 0),
+    ("SET_SPECULAR_FOG_FACTOR", Word::RcColor, 0),
+    ("PSALPHAINPUTS", Word::RcInAlpha, 0),
+    ("PSRGBINPUTS", Word::RcInRgb, 0),
+    ("PSALPHAOUTPUTS", Word::RcOutAlpha, 0),
+    ("PSRGBOUTPUTS", Word::RcOutRgb, 0),
+    ("PSCONSTANT0", Word::RcConstantColor0, 0),
+    ("PSCONSTANT1", Word::RcConstantColor1, 0),
+    ("PSCOMBINERCOUNT", Word::RcConfig, 0),
+    ("PSFINALCOMBINERINPUTSABCD", Word::RcFinal0, 0),
+    ("PSFINALCOMBINERINPUTSEFG", Word::RcFinal1, 0),
+    ("PSFINALCOMBINERCONSTANT0", Word::RcColor, 0),
+    ("PSFINALCOMBINERCONSTANT1", Word::RcColor, 1),
+    ("RC_COLOR0", Word::RcColor, 0),
+    ("RC_COLOR1", Word::RcColor, 1),
+];
+
+/// Fields of the Xbox's shader definitions that say nothing of the combiners: they are passed over.
+const ASIDE: [&str; 7] = [
+    "PSCOMPAREMODE",
+    "PSTEXTUREMODES",
+    "PSDOTMAPPING",
+    "PSINPUTTEXTURE",
+    "PSC0MAPPING",
+    "PSC1MAPPING",
+    "PSFINALCOMBINERCONSTANTS",
+];
+
+/// A piece of the text that is no separator.
+struct Token<'t> {
+    text: &'t str,
+    /// It stands behind an opening bracket.
+    bracketed: bool,
+    place: Range<usize>,
+}
+
+impl Token<'_> {
+    /// Its number: with `0x`, or eight digits, hexadecimal.
+    fn number(&self) -> Option<u32> {
+        let hexadecimal = self.text.strip_prefix("0x").or_else(|| self.text.strip_prefix("0X"));
+        match hexadecimal {
+            Some(digits) => u32::from_str_radix(digits, 16).ok(),
+            None if self.text.len() == 8 => u32::from_str_radix(self.text, 16).ok(),
+            None => self.text.parse().ok(),
+        }
+    }
+}
+
+/// Reads words of a chip: a statement a line, or up to `;`. A statement is a name with an index in brackets, or a method, then words for it and those that follow
+/// it. What separates them may be spaces, commas, colons, `=` and braces; `//`, `#` and `/* */` begin comments.
+///
+/// Names are those of [`Word`], with or without `NV_`, `NV10_`, `NV20_`, `NV097_` before them, the Xbox's names of methods, and the fields of its shader definitions.
+///
+/// # Errors
+/// What is no statement, name, method or number.
+pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
+    let mut written = Written::new(chip, 0..text.find('\n').unwrap_or(text.len()));
+    let mut findings = Vec::new();
+    let mut statement: Vec<Token<'_>> = Vec::new();
+    let mut at = 0;
+    while at < text.len() {
+        let rest = &text[at..];
+        let ended = rest.starts_with(['\n', ';']);
+        if ended {
+            finish(&mut statement, &mut written, &mut findings);
+        }
+        let length = if ended {
+            1
+        } else if rest.starts_with("//") || rest.starts_with('#') {
+            rest.find('\n').unwrap_or(rest.len())
+        } else if rest.starts_with("/*") {
+            rest.find("*/").map_or(rest.len(), |end| end + 2)
+        } else {
+            let token = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+            if token > 0 {
+                let bracketed = text[..at].ends_with(['[', '(']);
+                statement.push(Token { text: &rest[..token], bracketed, place: at..at + token });
+                token
+            } else {
+                let separator = rest.chars().next().map_or(1, char::len_utf8);
+                if !rest.starts_with(|c: char| c.is_whitespace() || ",:={}[]()".contains(c)) {
+                    findings.push(
+                        Diagnostic::error("NB0103", at..at + separator, "this is no part of a list of register words")
+                            .label("here")
+                            .help("write a line a word: `RC_IN_RGB[0] 0x08040000`, or a method and its word: `0x0ac0 0x08040000`"),
+                    );
+                }
+                separator
+            }
+        };
+        at += length;
+    }
+    finish(&mut statement, &mut written, &mut findings);
+    if findings.is_empty() { Ok(written) } else { Err(findings) }
+}
+
+/// Ends a statement.
+fn finish(statement: &mut Vec<Token<'_>>, written: &mut Written, findings: &mut Vec<Diagnostic>) {
+    let tokens = std::mem::take(statement);
+    let Some((name, rest)) = tokens.split_first() else { return };
+    let chip = written.words.chip;
+    let (first, mut values) = match name.number() {
+        Some(method) => (of_method(method, chip), rest),
+        None => {
+            let upper = name.text.to_uppercase();
+            let bare = ["NV_", "NV10_", "NV20_", "NV097_", "NV10TCL_", "NV20TCL_"];
+            let bare = bare.iter().find_map(|prefix| upper.strip_prefix(prefix)).unwrap_or(&upper);
+            if ASIDE.contains(&bare) {
+                return;
+            }
+            let of_word = Word::ALL.iter().find(|word| word.name().to_uppercase() == bare).map(|word| (*word, 0));
+            let known =
+                of_word.or_else(|| NAMES.iter().find(|(name, ..)| *name == bare).map(|(_, word, n)| (*word, *n)));
+            // `NAME[2] value`.
+            match (known, rest) {
+                (Some((word, 0)), [index, values @ ..]) if word.count(chip) > 1 && is_index(index, word, chip) => {
+                    (Some((word, index.text.parse().unwrap_or(0))), values)
+                }
+                (known, values) => (known, values),
+            }
+        }
+    };
+    let Some((word, index)) = first.filter(|(word, _)| word.count(chip) > 0) else {
+        let finding = match name.number() {
+            Some(method) => {
+                Diagnostic::error("NB0204", name.place.clone(), format!("{method:#06x} is no method of the combiners"))
+            }
+            None => Diagnostic::error(
+                "NB0204",
+                name.place.clone(),
+                format!("`{}` is no register of the combiners", name.text),
+            ),
+        };
+        let help = format!("docs/registers.md lists the words and methods of {}", chip.name());
+        findings.push(finding.label("not known").help(help));
+        return;
+    };
+    if values.is_empty() {
+        findings.push(
+            Diagnostic::error("NB0202", name.place.clone(), "a register without a word").label("what does it hold?"),
+        );
+    }
+    if index + values.len() > word.count(chip) {
+        let message = format!("there are {} words of {}", word.count(chip), word.name());
+        let place =
+            values.get(word.count(chip).saturating_sub(index)).map_or(name.place.clone(), |token| token.place.clone());
+        findings.push(Diagnostic::error("NB0211", place, message).label("too many from here"));
+        values = &[];
+    }
+    for (n, token) in values.iter().enumerate() {
+        match token.number() {
+            Some(value) => written.set(word, index + n, value, token.place.clone()),
+            None => findings.push(
+                Diagnostic::error("NB0205", token.place.clone(), format!("`{}` is no word of 32 bits", token.text))
+                    .label("not a number")
+                    .help("write it with `0x`, or as eight hexadecimal digits, or in decimal"),
+            ),
+        }
+    }
+}
+
+/// Whether a token says which word of an array is meant.
+fn is_index(token: &Token<'_>, word: Word, chip: Profile) -> bool {
+    token.bracketed && token.number().is_some_and(|n| (n as usize) < word.count(chip))
+}
+
+/// The word that a method sets.
+fn of_method(method: u32, chip: Profile) -> Option<(Word, usize)> {
+    Word::ALL.iter().find_map(|word| {
+        let at = method.checked_sub(word.method(chip))?;
+        (at % 4 == 0 && ((at / 4) as usize) < word.count(chip)).then_some((*word, at as usize / 4))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::registers::describe;
+
+    const NV20: &str = "NV097_SET_COMBINER_COLOR_ICW[0] = 0x08040000;\n0x1e40 00000c00\nPSCombinerCount: 1 // one\nRC_FINAL0 {0x0000000c}\n rc_final1, 0x00001c80";
+
+    #[test]
+    fn all_forms_are_read() {
+        let written = read(NV20, Profile::Nv2a).unwrap_or_else(|findings| panic!("{findings:?}"));
+        let set: Vec<(Word, usize, u32)> = written.words.all().filter(|(_, _, value)| *value != 0).collect();
+        let expected = [
+            (Word::RcInRgb, 0, 0x0804_0000),
+            (Word::RcOutRgb, 0, 0xc00),
+            (Word::RcFinal0, 0, 0xc),
+            (Word::RcFinal1, 0, 0x1c80),
+            (Word::RcConfig, 0, 1),
+        ];
+        assert_eq!(set, expected);
+        assert!(written.program().is_ok());
+    }
+
+    /// What is described of every word is read back, by name and by method, for both chips.
+    #[test]
+    fn every_word_is_read_by_name_and_by_method() {
+        for chip in [Profile::Nv10, Profile::Nv2a] {
+            let mut words = RegisterWords::new(chip);
+            let all: Vec<(Word, usize, u32)> = words.all().collect();
+            for (n, (word, index, _)) in all.into_iter().enumerate() {
+                words.set(word, index, 0x1234_0000 + n as u32);
+            }
+            let line = |by: &dyn Fn(&crate::registers::Description) -> String| {
+                describe(&words).iter().map(|word| format!("{} {:#010x}\n", by(word), word.value)).collect::<String>()
+            };
+            for text in [line(&|word| word.name.clone()), line(&|word| format!("{:#06x}", word.method))] {
+                let written = read(&text, chip).unwrap_or_else(|findings| panic!("{text}{findings:?}"));
+                assert_eq!(written.words, words, "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_wrong_is_said_where_it_stands() {
+        let wrong = |text: &str| {
+            let Err(findings) = read(text, Profile::Nv10) else { panic!("{text} is read") };
+            (findings[0].code, text[findings[0].span.clone().unwrap_or(0..0)].to_string())
+        };
+        assert_eq!(wrong("RC_CONFIG 1"), ("NB0204", "RC_CONFIG".to_string()));
+        assert_eq!(wrong("0x1234 1"), ("NB0204", "0x1234".to_string()));
+        assert_eq!(wrong("RC_IN_RGB 1 2 3"), ("NB0211", "3".to_string()));
+        assert_eq!(wrong("RC_IN_RGB[1] 2 3"), ("NB0211", "3".to_string()));
+        assert_eq!(wrong("RC_IN_RGB[1]"), ("NB0202", "RC_IN_RGB".to_string()));
+        assert_eq!(wrong("RC_FINAL0"), ("NB0202", "RC_FINAL0".to_string()));
+        assert_eq!(wrong("RC_FINAL0 0xg"), ("NB0205", "0xg".to_string()));
+        assert_eq!(wrong("RC_FINAL0 ? 3"), ("NB0103", "?".to_string()));
+    }
+}

@@ -1,0 +1,56 @@
+//! `docs/answers.md`: its grades are the handbook's, its commands run and end as it says, and its vectors exist.
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use crate::bench::Bench;
+use std::path::Path;
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+/// The grade of a rule in the handbook.
+fn grade(rule: &str, handbook: &str) -> String {
+    let section = handbook.split(&format!("### {rule} ")).nth(1).unwrap_or_else(|| panic!("there is no rule {rule}"));
+    section.split("- Grade: ").nth(1).unwrap().lines().next().unwrap().to_string()
+}
+
+#[test]
+fn grades_are_those_of_the_handbook() {
+    let (page, handbook) = (read("docs/answers.md"), read("docs/numerics.md"));
+    let mut held = 0;
+    for line in page.lines().filter_map(|line| line.strip_prefix("- Rules: ")) {
+        for part in line.trim_end_matches('.').split("; ") {
+            let (rule, said) = part.split_once(' ').unwrap_or_else(|| panic!("{part}"));
+            assert_eq!(said, grade(rule, &handbook), "{rule}");
+            held += 1;
+        }
+    }
+    assert!(held > 15, "{held} rules");
+}
+
+/// Every command of the page; the line below it is the last one that it prints.
+#[test]
+fn commands_end_as_the_page_says() {
+    let (page, bench) = (read("docs/answers.md"), Bench::new());
+    let lines: Vec<&str> = page.lines().collect();
+    let mut held = 0;
+    for (n, line) in lines.iter().enumerate() {
+        let Some(arguments) = line.strip_prefix("$ ninebit ") else { continue };
+        let text = bench.run(arguments).text();
+        assert_eq!(text.lines().last().unwrap().trim(), lines[n + 1].trim(), "{arguments}");
+        held += 1;
+    }
+    assert!(held > 5, "{held} commands");
+}
+
+#[test]
+fn vectors_exist() {
+    let (page, known) = (read("docs/answers.md"), Bench::new().run("vectors list").text());
+    for line in page.lines().filter_map(|line| line.strip_prefix("- Vectors: ")) {
+        for name in line.split('`').skip(1).step_by(2) {
+            let is_unit = known.lines().any(|line| line.split_whitespace().next() == Some(name));
+            let is_file = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors").join(name).exists();
+            assert!(is_unit || is_file, "{name}");
+        }
+    }
+}
