@@ -3,6 +3,7 @@
 //! The frames are those of [nxdk_pgraph_tests_golden_results](https://github.com/abaire/nxdk_pgraph_tests_golden_results) (CC0), drawn by
 //! the programs of [nxdk_pgraph_tests](https://github.com/abaire/nxdk_pgraph_tests) (MIT). `vectors/captures/frames.tsv` has a row for each: where
 //! the programs printed their text, which is left out, and the SHA-256 of the captured pixels outside.
+#![allow(clippy::float_arithmetic, reason = "positions that programs gave the chip")]
 
 mod clip;
 mod color_key;
@@ -71,9 +72,12 @@ pub fn suites() -> impl Iterator<Item = &'static str> {
     SUITES.iter().map(|(name, _)| *name)
 }
 
+/// Frames by name.
 type Frames = Vec<(String, Drawn)>;
+/// A suite by name, and what draws its frames.
+type Suite = (&'static str, fn() -> Frames);
 
-const SUITES: [(&str, fn() -> Frames); 5] = [
+const SUITES: [Suite; 5] = [
     ("Color_key", color_key::frames),
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),
