@@ -139,8 +139,11 @@ impl Check<'_> {
             .help(self.notation.help(Help::EmptyStage));
             self.push(finding);
         }
+        // A text that gives constants of their own to some says so there; what then differs elsewhere is no finding of its own.
+        let owners = (0..combiners.stages.len()).map(Place::StageConstants).chain([Place::FinalConstants]);
+        let written = owners.map(|owner| self.places.get(owner)).any(|place| place.is_some());
         for (index, stage) in combiners.stages.iter().enumerate() {
-            let differ = stage.constants != combiners.final_combiner.constants;
+            let differ = !written && stage.constants != combiners.final_combiner.constants;
             self.own_constants(Place::StageConstants(index), differ, "general stages");
             // Both portions read what the stages before have written.
             self.portion(index, &stage.rgb, false);
