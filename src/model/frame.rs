@@ -1,7 +1,7 @@
 //! What a render leaves behind: surfaces of stored words.
 
 use crate::rop::surface::show;
-use crate::state::{DEPTH_BITS, STENCIL_SHIFT, SurfaceFormat};
+use crate::state::{SurfaceFormat, depth_of, stencil_of};
 
 /// A render target's memory after (or during) a render.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,19 +14,24 @@ pub struct Surface {
     pub format: SurfaceFormat,
     /// `width * height` stored pixels, row by row from the top; unused high bits zero.
     pub words: Vec<u32>,
-    /// Stored depths in the same order, each with the stencil above it ([`STENCIL_SHIFT`]); empty without a depth buffer.
+    /// Stored depths in the same order, each with the stencil above it ([`depth_stencil`](crate::state::depth_stencil)); empty without a depth buffer.
     pub depth: Vec<u32>,
 }
 
 impl Surface {
     /// The stored depths, without stencils.
     pub fn depths(&self) -> impl Iterator<Item = u32> {
-        self.depth.iter().map(|word| word & DEPTH_BITS)
+        self.depth.iter().copied().map(depth_of)
     }
 
     /// The stored stencils.
     pub fn stencils(&self) -> impl Iterator<Item = u8> {
-        self.depth.iter().map(|word| (word >> STENCIL_SHIFT) as u8)
+        self.depth.iter().copied().map(stencil_of)
+    }
+
+    /// The words of depth and stencil as the chip has them: the stencil in the low byte. Of Z24S8.
+    pub fn chip_depth_words(&self) -> impl Iterator<Item = u32> {
+        self.depth.iter().map(|word| word.rotate_left(8))
     }
 
     /// The surface as R, G, B, A, row by row from the top: the stored bits read by rule TEX-1 as

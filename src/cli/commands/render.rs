@@ -137,10 +137,7 @@ fn depths(surface: &Surface, format: DepthFormat, destination: &Destination) -> 
             let grey: Vec<u16> = surface.depths().map(|depth| (depth >> (bits - 16)) as u16).collect();
             encode_grey_png(surface.width, surface.height, &grey)
         }
-        // The chip has the stencil in the low byte.
-        _ if bits == 24 => {
-            Ok(little_endian(&surface.depth.iter().map(|word| word.rotate_left(8)).collect::<Vec<_>>(), 4))
-        }
+        _ if bits == 24 => Ok(little_endian(&surface.chip_depth_words().collect::<Vec<_>>(), 4)),
         _ => Ok(little_endian(&surface.depth, 2)),
     }
 }

@@ -11,7 +11,9 @@ use crate::raster::ideal;
 use crate::raster::interpolate::{self, Sample, Settled};
 use crate::raster::setup::{Triangle, centres};
 use crate::rop::{blend, stencil, surface};
-use crate::state::{Cull, DEPTH_BITS, FrontFace, Register, STENCIL_SHIFT, ShadeModel, TriangleVertices, VertexColor};
+use crate::state::{
+    Cull, FrontFace, Register, ShadeModel, TriangleVertices, VertexColor, depth_of, depth_stencil, stencil_of,
+};
 use crate::texture::chain::Chain;
 use crate::texture::place::{Coordinates, Interpolated};
 use crate::texture::stage::ShaderSetup;
@@ -67,13 +69,13 @@ impl DepthStencil {
     /// An entry of [`Surface::depth`](crate::frame::Surface::depth).
     #[inline]
     pub fn new(word: u32) -> Self {
-        DepthStencil { depth: i64::from(word & DEPTH_BITS), stencil: (word >> STENCIL_SHIFT) as u8 }
+        DepthStencil { depth: i64::from(depth_of(word)), stencil: stencil_of(word) }
     }
 
     /// The entry, of a depth that is an integer.
     #[inline]
     pub fn word(self) -> u32 {
-        u32::from(self.stencil) << STENCIL_SHIFT | self.depth as u32
+        depth_stencil(self.depth as u32, self.stencil)
     }
 }
 

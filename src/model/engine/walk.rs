@@ -54,6 +54,12 @@ pub fn windows(planned: &PlannedDraw, rows: (i64, i64)) -> impl Iterator<Item = 
     })
 }
 
+/// The numbers of a draw's triangles, in order, in each of the [windows] of some rows.
+pub fn triangles(planned: &PlannedDraw, rows: (i64, i64)) -> impl Iterator<Item = (Window, usize)> {
+    let count = planned.assembly.triangles.len();
+    windows(planned, rows).flat_map(move |window| (0..count).map(move |number| (window, number)))
+}
+
 /// Visits every pixel of some rows that a draw covers, once for each triangle that covers it.
 #[inline(always)]
 pub fn covered(
@@ -62,19 +68,7 @@ pub fn covered(
     rows: (i64, i64),
     mut visit: impl FnMut(&TriangleContext<'_>, i64, i64),
 ) {
-    for window in windows(planned, rows) {
-        covered_in(plan, planned, window, &mut visit);
-    }
-}
-
-#[inline(always)]
-fn covered_in(
-    plan: &Plan,
-    planned: &PlannedDraw,
-    (rows, columns): Window,
-    visit: &mut impl FnMut(&TriangleContext<'_>, i64, i64),
-) {
-    for number in 0..planned.assembly.triangles.len() {
+    for ((rows, columns), number) in triangles(planned, rows) {
         let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
         let triangle = &context.triangle;
         let rows = (triangle.rows.0.max(rows.0), triangle.rows.1.min(rows.1));

@@ -290,15 +290,27 @@ pub struct DepthBuffer {
 impl DepthBuffer {
     /// The cleared pixel as a surface holds it: the depth in the low 24 bits, the stencil above.
     pub fn cleared(&self) -> u32 {
-        u32::from(self.clear_stencil) << STENCIL_SHIFT | self.clear
+        depth_stencil(self.clear, self.clear_stencil)
     }
 }
 
-/// Where a surface's depth and stencil words have the stencil; below stands the depth.
-pub const STENCIL_SHIFT: u32 = 24;
+/// A depth, of at most 24 bits, and a stencil as a surface holds them: the stencil above the depth.
+#[inline(always)]
+pub fn depth_stencil(depth: u32, stencil: u8) -> u32 {
+    u32::from(stencil) << 24 | depth
+}
 
-/// The bits of a surface's depth and stencil words that are the depth.
-pub const DEPTH_BITS: u32 = (1 << STENCIL_SHIFT) - 1;
+/// The depth of such a word.
+#[inline(always)]
+pub fn depth_of(word: u32) -> u32 {
+    word & 0x00ff_ffff
+}
+
+/// The stencil of such a word.
+#[inline(always)]
+pub fn stencil_of(word: u32) -> u8 {
+    (word >> 24) as u8
+}
 
 /// A render target.
 #[derive(Clone, Debug, PartialEq)]

@@ -26,10 +26,7 @@ impl Method for Free {
         band: &mut Band<'_, f64>,
         counts: &mut Counts,
     ) {
-        let triangles = 0..planned.assembly.triangles.len();
-        let windows =
-            walk::windows(planned, band.rows()).flat_map(|window| triangles.clone().map(move |n| (window, n)));
-        for ((rows, columns), number) in windows {
+        for ((rows, columns), number) in walk::triangles(planned, band.rows()) {
             let fixed = TriangleContext::new(plan, planned, number, rows);
             let outline = outline(planned, number);
             let outer = |f: &Option<TriangleContext<'_>>| f.as_ref().map(|c| c.triangle.rows);
@@ -146,10 +143,7 @@ impl<L: Ideal + Send + Sync> Method for Real<L> {
     type Lane = L;
 
     fn draw(plan: &Plan, planned: &PlannedDraw, images: &Images<'_, L>, band: &mut Band<'_, L>, _: &mut Counts) {
-        let triangles = 0..planned.assembly.triangles.len();
-        let windows =
-            walk::windows(planned, band.rows()).flat_map(|window| triangles.clone().map(move |n| (window, n)));
-        for ((rows, columns), number) in windows {
+        for ((rows, columns), number) in walk::triangles(planned, band.rows()) {
             let Some(outline) = outline(planned, number) else { continue };
             let Some(context) = TriangleContext::new(plan, planned, number, rows) else { continue };
             for j in rows.0.max(outline.rows.0)..rows.1.min(outline.rows.1) {

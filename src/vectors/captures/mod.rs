@@ -154,8 +154,7 @@ impl Frame {
             put_back(&frames.surfaces[0], &mut words);
         }
         if self.drawn.shown == Shown::DepthStencil {
-            // The chip has the stencil in the low byte.
-            words = frames.surfaces[0].depth.iter().map(|word| word.rotate_left(8)).collect();
+            words = frames.surfaces[0].chip_depth_words().collect();
         }
         Ok(words.into_iter().map(|word| surface::show(SurfaceFormat::A8R8G8B8, word)).collect())
     }

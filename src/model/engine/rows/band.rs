@@ -455,7 +455,8 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             for run in runs.iter() {
                 depth[run.lane..][..run.count].copy_from_slice(&band.depth[run.at..][..run.count]);
             }
-            if store::test_depth_stencil(draw, &varying.depth[..], depth, alive) {
+            let incoming = varying.depth.first_chunk().unwrap_or(&[0; BLOCK]);
+            if store::test_depth_stencil(draw, incoming, depth, alive) {
                 for run in runs.iter() {
                     band.depth[run.at..][..run.count].copy_from_slice(&depth[run.lane..][..run.count]);
                 }

@@ -4,7 +4,9 @@ use super::kernels::Row;
 use super::{BLOCK, Compiled};
 use crate::plan::PlannedDraw;
 use crate::rop::{stencil, surface};
-use crate::state::{CompareFunction, DEPTH_BITS, STENCIL_SHIFT, StencilOperation, StencilTest, SurfaceFormat};
+use crate::state::{
+    CompareFunction, StencilOperation, StencilTest, SurfaceFormat, depth_of, depth_stencil, stencil_of,
+};
 
 /// What blending reads of the surface's words, into the rows that want it.
 #[inline(always)]
@@ -84,47 +86,65 @@ pub(super) fn test<T: Copy + PartialOrd>(
 #[inline(always)]
 pub(super) fn test_depth_stencil(
     draw: &PlannedDraw,
-    incoming: &[u32],
+    incoming: &[u32; BLOCK],
+    memory: &mut [u32; BLOCK],
+    alive: &mut [bool; BLOCK],
+) -> bool {
+    let writes_stencil = match &draw.stencil_test {
+        None => {
+            test_depth(draw, incoming, memory, alive);
+            false
+        }
+        Some(state) => test_stencil(state, draw, incoming, memory, alive),
+    };
+    let writes_depth = draw.depth_test.is_some_and(|test| test.write);
+    if writes_depth {
+        for ((word, incoming), alive) in memory.iter_mut().zip(incoming).zip(&*alive) {
+            *word = if *alive { depth_stencil(*incoming, stencil_of(*word)) } else { *word };
+        }
+    }
+    writes_depth || writes_stencil
+}
+
+/// DEP-2: drops fragments.
+#[inline(always)]
+fn test_depth(draw: &PlannedDraw, incoming: &[u32; BLOCK], memory: &[u32; BLOCK], alive: &mut [bool; BLOCK]) {
+    if let Some(state) = &draw.depth_test {
+        test(state.function, |n| incoming[n], |n| depth_of(memory[n]), alive);
+    }
+}
+
+/// STN-1 around the depth test; whether it can change a stencil.
+#[inline(always)]
+fn test_stencil(
+    state: &StencilTest,
+    draw: &PlannedDraw,
+    incoming: &[u32; BLOCK],
     memory: &mut [u32; BLOCK],
     alive: &mut [bool; BLOCK],
 ) -> bool {
     let tested = *alive;
-    if let Some(state) = &draw.stencil_test {
-        let reference = state.reference & state.mask;
-        test(state.function, |_| reference, |n| stencil_of(memory[n]) & state.mask, alive);
-    }
+    let reference = state.reference & state.mask;
+    test(state.function, |_| reference, |n| stencil_of(memory[n]) & state.mask, alive);
     let passed = *alive;
-    if let Some(state) = &draw.depth_test {
-        test(state.function, |n| incoming[n], |n| memory[n] & DEPTH_BITS, alive);
+    test_depth(draw, incoming, memory, alive);
+    if !stencil::writes(state) {
+        return false;
     }
-    let writes_depth = draw.depth_test.is_some_and(|test| test.write);
-    let writes_stencil = draw.stencil_test.filter(stencil::writes);
-    if let Some(test) = &writes_stencil {
-        let stencils = memory.map(stencil_of);
-        let mut written = stencils;
-        for (operation, outcome) in
-            [(test.fail, (false, false)), (test.depth_fail, (true, false)), (test.pass, (true, true))]
-        {
-            let new = operate(test, operation, &stencils);
-            for n in 0..BLOCK {
-                written[n] = if tested[n] && (passed[n], alive[n]) == outcome { new[n] } else { written[n] };
-            }
-        }
-        for (word, stencil) in memory.iter_mut().zip(written) {
-            *word = *word & DEPTH_BITS | u32::from(stencil) << STENCIL_SHIFT;
+    let stencils = memory.map(stencil_of);
+    let mut written = stencils;
+    for (operation, outcome) in
+        [(state.fail, (false, false)), (state.depth_fail, (true, false)), (state.pass, (true, true))]
+    {
+        let new = operate(state, operation, &stencils);
+        for n in 0..BLOCK {
+            written[n] = if tested[n] && (passed[n], alive[n]) == outcome { new[n] } else { written[n] };
         }
     }
-    if writes_depth {
-        for ((word, incoming), alive) in memory.iter_mut().zip(incoming).zip(&*alive) {
-            *word = if *alive { *word & !DEPTH_BITS | *incoming } else { *word };
-        }
+    for (word, stencil) in memory.iter_mut().zip(written) {
+        *word = depth_stencil(depth_of(*word), stencil);
     }
-    writes_depth || writes_stencil.is_some()
-}
-
-#[inline(always)]
-fn stencil_of(word: u32) -> u8 {
-    (word >> STENCIL_SHIFT) as u8
+    true
 }
 
 /// What an operation leaves: loops that know which.
