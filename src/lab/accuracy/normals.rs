@@ -1,11 +1,14 @@
 //! The normals that a technique holds in a register, read out and compared with the surface's.
 
 use super::{COLORS, TARGET};
+use ninebit::engine::{DrawTrace, trace};
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::state::{Combiners, Component, ExpandCentre, FinalInput, FinalRegister, Scene};
+use ninebit::state::{Combiners, Component, ExpandCentre, FinalInput, FinalRegister, Register, Scene};
+use ninebit::threads::on_threads;
 use ninebit_report::compare::{CompareOptions, Mode, Statistics, compare};
-use ninebit_scene::truth::{ShadingNormal, Space, Truth, TruthFrame};
+use ninebit_scene::truth::{NormalHolder, ShadingNormal, Space, Truth, TruthFrame};
 use ninebit_scene::vector::{Vector, cross, dot, unit_or_zero};
+use rayon::prelude::*;
 
 /// How far a technique's normals are turned away from the surface's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,9 +19,9 @@ pub struct NormalError {
     pub lengths: Statistics,
 }
 
-/// Normals by pixel: what a register holds before the first general stage.
+/// Normals by pixel: what a register holds before the first general stage, or what a dot product of the texture shader reads.
 pub(super) struct Normals {
-    /// The register's bytes as `expand` reads them.
+    /// What is stored: a register's bytes as `expand` reads them, or the vector of the texture shader.
     stored: Vec<Option<Vector>>,
     /// The same if nothing on the way to the register had been rounded: 2x - 1 of the ideal of the texels or colours.
     pub(super) ideal: Vec<Option<Vector>>,
@@ -26,18 +29,55 @@ pub(super) struct Normals {
     pub(super) space: Space,
 }
 
-/// Reads a register of the draws that have a truth: the scene is drawn once more with programs that show it.
-pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNormal) -> Normals {
+/// Reads the normals of the draws that have a truth. `measured` names the pixels that will be asked for.
+pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNormal, measured: &[usize]) -> Normals {
+    match normal.holder {
+        NormalHolder::Register(register) => of_register(scene, plan, truth, normal.space, register),
+        NormalHolder::DotProduct(unit) => of_dot_product(plan, truth, normal.space, unit, measured),
+    }
+}
+
+/// The vectors that a dot product of the texture shader reads, off the trace of each pixel: those of the last draw that has a truth and reads one.
+fn of_dot_product(plan: &Plan, truth: &Truth, space: Space, unit: usize, measured: &[usize]) -> Normals {
+    let width = plan.targets[TARGET].width as usize;
+    let components = ["x", "y", "z"].map(|axis| format!("unit{unit}.vector.{axis}"));
+    let one = |at: usize| {
+        let pixel = ((at % width) as u32, (at / width) as u32);
+        let traced = trace(plan, TARGET, pixel, None).ok()?;
+        let told = traced.draws.iter().rev().filter(|draw| truth.meshes.get(draw.draw).is_some_and(Option::is_some));
+        let read = |draw: &DrawTrace| -> Option<(Vector, Vector)> {
+            let mut vectors = ([0.0; 3], [0.0; 3]);
+            for (n, name) in components.iter().enumerate() {
+                let step = draw.steps.iter().find(|step| step.name == *name)?;
+                (vectors.0[n], vectors.1[n]) = (step.real(), step.ideal?);
+            }
+            Some(vectors)
+        };
+        told.filter(|draw| draw.stored).find_map(read)
+    };
+    let vectors: Vec<Option<(Vector, Vector)>> = on_threads(0, || measured.par_iter().map(|at| one(*at)).collect());
+    let mut normals = Normals { stored: Vec::new(), ideal: Vec::new(), space };
+    let pixels = measured.last().map_or(0, |last| last + 1);
+    normals.stored.resize(pixels, None);
+    normals.ideal.resize(pixels, None);
+    for (at, (stored, ideal)) in measured.iter().zip(vectors).filter_map(|(at, read)| Some((*at, read?))) {
+        (normals.stored[at], normals.ideal[at]) = (Some(stored), Some(ideal));
+    }
+    normals
+}
+
+/// What a register holds: the scene is drawn once more with programs that show it.
+fn of_register(scene: &Scene, plan: &Plan, truth: &Truth, space: Space, register: Register) -> Normals {
     let mut probe = scene.clone();
     for (number, draw) in probe.draws.iter_mut().enumerate() {
         if truth.meshes.get(number).is_some_and(Option::is_some) {
-            draw.combiners = showing(normal.register.into());
+            draw.combiners = showing(register.into());
             (draw.blend, draw.alpha_test, draw.color_mask) = (None, None, [true; 4]);
             draw.program_origin.clear();
         }
     }
     let Ok(probe) = Plan::compile(&probe, &PlanOptions { policies: plan.policies, prune: true }) else {
-        return Normals { stored: Vec::new(), ideal: Vec::new(), space: normal.space };
+        return Normals { stored: Vec::new(), ideal: Vec::new(), space };
     };
     let options = CompareOptions { mode: Mode::Follow, target: TARGET, threads: 0, channels: COLORS };
     let comparison = compare(&probe, &options);
@@ -56,7 +96,7 @@ pub(super) fn read(scene: &Scene, plan: &Plan, truth: &Truth, normal: ShadingNor
     Normals {
         stored: pixels.clone().map(|at| drawn(at).then(|| stored(at))).collect(),
         ideal: pixels.map(|at| drawn(at).then(|| ideal(at))).collect(),
-        space: normal.space,
+        space,
     }
 }
 

@@ -14,8 +14,8 @@ use crate::image::{self, ImageLimits, Rgba};
 use crate::raw::{Numbers, Tuple};
 use crate::reader::Name;
 use crate::truth::{
-    Equation, Eye, Field, HemisphereLight, Integral, Interpolated, Light, Material, Model, NormalSource, ShadingNormal,
-    Space, Truth, real_color,
+    Equation, Eye, Field, HemisphereLight, Integral, Interpolated, Light, Material, Model, NormalHolder, NormalSource,
+    ShadingNormal, Space, Truth, real_color,
 };
 use crate::vector::wide;
 use ninebit::state::{Named, Register};
@@ -61,7 +61,7 @@ pub(super) fn truth<'a>(
         let image = picture(reader, names, raw)?;
         Some(Arc::new(field(&image, |[r, g, b, _]| [r, g, b].map(|byte| f64::from(byte) / 255.0))))
     });
-    let shading_normal = fields.shading_normal.as_ref().and_then(|raw| shading_normal(reader, raw));
+    let shading_normal = fields.shading_normal.as_ref().and_then(|raw| shading_normal(reader, raw, draws));
     if eye.is_none() && material.specular != [0.0; 3] && !lights.is_empty() {
         reader.push(
             Diagnostic::error("NB0391", opening.clone(), "a truth with highlights has no eye")
@@ -368,25 +368,54 @@ fn field<const N: usize>(image: &Rgba, of: impl Fn([u8; 4]) -> [f64; N]) -> Fiel
     Field { width: image.width, height: image.height, texels, wrap: true }
 }
 
-fn shading_normal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShadingNormal<'a>>) -> Option<ShadingNormal> {
+fn shading_normal<'a>(
+    reader: &mut Reader<'a>,
+    raw: &Raw<'a, source::ShadingNormal<'a>>,
+    draws: &[Drawn],
+) -> Option<ShadingNormal> {
     let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let fields = reader.read(raw)?;
-    let written = reader.required(&fields.register, "register", "shading normal", opening)?;
-    let register = reader.name(&written)?;
-    if !is_input(register) {
-        reader.push(
-            Diagnostic::error(
-                "NB0393",
-                reader.span(&written),
-                format!("{} holds no normals when a pixel begins", register.name()),
-            )
-            .label("not a texture or a colour")
-            .help("write Texture0 to Texture3, PrimaryColor or SecondaryColor"),
-        );
-        return None;
-    }
     let space = reader.name_or(&fields.space, Space::Tangent);
-    Some(ShadingNormal { register, space })
+    let holder = match (&fields.register, &fields.unit) {
+        (Some(_), Some(unit)) => {
+            let message = "`unit` and `register` both say where the normals are";
+            refuse_normals(reader, reader.span(unit), message, "one too many", "leave one of the two out");
+            return None;
+        }
+        (_, Some(written)) => normal_unit(reader, written, draws)?,
+        (written, None) => {
+            let written = reader.required(written, "register", "shading normal", opening)?;
+            normal_register(reader, &written)?
+        }
+    };
+    Some(ShadingNormal { holder, space })
+}
+
+fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>>) -> Option<NormalHolder> {
+    let register = reader.name(written)?;
+    if is_input(register) {
+        return Some(NormalHolder::Register(register));
+    }
+    let message = format!("{} holds no normals when a pixel begins", register.name());
+    let help = "write Texture0 to Texture3, PrimaryColor or SecondaryColor";
+    refuse_normals(reader, reader.span(written), message, "not a texture or a colour", help);
+    None
+}
+
+/// A unit whose dot product reads the normals, in any draw.
+fn normal_unit<'a>(reader: &mut Reader<'a>, written: &Raw<'a, u32>, draws: &[Drawn]) -> Option<NormalHolder> {
+    let unit = reader.whole(written, "a texture unit", 1..=3)? as usize;
+    if draws.iter().any(|drawn| drawn.draw.texture_shader[unit].operation.is_dot()) {
+        return Some(NormalHolder::DotProduct(unit));
+    }
+    let message = format!("unit {unit} of the texture shader takes no dot product in any draw");
+    let help = "name a unit whose operation is a dot product or a reflection, or write `register` for one that is read in the combiners";
+    refuse_normals(reader, reader.span(written), message, "reads no vector", help);
+    None
+}
+
+fn refuse_normals(reader: &mut Reader<'_>, place: Range<usize>, message: impl Into<String>, label: &str, help: &str) {
+    reader.push(Diagnostic::error("NB0393", place, message).label(label).help(help));
 }
 
 /// Whether a register holds something that the vertices or a texture gave.

@@ -137,12 +137,22 @@ pub enum Equation {
     DotProduct(Interpolated, Interpolated),
 }
 
-/// The register that holds a technique's normals before light falls on them.
+/// Where a technique's normals are read before light falls on them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NormalHolder {
+    /// A register when a pixel begins: a texture or a colour. Its bytes stand for -1 to 1.
+    Register(Register),
+    /// A unit of the texture shader that takes a dot product: the vector that its mapping makes of an earlier unit's colour (TSH-3), which may
+    /// have more than eight bits a component.
+    DotProduct(usize),
+}
+
+/// Where a technique's normals are, and what they mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ShadingNormal {
-    /// The register: a texture or a colour.
-    pub register: Register,
-    /// The space of its vectors.
+    /// Where they are.
+    pub holder: NormalHolder,
+    /// The space of the vectors.
     pub space: Space,
 }
 
