@@ -145,7 +145,7 @@ fn state(c: &mut Criterion) {
     });
     bench("bilinear_dot3_depth", &|s| {
         s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 });
-        s.draws[0].depth_test = Some(DepthTest { function: CompareFunction::LessOrEqual, write: true });
+        s.draws[0].depth_test = Some(DepthTest::new(CompareFunction::LessOrEqual, true));
     });
     bench("nothing_written", &|s| s.draws[0].color_mask = [false; 4]);
     group.finish();

@@ -208,7 +208,7 @@ const CASES: &[Case] = &[
     }),
     ("target `frame` has no depth buffer", |s| {
         s.targets[0].depth = None;
-        s.draws[0].depth_test = Some(DepthTest { function: CompareFunction::Less, write: true });
+        s.draws[0].depth_test = Some(DepthTest::new(CompareFunction::Less, true));
     }),
     ("target `frame` has no stencil", |s| {
         s.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z16, clear: 0, clear_stencil: 0 });
@@ -499,7 +499,7 @@ fn hurt_draw(draw: &mut Draw, r: &mut Random) {
             let rectangle = Rectangle { x: r.whole(), y: r.whole(), width: r.whole(), height: r.whole() };
             draw.window_clip = Some(WindowClip { rectangles: vec![rectangle; r.below(10)], exclusive: k == 0 });
             draw.stencil_test = Some(StencilTest { function: r.any(), fail: r.any(), pass: r.any(), ..STENCIL_TEST });
-            draw.depth_test = Some(DepthTest { function: r.any(), write: true });
+            draw.depth_test = Some(DepthTest::new(r.any(), true));
             draw.blend = Some(Blend { equation: r.any(), source: r.any(), destination: r.any() });
         }
     }

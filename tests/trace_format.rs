@@ -20,7 +20,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Random scenes whose traces are looked at.
-const SCENES: usize = 600;
+const SCENES: usize = 1000;
 
 type Words = BTreeSet<String>;
 

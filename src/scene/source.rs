@@ -191,7 +191,7 @@ source! {
         integral: Name<truth::Integral>,
         occlusion: HeightFile<'a>,
     }
-    struct ShadingNormal { register: Name<state::Register>, space: Name<truth::Space> }
+    struct ShadingNormal { register: Name<state::Register>, unit: u32, space: Name<truth::Space> }
     struct RadialNormals { center: Numbers }
     struct HemisphereNormals { zero_outside: bool, size: u32, noise: f32, seed: u32 }
     struct HeightFile { file: String, scale: f32, channel: Word }
@@ -388,7 +388,15 @@ source! {
     struct BumpEnvironment { matrix: Numbers, luminance: Numbers }
     struct ConstantEye { eye: Numbers }
     struct AlphaTest { function: Name<state::CompareFunction>, reference: Word }
-    struct DepthTest { function: Name<state::CompareFunction>, write: bool }
+    struct DepthTest {
+        function: Name<state::CompareFunction>,
+        write: bool,
+        vertex_depths: Name<state::VertexDepths>,
+        range: DepthRange<'a>,
+        offset: PolygonOffset<'a>,
+    }
+    struct DepthRange { lowest: f32, highest: f32, clamp: bool, drop_triangles: bool }
+    struct PolygonOffset { bias: f32, factor: f32 }
     struct Blend {
         equation: Name<state::BlendEquation>,
         source: Name<state::BlendFactor>,

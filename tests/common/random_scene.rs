@@ -198,7 +198,7 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
     };
     let format = if c.once_in(2) { c.pick(formats) } else { SurfaceFormat::A8R8G8B8 };
     let depth = c.once_in(2).then(|| {
-        let format: DepthFormat = c.any();
+        let format = c.pick(&[DepthFormat::Z16, DepthFormat::Z24S8]);
         let full = (1_u32 << format.bits()) - 1;
         let clear = if c.once_in(3) { c.word() & full } else { full };
         DepthBuffer { format, clear, clear_stencil: 0 }
@@ -271,9 +271,9 @@ fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {
         textures,
         texture_shader,
         alpha_test: c.once_in(5).then(|| AlphaTest { function: c.any(), reference: c.byte() }),
-        depth_test: (surface.depth.is_some() && c.below(3) != 0).then(|| DepthTest {
-            function: if c.once_in(2) { c.any() } else { CompareFunction::LessOrEqual },
-            write: c.below(4) != 0,
+        depth_test: (surface.depth.is_some() && c.below(3) != 0).then(|| {
+            let function = if c.once_in(2) { c.any() } else { CompareFunction::LessOrEqual };
+            DepthTest::new(function, c.below(4) != 0)
         }),
         blend: (blend_allowed && c.once_in(3)).then(|| Blend {
             equation: c.pick(equations),

@@ -52,6 +52,15 @@ fn widened(tape: &[u32]) -> Scene {
         {
             depth.clear_stencil = c.byte();
         }
+        if scene.profile == Profile::Nv2a
+            && let Some(depth) = &mut target.depth
+            && c.once_in(3)
+        {
+            depth.format = if depth.format.has_stencil() { DepthFormat::Z24S8F } else { DepthFormat::Z16F };
+            // Depths of vertices, 0 to 1 or whole steps, lie on both sides.
+            depth.clear =
+                if depth.format.has_stencil() { 0x3f_0000 + c.below(0x10_0000) } else { 0x6000 + c.below(0xa000) };
+        }
     }
     for index in 0..scene.draws.len() {
         let mut c = tape.part(WIDER_DRAW);
@@ -75,7 +84,7 @@ fn attempt(scene: &mut Scene, change: impl FnOnce(&mut Scene)) {
 type Change = fn(&mut Choices<'_>, &mut Scene, usize);
 
 /// What may happen to a draw, in order.
-const CHANGES: [Change; 10] = [
+const CHANGES: [Change; 11] = [
     share_mesh,
     share_texture,
     front_end::change,
@@ -86,6 +95,7 @@ const CHANGES: [Change; 10] = [
     lods,
     stencil_and_clips,
     color_keys,
+    depths,
 ];
 
 /// A rectangle that begins within a target, now and then an empty one.
@@ -112,6 +122,41 @@ fn stencil_and_clips(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
         let count = c.size(1, WINDOW_CLIP_RECTANGLES as u32);
         let rectangles = (0..count).map(|_| rectangle(c, target.width, target.height)).collect();
         draw.window_clip = Some(WindowClip { rectangles, exclusive: c.once_in(2) });
+    }
+}
+
+/// Depths in steps, within a buffer and beyond it, ranges, offsets.
+#[allow(clippy::float_arithmetic, reason = "choosing depths")]
+fn depths(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    let Scene { targets, draws, .. } = scene;
+    let draw = &mut draws[index];
+    let (Some(test), Some(buffer)) = (&mut draw.depth_test, targets[draw.target].depth) else { return };
+    let full = buffer.format.largest();
+    // Sixteenths, so that the oracle's numbers have room; of whole steps too.
+    let step = |c: &mut Choices<'_>| {
+        let whole = (c.word() % (full + full / 4)) as f32;
+        match c.below(4) {
+            0 => whole / 16.0,
+            1 => -whole / 16.0,
+            2 => f32::from(c.byte()),
+            _ => whole,
+        }
+    };
+    if c.once_in(2) && matches!(draw.positions, Positions::Window) {
+        test.vertex_depths = VertexDepths::Steps;
+        draw.vertices.map_positions(|[x, y, _, w]| [x, y, step(c), w]);
+    }
+    if c.once_in(3) {
+        let (a, b) = (step(c), step(c));
+        test.range = Some(DepthRange {
+            lowest: a.min(b),
+            highest: a.max(b),
+            clamps: c.once_in(2),
+            drops_triangles: c.once_in(3),
+        });
+    }
+    if c.once_in(3) {
+        test.offset = PolygonOffset { bias: step(c), factor: f32::from(c.byte()) / 16.0 - 4.0 };
     }
 }
 

@@ -44,6 +44,11 @@ fn is_parameter(name: &str) -> bool {
         "levels",
         "write_mask",
         "z_max",
+        "bias",
+        "factor",
+        "area",
+        "lowest",
+        "highest",
         "alpha_test.reference",
         "stencil_test.mask",
         "stencil_test.write_mask",
@@ -77,8 +82,9 @@ fn is_parameter(name: &str) -> bool {
         "X1A7R8G8B8O",
         "B8",
     ];
+    let slope = name.starts_with("dE");
     let coefficient = name.len() == 2 && "abc".contains(&name[..1]) && "012".contains(&name[1..]);
-    parameters.contains(&name) || formats.contains(&name) || coefficient
+    parameters.contains(&name) || formats.contains(&name) || coefficient || slope
 }
 
 /// Recomputes one fragment under the document's `policies`; the values of all names at its end.
@@ -373,7 +379,16 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "not_equal" => plain(i128::from(v(0) != v(1))),
         "greater_or_equal" => plain(i128::from(v(0) >= v(1))),
         "always" => plain(1),
-        "depth" => Number { value: depth([v(0), v(1), v(2)], [v(3), v(4), v(5)], v(6)), per_one: v(6) },
+        "depth" => {
+            let full = v(inputs.len() - 1);
+            Number {
+                value: depth(inputs, full).map_or(0, |z| z.floor().clamp(0.0, full as f64) as i128),
+                per_one: full,
+            }
+        }
+        "depth_float_16" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 12, 7, 0xffff))),
+        "depth_float_24" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 16, 127, 0xff_ffff))),
+        "depth_inside" => plain(depth(inputs, 0).is_some().into()),
         "drop_2_bits" => byte(v(0) >> 2 << 2),
         "equals_key" => {
             let half = inputs.len() / 2;
@@ -650,28 +665,78 @@ fn store(inputs: &[(String, Number)]) -> Option<i128> {
     Some(old & !mask | word & mask)
 }
 
-/// DEP-1, step by step, on magnitudes and exponents of two.
-fn depth(z: [i128; 3], e: [i128; 3], full: i128) -> i128 {
-    fn size(n: i128) -> u32 {
-        128 - n.unsigned_abs().leading_zeros()
+/// The number that an operand stands for; those of binary32 are given as their words.
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn real(n: Number) -> f64 {
+    if n.per_one == 0 { f32::from_bits(n.value as u32).into() } else { n.value as f64 / n.per_one as f64 }
+}
+
+/// DEP-1, DEP-4 and DEP-5, in doubles, which hold every one of these numbers. `None`: outside a range that does not clamp, which is what
+/// `depth_inside` asks.
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
+    fn cut(n: f64, step: f64) -> f64 {
+        (n / step).trunc() * step
     }
-    fn first(n: i128, count: u32, of: u32) -> i128 {
-        let drop = of.saturating_sub(count);
-        n / (1 << drop) * (1 << drop)
+    /// The place of the first bit.
+    fn power(n: f64) -> i32 {
+        (n.abs().to_bits() >> 52) as i32 - 1023
     }
-    let edge = e.map(|e| first(e, 24, size(e)));
-    let largest = edge.into_iter().map(size).max().unwrap();
-    let sum: i128 = edge.into_iter().map(|e| first(e, 29, largest)).sum();
-    let size_of_sum = size(sum);
-    let one = 1_i128 << (28 + size_of_sum);
-    let reciprocal = if sum.count_ones() == 1 { one / sum } else { (16 * one - 3 * sum) / (16 * sum) };
-    let most = e.into_iter().map(size).max().unwrap();
-    let reference = [1, 0, 2].into_iter().find(|k| size(e[*k]) == most).unwrap();
+    fn two(power: i32) -> f64 {
+        2.0_f64.powi(power)
+    }
+    let number = |name: &str| inputs.iter().find(|(given, _)| given == name).map(|(_, n)| real(*n));
+    let three = |name: &dyn Fn(usize) -> String| [0, 1, 2].map(|k| number(&name(k)).unwrap());
+    let z = three(&|k| format!("vertex{k}.z"));
+    let e = three(&|k| format!("E{k}"));
+    let edges = e.map(|e| if e == 0.0 { 0.0 } else { cut(e, two(power(e) - 23)) });
+    let most = e.into_iter().filter(|e| *e > 0.0).map(power).max().unwrap();
+    let sum: f64 = edges.into_iter().map(|e| cut(e, two(most - 28))).sum();
+    let top = power(sum);
+    // 29 bits, 3/16 of the last low; powers of two have exact ones.
+    let whole = (sum / two(top - 30)) as i128;
+    let low = ((1_i128 << 63) - 3 * whole).div_euclid(16 * whole) as f64 * two(-29 - top);
+    let reciprocal = if whole == 1 << 30 { 1.0 / sum } else { low };
+    let reference = [1, 0, 2].into_iter().find(|k| e[*k] > 0.0 && power(e[*k]) == most).unwrap();
     let terms = [0, 1, 2].map(|k| {
-        let weight = edge[k] * reciprocal;
-        if k == reference { z[k] * one } else { first(weight, 24, size(weight)) * (z[k] - z[reference]) }
+        let weight = edges[k] * reciprocal;
+        let weight = if weight == 0.0 { 0.0 } else { cut(weight, two(power(weight) - 23)) };
+        if k == reference { z[k] } else { weight * f64::from((z[k] - z[reference]) as f32) }
     });
-    let largest = terms.into_iter().map(size).max().unwrap();
-    let sum: i128 = terms.into_iter().map(|term| first(term, 29, largest)).sum();
-    sum.div_euclid(one).clamp(0, full)
+    let largest_term = terms.into_iter().filter(|term| *term != 0.0).map(power).max();
+    let mut depth = largest_term.map_or(0.0, |top| terms.into_iter().map(|term| cut(term, two(top - 28))).sum());
+    if let (Some(bias), Some(factor), Some(area)) = (number("bias"), number("factor"), number("area")) {
+        let along = |axis: &str| -> f64 {
+            let steps = three(&|k| format!("dE{k}/d{axis}"));
+            (0..3).map(|k| steps[k] * z[k]).sum::<f64>().abs() / area
+        };
+        let slope = match z.into_iter().filter(|z| *z != 0.0).map(power).max() {
+            Some(top) => cut(along("x").max(along("y")), two(top - 28)),
+            None => 0.0,
+        };
+        depth += bias + factor * slope;
+    }
+    if let (Some(lowest), Some(highest)) = (number("lowest"), number("highest")) {
+        let asked = !inputs.iter().any(|(name, _)| name == "z_max") && largest == 0;
+        if asked && !(lowest..=highest).contains(&depth) {
+            return None;
+        }
+        depth = depth.clamp(lowest, highest);
+    }
+    Some(depth)
+}
+
+/// DEP-3: the word of a float with `kept` bits of fraction.
+#[allow(clippy::float_arithmetic, reason = "an independent way to the same numbers")]
+fn float_word(z: f64, kept: i32, bias: i32, largest: i128) -> i128 {
+    if z <= 0.0 {
+        return 0;
+    }
+    let power = (z.to_bits() >> 52) as i32 - 1023;
+    let fraction = ((z / 2.0_f64.powi(power) - 1.0) * 2.0_f64.powi(kept)) as i128;
+    match power + bias {
+        ..=0 => 0,
+        field if field > if kept == 12 { 15 } else { 254 } => largest,
+        field => i128::from(field) * (1 << kept) + fraction,
+    }
 }

@@ -78,7 +78,14 @@ fn render_draw(scene: &Scene, draw: &Draw, policies: &Policies, surfaces: &mut [
                     && (draw.depth_test.is_some() || draw.stencil_test.is_some())
                 {
                     let (mut stencil, mut stored) = (surface.depth[at] >> 24, surface.depth[at] % (1 << 24));
-                    let incoming = || setup.depth(&sample, (1 << buffer.format.bits()) - 1) as u32;
+                    // DEP-4 comes before either test.
+                    let incoming = match &draw.depth_test {
+                        Some(test) => match setup.depth(&sample, test, buffer.format) {
+                            Some(depth) => depth,
+                            None => continue,
+                        },
+                        None => 0,
+                    };
                     let passed = rop::stencil_and_depth(draw, incoming, &mut stencil, &mut stored);
                     surface.depth[at] = (stencil << 24) + stored;
                     if !passed {

@@ -2,8 +2,8 @@
 
 use super::real::{align, color_byte, floor_div, shift, split};
 use ninebit::state::{
-    ClipDepth, Cull, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel, Topology, Vertex, VertexColor,
-    Viewport,
+    ClipDepth, Cull, DepthFormat, DepthTest, Draw, FrontFace, Positions, Profile, ProvokingVertex, ShadeModel,
+    Topology, Vertex, VertexColor, VertexDepths, Viewport,
 };
 
 /// RAS-6: vertices nearer than this are clipped away.
@@ -325,17 +325,27 @@ impl Setup {
         (parts.map(|part| shift(part.0, part.1 - exponent)), exponent)
     }
 
-    /// DEP-1: depth in units of a buffer whose largest value is `full`.
-    pub fn depth(&self, sample: &Sample, full: i128) -> i128 {
-        let z = self.vertices.map(|v| {
-            // A scene's depth lies in 0..1.
-            let (m, e) = split(v.position[2].clamp(0.0, 1.0));
-            shift(m * full, e)
-        });
-        // Edge numbers with 24 bits, their sum in steps of the 29th bit of the largest.
+    /// DEP-1, DEP-3 to DEP-5: the word of a buffer. `None`: dropped.
+    pub fn depth(&self, sample: &Sample, test: &DepthTest, format: DepthFormat) -> Option<u32> {
+        /// Fraction bits of whatever is summed.
+        const POINT: i32 = 80;
+        let fixed = |n: f32| {
+            let (m, e) = split(n);
+            shift(m, e + POINT)
+        };
         let bits = |n: i128| 128 - n.unsigned_abs().leading_zeros() as i32;
         let keep =
             |n: i128, step: i32| if step > 0 { n.signum() * (n.abs() >> step.min(127) << step.min(127)) } else { n };
+        let full = i128::from(format.largest());
+        let floats = matches!(format, DepthFormat::Z16F | DepthFormat::Z24S8F);
+        let z = self.vertices.map(|v| match test.vertex_depths {
+            VertexDepths::Fractions if !floats => {
+                let (m, e) = split(v.position[2].clamp(0.0, 1.0));
+                shift(m * full, e) as f32
+            }
+            _ => v.position[2],
+        });
+        // Edge numbers with 24 bits, their sum in steps of the 29th bit of the largest.
         let edges = sample.e.map(|e| keep(e, bits(e) - 24));
         let step = edges.iter().map(|e| bits(*e)).max().unwrap() - 29;
         let sum = edges.iter().map(|e| keep(*e, step)).sum::<i128>().max(1);
@@ -346,17 +356,61 @@ impl Setup {
         let order = [1, 0, 2];
         let size = |k: usize| bits(sample.e[k].max(0));
         let reference = order.into_iter().find(|k| (0..3).all(|other| size(other) <= size(*k))).unwrap();
-        // Terms in units of 2^-(28 + bits of the sum).
         let terms = [0, 1, 2].map(|k| {
             if k == reference {
-                return z[k] << (28 + length);
+                return fixed(z[k]);
             }
             let weight = edges[k] * reciprocal;
-            keep(weight, bits(weight) - 24) * (z[k] - z[reference])
+            let weight = keep(weight, bits(weight) - 24);
+            let zeros = weight.trailing_zeros().min(100) as i32;
+            let (m, e) = split(z[k] - z[reference]);
+            shift((weight >> zeros) * m, zeros - (28 + length) + e + POINT)
         });
         let step = terms.iter().map(|term| bits(*term)).max().unwrap() - 29;
-        let sum: i128 = terms.iter().map(|term| keep(*term, step)).sum();
-        (sum >> (28 + length)).clamp(0, full)
+        let mut depth: i128 = terms.iter().map(|term| keep(*term, step)).sum();
+        // DEP-5: the larger slope, in steps of the 29th bit of the largest z.
+        let largest = z.map(|z| bits(fixed(z))).into_iter().max().unwrap();
+        let step = largest - 29;
+        let along = |axis: usize| {
+            let other = 1 - axis;
+            // Edge k as it changes along an axis: the difference of the other two vertices along the other axis, times the step of a pixel.
+            let sum: i128 = (0..3)
+                .map(|k| {
+                    let (s, t) = (self.snapped[(k + 1) % 3], self.snapped[(k + 2) % 3]);
+                    (s[other] - t[other]) * 16 * (fixed(z[k]) >> 24)
+                })
+                .sum();
+            shift(sum.abs(), 24 - step) / self.area
+        };
+        let slope = if largest == 0 { 0 } else { along(0).max(along(1)) };
+        let (m, e) = split(test.offset.factor);
+        depth += fixed(test.offset.bias) + shift(slope * m, e + step);
+        if let Some(range) = test.range {
+            let (lowest, highest) = (fixed(range.lowest), fixed(range.highest));
+            let dropped = |beyond: &dyn Fn(f32) -> bool| range.drops_triangles && z.iter().all(|z| beyond(*z));
+            if dropped(&|z| z < range.lowest) || dropped(&|z| z > range.highest) {
+                return None;
+            }
+            if !range.clamps && !(lowest..=highest).contains(&depth) {
+                return None;
+            }
+            depth = depth.clamp(lowest, highest);
+        }
+        Some(match format {
+            _ if depth <= 0 => 0,
+            DepthFormat::Z16 | DepthFormat::Z24S8 => (depth >> POINT).min(full) as u32,
+            DepthFormat::Z16F | DepthFormat::Z24S8F => {
+                // Exponent above fraction, as the format's name says.
+                let (kept, bias, last) = if full == 0xffff { (12, 7, 15) } else { (16, 127, 254) };
+                let power = bits(depth) - 1;
+                let fraction = shift(depth, kept - power) as u32 - (1 << kept);
+                match power - POINT + bias {
+                    field if field < 1 => 0,
+                    field if field > last => full as u32,
+                    field => ((field as u32) << kept) + fraction,
+                }
+            }
+        })
     }
 }
 

@@ -112,7 +112,7 @@ pub fn write(draw: &Draw, format: SurfaceFormat, old: u32, color: [i128; 4]) -> 
 }
 
 /// STN-1 and DEP-2: whether a fragment passes both tests. `stencil` and `depth` are what is stored.
-pub fn stencil_and_depth(draw: &Draw, incoming: impl FnOnce() -> u32, stencil: &mut u32, depth: &mut u32) -> bool {
+pub fn stencil_and_depth(draw: &Draw, incoming: u32, stencil: &mut u32, depth: &mut u32) -> bool {
     let before = *stencil;
     // Every bit of the write mask takes the operation's bit.
     let mut store = |operation: StencilOperation, reference: u32, mask: u32| {
@@ -138,10 +138,9 @@ pub fn stencil_and_depth(draw: &Draw, incoming: impl FnOnce() -> u32, stencil: &
     let passed = match draw.depth_test {
         None => true,
         Some(test) => {
-            let new = incoming();
-            let passed = test.function.passes(new, *depth);
+            let passed = test.function.passes(incoming, *depth);
             if passed && test.write {
-                *depth = new;
+                *depth = incoming;
             }
             passed
         }

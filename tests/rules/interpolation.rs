@@ -4,9 +4,10 @@ use crate::handbook::{example, read};
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
-use ninebit::raster::interpolate::{Sample, Settled, color, largest_edge};
+use ninebit::raster::depth::{self, Binary, DepthPlane};
+use ninebit::raster::interpolate::{Sample, Settled, color};
 use ninebit::raster::setup::Triangle;
-use ninebit::state::Profile;
+use ninebit::state::{CompareFunction, DepthFormat, DepthRange, DepthTest, PolygonOffset, Profile, VertexDepths};
 use ninebit::texture::filter;
 use ninebit_scene as scene;
 use std::path::Path;
@@ -115,19 +116,22 @@ fn examples_of_depth() {
          and z = floor(13806249.21875) = 13806249, where the real number is 13806248.84. z = (0, 0, 960), and the triangle above: \
          pixel (10, 1) has E2/S = 1/64 and z = 14, where the real number is 15.",
     );
-    let full = (1 << 24) - 1;
+    let depth_of = |e, z| depth::word(DepthFormat::Z24S8, depth::interpolate(e, z));
     let (z, e) = ([11_184_809, 11_184_809, 16_777_214], [10_598_400, 10_291_200, 18_432_000]);
-    let captured = Sample::new(&triangle, e);
     dep1.gives("S", e.iter().sum::<i64>(), 39_321_600).gives(
         "R",
         ((1_u128 << 58) - 3 * 39_321_600) / (16 * 39_321_600),
         458_129_844,
     );
-    dep1.gives("d", largest_edge(e), 2).gives("z", captured.depth(z, full), 13_806_249);
+    dep1.gives("d", depth::largest_edge(e), 2).gives("z", depth_of(e, z.map(|z| z as f32)), 13_806_249);
     let real = z.iter().zip(e).map(|(z, e)| z * e).sum::<i64>() * 100 / 39_321_600;
     dep1.gives("100 times the real number, floored", real, 1_380_624_884);
     let row1 = at(&triangle, 10, 1);
-    dep1.gives("64 E2", 64 * row1.e[2], triangle.doubled_area).gives("z of (10, 1)", row1.depth([0, 0, 960], full), 14);
+    dep1.gives("64 E2", 64 * row1.e[2], triangle.doubled_area).gives(
+        "z of (10, 1)",
+        depth_of(row1.e, [0.0, 0.0, 960.0]),
+        14,
+    );
 
     let dep2 = example("DEP-2", "a clear to 0.5 stores floor(0.5 * 65535) = 32767 in Z16.");
     let text =
@@ -135,4 +139,49 @@ fn examples_of_depth() {
     let cleared = scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
     let plan = Plan::compile(&cleared.scene, &PlanOptions::default()).unwrap();
     dep2.gives("the stored depth", render(&plan, &RenderOptions::default()).surfaces[0].depth.clone(), vec![32_767]);
+}
+
+#[test]
+fn examples_of_depth_words_ranges_and_offsets() {
+    let dep3 = example(
+        "DEP-3",
+        "1.5 is 0x3fc00000 as binary32: 0x7f8000 in 24 bits, 0x7800 in 16; 2^-7 has exponent 0 there and is stored as 0, 600 as 0xffff.",
+    );
+    let word = |format, z: f32| depth::word(format, Binary::new(z));
+    dep3.gives("1.5", 1.5_f32.to_bits(), 0x3fc0_0000).gives("24 bits", word(DepthFormat::Z24S8F, 1.5), 0x7f_8000);
+    dep3.gives("16 bits", word(DepthFormat::Z16F, 1.5), 0x7800).gives("2^-7", word(DepthFormat::Z16F, 1.0 / 128.0), 0);
+    dep3.gives("600", word(DepthFormat::Z16F, 600.0), 0xffff);
+
+    let dep4 = example(
+        "DEP-4",
+        "range 100 to 200: 99.5 is dropped, or 100; 200 stays; z of 201, 202 and 250 drop a triangle.",
+    );
+    let range = |clamps| DepthRange { lowest: 100.0, highest: 200.0, clamps, drops_triangles: true };
+    let ranged =
+        |clamps, z: f32| depth::ranged(Some(&range(clamps)), Binary::new(z)).map(|z| depth::word(DepthFormat::Z16, z));
+    dep4.gives("99.5", [ranged(false, 99.5), ranged(true, 99.5)], [None, Some(100)]).gives(
+        "200",
+        ranged(false, 200.0),
+        Some(200),
+    );
+    let steps = DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Less, true) };
+    let test = DepthTest { range: Some(range(true)), ..steps };
+    let whole = DepthPlane::new(&test, DepthFormat::Z16, &of_the_section(), [201.0, 202.0, 250.0]);
+    dep4.gives("the triangle", whole, None);
+
+    let dep5 = example(
+        "DEP-5",
+        "z from 16572698 to 16809768 over 487.3125 rows: the slope 486.4845 becomes 486.4375, and factor 16 adds 7783 (real: 7783.75).",
+    );
+    let p = [
+        [53.1875, -34.3125, 16_809_768.0, 1.0],
+        [1808.6875, 453.0, 16_572_698.0, 1.0],
+        [-1168.6875, 453.0, 16_572_698.0, 1.0],
+    ];
+    let triangle = Triangle::new(p, true, Profile::Nv2a).unwrap();
+    let z = p.map(|p| p[2]);
+    dep5.gives("the slope", depth::slope(&triangle, z), Binary { mantissa: 7783, exponent: -4 });
+    let test = DepthTest { offset: PolygonOffset { bias: 0.0, factor: 16.0 }, ..steps };
+    let plane = DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, z).unwrap();
+    dep5.gives("the offset", depth::word(DepthFormat::Z24S8, plane.offset), 7783);
 }

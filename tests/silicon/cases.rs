@@ -157,7 +157,7 @@ pub fn r3() -> Case {
     }
     let background = [0; 3];
     let mut quad = draw(Topology::Quads, vertices);
-    quad.depth_test = Some(DepthTest { function: CompareFunction::Always, write: true });
+    quad.depth_test = Some(DepthTest::new(CompareFunction::Always, true));
     let mut scene = scene(background, vec![quad]);
     scene.targets[0].depth = Some(DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 });
     Case {

@@ -4,15 +4,17 @@ use super::report as reports;
 use crate::combiner::direct::Direct;
 use crate::combiner::registers::{Registers, channel_name};
 use crate::combiner::{final_combiner, general};
-use crate::number::{Lane, convert};
+use crate::number::Lane;
 use crate::plan::{Plan, PlannedDraw};
+use crate::raster::depth::{self, DepthPlane};
 use crate::raster::fog::FogPlane;
 use crate::raster::ideal;
 use crate::raster::interpolate::{self, Sample, Settled};
 use crate::raster::setup::{Triangle, centres};
 use crate::rop::{blend, stencil, surface};
 use crate::state::{
-    Cull, FrontFace, Register, ShadeModel, TriangleVertices, VertexColor, depth_of, depth_stencil, stencil_of,
+    Cull, DepthTest, FrontFace, Register, ShadeModel, TriangleVertices, VertexColor, depth_of, depth_stencil,
+    stencil_of,
 };
 use crate::texture::chain::Chain;
 use crate::texture::place::{Coordinates, Interpolated};
@@ -37,8 +39,8 @@ pub struct TriangleContext<'a> {
     shader: Option<Box<ShaderSetup>>,
     /// None where the fog register's alpha is not read, or fog is off.
     pub fog: Option<FogPlane>,
-    /// Depths of the vertices, where they are tested.
-    pub z: [i64; 3],
+    /// Depths of the vertices, where there is a depth test.
+    pub depth: DepthPlane,
     /// Coordinates and fog are this triangle's.
     complete: bool,
 }
@@ -111,7 +113,7 @@ impl<'a> TriangleContext<'a> {
             coordinates: [None; 4],
             shader: None,
             fog: None,
-            z: [0; 3],
+            depth: DepthPlane::default(),
             complete: false,
         }
     }
@@ -147,8 +149,12 @@ impl<'a> TriangleContext<'a> {
         };
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
-        if draw.depth_test.is_some() {
-            self.z = self.vertices().position(2).map(|z| convert::depth(z, draw.depth_bits));
+        if let Some(test) = &draw.depth_test {
+            let z = self.vertices().position(2);
+            match DepthPlane::new(test, draw.depth_format, &self.triangle, z) {
+                Some(plane) => self.depth = plane,
+                None => return false,
+            }
         }
         true
     }
@@ -454,6 +460,13 @@ impl<'a> TriangleContext<'a> {
         {
             return None;
         }
+        let drops = |test: &DepthTest| test.range.is_some_and(|range| !range.clamps);
+        if draw.depth_test.as_ref().is_some_and(drops) && self.depth_word(sample).is_none() {
+            if O::ON {
+                self.report_depth(sample, None, observer);
+            }
+            return None;
+        }
         let stencil_passed = draw.stencil_test.is_none_or(|test| stencil::passes(&test, memory.stencil));
         if let Some(test) = &draw.stencil_test
             && O::ON
@@ -461,12 +474,16 @@ impl<'a> TriangleContext<'a> {
             reports::stencil_test(test, memory.stencil, stencil_passed, observer);
         }
         let mut depth_passed = true;
-        if let Some(test) = draw.depth_test.filter(|_| stencil_passed) {
-            let z = L::depth(sample.depth(self.z, draw.depth_full), || self.ideal_depth(sample));
+        if let Some(test) = draw.depth_test.as_ref().filter(|_| stencil_passed) {
+            let word = self.depth_word(sample)?;
+            if O::ON {
+                self.report_depth(sample, Some(word), observer);
+            }
+            let z = L::depth(i64::from(word), || self.ideal_depth(sample));
             depth_passed = test.function.passes(z, memory.depth);
             observer.decided(Decision::DepthTest, i64::from(depth_passed), || i64::from(depth_passed));
             if O::ON {
-                self.report_depth(sample, z, memory.depth, depth_passed, observer);
+                self.report_depth_test(test, z, memory.depth, depth_passed, observer);
             }
             if depth_passed && test.write {
                 memory.depth = z;
@@ -481,6 +498,14 @@ impl<'a> TriangleContext<'a> {
             memory.stencil = written;
         }
         (stencil_passed && depth_passed).then_some(())
+    }
+
+    /// DEP-1, DEP-3 to DEP-5: the depth of a pixel as the buffer holds it. `None`: it is outside the range, and dropped.
+    #[inline]
+    pub(super) fn depth_word(&self, sample: &Sample<'_>) -> Option<u32> {
+        let range = self.draw.depth_test.as_ref().and_then(|test| test.range.as_ref());
+        let depth = depth::ranged(range, self.depth.at(sample.e))?;
+        Some(depth::word(self.draw.depth_format, depth))
     }
 
     /// ROP-2 to ROP-6.
@@ -523,13 +548,14 @@ impl<'a> TriangleContext<'a> {
         Some(Stored { word, channels })
     }
 
-    /// The ideal's depth in units of the buffer's last bit.
+    /// The ideal's depth: words of the buffer, between them too.
     pub(super) fn ideal_depth(&self, sample: &Sample<'_>) -> f64 {
         let linear = sample.ideal.map_or_else(
             || ideal::barycentrics(&self.triangle, sample.e, [1.0; 3], false),
             |weights| ideal::linear(weights, self.vertices().position(3), self.draw.perspective),
         );
-        ideal::depth(linear, self.vertices().position(2), self.draw.depth_full)
+        let Some(test) = &self.draw.depth_test else { return 0.0 };
+        ideal::depth(linear, self.vertices().position(2), test, self.draw.depth_format, &self.triangle)
     }
 
     /// The ideal's weights of the three vertices.

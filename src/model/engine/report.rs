@@ -8,13 +8,17 @@ use crate::raster::fog::{FogFactor, FogPlane, FogStep};
 use crate::raster::interpolate::{Sample, Settled};
 use crate::raster::setup;
 use crate::rop::{blend, surface};
-use crate::state::{FogFunction, FogMode, Named, Profile, Register, StencilOperation, StencilTest, VertexColor};
-use crate::trace::{Observer, Operand, Step, byte, part, plain, report};
+use crate::state::{
+    DepthFormat, DepthTest, FogFunction, FogMode, Named, PolygonOffset, Profile, Register, StencilOperation,
+    StencilTest, VertexColor, VertexDepths,
+};
+use crate::trace::{Observer, Operand, Step, byte, float, float_step, part, plain, report};
 use crate::vertex::fog as vertex_fog;
 
 const RASTER: &str = "rasteriser";
 const INTERPOLATION: &str = "interpolation";
 const FOG: &str = "fog";
+const DEPTH: &str = "depth test";
 
 /// Edge functions, perspective weights, D.
 pub(super) fn setup<O: Observer>(
@@ -274,32 +278,72 @@ impl TriangleContext<'_> {
         }
     }
 
-    pub(super) fn report_depth<O: Observer>(
+    /// DEP-1, DEP-3 to DEP-5. `word`: what came out; `None`, the pixel is outside the range.
+    pub(super) fn report_depth<O: Observer>(&self, sample: &Sample<'_>, word: Option<u32>, observer: &mut O) {
+        let draw = self.draw;
+        let Some(test) = &draw.depth_test else { return };
+        let largest = i64::from(draw.depth_format.largest());
+        // Fractions of a fixed-point buffer are whole numbers of steps.
+        let whole = test.vertex_depths == VertexDepths::Fractions && !draw.depth_format.is_float();
+        let mut inputs = Vec::new();
+        for (k, z) in self.depth.z.iter().enumerate() {
+            let name = format!("vertex{k}.z");
+            if whole {
+                observer.step(Step::given(DEPTH, "DEP-1", name.clone(), *z as i64));
+                inputs.push(plain(name, *z as i64));
+            } else {
+                observer.step(float_step(DEPTH, "DEP-1", name.clone(), *z, f64::from(*z)));
+                inputs.push(float(name, *z));
+            }
+        }
+        inputs.extend((0..3).map(|k| plain(format!("E{k}"), sample.e[k])));
+        if test.offset != PolygonOffset::default() {
+            let triangle = sample.triangle;
+            inputs.extend([float("bias", test.offset.bias), float("factor", test.offset.factor)]);
+            inputs.extend((0..3).map(|k| plain(format!("dE{k}/dx"), triangle.a[k])));
+            inputs.extend((0..3).map(|k| plain(format!("dE{k}/dy"), triangle.b[k])));
+            inputs.push(plain("area", triangle.doubled_area));
+        }
+        if let Some(range) = test.range {
+            inputs.extend([float("lowest", range.lowest), float("highest", range.highest)]);
+            if !range.clamps {
+                let step = Step::given(DEPTH, "DEP-4", "depth_range.inside", i64::from(word.is_some()));
+                let note = word.is_none().then(|| "outside: the fragment is dropped".to_owned());
+                observer.step(step.by("depth_inside", inputs.clone()).note(note));
+            }
+        }
+        let Some(word) = word else { return };
+        inputs.push(plain("z_max", largest));
+        let operation = match draw.depth_format {
+            DepthFormat::Z16 | DepthFormat::Z24S8 => "depth",
+            DepthFormat::Z16F => "depth_float_16",
+            DepthFormat::Z24S8F => "depth_float_24",
+        };
+        let rule = if draw.depth_format.is_float() { "DEP-3" } else { "DEP-1" };
+        let step = Step::given(DEPTH, rule, "z", i64::from(word)).per(self.depth_unit()).by(operation, inputs);
+        observer.step(step.ideal(Some(self.ideal_depth(sample))));
+    }
+
+    /// What a depth word is a fraction of: the largest, or 1 where words are floats.
+    fn depth_unit(&self) -> i64 {
+        let format = self.draw.depth_format;
+        if format.is_float() { 1 } else { i64::from(format.largest()) }
+    }
+
+    /// DEP-2.
+    pub(super) fn report_depth_test<O: Observer>(
         &self,
-        sample: &Sample<'_>,
+        test: &DepthTest,
         z: i64,
         stored: i64,
         passed: bool,
         observer: &mut O,
     ) {
-        const BLOCK: &str = "depth test";
-        let draw = self.draw;
-        let Some(test) = &draw.depth_test else { return };
-        let mut inputs = Vec::new();
-        for (k, z) in self.z.iter().enumerate() {
-            let name = format!("vertex{k}.z");
-            observer.step(Step::given(BLOCK, "DEP-1", name.clone(), *z));
-            inputs.push(plain(name, *z));
-        }
-        inputs.extend((0..3).map(|k| plain(format!("E{k}"), sample.e[k])));
-        inputs.push(plain("z_max", draw.depth_full));
-        let step = Step::given(BLOCK, "DEP-1", "z", z).per(draw.depth_full).by("depth", inputs);
-        observer.step(step.ideal(Some(self.ideal_depth(sample))));
-        observer.step(Step::given(BLOCK, "", "z.stored", stored).per(draw.depth_full));
-        let depth = |name: &str, value: i64| Operand { per_one: draw.depth_full, ..plain(name, value) };
+        observer.step(Step::given(DEPTH, "", "z.stored", stored).per(self.depth_unit()));
+        let depth = |name: &str, value: i64| Operand { per_one: self.depth_unit(), ..plain(name, value) };
         let inputs = vec![depth("z", z), depth("z.stored", stored)];
         observer.step(
-            Step::given(BLOCK, "DEP-2", "depth_test.passed", i64::from(passed))
+            Step::given(DEPTH, "DEP-2", "depth_test.passed", i64::from(passed))
                 .by(blend::compare_operation(test.function), inputs)
                 .note(Some(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string())),
         );
@@ -386,8 +430,8 @@ impl TriangleContext<'_> {
         }
         if draw.depth_test.is_some_and(|test| test.write) {
             let z = memory.depth;
-            let inputs = vec![Operand { per_one: draw.depth_full, ..plain("z", z) }];
-            observer.step(Step::given(BLOCK, "DEP-2", "stored.z", z).per(draw.depth_full).by("write", inputs));
+            let inputs = vec![Operand { per_one: self.depth_unit(), ..plain("z", z) }];
+            observer.step(Step::given(BLOCK, "DEP-2", "stored.z", z).per(self.depth_unit()).by("write", inputs));
         }
     }
 }

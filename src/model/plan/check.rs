@@ -12,9 +12,9 @@ use crate::place::Places;
 use crate::raster::GUARD;
 use crate::rop::surface;
 use crate::state::{
-    AddressMode, CUBE_FACES, Draw, FinalRegister, Level, Named, Palette, Profile, Scale, Scene, ShaderOperation,
-    ShaderStage, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
-    WINDOW_CLIP_RECTANGLES,
+    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, FinalRegister, Level, Named, Palette, PolygonOffset,
+    Positions, Profile, Scale, Scene, ShaderOperation, ShaderStage, Target, Texels, Texture, TextureFormat,
+    TextureImage, TextureKind, TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
 };
 
 /// At most this many errors of one kind of thing: the rest would say the same.
@@ -103,6 +103,14 @@ impl Check<'_> {
                 }
             }
             self.only_nv2a("ROP-5", format.is_nv2a_only(), &format!("surface format {}", format.name()));
+            if let Some(depth) = depth
+                && depth.format.is_float()
+                && self.scene.profile == Profile::Nv10
+            {
+                let message =
+                    format!("target `{name}` has the depth format {}, which nv10 does not have", depth.format.name());
+                self.refuse("DEP-3", message, "take Z16 or Z24S8, or the profile Nv2a");
+            }
             if let Some(depth) = depth
                 && depth.clear >> depth.format.bits() != 0
             {
@@ -245,10 +253,38 @@ impl Check<'_> {
         }
     }
 
+    fn depth_test(&mut self, draw: &Draw, test: &DepthTest) {
+        if test.vertex_depths == VertexDepths::Steps && !matches!(draw.positions, Positions::Window) {
+            let help = "give window positions, or depths as fractions";
+            self.refuse(
+                "DEP-1",
+                "vertex depths are steps of the buffer, and its positions are projected".to_owned(),
+                help,
+            );
+        }
+        let PolygonOffset { bias, factor } = test.offset;
+        if !bias.is_finite() || !factor.is_finite() {
+            self.refuse(
+                "DEP-5",
+                format!("the polygon offset has bias {bias} and factor {factor}"),
+                "take finite numbers",
+            );
+        }
+        if let Some(DepthRange { lowest, highest, .. }) = test.range
+            && !(lowest.is_finite() && highest.is_finite() && lowest <= highest)
+        {
+            let message = format!("the depth range is {lowest} to {highest}");
+            self.refuse("DEP-4", message, "take two finite numbers, the lower one first");
+        }
+    }
+
     fn operations(&mut self, draw: &Draw, target: &Target) {
         if draw.depth_test.is_some() && target.depth.is_none() {
             let message = format!("target `{}` has no depth buffer", target.name);
             self.refuse("DEP-2", message, "give the target `depth`, or leave the depth test out");
+        }
+        if let Some(test) = &draw.depth_test {
+            self.depth_test(draw, test);
         }
         if draw.stencil_test.is_some() && !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
             let message = format!("target `{}` has no stencil", target.name);

@@ -17,8 +17,8 @@ use crate::raster::assemble::{Assembly, assemble};
 use crate::rop::{stencil, surface};
 use crate::state::named;
 use crate::state::{
-    AlphaTest, Blend, CompareFunction, Cull, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect, Policies,
-    Positions, Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, StencilTest,
+    AlphaTest, Blend, CompareFunction, Cull, DepthFormat, DepthTest, Draw, Fog, FrontFace, Level, MipFilter, MuxSelect,
+    Policies, Positions, Profile, Rectangle, Scene, ShadeModel, ShaderOperation, ShaderStage, StageOrigin, StencilTest,
     SurfaceFormat, TEXTURE_UNITS, Target, Texture, TextureImage, TextureKind, TextureUnit,
 };
 use crate::texture::stage::{PlannedShader, PlannedShaderStage};
@@ -143,10 +143,8 @@ pub struct PlannedDraw {
     pub stencil_test: Option<StencilTest>,
     /// Depth test.
     pub depth_test: Option<DepthTest>,
-    /// Largest depth of the target's buffer; 0 without one.
-    pub depth_full: i64,
-    /// Bits of depth.
-    pub depth_bits: u32,
+    /// Format of the target's depth buffer; of a target without one it says nothing.
+    pub depth_format: DepthFormat,
     /// Blend, where the surface allows it.
     pub blend: Option<Blend>,
     /// Channels that are blended, bits R, G, B, A.
@@ -404,8 +402,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
         alpha_test,
         stencil_test,
         depth_test,
-        depth_full: target.depth.map_or(0, |d| (1 << d.format.bits()) - 1),
-        depth_bits: target.depth.map_or(0, |d| d.format.bits()),
+        depth_format: target.depth.map_or(DepthFormat::Z16, |depth| depth.format),
         blend,
         blended,
         blend_constant: draw.blend_constant,

@@ -3,7 +3,7 @@
 
 use super::fog::not_finite;
 use super::setup::Triangle;
-use crate::state::{FogFunction, FogMode};
+use crate::state::{DepthFormat, DepthTest, FogFunction, FogMode, VertexDepths};
 
 /// Barycentric weights of the three vertices at a sample, perspective-corrected by the vertices' w if asked for.
 pub fn barycentrics(triangle: &Triangle, e: [i64; 3], w: [f32; 3], perspective: bool) -> [f64; 3] {
@@ -94,9 +94,25 @@ fn power_of_two(x: f64) -> f64 {
     series * f64::from_bits(((1023 + whole as i64) as u64) << 52)
 }
 
-/// Depth in units of the buffer's last bit.
-pub fn depth(weights: [f64; 3], z: [f32; 3], full: i64) -> f64 {
-    mix(weights, z.map(|z| f64::from(z).clamp(0.0, 1.0))) * full as f64
+/// Depth in words of a buffer; of one that holds floats the words between two neighbours stand for what lies between them.
+pub fn depth(weights: [f64; 3], z: [f32; 3], test: &DepthTest, format: DepthFormat, triangle: &Triangle) -> f64 {
+    let full = f64::from(format.largest());
+    let fractions = test.vertex_depths == VertexDepths::Fractions && !format.is_float();
+    let z = z.map(|z| if fractions { f64::from(z).clamp(0.0, 1.0) * full } else { f64::from(z) });
+    let along = |edges: [i64; 3]| mix(edges.map(|edge| edge as f64), z).abs() / triangle.doubled_area as f64;
+    let slope = along(triangle.a).max(along(triangle.b));
+    let mut depth = mix(weights, z) + f64::from(test.offset.bias) + f64::from(test.offset.factor) * slope;
+    if let Some(range) = test.range {
+        depth = depth.max(f64::from(range.lowest)).min(f64::from(range.highest));
+    }
+    if !format.is_float() {
+        return depth.clamp(0.0, full);
+    }
+    let (kept, bias) = if format == DepthFormat::Z16F { (12, 7) } else { (16, 127) };
+    // The pattern of a double is such a scale of words, of more bits; below its smallest normal number nothing is kept.
+    let pattern = depth.max(0.0).to_bits() as f64 / (1_u64 << (52 - kept)) as f64;
+    let word = pattern - f64::from((1023 - bias) << kept);
+    if word < f64::from(1 << kept) { 0.0 } else { word.min(full) }
 }
 
 /// A triangle as it is before its vertices are snapped, in pixels.

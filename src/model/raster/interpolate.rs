@@ -1,4 +1,4 @@
-//! INT-1 to INT-4, fog and depth: the definition, in integers, of everything that is interpolated.
+//! INT-1 to INT-4 and fog: the definition, in integers, of everything that is interpolated.
 //!
 //! With E the edge functions, P the perspective weights, N_k = P_k E_k and D their sum, every result is a floor of a quotient by D, and
 //! ties are decided by exact remainders. The rule for colours, [`color`], is generic over the lane.
@@ -137,71 +137,6 @@ impl<'a> Sample<'a> {
             })
             .sum()
     }
-
-    /// DEP-1: z_d + sum of b_k (z_k - z_d), each term cut; screen-linear. Vertex depths are at most `full`, the largest depth, below 2^24.
-    pub fn depth(&self, z: [i64; 3], full: i64) -> i64 {
-        let reference = largest_edge(self.e);
-        let edges = self.e.map(|e| significant(e, 24));
-        let (reciprocal, exponent) = reciprocal(edges);
-        // Mantissas and exponents of two.
-        let terms: [(i64, i32); 3] = std::array::from_fn(|k| {
-            if k == reference {
-                return (z[k], 0);
-            }
-            let weight = i128::from(edges[k]) * i128::from(reciprocal);
-            let dropped = (128 - weight.unsigned_abs().leading_zeros() as i32 - 24).max(0);
-            let mantissa = if weight < 0 { -((-weight) >> dropped) } else { weight >> dropped };
-            (mantissa as i64 * (z[k] - z[reference]), dropped - exponent)
-        });
-        let bits = |n: i64| 64 - n.unsigned_abs().leading_zeros() as i32;
-        let Some(top) = terms.iter().filter(|term| term.0 != 0).map(|term| bits(term.0) + term.1).max() else {
-            return 0;
-        };
-        let unit = top - DEPTH_BITS;
-        let cut = |(n, exponent): (i64, i32)| match exponent - unit {
-            up if up >= 0 => n << up,
-            down => n.signum() * (n.abs() >> (-down).min(63)),
-        };
-        let sum: i64 = terms.into_iter().map(cut).sum();
-        // The largest term is below 2^25 or so.
-        (sum >> (-unit).clamp(0, 63)).clamp(0, full)
-    }
-}
-
-/// Bits that count of the largest edge number and of the largest term of a depth (DEP-1).
-const DEPTH_BITS: i32 = 29;
-
-/// DEP-1: the vertex whose edge number has the largest binary exponent; of equals 1 before 0 before 2.
-pub fn largest_edge(e: [i64; 3]) -> usize {
-    let [first, second, third] = e.map(|e| if e > 0 { 64 - e.leading_zeros() } else { 0 });
-    if second >= first && second >= third {
-        1
-    } else if first >= third {
-        0
-    } else {
-        2
-    }
-}
-
-/// A number cut toward zero to its first `bits` bits.
-fn significant(n: i64, bits: u32) -> i64 {
-    let dropped = (64 - n.unsigned_abs().leading_zeros()).saturating_sub(bits);
-    n.signum() * (n.abs() >> dropped << dropped)
-}
-
-/// DEP-1: the reciprocal of the sum of three edge numbers as a mantissa of 29 bits, 3/16 of its last bit low, and s, by which 2^-s times that is meant.
-fn reciprocal(edges: [i64; 3]) -> (i64, i32) {
-    let top = edges.iter().map(|e| 64 - e.unsigned_abs().leading_zeros() as i32).max().unwrap_or(0);
-    let dropped = (top - DEPTH_BITS).max(0);
-    // Outside the triangle, where nothing is stored, numbers may be negative.
-    let sum: i64 = edges.iter().map(|e| e.signum() * (e.abs() >> dropped)).sum::<i64>().max(1);
-    let length = 63 - sum.leading_zeros() as i32;
-    if sum & (sum - 1) == 0 {
-        return (1 << 28, 28 + length + dropped);
-    }
-    // floor(2^s / sum - 3/16). The sum has 31 bits at most.
-    let numerator = (1_u64 << (29 + length + 4)) - 3 * sum as u64;
-    ((numerator / (16 * sum as u64)) as i64, 29 + length + dropped)
 }
 
 /// INT-3: the dominant one of three weights n_k / d. d is positive; outside the triangle some weights are not, and those are not dominant.

@@ -2,10 +2,11 @@
 //!
 //! [`triangles`], [`assemble`] and [`project`] clip and turn a draw's vertices into triangles in window coordinates, once, when the plan is made.
 //! [`setup`] takes a triangle's floats apart; from there on everything is integer arithmetic with one answer:
-//! [`interpolate`] holds the definition of weights, coordinates, fog and depth, [`attribute`] that of numbers which are used as numbers.
+//! [`interpolate`] holds the definition of weights, coordinates and fog, [`mod@depth`] that of depths, [`attribute`] that of numbers which are used as numbers.
 
 pub mod assemble;
 pub mod attribute;
+pub mod depth;
 pub mod fog;
 pub mod ideal;
 pub mod interpolate;

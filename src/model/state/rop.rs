@@ -104,13 +104,59 @@ pub struct AlphaTest {
     pub reference: u8,
 }
 
+named! {
+    /// What z of a vertex counts.
+    pub enum VertexDepths {
+        /// 0 is the nearest depth and 1 the farthest that a fixed-point buffer holds; a float buffer holds the number itself.
+        Fractions,
+        /// Steps of the buffer's last bit, not rounded; a float buffer holds the number itself. Only window positions have them.
+        Steps,
+    }
+}
+
+/// DEP-4: the depths that a draw may have, in steps.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DepthRange {
+    /// The lowest, finite.
+    pub lowest: f32,
+    /// The highest, finite and not below it.
+    pub highest: f32,
+    /// Whether what lies outside is moved to the nearer limit; it is dropped, pixel by pixel, otherwise.
+    pub clamps: bool,
+    /// Whether a triangle is dropped whose three vertices lie beyond the same limit.
+    pub drops_triangles: bool,
+}
+
+/// DEP-5: what is added to the depths of a triangle, in steps. Finite.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PolygonOffset {
+    /// Added as it is.
+    pub bias: f32,
+    /// Times the steeper slope of the triangle, in steps a pixel.
+    pub factor: f32,
+}
+
 /// Depth test (DEP-2): `function(fragment depth, stored depth)`.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthTest {
     /// Comparison.
     pub function: CompareFunction,
     /// Whether a passing fragment's depth is stored.
     pub write: bool,
+    /// What z of a vertex counts.
+    pub vertex_depths: VertexDepths,
+    /// The range of depths; `None`: what the buffer holds, to which depths are limited.
+    pub range: Option<DepthRange>,
+    /// What is added to depths.
+    pub offset: PolygonOffset,
+}
+
+impl DepthTest {
+    /// A test of depths between 0 and 1, without an offset or a range.
+    pub fn new(function: CompareFunction, write: bool) -> DepthTest {
+        let (vertex_depths, range, offset) = (VertexDepths::Fractions, None, PolygonOffset::default());
+        DepthTest { function, write, vertex_depths, range, offset }
+    }
 }
 
 named! {
@@ -252,12 +298,16 @@ impl SurfaceFormat {
 }
 
 named! {
-    /// Depth buffer formats (DEP-2).
+    /// Depth buffer formats (DEP-2, DEP-3).
     pub enum DepthFormat {
         /// 16 bits.
         Z16,
         /// 24 bits of depth, eight of stencil.
         Z24S8,
+        /// A float of 16 bits: four of exponent, twelve of fraction (nv2a).
+        Z16F,
+        /// A float of 24 bits, eight of exponent and sixteen of fraction, and eight bits of stencil (nv2a).
+        Z24S8F,
     }
 }
 
@@ -265,14 +315,26 @@ impl DepthFormat {
     /// Bits of depth.
     pub fn bits(self) -> u32 {
         match self {
-            DepthFormat::Z16 => 16,
-            DepthFormat::Z24S8 => 24,
+            DepthFormat::Z16 | DepthFormat::Z16F => 16,
+            DepthFormat::Z24S8 | DepthFormat::Z24S8F => 24,
         }
+    }
+
+    /// Whether its words are floats.
+    #[inline(always)]
+    pub fn is_float(self) -> bool {
+        matches!(self, DepthFormat::Z16F | DepthFormat::Z24S8F)
+    }
+
+    /// Its largest word.
+    #[inline(always)]
+    pub fn largest(self) -> u32 {
+        (1 << self.bits()) - 1
     }
 
     /// Whether it has a stencil byte.
     pub fn has_stencil(self) -> bool {
-        self == DepthFormat::Z24S8
+        matches!(self, DepthFormat::Z24S8 | DepthFormat::Z24S8F)
     }
 }
 

@@ -155,7 +155,7 @@ fn draw<'a>(
     let mut draw = Draw {
         name: header.name,
         target: target.unwrap_or(0),
-        positions: Positions::Window,
+        positions: geometry.as_ref().map_or(Positions::Window, |geometry| geometry.positions),
         vertices: Vertices::new(),
         indices: Arc::default(),
         topology,
@@ -197,7 +197,6 @@ fn draw<'a>(
         feedback(reader, targets, &textures.list[unit.texture], draw.target, place, written);
     }
     let geometry = geometry?;
-    draw.positions = geometry.positions;
     draw.vertices = geometry.vertices;
     draw.vertex_program = geometry.program;
     draw.indices = indices(reader, fields, geometry.triangles, draw.vertices.len(), topology)?;

@@ -7,8 +7,9 @@ use crate::raw::{Numbers, Tuple};
 use ninebit::number::convert::constant;
 use ninebit::rop::surface;
 use ninebit::state::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, DepthTest, Draw, Rectangle,
-    StencilOperation, StencilTest, Target, Topology, Vertex, VertexColor, WINDOW_CLIP_RECTANGLES, WindowClip,
+    AlphaTest, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, DepthRange, DepthTest, Draw,
+    PolygonOffset, Positions, Rectangle, StencilOperation, StencilTest, Target, Topology, Vertex, VertexColor,
+    VertexDepths, WINDOW_CLIP_RECTANGLES, WindowClip,
 };
 use std::sync::Arc;
 
@@ -41,6 +42,20 @@ pub(super) fn operations<'a>(
     draw.alpha_test = fields.alpha_test.as_ref().and_then(|raw| alpha_test(reader, raw));
     if let Some(raw) = &fields.depth_test {
         draw.depth_test = depth_test(reader, raw);
+        let steps = draw.depth_test.is_some_and(|test| test.vertex_depths == VertexDepths::Steps);
+        if steps && !matches!(draw.positions, Positions::Window) {
+            reader.push(
+                Diagnostic::error(
+                    "NB0206",
+                    reader.span(raw),
+                    "vertex depths are steps of the buffer, and positions are projected",
+                )
+                .label("`vertex_depths: Steps`")
+                .rule("DEP-1")
+                .help("give the vertices as `Window([...])`, or leave `vertex_depths` out"),
+            );
+            draw.depth_test = None;
+        }
         if target.depth.is_none() {
             let message = format!("target \"{}\" has no depth buffer", target.name);
             let finding = Diagnostic::error("NB0216", reader.span(raw), message).label("tests depth").rule("DEP-2");
@@ -133,7 +148,40 @@ fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> 
 fn depth_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthTest<'a>>) -> Option<DepthTest> {
     let fields = reader.read(raw)?;
     let function = reader.name_or(&fields.function, CompareFunction::Less);
-    Some(DepthTest { function, write: reader.or(&fields.write, true) })
+    let vertex_depths = reader.name_or(&fields.vertex_depths, VertexDepths::Fractions);
+    let range = fields.range.as_ref().and_then(|raw| depth_range(reader, raw));
+    let offset = fields.offset.as_ref().and_then(|raw| polygon_offset(reader, raw)).unwrap_or_default();
+    Some(DepthTest { vertex_depths, range, offset, ..DepthTest::new(function, reader.or(&fields.write, true)) })
+}
+
+fn depth_range<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthRange<'a>>) -> Option<DepthRange> {
+    let fields = reader.read(raw)?;
+    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let lowest = reader.required(&fields.lowest, "lowest", "depth range", opening.clone())?;
+    let highest = reader.required(&fields.highest, "highest", "depth range", opening)?;
+    let (low, high) = (reader.finite(&lowest)?, reader.finite(&highest)?);
+    if low > high {
+        reader.push(
+            Diagnostic::error(
+                "NB0206",
+                reader.span(&highest),
+                format!("the highest depth, {high}, is below the lowest"),
+            )
+            .label("below `lowest`")
+            .related(reader.span(&lowest), "the lowest")
+            .rule("DEP-4")
+            .help("exchange the two"),
+        );
+        return None;
+    }
+    let (clamps, drops_triangles) = (reader.or(&fields.clamp, false), reader.or(&fields.drop_triangles, false));
+    Some(DepthRange { lowest: low, highest: high, clamps, drops_triangles })
+}
+
+fn polygon_offset<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::PolygonOffset<'a>>) -> Option<PolygonOffset> {
+    let fields = reader.read(raw)?;
+    let mut number = |raw: &Option<Raw<'a, f32>>| raw.as_ref().map_or(Some(0.0), |raw| reader.finite(raw));
+    Some(PolygonOffset { bias: number(&fields.bias)?, factor: number(&fields.factor)? })
 }
 
 fn stencil_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StencilTest<'a>>) -> Option<StencilTest> {
@@ -248,7 +296,7 @@ pub(super) fn clear<'a>(
         draw.color_mask = four_flags(reader, raw, "color_mask", true);
     }
     let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw));
-    draw.depth_test = depth.map(|_| DepthTest { function: CompareFunction::Always, write: true });
+    draw.depth_test = depth.map(|_| DepthTest::new(CompareFunction::Always, true));
     let stencil = fields.stencil.as_ref().map(|raw| target::clear_stencil(reader, target, raw));
     draw.stencil_test = stencil.map(|reference| StencilTest {
         function: CompareFunction::Always,

@@ -6,7 +6,9 @@ use std::collections::HashMap;
 use super::names::Names;
 use super::*;
 pub(super) use ninebit::diagnostic::only_nv2a;
-use ninebit::state::{DepthBuffer, DepthFormat, SurfaceFormat, Target};
+use ninebit::number::convert;
+use ninebit::raster::depth;
+use ninebit::state::{DepthBuffer, SurfaceFormat, Target};
 
 /// The targets, and where they were named.
 pub(super) struct Targets {
@@ -166,15 +168,25 @@ fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Targe
         target.format = format;
     }
     let depth = fields.depth.as_ref().and_then(|raw| reader.name(raw));
+    if let (Some(raw), Some(format)) = (&fields.depth, depth)
+        && format.is_float()
+        && reader.profile == Profile::Nv10
+    {
+        let place = reader.span(raw);
+        reader.push(only_nv2a("NB0314", place, "this depth format", "DEP-3"));
+    }
     let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw));
-    target.depth = depth.map(|format| DepthBuffer { format, clear: all_ones(format), clear_stencil: 0 });
+    target.depth = depth.map(|format| DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
     if let Some(clear) = clear {
         target.clear_color = color::constant_or(reader, names, &clear.color, target.clear_color);
         if let Some(raw) = &clear.depth
             && let (Some(depth), Some(buffer)) = (clear_depth(reader, &target, raw), &mut target.depth)
         {
-            // A scene's 0..1 becomes floor(z (2^n - 1)); both factors are exact in f64.
-            buffer.clear = (f64::from(depth) * f64::from(all_ones(buffer.format))) as u32;
+            buffer.clear = if buffer.format.is_float() {
+                depth::word(buffer.format, depth::Binary::new(depth))
+            } else {
+                convert::depth(depth, buffer.format.bits()) as u32
+            };
         }
         if let Some(raw) = &clear.stencil
             && let (Some(stencil), Some(buffer)) = (clear_stencil(reader, &target, raw), &mut target.depth)
@@ -186,22 +198,22 @@ fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Targe
     target
 }
 
-/// The depth that a clear stores, 0 to 1, into a target that has a depth buffer.
+/// The depth that a clear stores, 0 to 1, of a float buffer any that is not negative, into a target that has a depth buffer.
 pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, f32>) -> Option<f32> {
     let (place, value) = (reader.span(raw), reader.finite(raw)?);
-    if target.depth.is_none() {
+    let Some(buffer) = target.depth else {
         reader.push(
             Diagnostic::error("NB0216", place, "this target has no depth buffer to clear")
                 .label("no depth buffer")
                 .help("add `depth: Z24S8` (or `Z16`) to the target, or leave this out"),
         );
         return None;
-    }
-    if !(0.0..=1.0).contains(&value) {
+    };
+    let highest = if buffer.format.is_float() { f32::MAX } else { 1.0 };
+    if !(0.0..=highest).contains(&value) {
+        let range = if buffer.format.is_float() { "write 0.0 or more" } else { "write 0.0 (near) to 1.0 (far)" };
         reader.push(
-            Diagnostic::error("NB0206", place, format!("a depth cannot be {value}"))
-                .label("out of range")
-                .help("write 0.0 (near) to 1.0 (far)"),
+            Diagnostic::error("NB0206", place, format!("a depth cannot be {value}")).label("out of range").help(range),
         );
         return None;
     }
@@ -221,8 +233,4 @@ pub(super) fn clear_stencil<'a>(reader: &mut Reader<'a>, target: &Target, raw: &
         return None;
     }
     Some(stencil)
-}
-
-fn all_ones(format: DepthFormat) -> u32 {
-    (1 << format.bits()) - 1
 }

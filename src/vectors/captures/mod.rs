@@ -7,7 +7,9 @@
 
 mod clip;
 mod color_key;
+mod depth;
 mod draws;
+mod polygon_offset;
 mod stencil;
 
 use ninebit::engine::{RenderOptions, Renderer, render};
@@ -32,7 +34,7 @@ const TABLE: &str = include_str!("../../../vectors/captures/frames.tsv");
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Shown {
     Colors,
-    /// The words of depth and stencil, as if they were A8R8G8B8.
+    /// The words of depth and stencil, as if they were A8R8G8B8; those of 16 bits as if they were R5G6B5.
     DepthStencil,
 }
 
@@ -53,6 +55,16 @@ pub struct Frame {
     drawn: Drawn,
     text: Vec<Rectangle>,
     digest: &'static str,
+    open: Option<Open>,
+}
+
+/// A frame that is not drawn exactly, and the rule of which something is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Open {
+    /// The rule's id.
+    pub rule: &'static str,
+    /// Pixels that differ.
+    pub pixels: u64,
 }
 
 /// Frames of the table that nothing here draws, or the other way round: an error of this crate.
@@ -77,11 +89,13 @@ type Frames = Vec<(String, Drawn)>;
 /// A suite by name, and what draws its frames.
 type Suite = (&'static str, fn() -> Frames);
 
-const SUITES: [Suite; 5] = [
+const SUITES: [Suite; 7] = [
     ("Color_key", color_key::frames),
+    ("Depth_buffer", depth::formats),
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),
     ("Surface_clip", clip::surface_clip),
+    ("W_buffering", polygon_offset::z_buffers),
     ("Window_clip", clip::window_clip),
 ];
 
@@ -95,11 +109,11 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     let rows: Vec<_> = TABLE.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
     for (suite, make) in SUITES.iter().filter(|(suite, _)| wanted.is_empty() || wanted.contains(suite)) {
         let mut drawn = make();
-        for (_, name, text, digest) in rows.iter().filter(|row| row.0 == *suite) {
+        for Row { name, text, digest, open, .. } in rows.iter().filter(|row| row.suite == *suite) {
             match drawn.iter().position(|(other, _)| other == name) {
                 Some(at) => {
                     let (name, drawn) = drawn.swap_remove(at);
-                    all.push(Frame { suite, name, drawn, text: text.clone(), digest });
+                    all.push(Frame { suite, name, drawn, text: text.clone(), digest, open: *open });
                 }
                 None => unmatched.push(format!("{suite}/{name} of the table is drawn by nothing")),
             }
@@ -109,8 +123,16 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     if unmatched.is_empty() { Ok(all) } else { Err(Unmatched(unmatched)) }
 }
 
-/// Suite, frame, rectangles of text, digest.
-fn row(line: &'static str) -> Option<(&'static str, &'static str, Vec<Rectangle>, &'static str)> {
+/// A row of the table.
+struct Row {
+    suite: &'static str,
+    name: &'static str,
+    text: Vec<Rectangle>,
+    digest: &'static str,
+    open: Option<Open>,
+}
+
+fn row(line: &'static str) -> Option<Row> {
     let mut fields = line.split('\t');
     let (suite, name, text) = (fields.next()?, fields.next()?, fields.next()?);
     let rectangle = |text: &str| {
@@ -118,7 +140,12 @@ fn row(line: &'static str) -> Option<(&'static str, &'static str, Vec<Rectangle>
         let mut number = || numbers.next()?;
         Some(Rectangle { x: number()?, y: number()?, width: number()?, height: number()? })
     };
-    Some((suite, name, text.split(' ').filter_map(rectangle).collect(), fields.next()?))
+    let (text, digest) = (text.split(' ').filter_map(rectangle).collect(), fields.next()?);
+    let open = |rest: &'static str| {
+        let (rule, pixels) = rest.split_once(' ')?;
+        Some(Open { rule, pixels: pixels.parse().ok()? })
+    };
+    Some(Row { suite, name, text, digest, open: fields.next().and_then(open) })
 }
 
 impl Frame {
@@ -135,6 +162,11 @@ impl Frame {
     /// Where the programs printed text: pixels there are not compared.
     pub fn text(&self) -> &[Rectangle] {
         &self.text
+    }
+
+    /// What is known to be wrong with it.
+    pub fn open(&self) -> Option<Open> {
+        self.open
     }
 
     /// Draws it: R, G, B, A of every pixel, row by row from the top.
@@ -154,7 +186,11 @@ impl Frame {
             put_back(&frames.surfaces[0], &mut words);
         }
         if self.drawn.shown == Shown::DepthStencil {
-            words = frames.surfaces[0].chip_depth_words().collect();
+            let surface = &frames.surfaces[0];
+            if self.drawn.scene.targets[0].depth.is_some_and(|depth| depth.format.bits() == 16) {
+                return Ok(surface.depths().map(shown_as_565).collect());
+            }
+            words = surface.chip_depth_words().collect();
         }
         Ok(words.into_iter().map(|word| surface::show(SurfaceFormat::A8R8G8B8, word)).collect())
     }
@@ -169,6 +205,12 @@ impl Frame {
         let area = |r: &Rectangle| u64::from(r.width) * u64::from(r.height);
         u64::from(SIZE.0) * u64::from(SIZE.1) - self.text.iter().map(area).sum::<u64>()
     }
+}
+
+/// A word R5G6B5 as it stands in the pictures, which were written by factors of their own: 255/31, and 97/24 for G.
+fn shown_as_565(word: u32) -> [u8; 4] {
+    let channel = |n: u32, factor: [u32; 2]| (n * factor[0] / factor[1]) as u8;
+    [channel(word >> 11, [255, 31]), channel(word >> 5 & 63, [97, 24]), channel(word & 31, [255, 31]), 255]
 }
 
 /// The indices of a rectangle's pixels in a frame.

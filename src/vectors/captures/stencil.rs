@@ -42,7 +42,7 @@ pub(super) fn operations() -> Frames {
             let mut second = square(100.0, color(0.0, 0.0, 1.0));
             second.color_mask = [false; 4];
             second.stencil_test = stencil_on.then(|| test(CompareFunction::Always, reference, operation));
-            second.depth_test = depth_on.then_some(DepthTest { function: CompareFunction::Always, write: false });
+            second.depth_test = depth_on.then_some(DepthTest::new(CompareFunction::Always, false));
             let mut third = square(200.0, color(0.0, 1.0, 0.0));
             third.stencil_test = Some(test(CompareFunction::Equal, reference, StencilOperation::Keep));
             let name = format!(

@@ -2,9 +2,10 @@
 
 use crate::column::{Column, Domain, Kind};
 use crate::unit::{Conditions, Reach, Unit};
+use ninebit::raster::depth;
 use ninebit::raster::interpolate::{self, Sample};
 use ninebit::raster::setup::Triangle;
-use ninebit::state::Profile;
+use ninebit::state::{DepthFormat, Profile};
 
 const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
 const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];
@@ -255,7 +256,9 @@ impl Unit for DepthInterpolation {
         let Some(triangle) = triangle(inputs, None, conditions.profile) else { return results.fill(0) };
         let sample = Sample::new(&triangle, triangle.edges(inputs[6], inputs[7]));
         results[..3].copy_from_slice(&sample.e);
-        results[3] = sample.depth([inputs[9], inputs[10], inputs[11]], (1 << inputs[8]) - 1);
+        let format = if inputs[8] == 16 { DepthFormat::Z16 } else { DepthFormat::Z24S8 };
+        let z = [9, 10, 11].map(|n| inputs[n] as f32);
+        results[3] = depth::word(format, depth::interpolate(sample.e, z)).into();
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {

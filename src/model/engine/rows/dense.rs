@@ -195,7 +195,7 @@ fn scene(
         alpha_test: None,
         stencil_test: None,
         window_clip: None,
-        depth_test: Some(DepthTest { function: CompareFunction::Always, write: true }),
+        depth_test: Some(DepthTest::new(CompareFunction::Always, true)),
         blend: None,
         blend_constant: [0; 4],
         color_mask: [true; 4],
@@ -245,8 +245,8 @@ fn compare_small<const FMA: bool>(
             let got = varying.narrow.each_ref().map(|w| w[lane]);
             assert_eq!(got, weights, "{:?} of {:?}", piece.pixel(n), context.vertices());
         }
-        let depth = sample.depth(context.z, context.draw.depth_full);
-        assert_eq!(i64::from(varying.depth[lane]), depth, "{:?} of {:?}", piece.pixel(n), context.vertices());
+        let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
+        assert_eq!(varying.depth[lane], depth, "{:?} of {:?}", piece.pixel(n), context.vertices());
     }
     done
 }
@@ -268,8 +268,8 @@ fn compare<const FMA: bool, const ROW: bool>(
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
         let lane = piece.lane + n;
         let weights = sample.weights().map(|w| w.value as u16);
-        let depth = sample.depth(context.z, context.draw.depth_full);
-        assert_eq!(i64::from(varying.depth[lane]), depth, "({i}, {j}) of {:?}", context.vertices());
+        let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
+        assert_eq!(varying.depth[lane], depth, "({i}, {j}) of {:?}", context.vertices());
         let fog = i16::from(context.fog.as_ref().unwrap().at(&sample).byte);
         let slot = usize::from(compiled.fog.unwrap());
         assert_eq!(rows[slot].0[lane], fog, "({i}, {j}), {:?} of {:?}", context.draw.fog, context.vertices());

@@ -1,4 +1,4 @@
-//! DEP-1 on rows: the definition's integers as doubles, which hold them exactly; docs/exactness.md says why.
+//! Depths on rows: the definition's integers as doubles, which hold them exactly; docs/exactness.md says why.
 #![allow(
     clippy::float_arithmetic,
     reason = "whole numbers, and cuts at powers of two, of which docs/exactness.md gives account"
@@ -8,6 +8,7 @@ use super::fetch::Numbers;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::triangle::Piece;
 use crate::engine::pixel::TriangleContext;
+use crate::state::{DepthFormat, DepthRange, VertexDepths};
 
 /// Bits of a double below the 24 that count.
 const BELOW: u64 = (1 << 29) - 1;
@@ -24,11 +25,17 @@ const ONE: u64 = 1023 << 52;
 /// A depth that no buffer has: the definition computes it.
 const UNKNOWN: u32 = u32::MAX;
 
-/// Depths at the vertices of a triangle, and the largest depth.
+/// A depth that no buffer has: the pixel is outside the draw's range, and dropped (DEP-4).
+pub(super) const OUTSIDE: u32 = u32::MAX - 1;
+
+/// Depths at the vertices of a triangle, the largest depth, and what happens to depths that are not just floored.
 #[derive(Clone, Copy, Debug)]
-struct Depths {
+struct Depths<'a> {
     z: [f64; 3],
     full: f64,
+    offset: f64,
+    range: Option<&'a DepthRange>,
+    format: DepthFormat,
 }
 
 /// Depth of the pixels of a piece.
@@ -38,22 +45,56 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     piece: Piece<'_>,
     out: &mut Numbers<u32>,
 ) {
-    let (triangle, z, full) = (&context.triangle, context.z, context.draw.depth_full);
+    let (triangle, plane, draw) = (&context.triangle, &context.depth, context.draw);
+    let Some(test) = &draw.depth_test else { return };
     let e = triangle.edges(piece.first.0, piece.first.1);
     let edge = |k: usize| Line { c: e[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
-    let depths = Depths { z: [z[0] as f64, z[1] as f64, z[2] as f64], full: full as f64 };
+    let format = draw.depth_format;
+    let offset = plane.offset.mantissa as f64 * power_of_two(plane.offset.exponent);
+    let (z, full) = (plane.z.map(f64::from), f64::from(format.largest()));
+    let depths = Depths { z, full, offset, range: test.range.as_ref(), format };
     let out = &mut out[piece.lanes()];
-    if depths.along::<FMA, ROW>(piece.at, [edge(0), edge(1), edge(2)], out) {
+    let edges = [edge(0), edge(1), edge(2)];
+    let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
+    // Zero, or far from where binary32 or the steps between are at their ends.
+    let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
+    let unknown = if test.range.is_none()
+        && offset == 0.0
+        && !format.is_float()
+        && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole))
+    {
+        depths.along::<FMA, ROW, false>(piece.at, edges, out)
+    } else if plane.z.iter().all(moderate) && plane.offset.mantissa.unsigned_abs() >> 53 == 0 && offset.is_finite() {
+        depths.along::<FMA, ROW, true>(piece.at, edges, out)
+    } else {
+        out.fill(UNKNOWN);
+        true
+    };
+    if unknown {
         for (n, depth) in out.iter_mut().enumerate().filter(|(_, depth)| **depth == UNKNOWN) {
-            *depth = piece.sample(n, triangle).depth(z, full) as u32;
+            *depth = context.depth_word(&piece.sample(n, triangle)).unwrap_or(OUTSIDE);
         }
     }
 }
 
-impl Depths {
+/// 2^exponent; 0 or infinite where a double has no such power.
+fn power_of_two(exponent: i32) -> f64 {
+    match exponent {
+        -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
+        1024.. => f64::INFINITY,
+        _ => 0.0,
+    }
+}
+
+impl Depths<'_> {
     /// Whether some are unknown.
     #[inline(always)]
-    fn along<const FMA: bool, const ROW: bool>(&self, at: Positions<'_>, edges: [Line; 3], out: &mut [u32]) -> bool {
+    fn along<const FMA: bool, const ROW: bool, const GENERAL: bool>(
+        &self,
+        at: Positions<'_>,
+        edges: [Line; 3],
+        out: &mut [u32],
+    ) -> bool {
         let lanes = out.len();
         let (last, [z0, z1, z2]) = (f64::from(at.last), self.z);
         let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
@@ -87,21 +128,63 @@ impl Depths {
             let b1 = cut24(e1 * reciprocal) * unit;
             let b2 = cut24(e2 * reciprocal) * unit;
             // Of the reference vertex: 0.
-            let (t0, t1, t2) = (b0 * (z0 - z), b1 * (z1 - z), b2 * (z2 - z));
+            let (d0, d1, d2) = (z0 - z, z1 - z, z2 - z);
+            // Differences of whole numbers need no rounding.
+            let rounded = |d: f64| if GENERAL { f64::from(d as f32) } else { d };
+            let (t0, t1, t2) = (b0 * rounded(d0), b1 * rounded(d1), b2 * rounded(d2));
             let largest = if t0.abs() > t1.abs() { t0.abs() } else { t1.abs() };
             let largest = if t2.abs() > largest { t2.abs() } else { largest };
-            let largest = if z > largest { z } else { largest };
+            let largest = if z.abs() > largest { z.abs() } else { largest };
             // Terms that small make no depth.
-            let top = power(if largest > 1e-30 { largest } else { 1e-30 });
+            let top = power(if largest > 1e-200 { largest } else { 1e-200 });
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
-            let sum = cut(t0 * scale) + cut(t1 * scale) + cut(t2 * scale) + floor(z * scale);
-            let depth = floor(sum * (top * STEP));
+            let sum = cut(t0 * scale) + cut(t1 * scale) + cut(t2 * scale) + cut(z * scale);
+            let depth = sum * (top * STEP);
+            if GENERAL {
+                out[n] = if close { UNKNOWN } else { self.word(depth) };
+                continue;
+            }
+            let depth = floor(depth);
             let depth = if depth > 0.0 { depth } else { 0.0 };
             let depth = if depth < self.full { depth } else { self.full };
             // -1 is UNKNOWN.
             out[n] = nearest(if close { -1.0 } else { depth }) as u32;
         }
-        out.iter().fold(0, |all, depth| all | *depth) == UNKNOWN
+        out.contains(&UNKNOWN)
+    }
+
+    /// DEP-3 to DEP-5 of an interpolated depth.
+    #[inline(always)]
+    fn word(&self, depth: f64) -> u32 {
+        let sum = depth + self.offset;
+        // What the sum lost, exactly; the definition has more bits than a double.
+        let other = sum - depth;
+        if (depth - (sum - other)) + (self.offset - other) != 0.0 {
+            return UNKNOWN;
+        }
+        let mut depth = sum;
+        if let Some(range) = self.range {
+            let (lowest, highest) = (f64::from(range.lowest), f64::from(range.highest));
+            if !range.clamps && (depth < lowest || depth > highest) {
+                return OUTSIDE;
+            }
+            depth = depth.max(lowest).min(highest);
+        }
+        if depth <= 0.0 {
+            return 0;
+        }
+        if !self.format.is_float() {
+            // Both are whole numbers that 32 bits hold.
+            return depth.min(self.full) as u32;
+        }
+        let (kept, bias) = if self.format == DepthFormat::Z16F { (12, 7) } else { (16, 127) };
+        let word = (depth.to_bits() >> (52 - kept)) as i64 - ((1023 - bias) << kept);
+        match word {
+            ..0 => 0,
+            tiny if tiny >> kept == 0 => 0,
+            huge if huge >= if kept == 12 { 1 << 16 } else { 255 << 16 } => self.format.largest(),
+            word => word as u32,
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 //! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows.
 
+use super::depth::OUTSIDE;
 use super::kernels::Row;
 use super::{BLOCK, Compiled};
 use crate::plan::PlannedDraw;
@@ -90,6 +91,11 @@ pub(super) fn test_depth_stencil(
     memory: &mut [u32; BLOCK],
     alive: &mut [bool; BLOCK],
 ) -> bool {
+    if draw.depth_test.is_some_and(|test| test.range.is_some_and(|range| !range.clamps)) {
+        for (alive, incoming) in alive.iter_mut().zip(incoming) {
+            *alive &= *incoming != OUTSIDE;
+        }
+    }
     let writes_stencil = match &draw.stencil_test {
         None => {
             test_depth(draw, incoming, memory, alive);

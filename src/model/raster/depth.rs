@@ -1,0 +1,325 @@
+//! Depth: what a pixel's is (DEP-1), its offset (DEP-5), its range (DEP-4), and the word that is stored (DEP-3).
+//!
+//! On the way a depth is a [`Binary`]: nothing is rounded but where a rule says so.
+
+use super::setup::Triangle;
+use crate::number::convert::{align, depth as fraction, split};
+use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
+
+/// `mantissa` 2^`exponent`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Binary {
+    /// At most 62 bits and a sign.
+    pub mantissa: i64,
+    /// The power of two by which it is multiplied.
+    pub exponent: i32,
+}
+
+impl Binary {
+    /// A finite number.
+    pub fn new(n: f32) -> Binary {
+        let (mantissa, exponent) = split(n);
+        Binary { mantissa, exponent }
+    }
+
+    /// The sum: exact unless it would need more than 61 bits, then floored.
+    fn plus(self, other: Binary) -> Binary {
+        let ([a, b], exponent) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], 61);
+        Binary { mantissa: a + b, exponent }
+    }
+
+    /// Whether it is less than another.
+    fn is_below(self, other: Binary) -> bool {
+        let ([a, b], _) = align([(self.mantissa, self.exponent), (other.mantissa, other.exponent)], 61);
+        a < b
+    }
+}
+
+/// The depths of a triangle's vertices, in steps of the buffer, and what is added to those of its pixels.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DepthPlane {
+    /// z of the vertices, finite.
+    pub z: [f32; 3],
+    /// DEP-5.
+    pub offset: Binary,
+}
+
+impl DepthPlane {
+    /// That of a triangle whose vertices have these z, as `test` reads them for a buffer of `format`. `None`: the triangle is dropped (DEP-4).
+    #[inline(always)]
+    pub fn new(test: &DepthTest, format: DepthFormat, triangle: &Triangle, z: [f32; 3]) -> Option<DepthPlane> {
+        let z = match test.vertex_depths {
+            // Whole numbers of 24 bits: binary32 holds them.
+            VertexDepths::Fractions if !format.is_float() => z.map(|z| fraction(z, format.bits()) as f32),
+            _ => z,
+        };
+        if let Some(DepthRange { lowest, highest, drops_triangles: true, .. }) = test.range
+            && (z.iter().all(|z| *z < lowest) || z.iter().all(|z| *z > highest))
+        {
+            return None;
+        }
+        let offset =
+            if test.offset == PolygonOffset::default() { Binary::default() } else { offset(test, triangle, z) };
+        Some(DepthPlane { z, offset })
+    }
+
+    /// DEP-1, DEP-5: the depth where the edge functions are `e`.
+    #[inline]
+    pub fn at(&self, e: [i64; 3]) -> Binary {
+        let depth = interpolate(e, self.z);
+        if self.offset.mantissa == 0 { depth } else { depth.plus(self.offset) }
+    }
+}
+
+/// DEP-4: a depth within the range. `None`: the pixel is dropped.
+#[inline]
+pub fn ranged(range: Option<&DepthRange>, depth: Binary) -> Option<Binary> {
+    let Some(range) = range else { return Some(depth) };
+    let (lowest, highest) = (Binary::new(range.lowest), Binary::new(range.highest));
+    match (depth.is_below(lowest), highest.is_below(depth)) {
+        (false, false) => Some(depth),
+        (true, _) => range.clamps.then_some(lowest),
+        _ => range.clamps.then_some(highest),
+    }
+}
+
+/// DEP-3: the word that stands for a depth in steps.
+#[inline]
+pub fn word(format: DepthFormat, Binary { mantissa, exponent }: Binary) -> u32 {
+    if mantissa <= 0 {
+        return 0;
+    }
+    let bits = 64 - mantissa.leading_zeros() as i32;
+    if !format.is_float() {
+        let full = format.largest();
+        return if bits + exponent > 31 {
+            full
+        } else if exponent >= 0 {
+            ((mantissa << exponent) as u32).min(full)
+        } else {
+            ((mantissa >> (-exponent).min(63)) as u32).min(full)
+        };
+    }
+    // The pattern of binary32, cut to as many bits as the format has.
+    let (kept, bias) = match format {
+        DepthFormat::Z16F => (12, 7),
+        _ => (16, 127),
+    };
+    let power = bits - 1 + exponent;
+    let up = kept - (bits - 1);
+    let fraction = (if up >= 0 { mantissa << up } else { mantissa >> -up }) & ((1 << kept) - 1);
+    match power + bias {
+        ..=0 => 0,
+        beyond if beyond > if format == DepthFormat::Z16F { 15 } else { 254 } => format.largest(),
+        field => (field as u32) << kept | fraction as u32,
+    }
+}
+
+/// DEP-5: bias and slope of a triangle.
+#[cold]
+fn offset(test: &DepthTest, triangle: &Triangle, z: [f32; 3]) -> Binary {
+    let PolygonOffset { bias, factor } = test.offset;
+    let slope = slope(triangle, z);
+    let (of_factor, exponent) = split(factor);
+    let product = i128::from(slope.mantissa) * i128::from(of_factor);
+    let dropped = (128 - product.unsigned_abs().leading_zeros()).saturating_sub(61);
+    let scaled = Binary { mantissa: (product >> dropped) as i64, exponent: slope.exponent + exponent + dropped as i32 };
+    Binary::new(bias).plus(scaled)
+}
+
+/// The larger of the magnitudes of dz/dx and dz/dy, cut at the 29th bit below that of the largest z.
+pub fn slope(triangle: &Triangle, z: [f32; 3]) -> Binary {
+    const KEPT: i32 = 62;
+    let (aligned, exponent) = align(z.map(split), KEPT);
+    let along = |edges: [i64; 3]| -> i128 {
+        let sum: i128 = (0..3).map(|k| i128::from(edges[k]) * i128::from(aligned[k])).sum();
+        sum.abs()
+    };
+    // The largest z has its first bit at KEPT - 1 of `aligned`; of what stands below it 28 more count.
+    let dropped = KEPT - 29;
+    let steepest = along(triangle.a).max(along(triangle.b));
+    let mantissa = steepest / (i128::from(triangle.doubled_area) << dropped);
+    Binary { mantissa: mantissa as i64, exponent: exponent + dropped }
+}
+
+/// Bits that count of the largest edge number and of the largest term of a depth (DEP-1).
+const DEPTH_BITS: i32 = 29;
+
+/// DEP-1: z_d + sum of b_k (z_k - z_d), each term cut; screen-linear.
+#[inline]
+pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
+    let reference = largest_edge(e);
+    let edges = e.map(|e| significant(e, 24));
+    let (reciprocal, exponent) = reciprocal(edges);
+    let terms: [(i64, i32); 3] = std::array::from_fn(|k| {
+        if k == reference {
+            return split(z[k]);
+        }
+        let weight = i128::from(edges[k]) * i128::from(reciprocal);
+        let dropped = (128 - weight.unsigned_abs().leading_zeros() as i32 - 24).max(0);
+        let mantissa = if weight < 0 { -((-weight) >> dropped) } else { weight >> dropped };
+        let (by, power) = split(difference(z[k], z[reference]));
+        (mantissa as i64 * by, dropped - exponent + power)
+    });
+    let bits = |n: i64| 64 - n.unsigned_abs().leading_zeros() as i32;
+    let Some(top) = terms.iter().filter(|term| term.0 != 0).map(|term| bits(term.0) + term.1).max() else {
+        return Binary::default();
+    };
+    let unit = top - DEPTH_BITS;
+    let cut = |(n, exponent): (i64, i32)| match exponent - unit {
+        // Zero may have any exponent.
+        up if up >= 0 => n << up.min(63),
+        down => n.signum() * (n.abs() >> (-down).min(63)),
+    };
+    Binary { mantissa: terms.into_iter().map(cut).sum(), exponent: unit }
+}
+
+/// The difference of two vertex depths in binary32, to nearest; one below 2^-126 is zero.
+#[allow(clippy::float_arithmetic, reason = "DEP-1 names binary32 for this one difference")]
+#[inline(always)]
+pub fn difference(a: f32, b: f32) -> f32 {
+    let difference = a - b;
+    if difference.is_subnormal() { 0.0 } else { difference }
+}
+
+/// DEP-1: the vertex whose edge number has the largest binary exponent; of equals 1 before 0 before 2.
+pub fn largest_edge(e: [i64; 3]) -> usize {
+    let [first, second, third] = e.map(|e| if e > 0 { 64 - e.leading_zeros() } else { 0 });
+    if second >= first && second >= third {
+        1
+    } else if first >= third {
+        0
+    } else {
+        2
+    }
+}
+
+/// A number cut toward zero to its first `bits` bits.
+fn significant(n: i64, bits: u32) -> i64 {
+    let dropped = (64 - n.unsigned_abs().leading_zeros()).saturating_sub(bits);
+    n.signum() * (n.abs() >> dropped << dropped)
+}
+
+/// DEP-1: the reciprocal of the sum of three edge numbers as a mantissa of 29 bits, 3/16 of its last bit low, and s, by which 2^-s times that is meant.
+fn reciprocal(edges: [i64; 3]) -> (i64, i32) {
+    let top = edges.iter().map(|e| 64 - e.unsigned_abs().leading_zeros() as i32).max().unwrap_or(0);
+    let dropped = (top - DEPTH_BITS).max(0);
+    // Outside the triangle, where nothing is stored, numbers may be negative.
+    let sum: i64 = edges.iter().map(|e| e.signum() * (e.abs() >> dropped)).sum::<i64>().max(1);
+    let length = 63 - sum.leading_zeros() as i32;
+    if sum & (sum - 1) == 0 {
+        return (1 << 28, 28 + length + dropped);
+    }
+    // floor(2^s / sum - 3/16). The sum has 31 bits at most.
+    let numerator = (1_u64 << (29 + length + 4)) - 3 * sum as u64;
+    ((numerator / (16 * sum as u64)) as i64, 29 + length + dropped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::state::{CompareFunction, Named, Profile};
+    use proptest::prelude::*;
+
+    /// A finite number of binary32 as the words of both float formats have it.
+    fn by_pattern(format: DepthFormat, z: f32) -> u32 {
+        let pattern = z.max(0.0).to_bits();
+        match format {
+            DepthFormat::Z24S8F if pattern >> 23 == 0 => 0,
+            DepthFormat::Z24S8F => pattern >> 7,
+            _ => match (i64::from(pattern >> 11) - 0x78000).clamp(0, 0xffff) as u32 {
+                word if word >> 12 == 0 => 0,
+                word => word,
+            },
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn float_words_are_cut_patterns(bits in 0_u32..0x7f80_0000, down in any::<bool>()) {
+            let z = f32::from_bits(bits) * if down { -1.0 } else { 1.0 };
+            for format in [DepthFormat::Z24S8F, DepthFormat::Z16F] {
+                prop_assert_eq!(word(format, Binary::new(z)), by_pattern(format, z), "{} {}", format.name(), z);
+            }
+        }
+
+        #[test]
+        fn fixed_words_are_floors(z in -1.0_f32..17_000_000.0) {
+            for format in [DepthFormat::Z24S8, DepthFormat::Z16] {
+                let wanted = f64::from(z).floor().clamp(0.0, f64::from(format.largest())) as u32;
+                prop_assert_eq!(word(format, Binary::new(z)), wanted);
+            }
+        }
+
+        #[test]
+        fn ranges_hold(z in -9.0_f32..9.0, lowest in -5.0_f32..5.0, more in 0.0_f32..5.0, clamps in any::<bool>()) {
+            let range = DepthRange { lowest, highest: lowest + more, clamps, drops_triangles: false };
+            let inside = (range.lowest..=range.highest).contains(&z);
+            let held = Binary::new(z.clamp(range.lowest, range.highest));
+            prop_assert_eq!(ranged(Some(&range), Binary::new(z)), (inside || clamps).then_some(held));
+        }
+    }
+
+    #[test]
+    fn words_at_the_ends() {
+        let of = |format, z: f32| word(format, Binary::new(z));
+        assert_eq!([1.0, 1.5, 2.0].map(|z| of(DepthFormat::Z24S8F, z)), [0x7f0000, 0x7f8000, 0x800000]);
+        assert_eq!([1.0, 1.5, 511.9375].map(|z| of(DepthFormat::Z16F, z)), [0x7000, 0x7800, 0xffff]);
+        assert_eq!([0.0, -3.0, 1e-3, 600.0].map(|z| of(DepthFormat::Z16F, z)), [0, 0, 0, 0xffff]);
+        assert_eq!([f32::MAX, f32::MIN_POSITIVE, 1e-40].map(|z| of(DepthFormat::Z24S8F, z)), [0xfe_ffff, 0x01_0000, 0]);
+        assert_eq!([65_535.9, 65_536.0, 1e30, -0.5].map(|z| of(DepthFormat::Z16, z)), [0xffff, 0xffff, 0xffff, 0]);
+    }
+
+    fn plane(bias: f32, factor: f32, p: [[f32; 4]; 3]) -> (DepthPlane, Triangle) {
+        let triangle = Triangle::new(p, true, Profile::Nv2a).expect("area");
+        let test = DepthTest {
+            vertex_depths: VertexDepths::Steps,
+            offset: PolygonOffset { bias, factor },
+            ..DepthTest::new(CompareFunction::Less, true)
+        };
+        (DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, p.map(|p| p[2])).expect("no range"), triangle)
+    }
+
+    #[test]
+    fn steps_beyond_the_buffer_are_interpolated_as_they_are() {
+        let p = [
+            [53.1875, -34.3125, 16_809_768.0, 1.0],
+            [1808.6875, 453.0, 16_572_698.0, 1.0],
+            [-1168.6875, 453.0, 16_572_698.0, 1.0],
+        ];
+        let (plane, triangle) = plane(0.0, 0.0, p);
+        let depth = plane.at(triangle.edges(452, 242));
+        assert_eq!(word(DepthFormat::Z24S8, depth), 16_675_103);
+    }
+
+    /// A slope of 486.4845 is cut to 486.4375 below a z of 2^24; times 16 it is 7783.
+    #[test]
+    fn slopes_are_cut_at_the_29th_bit() {
+        // dz/dy = 486.4845 or nearly: 237070 over 487.3125 rows.
+        let p = [
+            [53.1875, -34.3125, 16_809_768.0, 1.0],
+            [1808.6875, 453.0, 16_572_698.0, 1.0],
+            [-1168.6875, 453.0, 16_572_698.0, 1.0],
+        ];
+        let (with, triangle) = plane(0.0, 16.0, p);
+        let slope = slope(&triangle, with.z);
+        assert_eq!((slope.mantissa, slope.exponent), (486 * 16 + 7, -4));
+        assert_eq!(with.offset.mantissa as f64 * 2.0_f64.powi(with.offset.exponent), 7783.0);
+        let (biased, _) = plane(-0.5, 16.0, p);
+        assert_eq!(biased.offset.mantissa as f64 * 2.0_f64.powi(biased.offset.exponent), 7782.5);
+    }
+
+    #[test]
+    fn a_flat_triangle_beyond_a_limit_is_dropped_whole() {
+        let p = [[0.0, 0.0, 5.0, 1.0], [8.0, 0.0, 6.0, 1.0], [0.0, 8.0, 7.0, 1.0]];
+        let triangle = Triangle::new(p, true, Profile::Nv2a).expect("area");
+        let at = |lowest, highest, drops_triangles| {
+            let range = Some(DepthRange { lowest, highest, clamps: true, drops_triangles });
+            let test =
+                DepthTest { vertex_depths: VertexDepths::Steps, range, ..DepthTest::new(CompareFunction::Less, true) };
+            DepthPlane::new(&test, DepthFormat::Z16, &triangle, [5.0, 6.0, 7.0]).is_some()
+        };
+        assert!(at(7.0, 9.0, true) && at(0.0, 5.0, true) && at(8.0, 9.0, false));
+        assert!(!at(8.0, 9.0, true) && !at(0.0, 4.0, true));
+    }
+}

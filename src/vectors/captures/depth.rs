@@ -1,0 +1,114 @@
+//! DEP-1 and DEP-3: 992 small quads from the nearest depth to the farthest, three large ones behind them, in four formats, over 49 cleared depths.
+
+use super::draws::{OVER, frame_buffer, scene};
+use super::{Drawn, Frames, Shown};
+use ninebit::state::{
+    Combiners, CompareFunction, DepthBuffer, DepthFormat, DepthRange, DepthTest, Draw, FinalRegister, Topology, Vertex,
+    VertexColor, VertexDepths,
+};
+use std::sync::Arc;
+
+/// Formats, the words of 16 or 24 in the names of frames, and the deepest word that the programs use.
+const FORMATS: [(DepthFormat, &str, u32); 4] = [
+    (DepthFormat::Z16, "z16", 0xffff),
+    (DepthFormat::Z24S8, "z24", 0xff_ffff),
+    (DepthFormat::Z16F, "z16", 0xffff),
+    (DepthFormat::Z24S8F, "z24", 0xfe_ffff),
+];
+
+/// The programs leave the range as it was set for floats of 24 bits, to 1e30; the deepest words lie beyond.
+const FLOAT_RANGE: DepthRange = DepthRange { lowest: 0.0, highest: 1e30, clamps: false, drops_triangles: false };
+
+/// How many steps there are between the cleared depths.
+const STEPS: u32 = 48;
+
+/// The number of which a word is the word, as the programs hand it to the chip.
+fn depth_of_word(format: DepthFormat, word: u32) -> f32 {
+    match format {
+        DepthFormat::Z16 | DepthFormat::Z24S8 => word as f32,
+        _ if word == 0 => 0.0,
+        DepthFormat::Z16F => f32::from_bits((word << 11) + 0x3c00_0000),
+        DepthFormat::Z24S8F => f32::from_bits(word << 7),
+    }
+}
+
+/// Two triangles over a rectangle, from its upper left corner on: depths and colours of the corners, clockwise.
+fn quad(vertices: &mut Vec<Vertex>, [left, top, right, bottom]: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]) {
+    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+    for n in [0, 1, 2, 0, 2, 3] {
+        let ([x, y], [r, g, b]) = (corners[n], colors[n]);
+        let diffuse = VertexColor::Floats([r, g, b, 1.0]);
+        vertices.push(Vertex { position: [x, y, depths[n], 1.0], diffuse, ..Vertex::default() });
+    }
+}
+
+fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
+    let (left, top, right, bottom) = (128.0, 40.0, 512.0, 440.0);
+    let full = deepest as f32;
+    let mut all = Vec::new();
+    let at = |word: u32| depth_of_word(format, word);
+    // 31 by 32 small quads, twelve pixels from one to the next.
+    let increment = full / 996.0;
+    let (mut z, mut slope) = (0.0_f32, increment * 0.75);
+    for row in 0..32_u8 {
+        for column in 0..31_u8 {
+            let (x, y) = (left + 6.0 + 12.0 * f32::from(column), top + 8.0 + 12.0 * f32::from(row));
+            let other = z + slope;
+            let grey = |z: f32| [0.25 + z / full * 0.75; 3];
+            let (near, far) = (at(z as u32), at(other.max(0.0) as u32));
+            let colors = [grey(z), grey(other), grey(other), grey(z)];
+            quad(&mut all, [x, y, x + 8.0, y + 8.0], [near, far, far, near], colors);
+            z += increment;
+            slope = -slope;
+        }
+    }
+    let back = deepest - 1;
+    let (near, far) = (at(back * 3 / 4), at(0));
+    let (first, second) = ([near / full, 0.75, near / full], [0.75, far / full, far / full]);
+    let area = [left + 4.0, bottom - 10.0, right - 20.0, bottom - 5.0];
+    quad(&mut all, area, [near, far, far, near], [first, second, second, first]);
+    let (near, far) = (at(1), at(deepest / 2));
+    let (first, second) = ([near / full, 0.5, near / full], [0.5, far / full, far / full]);
+    let area = [right - 10.0, top + 5.0, right - 2.0, bottom - 5.0];
+    quad(&mut all, area, [near, near, far, far], [first, first, second, second]);
+    let (near, far) = (at(back * 2 / 3), at(back));
+    let colors = [[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.4, 0.3, 0.0], [0.0, 0.0, 1.0]];
+    quad(&mut all, [left, top, right, bottom], [near, near, far, far], colors);
+    all
+}
+
+/// Depth_buffer.
+pub(super) fn formats() -> Frames {
+    let mut frames = Frames::new();
+    for (format, bits, deepest) in FORMATS {
+        let vertices = vertices(format, deepest);
+        let draw = Draw {
+            indices: (0..vertices.len() as u32).collect::<Arc<[u32]>>(),
+            vertices: vertices.into(),
+            topology: Topology::Triangles,
+            combiners: Combiners::showing(FinalRegister::PrimaryColor),
+            blend: OVER,
+            depth_test: Some(DepthTest {
+                vertex_depths: VertexDepths::Steps,
+                range: (format == DepthFormat::Z24S8F).then_some(FLOAT_RANGE),
+                ..DepthTest::new(CompareFunction::Less, true)
+            }),
+            ..Draw::default()
+        };
+        for step in 0..=STEPS {
+            let clear = deepest - step * (deepest / STEPS);
+            let mut target = frame_buffer(0xff00_0000);
+            target.depth = Some(DepthBuffer { format, clear, clear_stencil: 0 });
+            let scene = scene(vec![target], vec![], vec![draw.clone()]);
+            // Compressed buffers hold the same.
+            for compressed in ["n", "y"] {
+                let float = if format.is_float() { "y" } else { "n" };
+                let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");
+                let drawn = |shown| Drawn { scene: scene.clone(), view: None, shown };
+                frames.push((format!("{name}_ZB"), drawn(Shown::DepthStencil)));
+                frames.push((name, drawn(Shown::Colors)));
+            }
+        }
+    }
+    frames
+}
