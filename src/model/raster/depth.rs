@@ -216,6 +216,7 @@ fn reciprocal(edges: [i64; 3]) -> (i64, i32) {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_arithmetic, reason = "choosing depths")]
 mod tests {
     use super::*;
     use crate::state::{CompareFunction, Named, Profile};
