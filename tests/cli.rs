@@ -29,6 +29,7 @@ fn help_goes_to_stdout() {
     assert_data_eq!(bench.run("op --help").text(), file!["cli/help-op.txt"]);
     assert_data_eq!(bench.run("op combiner --help").text(), file!["cli/help-op-combiner.txt"]);
     assert_data_eq!(bench.run("trace --help").text(), file!["cli/help-trace.txt"]);
+    assert_data_eq!(bench.run("inspect --help").text(), file!["cli/help-inspect.txt"]);
     assert_data_eq!(bench.run("explain --help").text(), file!["cli/help-explain.txt"]);
     assert_data_eq!(bench.run("lower --help").text(), file!["cli/help-lower.txt"]);
     assert_data_eq!(bench.run("registers --help").text(), file!["cli/help-registers.txt"]);
@@ -42,6 +43,27 @@ fn help_goes_to_stdout() {
         file!["cli/help-generate-hemisphere-normals.txt"]
     );
     assert_eq!(bench.run("--version").text(), concat!("ninebit ", env!("CARGO_PKG_VERSION"), "\n"));
+}
+
+#[test]
+fn scenes_become_pages() {
+    let bench = Bench::new();
+    let scene = "(version: 1, profile: Nv10, targets: [(width: 2, height: 2)], draws: [])";
+    bench.write("scene.ron", scene);
+    bench.write("bad.ron", "(version: 1, profile: Nv30)");
+    assert_eq!(bench.run("inspect scene.ron -o page.html --policy CMB-3=literal").text(), "");
+    let page = std::fs::read_to_string(bench.path("page.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") && page.ends_with("</html>\n"));
+    assert!(page.contains(scene) && page.contains(r#""chosen":{"CMB-3":"literal"}"#));
+    let folder = bench.path("");
+    assert!(!page.contains(folder.to_str().unwrap().trim_end_matches('/')), "the page says where its scene lay");
+    assert_eq!(bench.run("inspect scene.ron -o -").text().len(), page.replace(r#""CMB-3":"literal""#, "").len());
+    bench.run("inspect bad.ron -o bad.html").failed(3, "NB0204");
+    assert!(!bench.path("bad.html").exists());
+    bench.run("inspect scene.ron -o scene.png").failed(2, "writes HTML");
+    let overwriting = bench.run("inspect scene.ron -o scene.ron");
+    assert!(overwriting.status != 0 && overwriting.stderr.contains("NB07"), "{}", overwriting.stderr);
+    assert_eq!(std::fs::read_to_string(bench.path("scene.ron")).unwrap(), scene);
 }
 
 #[test]

@@ -7,10 +7,10 @@ use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
 use ninebit::state::{POLICIES, Policies, Policy};
-use ninebit_cli::diff::{self, compare};
 use ninebit_cli::replay::{Options, find, replay};
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_scene as scene;
+use ninebit_scene::diff::{self, compare};
 use ninebit_scene::image::Rgba;
 
 /// Levels by which two pictures must differ, and in how many pixels that touch.

@@ -4,8 +4,8 @@
 use crate::bench;
 
 use bench::{Bench, Run};
-use ninebit_cli::diff::{Options, compare};
 use ninebit_files::output::{Compression, encode_png};
+use ninebit_scene::diff::{Options, compare};
 use ninebit_scene::image::{ImageLimits, Rgba, load};
 use proptest::prelude::*;
 use serde_json::Value;

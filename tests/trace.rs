@@ -116,6 +116,26 @@ fn what_is_streamed_is_what_is_kept() {
 }
 
 #[test]
+fn a_rectangle_is_its_pixels_row_by_row() {
+    let bench = Bench::new();
+    bench.write("piled.ron", piled(2).replace("height: 1", "height: 3"));
+    let all: Value =
+        serde_json::from_str(&bench.run("trace piled.ron --rectangle 1,0,2,3 --format json").text()).unwrap();
+    let places = [(1, 0), (2, 0), (1, 1), (2, 1), (1, 2), (2, 2)];
+    let (mut apart, mut text) = (Vec::new(), Vec::new());
+    for (x, y) in places {
+        let command = format!("trace piled.ron --pixel {x},{y}");
+        text.push(bench.run(&command).text());
+        apart.push(serde_json::from_str(&bench.run(&format!("{command} --format json")).text()).unwrap());
+    }
+    assert_eq!((&all["format"], &all["pixels"]), (&"ninebit-traces".into(), &Value::Array(apart)));
+    assert_eq!(bench.run("trace piled.ron --rectangle 1,0,2,3").text(), text.join("\n"));
+    for refused in ["1,0,2", "1,0,0,3", "0,0,65,64", "3,3,2,2"] {
+        assert_eq!(bench.run(&format!("trace piled.ron --rectangle {refused}")).status, 2, "{refused}");
+    }
+}
+
+#[test]
 fn long_names_and_formulas_do_not_move_the_numbers() {
     use ninebit::trace::{Step, plain};
     let long = "a.name.that.is.wider.than.any.column.may.become";

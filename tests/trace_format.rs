@@ -31,6 +31,7 @@ struct Page {
     fragment: Words,
     step: Words,
     input: Words,
+    texel: Words,
     operations: Words,
     /// Block and name of steps, with placeholders.
     names: Vec<[String; 2]>,
@@ -66,6 +67,7 @@ impl Page {
             fragment: first("A fragment"),
             step: first("A step"),
             input: first("An input"),
+            texel: first("A texel"),
             operations: first("Operations"),
             names: names
                 .into_iter()
@@ -139,11 +141,32 @@ impl Seen {
                 fragment.remove("clipped");
             }
             assert_eq!(keys(draw), fragment);
-            for step in draw["steps"].as_array().unwrap() {
-                with_optional(step, &page.step, &[("value_text", value_text(step))]);
-                for input in step["inputs"].as_array().unwrap() {
-                    with_optional(input, &page.input, &[("value_text", value_text(input))]);
+            let mut made = BTreeMap::new();
+            for (number, step) in draw["steps"].as_array().unwrap().iter().enumerate() {
+                let fetched = step["operation"] == "fetch";
+                let word = fetched.then(|| format!("{:#010x}", step["value"].as_u64().unwrap()));
+                let mut step = step.clone();
+                assert_eq!(step["id"], number);
+                if fetched {
+                    assert_eq!(keys(&step["texel"]), page.texel);
+                    assert_eq!(step["texel"]["word"], word.clone().unwrap());
+                    // The place is that of the operands, if they are coordinates.
+                    for (axis, input) in ["x", "y"].into_iter().zip(step["inputs"].as_array().unwrap()) {
+                        assert_eq!(step["texel"][axis], input["value"], "{step:#}");
+                    }
+                    step["texel"] = "a place".into();
                 }
+                let texel = fetched.then(|| "a place".to_string());
+                with_optional(&step, &page.step, &[("value_text", value_text(&step)), ("texel", texel)]);
+                for input in step["inputs"].as_array().unwrap() {
+                    // What no step makes is a parameter.
+                    let mut input = input.clone();
+                    let step = made.get(input["name"].as_str().unwrap());
+                    assert_eq!(input.get("step").and_then(Value::as_u64), step.map(|step: &usize| *step as u64));
+                    let step = input.get_mut("step").map(|step| *step = "a step".into()).map(|()| "a step".to_string());
+                    with_optional(&input, &page.input, &[("value_text", value_text(&input)), ("step", step)]);
+                }
+                made.insert(step["name"].as_str().unwrap().to_string(), number);
                 let word = |field: &str| step[field].as_str().unwrap().to_string();
                 assert!(page.operations.contains(&word("operation")), "not on the page: {step:#}");
                 self.operations.insert(word("operation"));

@@ -1,11 +1,11 @@
 //! What the program `ninebit` is made of. Other programs take the crates below it: this one's interface follows the program's needs.
 //!
 //! * [`main`] runs a command line.
-//! * [`replay`] holds scenes against what is [expected](expectation) of them; [`diff`] holds two pictures against each other.
+//! * [`replay`] holds scenes against what is [expected](expectation) of them; [`ninebit_scene::diff`] holds two pictures against each other.
 
 mod commands;
-pub mod diff;
 pub mod expectation;
+mod page;
 pub mod replay;
 pub mod shard;
 

@@ -10,6 +10,12 @@ pub fn on_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T
     }
 }
 
+/// Does work on the caller's thread.
+#[cfg(not(feature = "threads"))]
+pub fn on_threads<T: Send>(_: usize, work: impl FnOnce() -> T + Send) -> T {
+    work()
+}
+
 /// How many threads [`on_threads`] works with.
 #[cfg(feature = "threads")]
 pub fn count(threads: usize) -> usize {

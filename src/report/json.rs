@@ -5,9 +5,10 @@ use ninebit::engine::{DrawTrace, PixelTrace, TraceEnd, Tracer};
 use ninebit::plan::Plan;
 use ninebit::raster::project::ClipPlane;
 use ninebit::shown;
-use ninebit::state::{Named, POLICIES, Policies, Policy, StageOrigin};
-use ninebit::trace::{Operand, SINGLE, Step};
+use ninebit::state::{Named, POLICIES, Policies, Policy, StageOrigin, Texture};
+use ninebit::trace::{Operand, Place, SINGLE, Step};
 use serde_json::{Value, json};
+use std::collections::HashMap;
 use std::io;
 
 /// Version of the document.
@@ -31,7 +32,7 @@ pub fn write_trace_json(out: &mut dyn io::Write, plan: &Plan, tracer: &Tracer<'_
     write!(out, "{},\n  \"draws\": [", head.trim_end_matches("\n}"))?;
     let mut between = "\n    ";
     let end = tracer.run(|fragment| {
-        let text = pretty(&draw(&fragment)).replace('\n', "\n    ");
+        let text = pretty(&draw(plan, &fragment)).replace('\n', "\n    ");
         write!(out, "{}{text}", std::mem::replace(&mut between, ",\n    "))
     })?;
     let closing = if between.starts_with(',') { "\n  ]" } else { "]" };
@@ -46,6 +47,21 @@ pub fn write_trace_json(out: &mut dyn io::Write, plan: &Plan, tracer: &Tracer<'_
     writeln!(out, "{closing},{}", pretty(&rest).trim_start_matches('{'))
 }
 
+/// Writes the documents of all pixels of a rectangle, row by row, in one.
+///
+/// # Errors
+/// Those of `out`.
+pub fn write_traces_json(out: &mut dyn io::Write, plan: &Plan, tracers: &[Tracer<'_>]) -> io::Result<()> {
+    write!(out, "{{\n\"format\": \"ninebit-traces\",\n\"version\": {VERSION},\n\"pixels\": [\n")?;
+    for (n, tracer) in tracers.iter().enumerate() {
+        if n > 0 {
+            writeln!(out, ",")?;
+        }
+        write_trace_json(out, plan, tracer)?;
+    }
+    writeln!(out, "]\n}}")
+}
+
 /// The same document as a value, to stand in another one.
 pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
     let mut value = json!({
@@ -58,7 +74,7 @@ pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
         "cleared": trace.cleared,
         "shown": trace.shown,
         "word": trace.word,
-        "draws": trace.draws.iter().map(draw).collect::<Vec<_>>(),
+        "draws": trace.draws.iter().map(|fragment| draw(plan, fragment)).collect::<Vec<_>>(),
     });
     if trace.left_out > 0 {
         value["left_out"] = json!(trace.left_out);
@@ -82,10 +98,22 @@ pub fn policies_value(policies: &Policies) -> Value {
 
 /// Steps as they stand in the document of a trace.
 pub fn steps_value(steps: &[Step]) -> Value {
-    Value::Array(steps.iter().map(step).collect())
+    numbered(steps, &[])
 }
 
-fn draw(draw: &DrawTrace) -> Value {
+/// Steps with their numbers; `textures` are those of the scene.
+fn numbered(steps: &[Step], textures: &[Texture]) -> Value {
+    // A later step of a name supersedes the earlier one.
+    let mut made = HashMap::new();
+    let mut values = Vec::with_capacity(steps.len());
+    for (id, each) in steps.iter().enumerate() {
+        values.push(step(each, id, &made, textures));
+        made.insert(each.name.as_str(), id);
+    }
+    Value::Array(values)
+}
+
+fn draw(plan: &Plan, draw: &DrawTrace) -> Value {
     let mut value = json!({
         "draw": draw.draw,
         "name": draw.name,
@@ -93,7 +121,7 @@ fn draw(draw: &DrawTrace) -> Value {
         "stored": draw.stored,
         "shown": draw.shown,
         "program_origin": origins(&draw.program_origin),
-        "steps": steps_value(&draw.steps),
+        "steps": numbered(&draw.steps, &plan.textures),
     });
     if let Some(piece) = &draw.piece {
         let planes: Vec<&str> = ClipPlane::of(piece.planes).map(|plane| plane.name()).collect();
@@ -107,13 +135,14 @@ pub fn origins(origins: &[StageOrigin]) -> Value {
     origins.iter().map(|origin| json!({ "rgb": origin.rgb, "alpha": origin.alpha })).collect()
 }
 
-fn step(step: &Step) -> Value {
+fn step(step: &Step, id: usize, made: &HashMap<&str, usize>, textures: &[Texture]) -> Value {
     let mut value = json!({
+        "id": id,
         "block": step.block,
         "rule": step.rule,
         "name": step.name,
         "operation": step.operation,
-        "inputs": step.inputs.iter().map(operand).collect::<Vec<_>>(),
+        "inputs": step.inputs.iter().map(|input| operand(input, made.get(input.name.as_str()))).collect::<Vec<_>>(),
         "value": step.value,
         "per_one": step.per_one,
         "real": step.real(),
@@ -123,13 +152,22 @@ fn step(step: &Step) -> Value {
     if let Some(text) = beyond_31_bits(step.value, step.per_one) {
         value["value_text"] = json!(text);
     }
+    if let Some(Place { texture, face, level, at: [x, y] }) = step.texel {
+        let name = textures.get(texture).map(|texture| texture.name.as_str());
+        let word = format!("{:#010x}", step.value);
+        value["texel"] =
+            json!({ "texture": texture, "name": name, "face": face, "level": level, "x": x, "y": y, "word": word });
+    }
     value
 }
 
-fn operand(operand: &Operand) -> Value {
+fn operand(operand: &Operand, step: Option<&usize>) -> Value {
     let mut value = json!({ "name": operand.name, "value": operand.value, "per_one": operand.per_one });
     if let Some(text) = beyond_31_bits(operand.value, operand.per_one) {
         value["value_text"] = json!(text);
+    }
+    if let Some(step) = step {
+        value["step"] = json!(step);
     }
     value
 }

@@ -12,6 +12,6 @@ mod text;
 
 pub use beside::{BesideLine, beside, beside_text};
 pub use json::origins;
-pub use json::{policies_value, steps_value, trace_json, trace_value, write_trace_json};
+pub use json::{policies_value, steps_value, trace_json, trace_value, write_trace_json, write_traces_json};
 pub use text::planes;
 pub use text::{policies_text, steps_text, trace_text, write_trace_text};

@@ -7,6 +7,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use super::assets::Assets;
 use super::lower::{DrawSpans, VertexSpans, shared_text};
 use super::raw::Raw;
 use super::reader::Reader;
@@ -23,16 +24,21 @@ pub(super) struct Family {
 ///
 /// # Errors
 /// What is wrong with the file.
-pub(super) fn find(text: &str, folder: &Path, limits: &Limits) -> Result<Option<Family>, Vec<Diagnostic>> {
+pub(super) fn find(
+    text: &str,
+    folder: &Path,
+    limits: &Limits,
+    assets: &dyn Assets,
+) -> Result<Option<Family>, Vec<Diagnostic>> {
     // Most scenes have none: they are not read twice.
     if !text.contains("family") {
         return Ok(None);
     }
-    let mut reader = Reader::new(text, limits);
+    let mut reader = Reader::new(text, limits, assets);
     let named = reader.attempt::<source::Scene<'_>>(text).and_then(|scene| scene.family).filter(Raw::is_text);
     let Some(named) = named else { return Ok(None) };
     let Some(file) = shared_text(&mut reader, folder, &named) else { return Err(reader.diagnostics) };
-    let mut inside = Reader::new(&file.source.text, limits);
+    let mut inside = Reader::new(&file.source.text, limits, assets);
     if inside.parse(&Raw::<source::Family<'_>>::new(&file.source.text)).is_none() {
         return Err(inside.diagnostics.into_iter().map(|finding| finding.inside(&file)).collect());
     }

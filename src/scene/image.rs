@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 use image::{DynamicImage, ImageFormat};
 use thiserror::Error;
 
+use super::assets::{Assets, Folder};
 use super::dds::{self, Dds};
 use ninebit::limits::{FileLimit, Limits};
 use ninebit_files::guard;
-use ninebit_files::read::{self, Kind, ReadError};
+use ninebit_files::read::ReadError;
 
 mod png;
 
@@ -35,7 +36,7 @@ impl Default for ImageLimits {
 }
 
 impl ImageLimits {
-    fn file(&self) -> FileLimit {
+    pub(super) fn file(&self) -> FileLimit {
         Limits { image_file_bytes: self.maximum_file_bytes, ..Limits::default() }.image_file()
     }
 }
@@ -215,7 +216,7 @@ impl ImageError {
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
 pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
-    let bytes = read(path, limits.file())?;
+    let bytes = read(&Folder, path, limits.file())?;
     decode(&bytes, path, limits)
 }
 
@@ -224,11 +225,18 @@ pub fn load(path: &Path, limits: &ImageLimits) -> Result<Rgba, ImageError> {
 /// # Errors
 /// See [`ImageError`]. No input makes this panic.
 pub fn open(path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
-    let bytes = read(path, limits.file())?;
+    contents(&read(&Folder, path, limits.file())?, path, limits)
+}
+
+/// Decodes the contents of a PNG, TGA or DDS file; `path` gives the extension and names the file in errors.
+///
+/// # Errors
+/// As [`open`], less those of reading.
+pub fn contents(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Contents, ImageError> {
     if bytes.starts_with(&dds::SIGNATURE) {
-        return dds::decode(&bytes, path, limits).map(Contents::Texture);
+        return dds::decode(bytes, path, limits).map(Contents::Texture);
     }
-    decode(&bytes, path, limits).map(Contents::Picture).map_err(|error| match error {
+    decode(bytes, path, limits).map(Contents::Picture).map_err(|error| match error {
         ImageError::Format { path, .. } => ImageError::Format { path, known: "neither a PNG, a TGA nor a DDS file" },
         error => error,
     })
@@ -317,10 +325,10 @@ fn to_rgba(decoded: DynamicImage, path: &Path) -> Result<Rgba, ImageError> {
     Ok(Rgba { width, height, pixels })
 }
 
-/// Reads a regular file within a limit.
-pub(super) fn read(path: &Path, limit: FileLimit) -> Result<Vec<u8>, ImageError> {
+/// Reads a file within a limit.
+pub(super) fn read(assets: &dyn Assets, path: &Path, limit: FileLimit) -> Result<Vec<u8>, ImageError> {
     let path = path.to_path_buf();
-    read::bytes(&path, Kind::Regular, limit).map_err(|error| match error {
+    assets.bytes(&path, limit).map_err(|error| match error {
         ReadError::Missing => ImageError::Missing { path },
         ReadError::NotRegular => ImageError::NotAFile { path },
         ReadError::TooLarge(limit) => ImageError::FileBytes { path, limit },

@@ -3,14 +3,17 @@
 //! [`load`] reads a file, [`parse`] a text. What they return draws without further checks; what they refuse comes back as
 //! [`Diagnostic`]s that point into the text, all of them at once. The format is described in `docs/scene-format.md`.
 
+pub mod assets;
 pub mod code;
 pub mod dds;
+pub mod diff;
 mod error;
 mod family;
 pub mod generate;
 pub mod image;
 mod lower;
 pub mod mesh;
+pub mod outline;
 pub mod path;
 mod raw;
 mod reader;
@@ -25,6 +28,7 @@ mod written;
 
 use std::path::Path;
 
+use crate::assets::{Assets, Folder};
 use crate::truth::Truth;
 pub use error::SceneError;
 pub use lower::{DrawSpans, VertexSpans};
@@ -68,6 +72,14 @@ impl Loaded {
 /// # Errors
 /// The file is missing, too large or not UTF-8; the scene is not one; a file that it names cannot be used.
 pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
+    load_with(path, limits, &Folder)
+}
+
+/// [`load`], with the files that the scene names from elsewhere.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
     let name = shown::lossless(path);
     let fail = |finding: Diagnostic, text: String| SceneError {
         diagnostics: vec![finding],
@@ -93,7 +105,7 @@ pub fn load(path: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
         }
     };
     match String::from_utf8(bytes) {
-        Ok(text) => parse(&text, path, limits),
+        Ok(text) => parse_with(&text, path, limits, assets),
         Err(error) => {
             let at = error.utf8_error().valid_up_to();
             let text = String::from_utf8_lossy(error.as_bytes()).into_owned();
@@ -116,6 +128,14 @@ fn too_large(limit: FileLimit) -> Diagnostic {
 /// # Errors
 /// Everything that is wrong with it.
 pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, SceneError> {
+    parse_with(text, origin, limits, &Folder)
+}
+
+/// [`parse`], with the files that the scene names from elsewhere.
+///
+/// # Errors
+/// As [`parse`].
+pub fn parse_with(text: &str, origin: &Path, limits: &Limits, assets: &dyn Assets) -> Result<Loaded, SceneError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let source = Source { name: shown::lossless(origin), text: text.to_owned() };
     if text.len() as u64 > limits.scene_bytes {
@@ -123,14 +143,14 @@ pub fn parse(text: &str, origin: &Path, limits: &Limits) -> Result<Loaded, Scene
         return Err(SceneError { diagnostics: vec![too_large(limits.scene_file())], suppressed: 0, source });
     }
     let folder = origin.parent().unwrap_or(Path::new(""));
-    let family = match family::find(text, folder, limits) {
+    let family = match family::find(text, folder, limits, assets) {
         Ok(family) => family,
         Err(diagnostics) => return Err(SceneError { diagnostics, suppressed: 0, source }),
     };
     // Both texts in one, so that a place in either is a number of bytes.
     let whole = family.as_ref().map(|family| format!("{text}\n{}", family.text()));
     let whole = whole.as_deref().unwrap_or(text);
-    let mut reader = reader::Reader::new(whole, limits);
+    let mut reader = reader::Reader::new(whole, limits, assets);
     let shared = family.as_ref().map(|_| &whole[text.len() + 1..]);
     let found = lower::scene(&mut reader, &whole[..text.len()], shared, folder);
     let (mut diagnostics, suppressed) = (reader.diagnostics, reader.suppressed);

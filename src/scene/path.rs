@@ -46,6 +46,11 @@ pub enum PathError {
 }
 
 impl PathError {
+    /// There is no file of that name.
+    pub(crate) fn missing(folder: &Path, name: &str) -> PathError {
+        PathError::Missing { name: shorten(name), folder: folder.to_path_buf() }
+    }
+
     /// Stable code.
     pub fn code(&self) -> &'static str {
         match self {
@@ -85,24 +90,27 @@ impl PathError {
 /// The name is not relative, has `..`, `.`, an empty part, a backslash, a colon or a control character; the file is missing; a
 /// link leads out of `folder`; the file system refuses.
 pub fn resolve(folder: &Path, name: &str) -> Result<PathBuf, PathError> {
-    let shown = || shorten(name);
-    if let Some(reason) = objection(name) {
-        return Err(PathError::Form { name: shown(), reason });
-    }
+    check(name)?;
     // The path of a scene in the current folder has an empty parent.
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let classify = |source: io::Error| match source.kind() {
-        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => {
-            PathError::Missing { name: shown(), folder: folder.to_path_buf() }
-        }
-        _ => PathError::Unreachable { name: shown(), source },
+        io::ErrorKind::NotFound | io::ErrorKind::NotADirectory => PathError::missing(folder, name),
+        _ => PathError::Unreachable { name: shorten(name), source },
     };
     let root = folder.canonicalize().map_err(classify)?;
     let file = root.join(name).canonicalize().map_err(classify)?;
     if !file.starts_with(&root) {
-        return Err(PathError::Escape { name: shown(), folder: folder.to_path_buf() });
+        return Err(PathError::Escape { name: shorten(name), folder: folder.to_path_buf() });
     }
     Ok(file)
+}
+
+/// Whether `name` has the form of a plain relative path.
+///
+/// # Errors
+/// [`PathError::Form`].
+pub(crate) fn check(name: &str) -> Result<(), PathError> {
+    objection(name).map_or(Ok(()), |reason| Err(PathError::Form { name: shorten(name), reason }))
 }
 
 /// What is wrong with the form of `name`, if anything. Decided on the text alone, alike on every system.

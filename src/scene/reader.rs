@@ -8,6 +8,7 @@ use ron::error::{Error, SpannedError};
 use ron::extensions::Extensions;
 use serde::Deserialize;
 
+use super::assets::Assets;
 use super::diagnostic::Diagnostic;
 use super::raw::{Entries, Numbers, Raw, Reserved, Tuple, trim};
 use super::source::Expected;
@@ -22,6 +23,8 @@ const MOST_DIAGNOSTICS: usize = 64;
 pub(super) struct Reader<'a> {
     pub(super) text: &'a str,
     pub(super) limits: &'a Limits,
+    /// Where files come from.
+    pub(super) assets: &'a dyn Assets,
     /// Set as soon as it is known; nv2a before, which allows more.
     pub(super) profile: Profile,
     options: Options,
@@ -33,7 +36,7 @@ pub(super) struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
-    pub(super) fn new(text: &'a str, limits: &'a Limits) -> Self {
+    pub(super) fn new(text: &'a str, limits: &'a Limits, assets: &'a dyn Assets) -> Self {
         // The parser counts two levels for a bracket inside an optional field.
         let options = Options::default()
             .with_default_extension(Extensions::IMPLICIT_SOME)
@@ -42,6 +45,7 @@ impl<'a> Reader<'a> {
         Reader {
             text,
             limits,
+            assets,
             profile: Profile::Nv2a,
             options,
             diagnostics,

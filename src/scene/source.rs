@@ -5,6 +5,7 @@
 
 use serde::Deserialize;
 
+use super::outline::{Described, Form};
 use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
 use super::reader::Name;
 use super::split;
@@ -77,6 +78,11 @@ macro_rules! source {
                 [$((stringify!($field), self.$field.as_ref().map(|raw| raw.text))),*]
                     .into_iter()
                     .filter_map(|(name, text)| Some((name, text?)))
+            }
+        }
+        impl<'a> Described for $name<'a> {
+            fn form() -> Form {
+                Form::Fields(|| vec![$((stringify!($field), <$type as Described>::form)),*])
             }
         }
         impl<'a> Expected<'a> for $name<'a> {

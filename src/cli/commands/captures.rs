@@ -16,7 +16,7 @@ use serde_json::json;
 use super::Format;
 use super::engine::EngineArguments;
 use super::exit::Failure;
-use crate::diff::{self, Difference, Options};
+use ninebit_scene::diff::{self, Difference, Options};
 
 /// Frames of a real NV2A, drawn again.
 #[derive(Debug, Subcommand)]

@@ -4,12 +4,12 @@ mod report;
 
 use std::path::{Path, PathBuf};
 
-use crate::diff::{self, Difference, Options};
 use clap::Args;
 use ninebit::engine::{self, FRAGMENTS, PixelTrace, RenderOptions};
 use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit_files::output::{Compression, Destination, encode_png, write_json, write_text};
+use ninebit_scene::diff::{self, Difference, Options};
 use ninebit_scene::image::{self, ImageLimits, Rgba};
 
 use super::exit::Failure;

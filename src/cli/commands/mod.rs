@@ -11,6 +11,7 @@ mod engine;
 mod exit;
 mod explain;
 mod generate;
+mod inspect;
 mod limits;
 mod lower;
 mod measure;
@@ -62,6 +63,10 @@ enum Command {
     Render(render::Arguments),
     /// Print how one pixel came to be, integer by integer
     Trace(trace::Arguments),
+    /// Write a page that shows a scene in any browser: click a pixel, see its integers, change a stage
+    ///
+    /// The page holds the scene, its textures and the model itself as WebAssembly. It needs no network and no server.
+    Inspect(inspect::Arguments),
     /// Compare a scene with float64 arithmetic of the vendor's real-number text
     Compare(compare::Arguments),
     /// Measure how far pictures are from what they ought to show, why, and what they cost the chip
@@ -172,6 +177,7 @@ pub(crate) fn run(arguments: &[OsString]) -> Exit {
         Command::Check(arguments) => check::run(&arguments, context),
         Command::Render(arguments) => render::run(&arguments, context),
         Command::Trace(arguments) => trace::run(&arguments, context),
+        Command::Inspect(arguments) => inspect::run(&arguments, context),
         Command::Compare(arguments) => compare::run(&arguments, context),
         Command::Measure(arguments) => measure::run(&arguments, context),
         Command::Explain(arguments) => explain::run(&arguments, context),

@@ -33,6 +33,11 @@ pub(crate) fn depths() -> impl TypedValueParser<Value = Destination> {
     OsStringValueParser::new().try_map(|name| if is_png(Path::new(&name)) { of(name, "png") } else { of(name, "raw") })
 }
 
+/// Reads the name of a page to be written; `-` is stdout.
+pub(crate) fn page() -> impl TypedValueParser<Value = Destination> {
+    OsStringValueParser::new().try_map(|name| of(name, "html"))
+}
+
 /// Whether a file's name says that it is a PNG.
 pub(crate) fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))

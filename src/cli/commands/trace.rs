@@ -4,7 +4,7 @@ use clap::Args;
 use ninebit::engine::{FRAGMENTS, TraceError, Tracer};
 use ninebit::state::Scene;
 use ninebit_files::output::write_stdout_with;
-use ninebit_report::{write_trace_json, write_trace_text};
+use ninebit_report::{write_trace_json, write_trace_text, write_traces_json};
 
 use super::exit::Failure;
 use super::scene::SceneArguments;
@@ -15,8 +15,11 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     scene: SceneArguments,
     /// Column and row of the pixel, from the top left
-    #[arg(long, value_name = "X,Y", value_parser = pixel)]
-    pixel: (u32, u32),
+    #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "rectangle")]
+    pixel: Option<(u32, u32)>,
+    /// Every pixel of a rectangle instead, row by row: its first column and row, columns and rows
+    #[arg(long, value_name = "X,Y,COLUMNS,ROWS", value_parser = rectangle, conflicts_with = "pixel")]
+    rectangle: Option<[u32; 4]>,
     /// Only this draw, numbered from 0
     #[arg(long, value_name = "N")]
     draw: Option<usize>,
@@ -35,12 +38,41 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, plan) = arguments.scene.load(context)?;
     let target = super::scene::chosen_target(&scene, arguments.target.as_deref())?;
-    let Arguments { pixel, draw, fragments, .. } = *arguments;
-    let tracer = Tracer::new(&plan, target, pixel, draw, fragments).map_err(|error| outside(&scene, &error))?;
-    Ok(write_stdout_with(|out| match arguments.format {
-        Format::Text => write_trace_text(out, &plan, &tracer),
-        Format::Json => write_trace_json(out, &plan, &tracer),
+    let Arguments { pixel, rectangle, draw, fragments, .. } = *arguments;
+    let pixels = match (pixel, rectangle) {
+        (Some(pixel), _) => vec![pixel],
+        (None, rectangle) => {
+            let [x, y, columns, rows] = rectangle.unwrap_or_default();
+            (0..rows).flat_map(|j| (0..columns).map(move |i| (x.saturating_add(i), y.saturating_add(j)))).collect()
+        }
+    };
+    let tracer = |pixel| Tracer::new(&plan, target, pixel, draw, fragments).map_err(|error| outside(&scene, &error));
+    let tracers: Vec<Tracer<'_>> = pixels.into_iter().map(tracer).collect::<Result<_, _>>()?;
+    Ok(write_stdout_with(|out| match (arguments.format, &tracers[..]) {
+        (Format::Text, tracers) => tracers.iter().enumerate().try_for_each(|(n, tracer)| {
+            if n > 0 {
+                writeln!(out)?;
+            }
+            write_trace_text(out, &plan, tracer)
+        }),
+        (Format::Json, [tracer]) if rectangle.is_none() => write_trace_json(out, &plan, tracer),
+        (Format::Json, tracers) => write_traces_json(out, &plan, tracers),
     })?)
+}
+
+/// Pixels that a rectangle may have.
+const MOST: u64 = 4096;
+
+fn rectangle(text: &str) -> Result<[u32; 4], String> {
+    let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
+    let Some(&[x, y, columns, rows]) = numbers.as_deref() else {
+        return Err("not of the form X,Y,COLUMNS,ROWS, for example 320,240,4,4".to_string());
+    };
+    match u64::from(columns) * u64::from(rows) {
+        0 => Err("it has no pixels".to_string()),
+        pixels if pixels > MOST => Err(format!("it has {pixels} pixels; {MOST} are the most")),
+        _ => Ok([x, y, columns, rows]),
+    }
 }
 
 fn outside(scene: &Scene, error: &TraceError) -> Failure {

@@ -5,12 +5,12 @@ use std::path::PathBuf;
 use serde_json::Value;
 
 use super::cause::Cause;
-use crate::diff::{self, CHANNELS, histogram_text, pixels, share};
 use crate::expectation::Mismatch;
 use ninebit::diagnostic::ErrorKind;
 use ninebit::shown;
 use ninebit_files::guard::Panic;
 use ninebit_report::BesideLine;
+use ninebit_scene::diff::{self, CHANNELS, histogram_text, pixels, share};
 
 /// A scene that was replayed.
 #[derive(Clone, Debug)]

@@ -1,6 +1,6 @@
 //! Expected, drawn and amplified difference in one picture.
 
-use crate::diff::{SizeError, highlight};
+use ninebit_scene::diff::{SizeError, highlight};
 use ninebit_scene::image::Rgba;
 
 /// Columns between two panels.

@@ -8,7 +8,6 @@ use super::cause::{self, Found};
 use super::find::{Entry, EntryKind};
 use super::outcome::{Difference, Known, Origin, Outcome, Pixel, Problem, ProblemKind, Replayed, Traces};
 use super::panels::panels;
-use crate::diff;
 use crate::expectation::{Expectation, Mismatch, masked_digest};
 use ninebit::diagnostic::{ErrorKind, Severity};
 use ninebit::engine::{self, RenderOptions};
@@ -21,6 +20,7 @@ use ninebit_files::output::{Compression, OutputError, encode_png, write_below};
 use ninebit_report::{beside, beside_text, trace_text, trace_value};
 use ninebit_scene as scene;
 use ninebit_scene::SceneError;
+use ninebit_scene::diff;
 use ninebit_scene::image::{self, ImageLimits, Rgba};
 
 /// Replays one scene.

@@ -9,7 +9,7 @@ use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::interpolate::Settled;
 use crate::state::{AddressMode, ColorKey, ColorKeyMode, Filter, MipFilter, TextureFormat};
-use crate::trace::{Observer, Operand, Step, part, plain, report};
+use crate::trace::{Observer, Operand, Place, Step, part, plain, report};
 
 /// How many make one texel in the coordinates of a quad.
 const QUAD_PART: i64 = 65536;
@@ -204,7 +204,13 @@ impl Report<'_> {
                 place.push(plain(texel_name(axis), at[n]));
             }
         }
-        let word = self.word(words, texel, place, &texel_name, observer);
+        let lies = texel.at.map(|at| Place {
+            texture: self.unit.state.texture,
+            face: slice.face as usize,
+            level: self.unit.levels.iter().position(|level| level.offset == slice.level.offset).unwrap_or(0),
+            at,
+        });
+        let word = self.word(words, texel, (place, lies), &texel_name, observer);
         for lane in (0..4).filter(|lane| self.unit.live_lanes() >> lane & 1 != 0) {
             let signed = self.unit.signed_lane(lane);
             let rule = if signed { "TEX-18" } else { "TEX-1" };
@@ -236,14 +242,16 @@ impl Report<'_> {
         &self,
         words: &[u32],
         texel: &Texel,
-        place: Vec<Operand>,
+        (place, lies): (Vec<Operand>, Option<Place>),
         name: &impl Fn(&str) -> String,
         observer: &mut O,
     ) -> u32 {
         let block = self.block();
         let mut tell = |rule: &'static str, what: &str, word: u32, operation: &'static str, inputs: Vec<Operand>| {
             let note = Some(format!("{word:#010x}"));
-            observer.step(Step::given(&block, rule, name(what), i64::from(word)).by(operation, inputs).note(note));
+            let lies = lies.filter(|_| operation == "fetch");
+            let step = Step::given(&block, rule, name(what), i64::from(word)).by(operation, inputs).note(note);
+            observer.step(step.at(lies));
             word
         };
         let Some([x, y]) = texel.at else { return tell("TEX-7", "word", texel.word, "border_color", place) };

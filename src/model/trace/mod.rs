@@ -101,6 +101,21 @@ pub struct Step {
     pub ideal: Option<f64>,
     /// A remark for the reader: a tie, a saturation, an undefined value.
     pub note: Option<String>,
+    /// Of a word that was read from a texture: where it lies.
+    pub texel: Option<Place>,
+}
+
+/// Where a texel lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Place {
+    /// Number of the texture in the scene.
+    pub texture: usize,
+    /// The face of a cube map, 0 to 5 for +X, -X, +Y, -Y, +Z, -Z; 0 of others.
+    pub face: usize,
+    /// The level, 0 the largest.
+    pub level: usize,
+    /// Column and row on the level.
+    pub at: [i64; 2],
 }
 
 impl Step {
@@ -116,6 +131,7 @@ impl Step {
             per_one: 1,
             ideal: None,
             note: None,
+            texel: None,
         }
     }
 
@@ -146,6 +162,13 @@ impl Step {
     #[must_use]
     pub fn note(mut self, note: Option<String>) -> Step {
         self.note = note;
+        self
+    }
+
+    /// Sets the place of the word.
+    #[must_use]
+    pub fn at(mut self, texel: Option<Place>) -> Step {
+        self.texel = texel;
         self
     }
 

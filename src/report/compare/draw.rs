@@ -14,6 +14,7 @@ use ninebit::state::{Named, Texture, TextureImage};
 use ninebit::texture::unit::Image;
 use ninebit::threads::on_threads;
 use ninebit::trace::{Decision, Part, Rule};
+#[cfg(feature = "threads")]
 use rayon::prelude::*;
 
 /// Rows of a band; even, so that quads stay whole.
@@ -181,27 +182,32 @@ pub(super) fn run<M: Method>(plan: &Plan, options: &CompareOptions) -> Compariso
     summed(plan, options, on_threads(options.threads, work))
 }
 
+/// What `work` makes of each band, in their order.
+fn each<B: Send, T: Send>(bands: Vec<B>, work: impl Fn(B) -> T + Send + Sync) -> Vec<T> {
+    #[cfg(feature = "threads")]
+    return bands.into_par_iter().map(work).collect();
+    #[cfg(not(feature = "threads"))]
+    bands.into_iter().map(work).collect()
+}
+
 /// No draw reads a surface: each band goes through all draws by itself, and other targets do not matter.
 fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     let height = plan.targets[options.target].height as usize;
     let surfaces: Vec<Surface<M::Lane>> = Vec::new();
     let images = images(plan, &surfaces);
-    let bands: Vec<Outcome> = (0..height.div_ceil(BAND))
-        .into_par_iter()
-        .map(|number| {
-            let rows = (number * BAND, (number * BAND + BAND).min(height));
-            let mut surface = Surface::new(plan, options.target, rows);
-            let mut counts = Counts::default();
-            for planned in plan.draws.iter().filter(|planned| planned.target == options.target) {
-                for mut band in surface.bands() {
-                    M::draw(plan, planned, &images, &mut band, &mut counts);
-                }
+    let bands = each((0..height.div_ceil(BAND)).collect(), |number| {
+        let rows = (number * BAND, (number * BAND + BAND).min(height));
+        let mut surface = Surface::new(plan, options.target, rows);
+        let mut counts = Counts::default();
+        for planned in plan.draws.iter().filter(|planned| planned.target == options.target) {
+            for mut band in surface.bands() {
+                M::draw(plan, planned, &images, &mut band, &mut counts);
             }
-            let mut outcome = outcome::<M>(plan, options, &surface);
-            outcome.counts.merge(&counts);
-            outcome
-        })
-        .collect();
+        }
+        let mut outcome = outcome::<M>(plan, options, &surface);
+        outcome.counts.merge(&counts);
+        outcome
+    });
     bands.into_iter().fold(Outcome::default(), |mut all, band| {
         all.append(band);
         all
@@ -234,15 +240,11 @@ fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
         // The surface leaves the others for the draw, so that they can be read as textures.
         let mut surface = std::mem::replace(&mut surfaces[planned.target], empty);
         let images = images(plan, &surfaces);
-        let drawn: Vec<Counts> = surface
-            .bands()
-            .into_par_iter()
-            .map(|mut band| {
-                let mut counts = Counts::default();
-                M::draw(plan, planned, &images, &mut band, &mut counts);
-                counts
-            })
-            .collect();
+        let drawn = each(surface.bands(), |mut band| {
+            let mut counts = Counts::default();
+            M::draw(plan, planned, &images, &mut band, &mut counts);
+            counts
+        });
         drawn.iter().for_each(|band| counts.merge(band));
         surfaces[planned.target] = surface;
     }

@@ -59,10 +59,9 @@ pub fn heat_map(comparison: &Comparison) -> Result<Picture, HeatError> {
     let needed = MARGIN + entries.iter().map(|(_, label)| BOX + 4 + text_width(label) + MARGIN).sum::<u32>();
     let (width, rows) = (comparison.width.max(needed), comparison.height);
     let mut pixels = vec![[16, 16, 16, 255]; (width * (rows + LEGEND_ROWS)) as usize];
-    for (at, errors) in comparison.errors.iter().enumerate() {
+    for (at, shown) in comparison.heat().into_iter().enumerate() {
         let (x, y) = (at as u32 % comparison.width, at as u32 / comparison.width);
-        let [r, g, b] = color(errors, comparison.diverged_at(at));
-        pixels[(y * width + x) as usize] = [r, g, b, 255];
+        pixels[(y * width + x) as usize] = shown;
     }
     let mut left = MARGIN;
     let top = rows + (LEGEND_ROWS - BOX) / 2;
@@ -81,7 +80,27 @@ pub fn heat_map(comparison: &Comparison) -> Result<Picture, HeatError> {
     Ok((width, rows + LEGEND_ROWS, pixels))
 }
 
+/// The colour of an error of so many steps of 1/255, without its sign.
+pub fn heat_color(error: f64) -> [u8; 3] {
+    CLASSES.iter().find(|(most, ..)| error <= *most).map_or(EMPTY, |(_, color, _)| *color)
+}
+
+/// The classes of errors: the upper end of each, as a text, and its colour. Then pixels that nothing drew and pixels that are left out.
+pub fn heat_classes() -> Vec<(&'static str, [u8; 3])> {
+    let classes = CLASSES.iter().map(|(_, color, label)| (*label, *color));
+    classes.chain([("nothing drawn", EMPTY), ("another decision", DIVERGED)]).collect()
+}
+
 impl Comparison {
+    /// The colours of the pixels' errors, row by row, without a legend.
+    pub fn heat(&self) -> Vec<[u8; 4]> {
+        let shown = |(at, errors): (usize, &[f32; 4])| {
+            let [r, g, b] = color(errors, self.diverged_at(at));
+            [r, g, b, 255]
+        };
+        self.errors.iter().enumerate().map(shown).collect()
+    }
+
     /// Whether the pixel was drawn and left out.
     fn diverged_at(&self, at: usize) -> bool {
         // Infinite marks it; NaN is a pixel that nothing drew.
@@ -94,8 +113,7 @@ fn color(errors: &[f32; 4], diverged: bool) -> [u8; 3] {
         return DIVERGED;
     }
     let largest = errors.iter().filter(|e| !e.is_nan()).map(|e| f64::from(e.abs())).reduce(f64::max);
-    let Some(largest) = largest else { return EMPTY };
-    CLASSES.iter().find(|(most, ..)| largest <= *most).map_or(EMPTY, |(_, color, _)| *color)
+    largest.map_or(EMPTY, heat_color)
 }
 
 /// Digits and the few signs of the legend, 3 x 5 dots, row by row.

@@ -17,7 +17,7 @@ mod meter;
 mod report;
 mod statistics;
 
-pub use heat::{HeatError, heat_map};
+pub use heat::{HeatError, heat_classes, heat_color, heat_map};
 pub use report::{comparison_json, comparison_text, statistics_value};
 pub use statistics::{Histogram, Statistics};
 

@@ -4,11 +4,10 @@ use std::sync::Arc;
 
 use super::names::Names;
 use super::*;
-use crate::path;
 use crate::raw::Tuple;
 use ninebit::diagnostic::{self, Source};
 use ninebit::limits::FileLimit;
-use ninebit_files::read::{self, Kind, ReadError};
+use ninebit_files::read::ReadError;
 use ninebit_program::c_source::{Expanded, Style, expand};
 
 /// A text and its places.
@@ -223,14 +222,14 @@ pub(super) fn text_file<'a>(
     let refuse = |code, message: String, help: &str| {
         Diagnostic::error(code, named.clone(), message).label("this file").help(help)
     };
-    let path = match path::resolve(folder, &name) {
+    let path = match reader.assets.resolve(folder, &name) {
         Ok(path) => path,
         Err(error) => {
             reader.push(refuse(error.code(), error.to_string(), error.help()));
             return None;
         }
     };
-    let bytes = match read::bytes(&path, Kind::Regular, most) {
+    let bytes = match reader.assets.bytes(&path, most) {
         Ok(bytes) => bytes,
         Err(ReadError::TooLarge(most)) => {
             reader.push(too_large(named, most));

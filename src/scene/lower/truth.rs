@@ -360,7 +360,9 @@ fn picture<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>
         maximum_decoded_bytes: reader.limits.texture_bytes,
         maximum_file_bytes: reader.limits.image_file_bytes,
     };
-    texture_source::read_file(reader, &names.folder, raw, |path| image::load(path, &limits))
+    texture_source::read_file(reader, &names.folder, raw, limits.file(), |bytes, path| {
+        image::decode(bytes, path, &limits)
+    })
 }
 
 fn field<const N: usize>(image: &Rgba, of: impl Fn([u8; 4]) -> [f64; N]) -> Field<N> {

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use crate::diff::{CHANNELS, Difference, Histogram, Region, histogram_text, pixels, share};
 use ninebit::shown;
 use ninebit_report::{trace_text, trace_value};
+use ninebit_scene::diff::{CHANNELS, Difference, Histogram, Region, histogram_text, pixels, share};
 use serde_json::{Value, json};
 
 use super::{Findings, SceneFindings};
@@ -101,7 +101,7 @@ pub(super) fn json(findings: &Findings<'_>) -> Value {
     let channels: Vec<Value> = channels(findings)
         .into_iter()
         .map(|(name, histogram)| {
-            let bucket = |b: &crate::diff::Bucket| json!({ "from": b.from, "to": b.to, "pixels": b.pixels });
+            let bucket = |b: &ninebit_scene::diff::Bucket| json!({ "from": b.from, "to": b.to, "pixels": b.pixels });
             json!({
                 "channel": name, "pixels": histogram.different(), "largest": histogram.largest(),
                 "histogram": histogram.buckets().iter().map(bucket).collect::<Vec<_>>(),

@@ -4,11 +4,11 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
-use crate::diff::{CHANNELS, Histogram, ranges};
 use crate::replay::panels::GAP;
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
 use ninebit::shown;
 use ninebit_report::BesideLine;
+use ninebit_scene::diff::{CHANNELS, Histogram, ranges};
 
 const STYLE: &str = include_str!("style.css");
 

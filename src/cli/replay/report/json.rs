@@ -2,9 +2,9 @@
 
 use serde_json::{Value, json};
 
-use crate::diff::CHANNELS;
 use crate::replay::{Cause, Difference, Known, Origin, Outcome, Problem, Replayed, Summary};
 use ninebit::shown;
+use ninebit_scene::diff::CHANNELS;
 
 /// One JSON document; `docs/replay.md` describes it.
 pub fn json(all: &[Replayed]) -> String {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::image::{self, Contents, ImageError, ImageLimits};
-use crate::path;
+use ninebit::limits::FileLimit;
 use ninebit::state::Level;
 
 impl<'a> Sources<'_, 'a> {
@@ -20,7 +20,8 @@ impl<'a> Sources<'_, 'a> {
             maximum_decoded_bytes: self.left,
             maximum_file_bytes: reader.limits.image_file_bytes,
         };
-        let contents = read_file(reader, self.folder, &raw, |path| image::open(path, &limits))?;
+        let contents =
+            read_file(reader, self.folder, &raw, limits.file(), |bytes, path| image::contents(bytes, path, &limits))?;
         let place = reader.span(&raw);
         let dds = match contents {
             Contents::Picture(image) => {
@@ -62,7 +63,7 @@ impl<'a> Sources<'_, 'a> {
         let words = u64::from(request.faces) * face as u64;
         self.afford(reader, place.clone(), words)?;
         let limit = reader.limits.image_file();
-        let bytes = read_file(reader, self.folder, &file, |path| image::read(path, limit))?;
+        let bytes = read_file(reader, self.folder, &file, limit, |bytes, _| Ok(bytes.to_vec()))?;
         let expected = words * u64::from(format.bytes().min(4));
         if bytes.len() as u64 != expected {
             let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
@@ -91,11 +92,13 @@ pub(in crate::lower) fn read_file<'a, T>(
     reader: &mut Reader<'a>,
     folder: &Path,
     raw: &Raw<'a, String>,
-    read: impl FnOnce(&Path) -> Result<T, ImageError>,
+    limit: FileLimit,
+    decode: impl FnOnce(&[u8], &Path) -> Result<T, ImageError>,
 ) -> Option<T> {
     let name = reader.read(raw)?;
     let place = reader.span(raw);
-    let path = match path::resolve(folder, &name) {
+    let assets = reader.assets;
+    let path = match assets.resolve(folder, &name) {
         Ok(path) => path,
         Err(error) => {
             reader
@@ -103,7 +106,7 @@ pub(in crate::lower) fn read_file<'a, T>(
             return None;
         }
     };
-    match read(&path) {
+    match image::read(assets, &path, limit).and_then(|bytes| decode(&bytes, &path)) {
         Ok(contents) => Some(contents),
         Err(error) => {
             // The name as the scene has it: where the folder lies does not matter here.

@@ -8,13 +8,13 @@ mod picture;
 mod region;
 mod words;
 
-pub(crate) use histogram::ranges;
+pub use histogram::ranges;
 pub use histogram::{Bucket, Histogram};
 pub use picture::{Highlighted, highlight};
 pub use region::Region;
 pub use words::{CHANNELS, histogram_text, pixels, share};
 
-use ninebit_scene::image::Rgba;
+use crate::image::Rgba;
 use region::Regions;
 
 /// How to compare.

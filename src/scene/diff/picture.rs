@@ -1,7 +1,7 @@
 //! The difference as a picture.
 
 use super::{SizeError, largest, same_size, steps};
-use ninebit_scene::image::Rgba;
+use crate::image::Rgba;
 
 /// A picture of a difference, and how to read it.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -66,7 +66,7 @@ impl Histogram {
 }
 
 /// Every bucket's lowest and highest difference, ascending.
-pub(crate) fn ranges() -> Vec<(i16, i16)> {
+pub fn ranges() -> Vec<(i16, i16)> {
     let mut positive: Vec<(i16, i16)> = (1..=EXACT).map(|step| (step, step)).collect();
     let mut from = EXACT + 1;
     while from <= 255 {

@@ -1,0 +1,77 @@
+//! `ninebit inspect`.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use clap::Args;
+use ninebit::limits::Limits;
+use ninebit::shown;
+use ninebit::state::{POLICIES, Policies};
+use ninebit_files::output::Destination;
+use ninebit_scene::assets::Gathered;
+use ninebit_scene::load_with;
+use serde_json::{Value, json};
+
+use super::exit::{Failure, Report};
+use super::scene::{PolicyArguments, refused};
+use super::terminal::{self, Level};
+use super::{Context, picture};
+use crate::page;
+
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// The scene file, `-` for standard input
+    scene: PathBuf,
+    /// The page; `-` is stdout
+    #[arg(short, long, value_name = "PAGE.html", value_parser = picture::page())]
+    output: Destination,
+    #[command(flatten)]
+    policies: PolicyArguments,
+}
+
+/// Writes a page that shows the scene and computes it in the browser.
+pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
+    let policies = arguments.policies.policies()?;
+    let gathered = Gathered::default();
+    let loaded = load_with(&arguments.scene, &Limits::default(), &gathered).map_err(refused)?;
+    if !loaded.warnings.is_empty() {
+        terminal::print(Level::Warning, &Report::Text(loaded.render_warnings(context.color)), context.color);
+    }
+    arguments.output.check()?;
+    // Where the scene lies is nobody's matter but its owner's.
+    let name = match arguments.scene.file_name() {
+        Some(name) if arguments.scene != Path::new("-") => shown::path(Path::new(name)),
+        _ => "scene.ron".to_owned(),
+    };
+    let bundle = gathered.bundle();
+    let files: BTreeMap<&String, String> =
+        bundle.files.iter().map(|(name, bytes)| (name, STANDARD.encode(bytes))).collect();
+    let data = json!({
+        "name": name,
+        "version": env!("CARGO_PKG_VERSION"),
+        "text": loaded.source.text,
+        "files": files,
+        "chosen": chosen(&policies),
+        "policies": alternatives(),
+        "rules": page::rules(),
+    });
+    Ok(arguments.output.write(page::page(&name, &data).as_bytes())?)
+}
+
+/// The rules that have alternatives.
+fn alternatives() -> Value {
+    let rule = |policy: &ninebit::state::Policy| {
+        let values: Vec<Value> =
+            policy.values.iter().map(|(value, meaning)| json!({ "value": value, "meaning": meaning })).collect();
+        json!({ "rule": policy.rule, "question": policy.question, "values": values })
+    };
+    POLICIES.iter().map(rule).collect()
+}
+
+/// The value of each rule that is not at its default.
+fn chosen(policies: &Policies) -> Value {
+    let differing = POLICIES.iter().filter(|policy| policies.chosen(policy.rule) != 0);
+    Value::Object(differing.map(|p| (p.rule.to_string(), json!(p.values[policies.chosen(p.rule)].0))).collect())
+}

@@ -1,0 +1,132 @@
+//! The page of `ninebit inspect`: markup, style, scripts, the model as a WebAssembly module, and a scene, in one text that asks for nothing else.
+//!
+//! Its scripts are modules in `src/web/page`. A page that is opened from a file can import none, so they stand behind one another in one inline script. The
+//! page's policy allows that script and that style by their hashes, WebAssembly, and nothing else.
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
+use serde_json::{Map, Value, json};
+use sha2::{Digest, Sha256};
+
+/// The markup, with places for the rest.
+const MARKUP: &str = include_str!("../web/page/page.html");
+const STYLE: &str = include_str!("../web/page/style.css");
+/// Each after those that it imports.
+const MODULES: [&str; 6] = [
+    include_str!("../web/page/elements.js"),
+    include_str!("../web/page/model.js"),
+    include_str!("../web/page/view.js"),
+    include_str!("../web/page/chain.js"),
+    include_str!("../web/page/change.js"),
+    include_str!("../web/page/main.js"),
+];
+/// What `src/web/build` makes of `src/web`.
+const MODULE: &[u8] = include_bytes!("../web/module.wasm.gz");
+/// The handbook of rules.
+const NUMERICS: &str = include_str!("../../docs/numerics.md");
+
+/// The page of that title with a scene's data.
+pub(crate) fn page(title: &str, data: &Value) -> String {
+    let script = joined();
+    let hash = |text: &str| format!("'sha256-{}'", STANDARD.encode(Sha256::digest(text.as_bytes())));
+    let policy = format!(
+        "default-src 'none'; script-src {} 'wasm-unsafe-eval'; style-src {}; img-src blob: data:; base-uri 'none'; form-action 'none'",
+        hash(&script),
+        hash(STYLE)
+    );
+    let title = format!("{} - Ninebit", escaped(title));
+    // No data can end its element.
+    let data = data.to_string().replace('<', "\\u003c");
+    let parts = [
+        ("policy", policy),
+        ("title", title),
+        ("style", STYLE.to_owned()),
+        ("data", data),
+        ("module", STANDARD.encode(MODULE)),
+        ("script", script),
+    ];
+    let mut page = String::with_capacity(3 << 20);
+    let mut rest = MARKUP;
+    for (name, text) in &parts {
+        let (before, after) = rest.split_once(&format!("{{{{{name}}}}}")).unwrap_or((rest, ""));
+        page.push_str(before);
+        page.push_str(text);
+        rest = after;
+    }
+    page + rest
+}
+
+/// The modules as one script.
+fn joined() -> String {
+    let mut script = String::from("\"use strict\";\n");
+    for module in MODULES {
+        for line in module.lines().filter(|line| !line.starts_with("import ")) {
+            script.push_str(line.strip_prefix("export ").unwrap_or(line));
+            script.push('\n');
+        }
+    }
+    script
+}
+
+/// A text as content of an element.
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+/// The rules of the handbook by their ids: title, grade, and what it says of each.
+pub(crate) fn rules() -> Value {
+    let mut rules = Map::new();
+    for section in NUMERICS.split("\n### ").skip(1) {
+        let mut lines = section.lines();
+        let Some((id, title)) = lines.next().and_then(|heading| heading.split_once(' ')) else { continue };
+        let said: Vec<[&str; 2]> = lines
+            .take_while(|line| !line.starts_with("## "))
+            .filter_map(|line| line.strip_prefix("- ")?.split_once(": "))
+            .filter(|(term, _)| !["Code", "Pinned by", "Vectors"].contains(term))
+            .map(|(term, text)| [term, text])
+            .collect();
+        let Some([_, grade]) = said.iter().find(|[term, _]| *term == "Grade") else { continue };
+        let grade = grade.split(|c: char| !c.is_ascii_uppercase()).next().unwrap_or_default();
+        rules.insert(id.to_owned(), json!({ "title": title, "grade": grade, "lines": said }));
+    }
+    Value::Object(rules)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_rule_of_the_handbook_has_its_text() {
+        let rules = rules();
+        let headings = NUMERICS.lines().filter(|line| line.starts_with("### ")).filter(|line| {
+            line.split(' ')
+                .nth(1)
+                .is_some_and(|id| id.contains('-') && id.ends_with(|c: char| c.is_ascii_alphanumeric()))
+        });
+        for heading in headings {
+            let id = heading.split(' ').nth(1).unwrap_or_default();
+            let grade = rules[id]["grade"].as_str().unwrap_or_else(|| panic!("{id} has no text"));
+            assert!(["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"].contains(&grade), "{id}: {grade}");
+        }
+        assert!(rules["CMB-3"]["lines"].as_array().is_some_and(|lines| lines.len() > 2));
+    }
+
+    #[test]
+    fn what_a_scene_says_ends_no_element() {
+        let data = json!({ "text": "</script><script>alert(1)</script><!--" });
+        let page = page("<b>&", &data);
+        assert_eq!(page.matches("</script>").count(), 3);
+        assert!(!page.contains("alert(1)</") && page.contains("<title>&lt;b&gt;&amp; - Ninebit</title>"));
+        assert_eq!(page.matches("{{").count(), 0, "a place was not filled");
+    }
+
+    #[test]
+    fn nothing_is_loaded_from_elsewhere() {
+        let page = page("scene", &json!({}));
+        for form in ["src=", "http://", "https://", "@import", "url(", " style=", "onclick=", "\nimport "] {
+            let found = page.find(form);
+            assert_eq!(found, None, "{form}: {:?}", found.map(|at| &page[at.saturating_sub(60)..at + 60]));
+        }
+    }
+}

@@ -1,0 +1,328 @@
+//! A scene's text as a tree of values with their places, so that a program can change one value and leave all other text as it is.
+//!
+//! What may stand where is read off the types of `source`: each says its `Form`. The text is taken apart at its brackets, as the reader
+//! does; what is written in an unusual way is one value without parts.
+
+use std::ops::Range;
+
+use super::raw::{Entries, Few, Raw, Reserved, Tuple, trim};
+use super::reader::Name;
+use super::{source, split};
+use ninebit::state::Named;
+
+/// Values beyond so many are left out: of a mesh of ten thousand vertices nobody wants a form.
+const MOST: usize = 4000;
+
+/// A name, and what its value may be.
+type Entry = (&'static str, fn() -> Form);
+
+/// What a value may be.
+#[derive(Clone, Copy)]
+pub(super) enum Form {
+    /// Fields in parentheses: names, and the form of each.
+    Fields(fn() -> Vec<Entry>),
+    /// A list in square brackets.
+    List(fn() -> Form),
+    /// Values in parentheses without names.
+    Tuple(fn() -> Form),
+    /// A table in braces.
+    Table(fn() -> Form),
+    /// A word, and in parentheses what belongs to it.
+    Variant(&'static [Entry]),
+    /// This, or a text that names something: of a texture unit, its texture.
+    OrName(fn() -> Form, &'static str),
+    /// A value without parts.
+    Value(Kind),
+}
+
+/// What a value without parts is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A colour: three or four bytes in parentheses, or `Float(...)`, or a name.
+    Color,
+    /// A whole number.
+    Whole {
+        /// The largest.
+        most: u32,
+    },
+    /// A number.
+    Number,
+    /// Up to four numbers in parentheses.
+    Numbers,
+    /// One of some words.
+    Choice(&'static [&'static str]),
+    /// A text in quotes.
+    Text,
+    /// Anything else.
+    Other,
+}
+
+/// A type of which it is known what its values look like.
+pub(super) trait Described {
+    /// What they look like.
+    fn form() -> Form;
+}
+
+/// A value in a scene's text.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Node {
+    /// What it is called: the field, the key, or the number in its list.
+    pub label: String,
+    /// Bytes of the text.
+    pub span: Range<usize>,
+    /// What it is.
+    pub content: Content,
+}
+
+/// What a [`Node`] is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Content {
+    /// A value without parts.
+    Value(Kind),
+    /// A value with parts.
+    Group {
+        /// The parts.
+        parts: Vec<Node>,
+        /// Fields that are not written, with what they may be, and how the group reads with one: what goes before `field: value` and behind it.
+        absent: Vec<(&'static str, Kind)>,
+        /// The text around an added field.
+        around: [String; 2],
+    },
+}
+
+/// The values of a scene. Of a text that is no scene, what can be made out.
+pub fn outline(text: &str) -> Node {
+    let mut walker = Walker { text, left: MOST };
+    let raw = Raw::<source::Scene<'_>>::new(text);
+    walker.node("scene".to_owned(), raw.text, source::Scene::form())
+}
+
+impl Node {
+    /// The part at the end of a path of labels.
+    pub fn at(&self, path: &[&str]) -> Option<&Node> {
+        let Some((first, rest)) = path.split_first() else { return Some(self) };
+        let Content::Group { parts, .. } = &self.content else { return None };
+        parts.iter().find(|part| part.label == *first)?.at(rest)
+    }
+}
+
+struct Walker<'a> {
+    text: &'a str,
+    left: usize,
+}
+
+impl<'a> Walker<'a> {
+    fn span(&self, part: &str) -> Range<usize> {
+        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len());
+        start..(start + part.len()).min(self.text.len())
+    }
+
+    fn node(&mut self, label: String, text: &'a str, form: Form) -> Node {
+        self.left = self.left.saturating_sub(1);
+        let content = self.content(text, form);
+        Node { label, span: self.span(text), content }
+    }
+
+    fn content(&mut self, text: &'a str, form: Form) -> Content {
+        let other = Content::Value(Kind::Other);
+        let numbered = |items: Vec<&'a str>| items.into_iter().enumerate().map(|(n, item)| (n.to_string(), item));
+        match form {
+            Form::Value(kind) => Content::Value(kind),
+            Form::List(of) => {
+                split::items(text, b'[', b']').map_or(other, |items| self.group(numbered(items), |_| Some(of)))
+            }
+            Form::Tuple(of) => {
+                split::items(text, b'(', b')').map_or(other, |items| self.group(numbered(items), |_| Some(of)))
+            }
+            Form::Table(of) => {
+                let Some(entries) = split::entries(text) else { return other };
+                let named = entries.into_iter().map(|(key, value)| (key.trim_matches('"').to_owned(), value));
+                self.group(named, |_| Some(of))
+            }
+            Form::Fields(fields) => self.fields(text, &fields()).unwrap_or(other),
+            Form::Variant(variants) => {
+                let (head, rest) = Raw::<()>::new(text).split();
+                let Some((name, of)) = variants.iter().find(|(name, _)| *name == head) else { return other };
+                // `Window([...])`: the parentheses hold one value; `Matrix(...)`: they are those of the fields.
+                let inside = match of() {
+                    Form::Fields(_) => Some(rest),
+                    _ => split::items(rest, b'(', b')').and_then(|items| items.first().copied()),
+                };
+                let Some(inside) = inside else { return other };
+                let part = self.node((*name).to_owned(), inside, of());
+                Content::Group { parts: vec![part], absent: Vec::new(), around: Default::default() }
+            }
+            Form::OrName(of, field) => {
+                if !Raw::<()>::new(text).is_text() {
+                    return self.content(text, of());
+                }
+                let Form::Fields(fields) = of() else { return Content::Value(Kind::Text) };
+                let absent = values(fields().into_iter().filter(|(name, _)| *name != field));
+                Content::Group { parts: Vec::new(), absent, around: [format!("({field}: {text}, "), ")".to_owned()] }
+            }
+        }
+    }
+
+    fn fields(&mut self, text: &'a str, fields: &[Entry]) -> Option<Content> {
+        let written = split::fields(text)?;
+        let missing = fields.iter().filter(|(name, _)| !written.iter().any(|(written, _)| written == name));
+        let absent = values(missing.copied());
+        let (open, rest) = text.split_at(1);
+        let around = [open.to_owned(), if written.is_empty() { rest.to_owned() } else { format!(", {rest}") }];
+        let form = |name: &str| fields.iter().find(|(field, _)| *field == name).map(|(_, form)| *form);
+        let named = written.into_iter().map(|(name, value)| (name.to_owned(), value));
+        let Content::Group { parts, .. } = self.group(named, form) else { return None };
+        Some(Content::Group { parts, absent, around })
+    }
+
+    fn group(
+        &mut self,
+        items: impl Iterator<Item = (String, &'a str)>,
+        form: impl Fn(&str) -> Option<fn() -> Form>,
+    ) -> Content {
+        let mut parts = Vec::new();
+        for (label, item) in items {
+            if self.left == 0 {
+                break;
+            }
+            let form = form(&label).map_or(Form::Value(Kind::Other), |form| form());
+            parts.push(self.node(label, trim(item), form));
+        }
+        Content::Group { parts, absent: Vec::new(), around: Default::default() }
+    }
+}
+
+/// Fields of values without parts.
+fn values(fields: impl Iterator<Item = Entry>) -> Vec<(&'static str, Kind)> {
+    let value = |(name, form): Entry| match form() {
+        Form::Value(kind @ (Kind::Color | Kind::Whole { .. } | Kind::Number | Kind::Choice(_))) => Some((name, kind)),
+        _ => None,
+    };
+    fields.filter_map(value).collect()
+}
+
+macro_rules! described {
+    ($($type:ty: $form:expr),+ $(,)?) => { $(impl Described for $type { fn form() -> Form { $form } })+ };
+}
+const OTHER: Form = Form::Value(Kind::Other);
+described! {
+    String: Form::Value(Kind::Text),
+    u8: Form::Value(Kind::Whole { most: 255 }),
+    u32: Form::Value(Kind::Whole { most: u32::MAX }),
+    f32: Form::Value(Kind::Number),
+    bool: Form::Value(Kind::Choice(&["false", "true"])),
+    Vec<u32>: OTHER,
+    source::Color: Form::Value(Kind::Color),
+    source::Matrix: OTHER,
+    source::MeshSource: OTHER,
+    source::VertexSource: Form::Variant(&[
+        ("Window", source::VertexList::form),
+        ("Matrix", source::MatrixVertices::form),
+        ("Program", source::ProgramVertices::form),
+    ]),
+    source::VertexList: Form::List(source::Vertex::form),
+    source::Program: Form::Variant(&[("Combiners", source::Combiners::form)]),
+    source::BlendSource: Form::OrName(source::Blend::form, "equation"),
+    source::ImageSource: OTHER,
+    source::Unit: Form::OrName(source::UnitState::form, "texture"),
+    source::ShaderStage: OTHER,
+    source::ShaderOperation: OTHER,
+    source::Attribute: OTHER,
+    source::ShaderConstant: OTHER,
+    source::CoordinateSource: OTHER,
+    source::Generator: OTHER,
+    source::Input: OTHER,
+    source::FinalInput: OTHER,
+    source::Output: OTHER,
+    source::NormalSource: OTHER,
+    source::StageArgument: OTHER,
+    source::TransformFlags: OTHER,
+    source::Word: OTHER,
+    Reserved: OTHER,
+}
+impl Described for Few<f32> {
+    fn form() -> Form {
+        Form::Value(Kind::Numbers)
+    }
+}
+impl<T: Named> Described for Name<T> {
+    fn form() -> Form {
+        Form::Value(Kind::Choice(T::NAMES))
+    }
+}
+impl<T: Described> Described for Vec<Raw<'_, T>> {
+    fn form() -> Form {
+        Form::List(T::form)
+    }
+}
+impl<T: Described> Described for Entries<'_, T> {
+    fn form() -> Form {
+        Form::Table(T::form)
+    }
+}
+impl<T: Described> Described for Tuple<'_, T> {
+    fn form() -> Form {
+        Form::Tuple(T::form)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parse;
+    use ninebit::limits::Limits;
+    use std::path::Path;
+
+    const SCENE: &str = r#"// A comment.
+(version: 1, profile: Nv10,
+    targets: [(name: "frame", width: 8, height: 8, format: R5G6B5)],
+    textures: { "t": (source: Solid(width: 8, height: 8, color: (1, 2, 3))) },
+    draws: [(
+        name: "one", /* here */ textures: ["t"],
+        vertices: Window([(position: (0, 0), diffuse: (255, 0, 0)), (position: (8, 0)), (position: (0, 8))]),
+        program: Combiners(constants: ((1, 2, 3, 4),), stages: [(rgb: (a: Texture0, ab: Spare0))], final_combiner: (a: Spare0)),
+    )],
+)"#;
+
+    #[test]
+    fn values_know_their_places_and_forms() {
+        let tree = outline(SCENE);
+        let read = |path: &[&str]| {
+            let node = tree.at(path).unwrap_or_else(|| panic!("no {path:?}"));
+            (&SCENE[node.span.clone()], node.content.clone())
+        };
+        assert_eq!(read(&["draws", "0", "vertices", "Window", "0", "diffuse"]).0, "(255, 0, 0)");
+        assert_eq!(read(&["draws", "0", "program", "Combiners", "constants", "0"]).1, Content::Value(Kind::Color));
+        let (format, Content::Value(Kind::Choice(words))) = read(&["targets", "0", "format"]) else {
+            panic!("a choice")
+        };
+        assert_eq!((format, words.contains(&"X8R8G8B8O")), ("R5G6B5", true));
+        assert_eq!(read(&["textures", "t", "source"]).0, "Solid(width: 8, height: 8, color: (1, 2, 3))");
+    }
+
+    /// Every field that is offered can be added, to a group and to what is only a name.
+    #[test]
+    fn fields_are_added_where_they_are_not_written() {
+        let tree = outline(SCENE);
+        for (path, field) in [
+            (&["draws", "0", "textures", "0"][..], "mag_filter: Linear"),
+            (&["draws", "0", "vertices", "Window", "1"], "diffuse: (0, 0, 9)"),
+            (&["draws", "0"], "dither: false"),
+            (&["targets", "0"], "depth: Z16"),
+        ] {
+            let node = tree.at(path).unwrap_or_else(|| panic!("no {path:?}"));
+            let Content::Group { absent, around: [before, behind], .. } = &node.content else { panic!("a group") };
+            assert!(absent.iter().any(|(name, _)| field.starts_with(&format!("{name}:"))), "{path:?}: {absent:?}");
+            let mut text = SCENE.to_owned();
+            text.replace_range(node.span.clone(), &format!("{before}{field}{behind}"));
+            parse(&text, Path::new(""), &Limits::default()).unwrap_or_else(|error| panic!("{text}\n{error}"));
+        }
+    }
+
+    #[test]
+    fn what_is_no_scene_is_one_value() {
+        for text in ["", "(", "nothing", "(version: 'a')", "(a: (b: ]"] {
+            assert!(outline(text).span.end <= text.len());
+        }
+    }
+}

@@ -1,0 +1,98 @@
+//! Pictures, and what they differ in.
+
+use ninebit::engine::{RenderOptions, render};
+use ninebit::plan::{Plan, PlanOptions};
+use ninebit::state::{Policies, Scene};
+use ninebit_files::picture::digest;
+use ninebit_report::compare::{ALL_CHANNELS, CompareOptions, Mode, compare, heat_classes, heat_color};
+use ninebit_scene::diff::{self, Options};
+use ninebit_scene::image::Rgba;
+use serde_json::{Value, json};
+
+use crate::session::Refused;
+
+/// An answer and its picture.
+type Shown = (Value, Vec<[u8; 4]>);
+
+/// A target after all draws, or after that one.
+pub(crate) fn draw((scene, plan): &(Scene, Plan), target: usize, until: Option<usize>) -> Result<Shown, Refused> {
+    let picture = match until.filter(|until| until + 1 < scene.draws.len()) {
+        None => picture(plan, target),
+        // Planned afresh: what later draws would paint over is not left out.
+        Some(until) => {
+            let mut part = scene.clone();
+            part.draws.truncate(until + 1);
+            let planned = Plan::compile(&part, &PlanOptions::default());
+            let planned =
+                planned.map_err(|errors| errors.into_iter().map(|error| error.message).collect::<String>())?;
+            picture(&Plan { policies: plan.policies, ..planned }, target)
+        }
+    };
+    let Rgba { width, height, pixels } = picture;
+    Ok((json!({ "width": width, "height": height, "digest": digest(width, height, &pixels) }), pixels))
+}
+
+fn picture(plan: &Plan, target: usize) -> Rgba {
+    let frames = render(plan, &RenderOptions::default());
+    let surface = &frames.surfaces[target];
+    Rgba { width: surface.width, height: surface.height, pixels: surface.rgba8() }
+}
+
+/// The definition against float64.
+pub(crate) fn against_ideal(plan: &Plan, target: usize) -> Shown {
+    let options = CompareOptions { mode: Mode::Free, target, threads: 1, channels: ALL_CHANNELS };
+    let found = compare(plan, &options);
+    let largest = |errors: &[f32; 4]| errors.iter().filter(|e| !e.is_nan()).fold(0.0_f32, |most, e| most.max(e.abs()));
+    let differing = found.errors.iter().filter(|errors| largest(errors) > 0.0).count();
+    let worst = found.worst.iter().map(|worst| {
+        let error =
+            json!({ "error": worst.error(), "ideal": worst.ideal, "shown": worst.shown, "channel": worst.channel });
+        json!({ "first": [worst.x, worst.y], "worst": error })
+    });
+    let answer = json!({
+        "width": found.width, "height": found.height, "differing": differing, "drawn": found.drawn,
+        "diverged": found.diverged, "regions": worst.collect::<Vec<_>>(), "classes": classes(),
+    });
+    (answer, found.heat())
+}
+
+/// The definition against itself under other policies.
+pub(crate) fn against_policies(plan: &Plan, target: usize, policies: Policies) -> Result<Shown, Refused> {
+    let other = Plan { policies, ..plan.clone() };
+    between(&picture(plan, target), &picture(&other, target), false)
+}
+
+/// The definition against a picture from elsewhere. Screenshots have no alpha that means anything.
+pub(crate) fn against_picture(plan: &Plan, target: usize, second: Option<&Rgba>) -> Result<Shown, Refused> {
+    let second = second.ok_or("there is no second picture")?;
+    between(&picture(plan, target), second, true)
+}
+
+/// Two pictures: the first in grey where they agree, the largest difference of a channel where not.
+fn between(a: &Rgba, b: &Rgba, ignore_alpha: bool) -> Result<Shown, Refused> {
+    let options = Options { ignore_alpha, regions: 50 };
+    let found = diff::compare(a, b, &options).map_err(|error| error.to_string())?;
+    let regions = found.regions.iter().map(|region| {
+        json!({
+            "x": region.x, "y": region.y, "width": region.width, "height": region.height, "pixels": region.pixels,
+            "first": region.first, "largest": region.largest,
+        })
+    });
+    let regions: Vec<Value> = regions.collect();
+    let channels = if ignore_alpha { 3 } else { 4 };
+    let shown = |(a, b): (&[u8; 4], &[u8; 4])| {
+        let largest = a[..channels].iter().zip(b).map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(0);
+        let [r, g, b] = heat_color(f64::from(largest));
+        [r, g, b, 255]
+    };
+    let pixels = a.pixels.iter().zip(&b.pixels).map(shown).collect();
+    let answer = json!({
+        "width": a.width, "height": a.height, "differing": found.different, "region_count": found.region_count,
+        "regions": regions, "classes": classes(),
+    });
+    Ok((answer, pixels))
+}
+
+fn classes() -> Value {
+    heat_classes().into_iter().map(|(label, color)| json!({ "label": label, "color": color })).collect()
+}

@@ -1,0 +1,296 @@
+// The chain of integers of one pixel: a card for each unit, from the raster to the store.
+import { $, choice, el, hexadecimal, swatch } from "./elements.js";
+
+const CHANNELS = ["r", "g", "b", "a"];
+
+const real = (value, digits = 6) => (value === null || value === undefined ? "" : Number.isInteger(value) && Math.abs(value) > 1e6 ? String(value) : (+value).toPrecision(digits).replace(/\.?0+$/, ""));
+
+const integer = (step) => (step.per_one === 0 ? step.value_text ?? hexadecimal(step.value >>> 0, 8) : step.value_text ?? String(step.value));
+
+function hex(step) {
+  if (step.per_one === 0) return integer(step);
+  const value = BigInt(step.value_text ?? step.value);
+  return (value < 0n ? "-0x" : "0x") + (value < 0n ? -value : value).toString(16).padStart(2, "0");
+}
+
+const written = (step) => `${step.operation}(${step.inputs.map((input) => `${input.name} ${input.value_text ?? input.value}`).join(", ")})`;
+
+// `stage0.rgb.AB.r.rounded` is the row `AB rounded`, channel r.
+function place(name) {
+  const parts = name.split(".");
+  const at = parts.findIndex((part, n) => n > 0 && CHANNELS.includes(part));
+  if (at < 0) return { row: name, channel: "" };
+  return { row: parts.filter((_, n) => n !== at).join("."), channel: parts[at] };
+}
+
+const short = (row) => row.replace(/^stage\d+\.(rgb|alpha)\./, "").replace(/^unit\d+\./, "").replace(/^final\./, "");
+
+export class Chain {
+  constructor(page) {
+    this.page = page;
+    this.panel = $("chain");
+    this.empty = new Map();
+    this.sight = new IntersectionObserver((entries) => this.fill(entries.filter((entry) => entry.isIntersecting).map((entry) => entry.target)), { rootMargin: "500px" });
+    this.panel.addEventListener("click", (event) => {
+      const wire = event.target.closest(".wire");
+      if (wire) this.choose(+wire.dataset.fragment, +wire.dataset.step);
+    });
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "Escape") this.choose(null);
+    });
+  }
+
+  show(trace, programs) {
+    this.trace = trace;
+    this.programs = programs;
+    this.sight.disconnect();
+    this.empty.clear();
+    const head = el("div", { className: "head" },
+      el("h2", {}, `Pixel ${trace.pixel.join(", ")} of ${trace.target}`),
+      el("span", {}, "stored ", swatch(trace.shown), el("code", {}, `R ${trace.shown[0]} G ${trace.shown[1]} B ${trace.shown[2]} A ${trace.shown[3]}`)),
+      el("code", { title: "the stored word" }, trace.word_text ?? hexadecimal(trace.word, 8)),
+      el("span", { className: "quiet" }, `cleared to ${trace.cleared.join(", ")}`));
+    const fragments = trace.draws.map((fragment, n) => this.fragment(fragment, n, n === trace.draws.length - 1));
+    const none = trace.draws.length ? [] : [el("p", {}, "No triangle covers this pixel: it shows the clear.")];
+    const left = trace.left_out ? [el("p", { className: "quiet" }, `${trace.left_out} earlier fragments are not shown.`)] : [];
+    this.panel.replaceChildren(head, ...none, ...left, ...fragments);
+    this.choose(null);
+  }
+
+  fragment(fragment, number, open) {
+    const blocks = [];
+    for (const step of fragment.steps) {
+      if (blocks.at(-1)?.name !== step.block) blocks.push({ name: step.block, steps: [] });
+      blocks.at(-1).steps.push(step);
+    }
+    const summary = el("summary", {}, `Draw ${fragment.draw} ${fragment.name}, triangle ${fragment.triangle} `,
+      el("span", { className: "quiet" }, fragment.stored ? "stored " : "dropped; the surface shows "), swatch(fragment.shown),
+      el("span", { className: "quiet" }, fragment.shown.join(", ")));
+    const details = el("details", { className: "fragment", open }, summary);
+    // What is not looked at is not built.
+    const build = () => {
+      if (details.childElementCount === 1) details.append(...blocks.map((block) => this.unit(block, fragment, number)));
+    };
+    if (open) build();
+    details.addEventListener("toggle", build);
+    return details;
+  }
+
+  unit({ name, steps }, fragment, number) {
+    const rules = [...new Set(steps.map((step) => step.rule).filter(Boolean))];
+    const stage = /^general stage (\d+) (rgb|alpha)$/.exec(name);
+    const origin = stage && fragment.program_origin[stage[1]]?.[stage[2]];
+    const card = el("section", { className: "unit", "aria-label": name },
+      el("div", { className: "title" }, el("h3", {}, name), rules.map((rule) => this.badge(rule)), origin ? el("span", { className: "origin" }, origin) : null));
+    this.empty.set(card, () => {
+      if (name.startsWith("texture unit")) card.append(...this.footprints(steps));
+      const rows = this.rows(steps);
+      card.append(stage ? this.stage(rows, number, fragment.draw, +stage[1], stage[2]) : this.flow(name, rows, number, fragment.draw), this.table(steps, number));
+      card.classList.add("filled");
+      this.mark(card);
+    });
+    this.sight.observe(card);
+    return card;
+  }
+
+  // What a unit holds is made when it comes near the window; of these units, or of all.
+  fill(cards = [...this.empty.keys()]) {
+    for (const card of cards) {
+      const fill = this.empty.get(card);
+      this.empty.delete(card);
+      this.sight.unobserve(card);
+      fill?.();
+    }
+  }
+
+  badge(rule) {
+    const grade = this.page.rules[rule]?.grade ?? "";
+    const label = `${rule}${grade ? ` · ${grade}` : ""}`;
+    return el("button", { className: `badge ${grade}`, title: this.page.rules[rule]?.title ?? rule, onclick: () => this.page.rule(rule) }, label);
+  }
+
+  // Steps by what they are of, one entry a channel.
+  rows(steps) {
+    const rows = new Map();
+    for (const step of steps) {
+      const { row, channel } = place(step.name);
+      if (!rows.has(row)) rows.set(row, []);
+      rows.get(row).push({ channel, step });
+    }
+    for (const cells of rows.values()) cells.sort((a, b) => CHANNELS.indexOf(a.channel) - CHANNELS.indexOf(b.channel));
+    return rows;
+  }
+
+  wire(step, fragment, channel) {
+    const plain = step.per_one === 1;
+    return el("button", { className: "wire", title: `${step.name}: ${written(step)}`, "data-fragment": fragment, "data-step": step.id },
+      channel ? el("i", {}, channel) : null, el("b", {}, integer(step)),
+      plain ? null : el("small", {}, `${hex(step)} ${real(step.real, 4)}`),
+      plain || step.ideal === null ? null : el("small", { title: "ideal" }, `≈ ${real(step.ideal, 4)}`));
+  }
+
+  box(row, cells, fragment, extra) {
+    const { step } = cells[0];
+    const inputs = [...new Set(step.inputs.map((input) => short(place(input.name).row)))];
+    const from = inputs.length > 4 ? `${inputs.slice(0, 3).join(", ")}, …` : inputs.join(", ");
+    const how = step.operation === "given" ? "" : `${step.operation.replaceAll("_", " ")}${from ? ` of ${from}` : ""}`;
+    // A single value stands beside its name.
+    return el("div", { className: cells.length === 1 && !extra ? "box single" : "box" }, el("span", { className: "name" }, short(row)), el("span", { className: "how" }, how), extra ?? null,
+      el("div", { className: "wires" }, cells.map(({ channel, step: each }) => this.wire(each, fragment, channel))));
+  }
+
+  // A general stage as the vendor draws it: inputs, products, sum, outputs.
+  stage(rows, fragment, draw, number, portion) {
+    const program = this.programs(draw);
+    const state = program?.stages[number]?.[portion];
+    const path = ["stages", number, portion];
+    const editable = state && program.origin.length === 0;
+    const pick = (name, kind, at) => editable
+      ? choice(program.choices[kind], at.reduce((value, key) => value[key], state), `${name} of stage ${number} ${portion}`,
+        (value) => this.page.edit(draw, [...path, ...at], value))
+      : null;
+    const columns = { inputs: [], products: [], outputs: [] };
+    for (const [row, cells] of rows) {
+      const name = short(row);
+      const letter = ["A", "B", "C", "D"].indexOf(name);
+      const extra = letter < 0 ? null : el("span", {}, pick("Mapping", "mapping", ["inputs", letter, "mapping"]), pick("Register", "register", ["inputs", letter, "register"]), pick("Component", "component", ["inputs", letter, "component"]));
+      const column = letter >= 0 ? "inputs" : /^(AB|CD|sum|mux)/.test(name) && !/output|\./.test(name) ? "products" : "outputs";
+      columns[column].push([name, this.box(row, cells, fragment, extra)]);
+    }
+    const boxes = (column, test = () => true) => columns[column].filter(([name]) => test(name)).map(([, box]) => box);
+    const pairs = [["A", "B"], ["C", "D"]].map((pair) => boxes("inputs", (name) => pair.includes(name))).filter((pair) => pair.length);
+    const settings = el("div", { className: "field" },
+      editable ? [el("span", { className: "quiet" }, "scale "), pick("Scale", "scale", ["scale"]), el("span", { className: "quiet" }, " bias "), pick("Bias", "bias", ["bias"]),
+        portion === "rgb" ? ["ab", "cd"].map((pair) => el("label", {}, el("input", { type: "checkbox", checked: state[`${pair}_dot_product`],
+          onchange: (event) => this.page.edit(draw, [...path, `${pair}_dot_product`], event.target.checked) }), ` ${pair.toUpperCase()} dot`)) : null,
+        el("label", {}, el("input", { type: "checkbox", checked: state.mux, onchange: (event) => this.page.edit(draw, [...path, "mux"], event.target.checked) }), " mux")] : null);
+    return el("div", {}, settings, el("div", { className: "flow" },
+      el("div", { className: "stack" }, pairs.map((pair) => el("div", { className: "pair" }, pair))),
+      el("div", { className: "stack" }, boxes("products")), el("div", { className: "stack" }, boxes("outputs"))));
+  }
+
+  // Any other unit: what it takes from elsewhere, what it computes, what it hands on.
+  flow(name, rows, fragment, draw) {
+    // Set-up and texels have their table and their footprint.
+    const hidden = name.startsWith("texture unit") ? /texel|row\d|\.[GN]_|quad|block/ : /^$/;
+    const shown = [...rows].filter(([row]) => !hidden.test(row));
+    // How many boxes a value is away from what the unit is given: columns are read from left to right.
+    const depths = new Map();
+    const made = new Map([...rows].flatMap(([row, cells]) => cells.map(({ step }) => [step.id, row])));
+    for (const [row, cells] of rows) {
+      const from = cells.flatMap(({ step }) => step.inputs.map((input) => made.get(input.step))).filter((each) => each && each !== row && depths.has(each));
+      depths.set(row, from.length ? Math.max(...from.map((each) => depths.get(each) + (hidden.test(each) ? 0 : 1))) : 0);
+    }
+    const columns = new Map();
+    for (const [row, cells] of shown) {
+      const at = Math.min(depths.get(row), 3);
+      if (!columns.has(at)) columns.set(at, []);
+      columns.get(at).push(this.box(row, cells, fragment, name.startsWith("final") ? this.finalPick(row, draw) : null));
+    }
+    const sorted = [...columns].sort(([a], [b]) => a - b).map(([, boxes]) => el("div", { className: "stack" }, boxes));
+    const flow = el("div", { className: "flow" }, sorted);
+    flow.style.gridTemplateColumns = `repeat(${Math.max(sorted.length, 2)}, minmax(0, 1fr))`;
+    return flow;
+  }
+
+  finalPick(row, draw) {
+    const at = ["A", "B", "C", "D", "E", "F", "G"].indexOf(short(row));
+    const program = this.programs(draw);
+    if (at < 0 || !program || program.origin.length) return null;
+    const input = program.final.inputs[at];
+    return el("span", {}, choice(program.choices.final_register, input.register, `Register ${short(row)} of the final combiner`, (value) => this.page.edit(draw, ["final", "inputs", at, "register"], value)),
+      choice(program.choices.component, input.component, `Component ${short(row)}`, (value) => this.page.edit(draw, ["final", "inputs", at, "component"], value)),
+      el("label", {}, el("input", { type: "checkbox", checked: input.invert, onchange: (event) => this.page.edit(draw, ["final", "inputs", at, "invert"], event.target.checked) }), " 1 − x"));
+  }
+
+  // The texels of each fetch as colours with their weights.
+  footprints(steps) {
+    const found = new Map();
+    const value = (name) => steps.find((step) => step.name === name);
+    for (const step of steps) {
+      const match = /^(unit\d\.(?:next\.)?)texel(\d\d)?\.([rgba])$/.exec(step.name);
+      if (!match) continue;
+      const [, prefix, at = "", channel] = match;
+      if (!found.has(prefix)) found.set(prefix, new Map());
+      const texels = found.get(prefix);
+      if (!texels.has(at)) texels.set(at, {});
+      texels.get(at)[channel] = step;
+    }
+    return [...found].map(([prefix, texels]) => {
+      const [u, v] = ["weight_u", "weight_v"].map((name) => value(prefix + name)?.value ?? 0);
+      const linear = texels.size > 1;
+      const weight = (at) => (linear ? (at[0] === "1" ? u : 256 - u) * (at[1] === "1" ? v : 256 - v) : 65536) / 65536;
+      const where = steps.find((step) => step.texel && step.name.startsWith(prefix))?.texel;
+      const cells = [...texels].map(([at, channels]) => {
+        const rgb = ["r", "g", "b"].map((c) => Math.max(0, Math.min(255, channels[c]?.value ?? 0)));
+        const fetch = steps.find((step) => step.texel && step.name.startsWith(`${prefix}texel${at}.`))?.texel;
+        const light = rgb[0] * 0.3 + rgb[1] * 0.59 + rgb[2] * 0.11 > 128;
+        const cell = el("div", { className: `texel ${light ? "light" : "dark"}` },
+          el("span", {}, fetch ? `(${fetch.x}, ${fetch.y})` : "border"), el("span", {}, value(`${prefix}texel${at}.word`)?.note ?? ""), el("span", {}, `${(weight(at) * 100).toFixed(1)} %`));
+        cell.style.backgroundColor = `rgb(${rgb.join(",")})`;
+        if (linear) [cell.style.gridColumn, cell.style.gridRow] = [at[0] === "1" ? 2 : 1, at[1] === "1" ? 2 : 1];
+        return cell;
+      });
+      const result = ["r", "g", "b"].map((c) => Math.max(0, Math.min(255, value(`${prefix}${c}`)?.value ?? value(`${prefix}texel.${c}`)?.value ?? 0)));
+      const faces = ["+X", "−X", "+Y", "−Y", "+Z", "−Z"];
+      return el("div", { className: "footprint" }, el("div", { className: "texels", role: "img", "aria-label": "texels and weights" }, cells),
+        el("div", {}, where ? el("div", {}, el("b", {}, where.name), ` level ${where.level}`, prefixFace(steps) ? `, face ${faces[where.face]}` : "") : null,
+          linear ? el("div", { className: "quiet" }, `weights ${u}/256 and ${v}/256`) : el("div", { className: "quiet" }, "nearest texel"),
+          el("div", {}, swatch(result), linear ? "filtered" : "fetched")));
+    });
+    function prefixFace(all) {
+      return all.some((step) => step.name.endsWith(".face"));
+    }
+  }
+
+  table(steps, fragment) {
+    const details = el("details", { className: "all" }, el("summary", {}, `all ${steps.length} steps`));
+    details.addEventListener("toggle", () => {
+      if (details.childElementCount > 1) return;
+      const row = (step) => el("tr", {}, el("td", {}, el("button", { className: "wire", "data-fragment": fragment, "data-step": step.id }, step.name)),
+        el("td", {}, step.operation === "given" ? "" : written(step)), el("td", { className: "n" }, integer(step)), el("td", { className: "n" }, hex(step)),
+        el("td", { className: "n" }, step.per_one === 1 ? "" : real(step.real)), el("td", { className: "n" }, real(step.ideal)), el("td", {}, step.rule), el("td", {}, step.note ?? ""));
+      const head = ["what", "how", "integer", "hex", "real", "ideal", "rule", "note"].map((title) => el("th", { scope: "col" }, title));
+      details.append(el("div", { className: "steps", tabindex: 0, role: "region", "aria-label": "steps" }, el("table", {}, el("thead", {}, el("tr", {}, head)), el("tbody", {}, steps.map(row)))));
+      this.mark(details);
+    });
+    return details;
+  }
+
+  mark(part) {
+    if (!this.slice && part !== this.panel) return;
+    for (const wire of part.querySelectorAll(".wire")) {
+      const [fragment, step] = [+wire.dataset.fragment, +wire.dataset.step];
+      const here = this.slice?.fragment === fragment;
+      wire.classList.toggle("bright", here && this.slice.bright.has(step));
+      wire.classList.toggle("chosen", here && this.slice.id === step);
+    }
+  }
+
+  // What a value depends on stays bright; below, all that is known of it.
+  choose(fragment, id) {
+    const bar = $("wire");
+    this.slice = null;
+    this.mark(this.panel);
+    this.panel.classList.toggle("slice", fragment !== null);
+    bar.hidden = fragment === null;
+    if (fragment === null) return;
+    const steps = this.trace.draws[fragment].steps;
+    const bright = new Set();
+    const open = [id];
+    while (open.length) {
+      const at = open.pop();
+      if (bright.has(at)) continue;
+      bright.add(at);
+      open.push(...steps[at].inputs.map((input) => input.step).filter((step) => step !== undefined));
+    }
+    this.slice = { fragment, bright, id };
+    this.mark(this.panel);
+    const step = steps[id];
+    const entry = (title, value) => (value === "" ? null : el("span", {}, el("dt", {}, title), el("dd", {}, value)));
+    bar.replaceChildren(el("b", {}, step.name), el("dl", {}, entry("integer", integer(step)), entry("hex", hex(step)), entry("of", step.per_one > 1 ? String(step.per_one) : ""),
+      entry("real", step.per_one === 1 ? "" : real(step.real)), entry("ideal", real(step.ideal)), entry("depends on", bright.size === 2 ? "1 value" : `${bright.size - 1} values`)),
+      ...(step.rule ? [this.badge(step.rule)] : []), ...(step.note ? [el("span", { className: "quiet" }, step.note)] : []),
+      el("button", { onclick: () => this.choose(null), "aria-label": "Close" }, "×"), el("div", { className: "formula" }, step.operation === "given" ? "" : written(step)));
+  }
+}

@@ -1,0 +1,44 @@
+// Elements. Texts become text nodes, whatever is in them.
+
+export const $ = (id) => document.getElementById(id);
+
+export function el(tag, properties = {}, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (value === undefined || value === null || value === false) continue;
+    if (name.startsWith("on")) element.addEventListener(name.slice(2), value);
+    else if (name in element && name !== "list") element[name] = value;
+    else element.setAttribute(name, value);
+  }
+  element.append(...children.flat(Infinity).filter((child) => child !== null && child !== undefined));
+  return element;
+}
+
+export function swatch([r, g, b]) {
+  const element = el("span", { className: "swatch" });
+  element.style.backgroundColor = `rgb(${r},${g},${b})`;
+  return element;
+}
+
+// One of some words. There are many of these and few are opened: the other words come when one is.
+export function choice(words, chosen, label, change) {
+  const select = el("select", { "aria-label": label, title: label, onchange: (event) => change(event.target.value) }, el("option", { value: chosen }, chosen));
+  const fill = () => {
+    if (select.options.length > 1) return;
+    const at = words.indexOf(chosen);
+    const option = (word) => el("option", { value: word }, word);
+    select.prepend(...words.slice(0, Math.max(at, 0)).map(option));
+    select.append(...words.slice(at + 1).map(option));
+  };
+  for (const type of ["pointerdown", "focus", "keydown"]) select.addEventListener(type, fill);
+  return select;
+}
+
+export function bytesOf(base64) {
+  const text = atob(base64);
+  const bytes = new Uint8Array(text.length);
+  for (let at = 0; at < text.length; at++) bytes[at] = text.charCodeAt(at);
+  return bytes;
+}
+
+export const hexadecimal = (value, width = 2) => (value < 0 ? "-0x" : "0x") + Math.abs(value).toString(16).padStart(width, "0");

@@ -1,0 +1,379 @@
+// The page: one scene, its changes, and what is looked at.
+import { Chain } from "./chain.js";
+import { Change } from "./change.js";
+import { $, bytesOf, choice, el, swatch } from "./elements.js";
+import { Model } from "./model.js";
+import { View } from "./view.js";
+
+const encoded = (value) => btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify(value)))).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
+const decoded = (text) => JSON.parse(new TextDecoder().decode(Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0))));
+
+class Page {
+  constructor(data, model) {
+    Object.assign(this, { data, model, rules: data.rules, alternatives: data.policies, policies: { ...data.chosen }, text: data.text, past: [], future: [], target: 0, until: null, against: "", at: null, times: {} });
+    this.view = new View((pixel) => this.choose(pixel), (pixel) => this.hovered(pixel));
+    this.chain = new Chain(this);
+    this.change = new Change(this);
+    this.programs = new Map();
+    for (const [name, bytes] of Object.entries(data.files)) model.file(name, bytesOf(bytes));
+    this.wire();
+    this.fromAddress();
+    this.apply();
+  }
+
+  wire() {
+    $("scene-name").textContent = this.data.name;
+    const on = (id, act) => $(id).addEventListener("click", act);
+    on("undo", () => this.step(this.past, this.future));
+    on("redo", () => this.step(this.future, this.past));
+    on("reset", () => this.commit(this.data.text, { ...this.data.chosen }));
+    on("save", () => this.save());
+    on("link", () => this.link());
+    on("in", () => this.view.scale(1.25, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
+    on("out", () => this.view.scale(0.8, this.view.canvas.clientWidth / 2, this.view.canvas.clientHeight / 2));
+    on("fit", () => this.view.fit());
+    $("target").addEventListener("change", (event) => { this.target = +event.target.value; this.until = null; this.at = null; this.refresh(); });
+    $("channels").addEventListener("change", (event) => { this.view.channels = event.target.value; this.redraw(); });
+    $("against").addEventListener("change", (event) => { this.against = event.target.value; this.redraw(); });
+    document.addEventListener("keydown", (event) => {
+      if (!(event.ctrlKey || event.metaKey) || event.key.toLowerCase() !== "z" || event.target.matches("textarea, input")) return;
+      event.preventDefault();
+      (event.shiftKey ? $("redo") : $("undo")).click();
+    });
+    const tabs = [...document.querySelectorAll("[role=tab]")];
+    for (const tab of tabs) {
+      tab.addEventListener("click", () => this.tab(tab.id.slice(4)));
+      tab.addEventListener("keydown", (event) => {
+        const by = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+        if (by) { const next = tabs[(tabs.indexOf(tab) + by + tabs.length) % tabs.length]; next.focus(); next.click(); }
+      });
+    }
+    const body = document.body;
+    body.addEventListener("dragover", (event) => { event.preventDefault(); body.classList.add("drop"); });
+    body.addEventListener("dragleave", () => body.classList.remove("drop"));
+    body.addEventListener("drop", async (event) => {
+      event.preventDefault();
+      body.classList.remove("drop");
+      const file = event.dataTransfer.files[0];
+      if (file) this.dropped(file.name, new Uint8Array(await file.arrayBuffer()));
+    });
+    window.addEventListener("hashchange", () => { if (location.hash.slice(1) !== this.address) { this.fromAddress(); this.apply(); } });
+  }
+
+  say(text) {
+    $("message").textContent = text;
+  }
+
+  // Does what may be refused, and says why.
+  tried(work) {
+    try {
+      return work();
+    } catch (error) {
+      this.say(error.message);
+      return null;
+    }
+  }
+
+  tab(name) {
+    this.shown = name;
+    for (const tab of document.querySelectorAll("[role=tab]")) {
+      const chosen = tab.id === `tab-${name}`;
+      tab.setAttribute("aria-selected", chosen);
+      tab.tabIndex = chosen ? 0 : -1;
+      $(tab.id.slice(4)).hidden = !chosen;
+    }
+    this.panels();
+  }
+
+  // --- the scene and its changes
+
+  // Reads the text; a broken one leaves the picture before it, and its findings.
+  open(text) {
+    const answer = this.tried(() => this.model.ask({ do: "open", text, name: this.data.name }));
+    if (!answer) return false;
+    const findings = answer.findings.map((finding) => el("div", { className: `finding ${finding.severity}`, tabindex: 0, onclick: () => this.mark(finding) }, finding.rendered.trimEnd()));
+    if (answer.suppressed) findings.push(el("p", {}, `and ${answer.suppressed} more`));
+    $("findings").replaceChildren(...findings);
+    if (!answer.scene) return false;
+    this.scene = answer.scene;
+    this.programs.clear();
+    return true;
+  }
+
+  commit(text, policies = this.policies) {
+    if (text === this.text && JSON.stringify(policies) === JSON.stringify(this.policies)) return;
+    this.past.push({ text: this.text, policies: this.policies });
+    this.future = [];
+    Object.assign(this, { text, policies });
+    this.apply();
+  }
+
+  step(from, to) {
+    const state = from.pop();
+    if (!state) return;
+    to.push({ text: this.text, policies: this.policies });
+    Object.assign(this, state);
+    this.apply();
+  }
+
+  apply() {
+    this.say("");
+    this.tried(() => this.model.ask({ do: "policies", values: this.policies }));
+    this.sound = this.open(this.text);
+    $("undo").disabled = this.past.length === 0;
+    $("redo").disabled = this.future.length === 0;
+    $("reset").disabled = this.text === this.data.text && JSON.stringify(this.policies) === JSON.stringify(this.data.chosen);
+    if (!this.scene) { this.tab("text"); return; }
+    if (this.target >= this.scene.targets.length) this.target = 0;
+    this.refresh();
+  }
+
+  spliced([start, end], value) {
+    return this.text.slice(0, start) + value + this.text.slice(end);
+  }
+
+  splice(span, value) {
+    this.commit(this.spliced(span, value));
+  }
+
+  // While a slider moves: the picture alone follows.
+  drag(span, value) {
+    const text = this.spliced(span, value);
+    cancelAnimationFrame(this.pending);
+    this.pending = requestAnimationFrame(() => { if (this.open(text)) this.redraw(); });
+  }
+
+  edit(draw, path, value) {
+    const answer = this.tried(() => this.model.ask({ do: "edit", draw, path, value }));
+    if (answer) this.commit(answer.text);
+    else this.panels();
+  }
+
+  policy(rule, value) {
+    this.commit(this.text, { ...this.policies, [rule]: value });
+  }
+
+  save() {
+    const link = el("a", { href: URL.createObjectURL(new Blob([this.text], { type: "text/plain" })), download: this.data.name.split("/").pop() });
+    link.click();
+    URL.revokeObjectURL(link.href);
+  }
+
+  // --- the address: pixel, target, policies, and where the text differs from the one that was opened
+
+  toAddress() {
+    const [was, is] = [this.data.text, this.text];
+    let start = 0;
+    while (start < Math.min(was.length, is.length) && was[start] === is[start]) start++;
+    let end = 0;
+    while (end < Math.min(was.length, is.length) - start && was[was.length - 1 - end] === is[is.length - 1 - end]) end++;
+    const state = {};
+    if (this.at) state.p = this.at;
+    if (this.target) state.t = this.target;
+    if (this.until !== null) state.u = this.until;
+    if (was !== is) state.e = [start, was.length - end, is.slice(start, is.length - end)];
+    const policies = Object.fromEntries(Object.entries(this.policies).filter(([rule, value]) => this.data.chosen[rule] !== value));
+    if (Object.keys(policies).length) state.v = policies;
+    this.address = Object.keys(state).length ? encoded(state) : "";
+    history.replaceState(null, "", `#${this.address}`);
+  }
+
+  fromAddress() {
+    this.address = location.hash.slice(1);
+    if (!this.address || this.address === "pixel") return;
+    try {
+      const { p, t = 0, u = null, e, v = {} } = decoded(this.address);
+      const whole = (value) => Number.isInteger(value) && value >= 0;
+      if (Array.isArray(p) && p.length === 2 && p.every(whole)) this.at = p;
+      this.target = whole(t) ? t : 0;
+      this.until = whole(u) ? u : null;
+      if (Array.isArray(e) && whole(e[0]) && whole(e[1]) && typeof e[2] === "string") this.text = this.data.text.slice(0, e[0]) + e[2] + this.data.text.slice(e[1]);
+      this.policies = { ...this.data.chosen, ...v };
+    } catch {
+      this.say("The address is not one of this page; the scene is as it was saved.");
+    }
+  }
+
+  async link() {
+    this.toAddress();
+    try {
+      await navigator.clipboard.writeText(location.href);
+      this.say("The link is on the clipboard: this pixel, these changes.");
+    } catch {
+      this.say("The address bar has the link: this pixel, these changes.");
+    }
+  }
+
+  // --- what is shown
+
+  refresh() {
+    const { targets, draws } = this.scene;
+    $("target").replaceChildren(...targets.map((target, n) => el("option", { value: n, selected: n === this.target }, `${target.name} ${target.width} × ${target.height} ${target.format}`)));
+    const alternatives = this.alternatives.flatMap(({ rule, values }) => values.filter(({ value }) => value !== (this.policies[rule] ?? values[0].value)).map(({ value }) => [`${rule}=${value}`, `policy ${rule}=${value}`]));
+    const options = [["", "nothing"], ["ideal", "float64"], ...(this.second ? [["picture", this.second]] : []), ...alternatives];
+    if (!options.some(([value]) => value === this.against)) this.against = "";
+    $("against").replaceChildren(...options.map(([value, name]) => el("option", { value, selected: value === this.against }, name)));
+    if (this.until !== null && this.until >= draws.length - 1) this.until = null;
+    const item = (draw) => el("li", {}, el("button", { "aria-current": (this.until ?? draws.length - 1) === draw.number ? "true" : "false", title: "The picture after this draw",
+      onclick: () => { this.until = draw.number === draws.length - 1 ? null : draw.number; this.refresh(); } },
+      `${draw.number} ${draw.name}`, el("span", { className: "quiet" }, ` → ${targets[draw.target].name}, ${draw.stages} general stage${draw.stages === 1 ? "" : "s"}`)));
+    $("draws").replaceChildren(...draws.map(item));
+    this.redraw();
+    const { width, height } = targets[this.target];
+    if (this.at && (this.at[0] >= width || this.at[1] >= height)) this.at = null;
+    this.choose(this.at ?? [Math.floor(width / 2), Math.floor(height / 2)], true);
+  }
+
+  redraw() {
+    const started = performance.now();
+    const target = this.target;
+    const picture = this.tried(() => this.model.picture({ do: "draw", target, until: this.until }));
+    if (!picture) return;
+    this.picture = picture;
+    const against = this.against;
+    const heat = against && this.tried(() => this.model.picture({ do: "heat", target, against: against.includes("=") ? { ...this.policies, [against.split("=")[0]]: against.split("=")[1] } : against }));
+    this.differences(heat || null);
+    this.view.show(heat ? { ...heat, pixels: heat.pixels } : picture);
+    this.times.redraw = performance.now() - started;
+    this.times.digest = picture.digest;
+  }
+
+  differences(heat) {
+    $("regions-part").hidden = !heat;
+    $("legend").replaceChildren(...(heat ? heat.classes.map(({ label, color }) => el("span", {}, swatch(color), label)) : []));
+    if (!heat) return;
+    const left = heat.diverged ? `; ${heat.diverged} more went another way` : "";
+    $("regions-sum").textContent = `${heat.differing} pixels differ${heat.region_count > heat.regions.length ? `; the ${heat.regions.length} largest of ${heat.region_count} regions` : ""}${left}`;
+    const item = (region) => el("li", {}, el("button", { onclick: () => { this.choose(region.first); this.view.reveal(); } }, region.worst
+      ? `${region.first.join(", ")}: ${["R", "G", "B", "A"][region.worst.channel]} ${region.worst.shown}, ideal ${region.worst.ideal.toFixed(3)}`
+      : `${region.x}, ${region.y}: ${region.width} × ${region.height}, ${region.pixels} pixels, by ${region.largest.join(", ")} at most`));
+    $("regions").replaceChildren(...heat.regions.map(item));
+  }
+
+  dropped(name, bytes) {
+    const picture = this.tried(() => this.model.ask({ do: "picture", name }, bytes));
+    if (!picture) return;
+    this.second = name;
+    this.against = "picture";
+    this.refresh();
+  }
+
+  hovered(pixel) {
+    $("hover").textContent = pixel && this.picture ? `${pixel.join(", ")}: ${this.bytesAt(pixel).join(" ")}` : "";
+  }
+
+  bytesAt([x, y]) {
+    const at = (y * this.picture.width + x) * 4;
+    return [...this.picture.pixels.slice(at, at + 4)];
+  }
+
+  choose(pixel) {
+    this.at = pixel;
+    this.view.at = pixel;
+    this.view.paint();
+    const bytes = this.bytesAt(pixel);
+    $("here").replaceChildren(swatch(bytes), `${pixel.join(", ")}: R ${bytes[0]} G ${bytes[1]} B ${bytes[2]} A ${bytes[3]}`);
+    this.panels();
+    this.toAddress();
+  }
+
+  program(draw) {
+    if (!this.programs.has(draw)) this.programs.set(draw, this.tried(() => this.model.ask({ do: "program", draw }).program));
+    return this.programs.get(draw);
+  }
+
+  // Only what is open is brought up to date.
+  panels() {
+    if (!this.scene && this.shown !== "text") return;
+    const { target, at: pixel } = this;
+    const show = {
+      chain: () => {
+        const started = performance.now();
+        const { trace } = this.model.ask({ do: "trace", target, pixel });
+        this.times.trace = performance.now() - started;
+        this.chain.show(trace, (draw) => this.program(draw));
+        this.times.chain = performance.now() - started;
+      },
+      rules: () => this.sides(this.model.ask({ do: "alternatives", target, pixel }).rules),
+      change: () => this.sound ? this.change.show(this.model.ask({ do: "outline" }).tree) : $("change").replaceChildren(el("p", {}, "The text has errors: mend it under Text, or undo.")),
+      program: () => this.programPanel(),
+      text: () => this.textPanel(),
+    };
+    // Who works by keyboard stays where they are when a panel is made anew.
+    const panel = $(this.shown ?? "chain");
+    const fields = () => [...panel.querySelectorAll("input, select, textarea, button, summary")];
+    const at = fields().indexOf(document.activeElement);
+    this.tried(show[panel.id]);
+    if (at >= 0) fields()[at]?.focus();
+  }
+
+  sides(rules) {
+    const rows = rules.flatMap(({ rule, question, values }) => {
+      const chosen = values.find((value) => value.chosen);
+      return values.map((value, n) => el("tr", { className: `${value.chosen ? "chosen" : ""} ${value.word !== chosen.word ? "differs" : ""}` },
+        el("td", {}, value.value), el("td", {}, n === 0 ? [this.chain.badge(rule), " ", question] : ""), el("td", {}, value.meaning), el("td", {}, swatch(value.shown), el("code", {}, value.shown.join(", "))),
+        el("td", {}, value.chosen ? "" : el("button", { onclick: () => this.policy(rule, value.value) }, "Choose"))));
+    });
+    const differing = new Set(rules.filter(({ values }) => values.some((value) => value.word !== values.find((each) => each.chosen).word)).map(({ rule }) => rule));
+    $("rules").replaceChildren(el("p", {}, differing.size ? `Of the undecided rules ${[...differing].join(", ")} would change this pixel.` : "No undecided rule would change this pixel."),
+      el("table", {}, el("thead", {}, el("tr", {}, ["value", "rule", "meaning", "pixel", ""].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, rows)));
+  }
+
+  programPanel() {
+    const draws = this.scene.draws;
+    this.programOf = Math.min(this.programOf ?? draws.length - 1, draws.length - 1);
+    if (draws.length === 0) return $("program").replaceChildren(el("p", {}, "The scene draws nothing."));
+    const draw = this.programOf;
+    const program = this.program(draw);
+    const constants = program.origin.length ? [] : [0, 1].map((n) => {
+      const color = program.final.constants[n];
+      return el("div", { className: "field" }, el("span", { className: "label" }, `constant ${n}`),
+        color.map((byte, m) => el("input", { type: "number", min: 0, max: 255, value: byte, "aria-label": `constant ${n} ${"RGBA"[m]}`,
+          onchange: (event) => this.edit(draw, ["constants", n], color.map((other, k) => (k === m ? +event.target.value : other))) })), swatch(color));
+    });
+    const area = el("textarea", { rows: 8, "aria-label": "Program to paste", placeholder: "rc_in_rgb0 = 0x..., or !!RC1.0 ..., or glCombinerInputNV(...)" });
+    let language = "RegisterWords";
+    const languages = { RegisterWords: "register words", CombinerText: "combiner language", CombinerCalls: "calls of OpenGL", scene: "as a scene writes it" };
+    const paste = () => { const answer = this.tried(() => this.model.ask({ do: "paste", draw, language, program: area.value })); if (answer) this.commit(answer.text); };
+    const words = program.words.map((word) => el("tr", {}, el("td", {}, word.method), el("td", {}, word.name), el("td", {}, word.value), el("td", {}, word.meaning)));
+    $("program").replaceChildren(
+      el("div", { className: "bar" }, el("label", {}, "Draw ", choice(draws.map((each) => `${each.number} ${each.name}`), `${draw} ${draws[draw].name}`, "Draw", (value) => { this.programOf = parseInt(value, 10); this.programPanel(); }))),
+      el("h2", {}, "In the combiner language"), el("pre", { tabindex: 0 }, program.text), ...constants,
+      el("h2", {}, "As register words"), el("div", { className: "steps", tabindex: 0, role: "region", "aria-label": "register words" }, el("table", {}, el("thead", {}, el("tr", {}, ["method", "register", "value", "meaning"].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, words))),
+      el("h2", {}, "Paste a program"), area,
+      el("div", { className: "bar" }, el("select", { "aria-label": "Language", onchange: (event) => (language = event.target.value) }, Object.entries(languages).map(([value, name]) => el("option", { value }, name))), el("button", { onclick: paste }, "Use it")));
+  }
+
+  textPanel() {
+    const area = el("textarea", { value: this.text, spellcheck: false, "aria-label": "The scene", onchange: () => this.commit(area.value) });
+    this.area = area;
+    $("text").replaceChildren(el("p", { className: "quiet" }, "The scene in RON. What is wrong with it is said above, with its place."), area, el("div", { className: "bar" }, el("button", { onclick: () => this.commit(area.value) }, "Draw it")));
+  }
+
+  mark({ span }) {
+    if (!span) return;
+    this.tab("text");
+    this.area.focus();
+    this.area.setSelectionRange(span[0], Math.max(span[1], span[0]));
+  }
+
+  rule(id) {
+    const rule = this.rules[id];
+    if (!rule) return;
+    $("rule-title").textContent = `${id} ${rule.title}`;
+    $("rule-text").replaceChildren(el("dl", {}, rule.lines.flatMap(([term, text]) => [el("dt", {}, term), el("dd", {}, text)])));
+    $("rule").showModal();
+  }
+}
+
+(async () => {
+  const started = performance.now();
+  try {
+    const model = await Model.load($("module").textContent.trim());
+    window.inspector = new Page(JSON.parse($("data").textContent), model);
+    window.inspector.times.first = performance.now() - started;
+    window.inspector.times.opened = performance.now();
+  } catch (error) {
+    $("message").textContent = `This page cannot be shown: ${error.message}`;
+  }
+})();

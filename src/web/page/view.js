@@ -1,0 +1,148 @@
+// The picture: zoom, pan, cross hair.
+import { $ } from "./elements.js";
+
+export class View {
+  constructor(choose, hover) {
+    Object.assign(this, { canvas: $("view"), choose, hover, zoom: 1, left: 0, top: 0, at: null, picture: null, channels: "colour" });
+    this.sheet = document.createElement("canvas");
+    const canvas = this.canvas;
+    new ResizeObserver(() => this.size()).observe(canvas);
+    canvas.addEventListener("wheel", (event) => {
+      event.preventDefault();
+      this.scale(event.deltaY < 0 ? 1.25 : 0.8, event.offsetX, event.offsetY);
+    }, { passive: false });
+    canvas.addEventListener("pointerdown", (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      this.held = { x: event.offsetX, y: event.offsetY, left: this.left, top: this.top, moved: false };
+    });
+    canvas.addEventListener("pointermove", (event) => {
+      const held = this.held;
+      if (held) {
+        const [dx, dy] = [event.offsetX - held.x, event.offsetY - held.y];
+        held.moved ||= Math.hypot(dx, dy) > 4;
+        if (held.moved) {
+          [this.left, this.top] = [held.left + dx, held.top + dy];
+          this.paint();
+        }
+      }
+      this.hover(this.pixelAt(event.offsetX, event.offsetY));
+    });
+    canvas.addEventListener("pointerup", (event) => {
+      const pixel = this.pixelAt(event.offsetX, event.offsetY);
+      if (this.held && !this.held.moved && pixel) this.choose(pixel);
+      this.held = null;
+    });
+    canvas.addEventListener("pointerleave", () => this.hover(null));
+    canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+
+  key(event) {
+    const moves = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const move = moves[event.key];
+    const middle = [this.canvas.clientWidth / 2, this.canvas.clientHeight / 2];
+    if (move && this.picture) {
+      const step = event.shiftKey ? 10 : 1;
+      const [x, y] = this.at ?? [0, 0];
+      const limit = (value, most) => Math.max(0, Math.min(most - 1, value));
+      this.choose([limit(x + move[0] * step, this.picture.width), limit(y + move[1] * step, this.picture.height)]);
+      this.reveal();
+    } else if (event.key === "+" || event.key === "=") this.scale(1.25, ...middle);
+    else if (event.key === "-") this.scale(0.8, ...middle);
+    else if (event.key === "0") this.fit();
+    else return;
+    event.preventDefault();
+  }
+
+  size() {
+    const ratio = window.devicePixelRatio || 1;
+    this.canvas.width = Math.max(1, Math.round(this.canvas.clientWidth * ratio));
+    this.canvas.height = Math.max(1, Math.round(this.canvas.clientHeight * ratio));
+    if (this.fitted) this.fit();
+    else this.paint();
+  }
+
+  show(picture) {
+    const other = !this.picture || this.picture.width !== picture.width || this.picture.height !== picture.height;
+    this.picture = picture;
+    const { width, height, pixels } = picture;
+    if (this.sheet.width !== width || this.sheet.height !== height) [this.sheet.width, this.sheet.height] = [width, height];
+    const image = new ImageData(width, height);
+    const only = ["R", "G", "B", "A"].indexOf(this.channels);
+    for (let at = 0; at < pixels.length; at += 4) {
+      for (let n = 0; n < 3; n++) image.data[at + n] = pixels[at + (only < 0 ? n : only)];
+      image.data[at + 3] = 255;
+    }
+    this.sheet.getContext("2d").putImageData(image, 0, 0);
+    if (other) this.fit();
+    else this.paint();
+  }
+
+  fit() {
+    if (!this.picture) return;
+    const [wide, high] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const zoom = Math.min(wide / this.picture.width, high / this.picture.height);
+    this.zoom = zoom >= 1 ? Math.floor(zoom) : zoom;
+    this.left = (wide - this.picture.width * this.zoom) / 2;
+    this.top = (high - this.picture.height * this.zoom) / 2;
+    this.fitted = true;
+    this.paint();
+  }
+
+  scale(factor, x, y) {
+    const zoom = Math.max(0.05, Math.min(96, this.zoom * factor));
+    this.left = x - ((x - this.left) * zoom) / this.zoom;
+    this.top = y - ((y - this.top) * zoom) / this.zoom;
+    this.zoom = zoom;
+    this.fitted = false;
+    this.paint();
+  }
+
+  // Brings the chosen pixel into sight.
+  reveal() {
+    if (!this.at) return;
+    const [wide, high] = [this.canvas.clientWidth, this.canvas.clientHeight];
+    const [x, y] = [this.left + (this.at[0] + 0.5) * this.zoom, this.top + (this.at[1] + 0.5) * this.zoom];
+    if (x < 0 || x > wide) this.left += wide / 2 - x;
+    if (y < 0 || y > high) this.top += high / 2 - y;
+    this.paint();
+  }
+
+  pixelAt(x, y) {
+    if (!this.picture) return null;
+    const [i, j] = [Math.floor((x - this.left) / this.zoom), Math.floor((y - this.top) / this.zoom)];
+    return i >= 0 && j >= 0 && i < this.picture.width && j < this.picture.height ? [i, j] : null;
+  }
+
+  bytes([x, y]) {
+    const at = (y * this.picture.width + x) * 4;
+    return [...this.picture.pixels.slice(at, at + 4)];
+  }
+
+  paint() {
+    const context = this.canvas.getContext("2d");
+    const ratio = window.devicePixelRatio || 1;
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.clearRect(0, 0, this.canvas.clientWidth, this.canvas.clientHeight);
+    if (!this.picture) return;
+    context.imageSmoothingEnabled = this.zoom < 1;
+    context.drawImage(this.sheet, this.left, this.top, this.picture.width * this.zoom, this.picture.height * this.zoom);
+    $("scale").textContent = this.zoom < 1 ? `${Math.round(this.zoom * 100)} %` : `${+this.zoom.toFixed(1)} ×`;
+    if (!this.at) return;
+    const side = Math.max(this.zoom, 5);
+    const x = this.left + (this.at[0] + 0.5) * this.zoom;
+    const y = this.top + (this.at[1] + 0.5) * this.zoom;
+    // Dark below light: seen on every ground.
+    for (const [color, width] of [["#000", 3], ["#fff", 1]]) {
+      context.strokeStyle = color;
+      context.lineWidth = width;
+      context.strokeRect(x - side / 2 - 1, y - side / 2 - 1, side + 2, side + 2);
+      context.beginPath();
+      const gap = side / 2 + 3;
+      for (const [dx, dy] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+        context.moveTo(x + dx * gap, y + dy * gap);
+        context.lineTo(x + dx * (gap + 16), y + dy * (gap + 16));
+      }
+      context.stroke();
+    }
+  }
+}

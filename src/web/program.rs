@@ -1,0 +1,213 @@
+//! Pixel programs: as state, as words, as text; parts of them changed.
+
+use std::fmt::Display;
+
+use ninebit::state::{
+    Bias, CombinerInput, Combiners, Component, Draw, FinalInput, FinalRegister, InputMapping, MuxSelect, Named,
+    Portion, Register, Scale, Scene,
+};
+use ninebit_program::registers::{describe, encode};
+use ninebit_program::text::print;
+use ninebit_scene::outline::outline;
+use serde_json::{Value, json};
+
+use crate::session::Refused;
+
+/// A draw's program.
+pub(crate) fn value(scene: &Scene, draw: &Draw) -> Value {
+    let Combiners { stages, mux_select, final_combiner: last } = &draw.combiners;
+    let portion = |portion: &Portion| {
+        json!({
+            "inputs": portion.inputs.iter().map(input).collect::<Vec<_>>(),
+            "ab_output": portion.ab_output.name(), "cd_output": portion.cd_output.name(), "sum_output": portion.sum_output.name(),
+            "ab_dot_product": portion.ab_dot_product, "cd_dot_product": portion.cd_dot_product, "mux": portion.mux,
+            "scale": portion.scale.name(), "bias": portion.bias.name(),
+            "ab_blue_to_alpha": portion.ab_blue_to_alpha, "cd_blue_to_alpha": portion.cd_blue_to_alpha,
+        })
+    };
+    let stages: Vec<Value> = stages
+        .iter()
+        .map(
+            |stage| json!({ "rgb": portion(&stage.rgb), "alpha": portion(&stage.alpha), "constants": stage.constants }),
+        )
+        .collect();
+    let words: Vec<Value> = describe(&encode(&draw.combiners, scene.profile))
+        .iter()
+        .map(|word| {
+            let (method, value) = (format!("{:04x}", word.method), format!("{:08x}", word.value));
+            json!({ "method": method, "name": word.name, "value": value, "meaning": word.meaning })
+        })
+        .collect();
+    json!({
+        "stages": stages,
+        "mux_select": mux_select.name(),
+        "final": {
+            "inputs": last.inputs.iter().chain([&last.g]).map(final_input).collect::<Vec<_>>(),
+            "color_sum_clamp": last.color_sum_clamp, "invert_spare0": last.invert_spare0, "invert_secondary": last.invert_secondary,
+            "constants": last.constants,
+        },
+        "words": words,
+        "text": print(&draw.combiners),
+        "origin": ninebit_report::origins(&draw.program_origin),
+        "choices": {
+            "register": Register::NAMES, "final_register": FinalRegister::NAMES, "component": Component::NAMES,
+            "mapping": InputMapping::NAMES, "scale": Scale::NAMES, "bias": Bias::NAMES, "mux_select": MuxSelect::NAMES,
+        },
+    })
+}
+
+fn input(input: &CombinerInput) -> Value {
+    json!({ "register": input.register.name(), "component": input.component.name(), "mapping": input.mapping.name() })
+}
+
+fn final_input(input: &FinalInput) -> Value {
+    json!({ "register": input.register.name(), "component": input.component.name(), "invert": input.invert })
+}
+
+/// The draw's program, in the combiner language, with one part changed: `path` as in [`value`].
+pub(crate) fn changed(draw: &Draw, path: &Value, value: &Value) -> Result<String, Refused> {
+    if !draw.program_origin.is_empty() {
+        return Err("this program was written for an API: its text says what the combiners do".to_owned());
+    }
+    let mut combiners = draw.combiners.clone();
+    let path: Vec<String> = path.as_array().into_iter().flatten().map(word).collect();
+    let path: Vec<&str> = path.iter().map(String::as_str).collect();
+    set(&mut combiners, &path, value)?;
+    // The state of the first constants is shared with stages that have none of their own: those are told apart by the text.
+    Ok(format!("CombinerText({})", quoted(&print(&combiners))))
+}
+
+fn word(part: &Value) -> String {
+    part.as_str().map_or_else(|| part.to_string(), str::to_owned)
+}
+
+fn set(combiners: &mut Combiners, path: &[&str], value: &Value) -> Result<(), Refused> {
+    let last = &mut combiners.final_combiner;
+    match path {
+        ["mux_select"] => choose(&mut combiners.mux_select, value),
+        ["constants", n] => {
+            // Constants of the whole program: of the final combiner and of all stages that have the same.
+            let slot = index(n, 2)?;
+            let (before, after) = (last.constants[slot], color(value)?);
+            last.constants[slot] = after;
+            for stage in &mut combiners.stages {
+                if stage.constants[slot] == before {
+                    stage.constants[slot] = after;
+                }
+            }
+            Ok(())
+        }
+        ["final", "inputs", n, field] => {
+            let input = if *n == "6" { &mut last.g } else { &mut last.inputs[index(n, 6)?] };
+            match *field {
+                "register" => choose(&mut input.register, value),
+                "component" => choose(&mut input.component, value),
+                "invert" => switch(&mut input.invert, value),
+                other => Err(unknown(other)),
+            }
+        }
+        ["final", "color_sum_clamp"] => switch(&mut last.color_sum_clamp, value),
+        ["final", "invert_spare0"] => switch(&mut last.invert_spare0, value),
+        ["final", "invert_secondary"] => switch(&mut last.invert_secondary, value),
+        ["final", "constants", n] => {
+            last.constants[index(n, 2)?] = color(value)?;
+            Ok(())
+        }
+        ["stages", n, rest @ ..] => {
+            let number = index(n, combiners.stages.len())?;
+            let stage = &mut combiners.stages[number];
+            match rest {
+                ["constants", n] => {
+                    stage.constants[index(n, 2)?] = color(value)?;
+                    Ok(())
+                }
+                ["rgb", rest @ ..] => set_portion(&mut stage.rgb, rest, value),
+                ["alpha", rest @ ..] => set_portion(&mut stage.alpha, rest, value),
+                _ => Err(unknown(path.join("."))),
+            }
+        }
+        _ => Err(unknown(path.join("."))),
+    }
+}
+
+fn set_portion(portion: &mut Portion, path: &[&str], value: &Value) -> Result<(), Refused> {
+    match path {
+        ["inputs", n, field] => {
+            let input = &mut portion.inputs[index(n, 4)?];
+            match *field {
+                "register" => choose(&mut input.register, value),
+                "component" => choose(&mut input.component, value),
+                "mapping" => choose(&mut input.mapping, value),
+                other => Err(unknown(other)),
+            }
+        }
+        ["ab_output"] => choose(&mut portion.ab_output, value),
+        ["cd_output"] => choose(&mut portion.cd_output, value),
+        ["sum_output"] => choose(&mut portion.sum_output, value),
+        ["ab_dot_product"] => switch(&mut portion.ab_dot_product, value),
+        ["cd_dot_product"] => switch(&mut portion.cd_dot_product, value),
+        ["mux"] => switch(&mut portion.mux, value),
+        ["scale"] => choose(&mut portion.scale, value),
+        ["bias"] => choose(&mut portion.bias, value),
+        ["ab_blue_to_alpha"] => switch(&mut portion.ab_blue_to_alpha, value),
+        ["cd_blue_to_alpha"] => switch(&mut portion.cd_blue_to_alpha, value),
+        _ => Err(unknown(path.join("."))),
+    }
+}
+
+fn unknown(what: impl Display) -> Refused {
+    format!("a program has no `{what}`")
+}
+
+fn index(text: &str, count: usize) -> Result<usize, Refused> {
+    text.parse().ok().filter(|n| *n < count).ok_or_else(|| unknown(text))
+}
+
+fn choose<T: Named>(field: &mut T, value: &Value) -> Result<(), Refused> {
+    let name = value.as_str().unwrap_or_default();
+    *field = T::from_name(name).ok_or_else(|| format!("`{name}` is not one of {}", T::NAMES.join(", ")))?;
+    Ok(())
+}
+
+fn switch(field: &mut bool, value: &Value) -> Result<(), Refused> {
+    *field = value.as_bool().ok_or("neither true nor false")?;
+    Ok(())
+}
+
+fn color(value: &Value) -> Result<[u8; 4], Refused> {
+    let byte = |n: usize| value[n].as_u64().and_then(|n| u8::try_from(n).ok());
+    let bytes = [byte(0), byte(1), byte(2), byte(3)];
+    let [Some(r), Some(g), Some(b), Some(a)] = bytes else { return Err("a colour is four bytes".to_owned()) };
+    Ok([r, g, b, a])
+}
+
+/// A pasted program as scenes write it.
+pub(crate) fn pasted(language: &str, program: &str) -> Result<String, Refused> {
+    let program = program.trim();
+    Ok(match language {
+        "scene" => program.to_owned(),
+        "RegisterWords" => format!("RegisterWords(text: {})", quoted(program)),
+        "CombinerText" | "CombinerCalls" => format!("{language}({})", quoted(program)),
+        other => return Err(format!("`{other}` is not a language of programs")),
+    })
+}
+
+/// A text in quotes, with as many number signs as it needs.
+fn quoted(text: &str) -> String {
+    let mut signs = String::from("#");
+    while text.contains(&format!("\"{signs}")) {
+        signs.push('#');
+    }
+    format!("r{signs}\"\n{}\"{signs}", text.trim_end().to_owned() + "\n")
+}
+
+/// The scene's text with another program in a draw.
+pub(crate) fn replaced(text: &str, draw: usize, program: &str) -> Result<String, Refused> {
+    let tree = outline(text);
+    let number = draw.to_string();
+    let node = tree.at(&["draws", &number, "program"]);
+    let node = node.ok_or("this draw's text has no `program` that could be replaced")?;
+    let mut changed = text.to_owned();
+    changed.replace_range(node.span.clone(), program);
+    Ok(changed)
+}
