@@ -5,12 +5,14 @@
 
 mod code;
 mod describe;
+pub mod layout;
 mod program;
+pub mod raster;
 mod text;
 
 use ninebit::state::{Named, Profile, named};
 
-pub use code::{refusal, stored};
+pub use code::{OPERATIONS, component, refusal, register_code, stored};
 pub use describe::{Description, describe};
 pub use program::{decode, encode, word_of};
 pub use text::{Written, read};
