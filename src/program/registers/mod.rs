@@ -77,6 +77,14 @@ impl Word {
         }
     }
 
+    /// The word that a method sets, and which of them; `None` if it sets none of these.
+    pub fn of_method(method: u32, chip: Profile) -> Option<(Word, usize)> {
+        Word::ALL.iter().find_map(|word| {
+            let at = method.checked_sub(word.method(chip))?;
+            (at % 4 == 0 && ((at / 4) as usize) < word.count(chip)).then_some((*word, at as usize / 4))
+        })
+    }
+
     /// How it is written: `RC_IN_RGB[1]`, or `RC_FINAL0` if there is only one.
     pub fn label(self, chip: Profile, index: usize) -> String {
         let name = self.name().to_uppercase();
