@@ -1,6 +1,6 @@
 //! The generic text against the model: random words of both chips, a pixel of each through compiled C and through a shader. What is not installed is ignored.
 //!
-//! `NINEBIT_GENERIC_PROGRAMS` says how many programs, `NINEBIT_GENERIC_SEED` chooses others; `CC`, `NINEBIT_LOWER_CFLAGS` and `NINEBIT_LOWER_PYTHON` are as in `languages`.
+//! `NINEBIT_GENERIC_PROGRAMS` says how many programs, `NINEBIT_GENERIC_LEVEL=1` takes tables of level L1, `NINEBIT_GENERIC_SEED` chooses others; `CC`, `NINEBIT_LOWER_CFLAGS` and `NINEBIT_LOWER_PYTHON` are as in `languages`.
 #![allow(
     missing_docs,
     unreachable_pub,
@@ -8,6 +8,7 @@
     reason = "tests fail by panicking, and the harness needs no documents"
 )]
 
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::Command;
 
@@ -17,12 +18,17 @@ use ninebit::combiner::registers::Registers;
 use ninebit::random::Random;
 use ninebit::rop::{blend, surface};
 use ninebit::state::{
-    Blend, BlendEquation, BlendFactor, CompareFunction, Named, POLICIES, Policies, Profile, Register, SurfaceFormat,
+    Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, FinalRegister, Named, POLICIES, Policies, Profile,
+    Register, SurfaceFormat,
 };
 use ninebit::trace::Silent;
 use ninebit_lower::Generic;
 use ninebit_program::registers::raster::{self, Method};
-use ninebit_program::registers::{RegisterWords, Word, decode, refusal, stored};
+use ninebit_program::registers::{RegisterWords, Word, decode, encode, refusal, stored};
+use ninebit_vectors::cases::Level;
+use ninebit_vectors::gpu::{self, Case, recipes};
+use ninebit_vectors::table::{Contents, Writer};
+use ninebit_vectors::units;
 
 /// Words of a pixel: state, inputs, what is expected.
 const COLUMNS: usize = 128;
@@ -160,17 +166,18 @@ fn run(command: &mut Command, folder: &Path) -> Result<(), Failed> {
     Err(format!("{command:?}:\n{}", text.chars().take(4000).collect::<String>()).into())
 }
 
-/// Reads pixels from a file and compares what they come to.
+/// Reads pixels from a file and compares what they come to; given an argument, prints it.
 const MAIN: &str = r#"
 #include "ninebit_combiners.h"
 #include <stdio.h>
 #include <string.h>
 
-int main(void)
+int main(int count, char **arguments)
 {
     static uint32_t row[128];
     FILE *file = fopen("pixels.bin", "rb");
     long n = 0, wrong = 0;
+    (void)arguments;
     if (!file) return 2;
     while (fread(row, sizeof row, 1, file) == 1) {
         struct nb_state state;
@@ -180,11 +187,12 @@ int main(void)
         memcpy(&inputs, row + sizeof state / 4, sizeof inputs);
         want = row[(sizeof state + sizeof inputs) / 4];
         got = nb_pixel(&state, &inputs);
-        if (got != want && wrong++ == 0) printf("pixel %ld: %08x, not %08x\n", n, (unsigned)got, (unsigned)want);
+        if (count > 1) printf("%08x\n", (unsigned)got);
+        if (got != want && wrong++ == 0) fprintf(stderr, "pixel %ld: %08x, not %08x\n", n, (unsigned)got, (unsigned)want);
         n++;
     }
     fclose(file);
-    printf("%ld pixels, %ld wrong\n", n, wrong);
+    fprintf(stderr, "%ld pixels, %ld wrong\n", n, wrong);
     return wrong != 0 || n == 0;
 }
 "#;
@@ -304,12 +312,165 @@ fn glsl() -> Result<(), Failed> {
         std::fs::write(folder.path().join("expected.bin"), bytes(&expected))?;
         let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/glsl.py");
         let mut command = Command::new(python());
-        command
-            .env("LIBGL_ALWAYS_SOFTWARE", "1")
-            .env("GALLIUM_DRIVER", "llvmpipe")
-            .env("NINEBIT_COLUMNS", COLUMNS.to_string());
-        run(command.arg(script).arg("1"), folder.path())?;
+        command.env("LIBGL_ALWAYS_SOFTWARE", "1").env("GALLIUM_DRIVER", "llvmpipe");
+        run(command.arg(script).args(["1", &COLUMNS.to_string()]), folder.path())?;
         println!("generic GLSL of {:?}: {programs} programs", text.chip);
+    }
+    Ok(())
+}
+
+/// Pixels that show a row of a table, and what has to be seen of their words.
+type Shown = (Vec<Vec<u32>>, Box<dyn Fn(&[u32]) -> bool>);
+
+/// A pixel of a program whose other words are these, by name.
+fn pixel(generic: &Generic, named: &[(&str, u32)], program: &Combiners, inputs: [u32; INPUTS]) -> Vec<u32> {
+    let chip = generic.chip;
+    let words = encode(program, chip);
+    let mut out: Vec<u32> = words.all().map(|(_, _, value)| value).collect();
+    out.extend(Method::ALL.iter().map(|method| {
+        let plain = match method {
+            Method::SurfaceFormat => raster::surface_format(SurfaceFormat::A8R8G8B8),
+            Method::ColorMask => 0x0101_0101,
+            _ => 0,
+        };
+        named.iter().find(|(name, _)| *name == method.name()).map_or(plain, |(_, value)| *value)
+    }));
+    out.extend(inputs);
+    out.resize(COLUMNS, 0);
+    out
+}
+
+/// A row of a unit, if the text can show it.
+fn shown(generic: &Generic, unit: &str, case: &Case<'_>) -> Option<Shown> {
+    let columns = case.inputs.iter().chain(case.results).zip(case.row.inputs.iter().chain(&case.row.results));
+    let all: Vec<(String, i64)> = columns.map(|(column, value)| (column.name.clone(), *value)).collect();
+    let number = |name: &str| all.iter().find(|(known, _)| known == name).map(|(_, value)| *value as u32).unwrap();
+    let four = |name: &str| ["r", "g", "b", "a"].map(|channel| number(&format!("{name}.{channel}")));
+    let word = |[r, g, b, a]: [u32; 4]| a << 24 | r << 16 | g << 8 | b;
+    // What is interpolated is the fragment.
+    let plain = Combiners::showing(FinalRegister::PrimaryColor);
+    let given = |primary: [u32; 4], held: u32| {
+        let mut inputs = [0; INPUTS];
+        inputs[..4].copy_from_slice(&primary);
+        inputs[INPUTS - 1] = held;
+        inputs
+    };
+    match unit {
+        "alpha-test" => {
+            let function = raster::compare_function(CompareFunction::ALL[number("cfg.function") as usize]);
+            let state = [("alpha_test_enable", 1), ("alpha_func", function), ("alpha_ref", number("cfg.reference"))];
+            let passes = number("out.passes") != 0;
+            let inputs = given([255, 255, 255, number("in.alpha")], 0);
+            Some((vec![pixel(generic, &state, &plain, inputs)], Box::new(move |words| (words[0] != 0) == passes)))
+        }
+        "blend" => {
+            let factor = |name: &str| raster::blend_factor(BlendFactor::ALL[number(name) as usize]);
+            let state = [
+                ("blend_enable", 1),
+                ("blend_equation", raster::blend_equation(BlendEquation::ALL[number("cfg.equation") as usize])),
+                ("blend_func_sfactor", factor("cfg.source_factor")),
+                ("blend_func_dfactor", factor("cfg.destination_factor")),
+                ("blend_color", word(four("in.constant"))),
+            ];
+            let inputs = given(four("in.source"), word(four("in.destination")));
+            let wanted = word(four("out"));
+            Some((vec![pixel(generic, &state, &plain, inputs)], Box::new(move |words| words[0] == wanted)))
+        }
+        "surface-store" => {
+            let format = raster::surface_format(SurfaceFormat::ALL[number("cfg.format") as usize]);
+            let inputs = given(four("in"), 0);
+            let wanted = number("out.word");
+            let state = [("surface_format", format)];
+            Some((vec![pixel(generic, &state, &plain, inputs)], Box::new(move |words| words[0] == wanted)))
+        }
+        _ => {
+            let placements = recipes(unit).iter().filter_map(|recipe| recipe(case));
+            let placement = placements.into_iter().find(|placement| placement.path == gpu::Path::Combiners)?;
+            let mut inputs = [0; INPUTS];
+            for (name, bytes) in &placement.sources {
+                let sources = ["primary", "secondary", "fog", "texture0", "texture1", "texture2", "texture3"];
+                let at = 4 * sources.iter().position(|known| known == name).unwrap();
+                (0..4).for_each(|c| inputs[at + c] = bytes[c].into());
+            }
+            let fog = placement.state.iter().find_map(|line| line.strip_prefix("fog_color "));
+            if let Some(byte) = fog.and_then(|rest| rest.split(' ').next()) {
+                inputs[8..11].fill(byte.parse().unwrap());
+            }
+            let draws = &placement.draws;
+            let pixels =
+                draws.iter().map(|draw| pixel(generic, &[], draw.combiners.as_ref().unwrap(), inputs)).collect();
+            let reads: Vec<Vec<gpu::Read>> = draws.iter().map(|draw| draw.reads.clone()).collect();
+            let kinds: Vec<_> = case.results.iter().map(|column| (column.name.clone(), column.kind.clone())).collect();
+            let results = case.row.results.clone();
+            Some((
+                pixels,
+                Box::new(move |words| {
+                    let mut sums: BTreeMap<&str, i64> = BTreeMap::new();
+                    for (reads, word) in reads.iter().zip(words) {
+                        let channels = surface::read(SurfaceFormat::A8R8G8B8, *word);
+                        for read in reads {
+                            *sums.entry(&read.column).or_default() += read.weight * i64::from(channels[read.channel]);
+                        }
+                    }
+                    sums.iter().all(|(name, sum)| {
+                        let at = kinds.iter().position(|(known, _)| known == name).unwrap();
+                        kinds[at].1.read(&sum.to_string()) == Some(results[at])
+                    })
+                }),
+            ))
+        }
+    }
+}
+
+/// Rows of tables, whose numbers come from another place than the programs above: every row that a frame buffer can show.
+fn rows() -> Result<(), Failed> {
+    let level = if setting("NINEBIT_GENERIC_LEVEL") == Some(1) { Level::L1 } else { Level::L0 };
+    let text = Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT };
+    let folder = tempfile::tempdir()?;
+    compile(&text, |source| source, folder.path())?;
+    let units = [
+        "input-mapping",
+        "product",
+        "sum",
+        "dot-product",
+        "mux",
+        "scale-bias",
+        "general-stage",
+        "alpha-portion",
+        "two-stages",
+        "final-combiner",
+        "alpha-test",
+        "blend",
+        "surface-store",
+    ];
+    for name in units {
+        let unit = units::by_name(name).unwrap();
+        let writer = Writer::new(Contents { unit, profile: text.chip, level, seed: 1 });
+        let (mut pixels, mut checks, mut all) = (Vec::new(), Vec::new(), 0);
+        writer
+            .each(false, |row| {
+                all += 1;
+                let case = Case { inputs: writer.inputs(), results: writer.results(), row, profile: text.chip };
+                if let Some((shown, check)) = shown(&text, name, &case) {
+                    checks.push((shown.len(), check, writer.id(&row.inputs)));
+                    shown.into_iter().for_each(|pixel| pixels.extend(pixel));
+                }
+                Ok::<(), ()>(())
+            })
+            .unwrap();
+        std::fs::write(folder.path().join("pixels.bin"), bytes(&pixels))?;
+        // What is wanted of single pixels is not known: the status says nothing.
+        let output = Command::new("./pixels").arg("words").current_dir(folder.path()).output()?;
+        let lines = std::str::from_utf8(&output.stdout)?.lines();
+        let words: Vec<u32> = lines.map(|word| u32::from_str_radix(word, 16).unwrap()).collect();
+        assert_eq!(words.len() * COLUMNS, pixels.len(), "{name}");
+        let mut at = 0;
+        for (count, check, id) in &checks {
+            assert!(check(&words[at..at + count]), "{name}: row {id}: {:08x?}", &words[at..at + count]);
+            at += count;
+        }
+        assert!(10 * checks.len() > all, "{name}: {} of {all} rows are shown", checks.len());
+        println!("{name}: {} of {all} rows, {} pixels", checks.len(), words.len());
     }
     Ok(())
 }
@@ -333,6 +494,7 @@ fn main() {
     let draws = works(&python(), &["-c", "import moderngl, numpy"]);
     let trials = vec![
         Trial::test("c99", c99).with_ignored_flag(!compiles),
+        Trial::test("rows of tables", rows).with_ignored_flag(!compiles),
         Trial::test("planted errors are noticed", errors_are_noticed).with_ignored_flag(!compiles),
         Trial::test("glsl", glsl).with_ignored_flag(!draws),
     ];

@@ -1,11 +1,10 @@
 """Draws every shader of a folder by OpenGL without a window and compares its pixels with what is expected of them."""
-import os
 import sys
 
 import moderngl
 import numpy
 
-COLUMNS = int(os.environ.get("NINEBIT_COLUMNS", "64"))
+COLUMNS = int(sys.argv[2]) if len(sys.argv) > 2 else 64
 count = int(sys.argv[1])
 pool = numpy.fromfile("pool.bin", "<i4").reshape(-1, COLUMNS)
 rows = len(pool)
