@@ -159,6 +159,17 @@ fn programs_are_printed_as_functions() {
     assert!(stages.contains("expand(tex0) . expand(const0)"), "{stages}");
     bench.write("wrong.words", "RC_IN_RGB 1 2 3\n");
     bench.run("lower wrong.words --profile nv10 --to c99").failed(3, "wrong.words:1:15");
+    bench.run("lower --generic --to c99 -o vendor").text();
+    let [header, source] = ["h", "c"].map(|end| {
+        let path = bench.path(&format!("vendor/ninebit_combiners.{end}"));
+        fs::read_to_string(path).unwrap()
+    });
+    let whole = bench.run("lower --generic --to c99").text();
+    assert!(whole.starts_with(&header) && whole.ends_with(source.split_once("h\"\n").unwrap().1), "{whole}");
+    assert!(bench.run("lower --generic --to glsl --profile nv10").text().contains("uint rc_in_rgb[2];"));
+    bench.run("lower --generic --to wgsl").failed(2, "no generic text");
+    bench.run("lower --generic --to glsl -o vendor").failed(2, "stdout");
+    bench.run("lower --generic lit.words --to c99").failed(2, "cannot be used with");
     bench.run("registers gone.words").failed(4, "NB0502");
     assert!(bench.run("registers lit.words --profile nv10").text().contains("0c040220"));
 }

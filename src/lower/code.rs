@@ -17,7 +17,7 @@ pub enum Operand {
 }
 
 /// What a value is: a number, or the bits of a stored word or texel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
     /// Two's complement, within 32 bits.
     Number,
@@ -189,9 +189,33 @@ pub struct Code {
 }
 
 impl Code {
-    /// The lines.
-    pub fn lines(self) -> Vec<Line> {
-        self.lines.into_inner()
+    /// The lines that these values are made of, numbered anew, and what the values are among them.
+    pub fn kept(self, roots: &[Operand]) -> (Vec<Line>, impl Fn(Operand) -> Operand + use<>) {
+        let lines = self.lines.into_inner();
+        let mut used = vec![false; lines.len()];
+        let mut open: Vec<Operand> = roots.to_vec();
+        while let Some(operand) = open.pop() {
+            if let Operand::Line(line) = operand
+                && !std::mem::replace(&mut used[line as usize], true)
+            {
+                open.extend(lines[line as usize].operation.operands());
+            }
+        }
+        let mut number = 0;
+        let numbers: Vec<u32> = used
+            .iter()
+            .map(|used| {
+                number += u32::from(*used);
+                number.wrapping_sub(1)
+            })
+            .collect();
+        let renamed = move |operand: Operand| match operand {
+            Operand::Line(line) => Operand::Line(numbers[line as usize]),
+            constant => constant,
+        };
+        let lines = lines.into_iter().zip(&used).filter(|(_, used)| **used);
+        let lines = lines.map(|(line, _)| Line { operation: line.operation.renamed(&renamed), ..line }).collect();
+        (lines, renamed)
     }
 
     /// What is made from here on is asked for by this rule.

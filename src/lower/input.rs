@@ -33,6 +33,19 @@ pub enum Input {
     AlphaReference,
     /// A channel of a unit's border colour: unit and channel.
     BorderColor(usize, usize),
+    /// A variable of the text that the value stands in.
+    Local(Local),
+}
+
+/// A variable of the text that a value stands in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Local {
+    /// How it is written.
+    pub name: &'static str,
+    /// What it is.
+    pub kind: Kind,
+    /// What it can be.
+    pub range: Range,
 }
 
 /// A weight of a filter: of the right texels, of the lower ones, of the same on the next level, of the next level.
@@ -66,6 +79,7 @@ impl Input {
         match self {
             Input::Texture(..) => (-256, 255),
             Input::Texel(..) | Input::Destination => (0, 0xffff_ffff),
+            Input::Local(local) => local.range,
             _ => (0, 255),
         }
     }
@@ -74,6 +88,7 @@ impl Input {
     pub fn kind(self) -> Kind {
         match self {
             Input::Texel(..) | Input::Destination => Kind::Word,
+            Input::Local(local) => local.kind,
             _ => Kind::Number,
         }
     }

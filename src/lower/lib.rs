@@ -15,6 +15,7 @@
 //! ```
 
 pub mod code;
+mod generic;
 mod input;
 mod language;
 mod number;
@@ -22,6 +23,7 @@ mod order;
 mod pixel;
 mod texel;
 
-pub use input::{Input, Weight};
+pub use generic::{Generic, Sources};
+pub use input::{Input, Local, Weight};
 pub use language::{Language, Named};
 pub use pixel::{Function, Options, Result, Textures};

@@ -22,6 +22,8 @@ pub(crate) enum Block {
     Final,
     /// The raster operations.
     Raster,
+    /// A rule by itself.
+    Piece,
 }
 
 /// Writes down what the order does.
@@ -32,11 +34,13 @@ pub(crate) struct Listing<'a> {
     block: Block,
     /// How often the text has passed each place of the final combiner.
     passed: [usize; 16],
+    /// Places of registers in the order in which the text passes them.
+    sites: Vec<Site>,
 }
 
 impl<'a> Listing<'a> {
     pub(crate) fn new(code: &'a Code, policies: Policies) -> Listing<'a> {
-        Listing { code, policies, block: Block::Final, passed: [0; 16] }
+        Listing { code, policies, block: Block::Final, passed: [0; 16], sites: Vec::new() }
     }
 
     /// What comes now is part of this.
@@ -44,11 +48,16 @@ impl<'a> Listing<'a> {
         self.block = block;
     }
 
+    /// The places of registers that the text has passed; from here on they are collected anew.
+    pub(crate) fn take_sites(&mut self) -> Vec<Site> {
+        std::mem::take(&mut self.sites)
+    }
+
     fn named(&mut self, Site(bits): Site, value: Number<'a>) {
         let at = bits.trailing_zeros() as usize;
         let channel = channel_name(at % 4);
         let name = match self.block {
-            Block::Raster => None,
+            Block::Raster | Block::Piece => None,
             Block::Stage(_) if at >= 40 => None,
             Block::Stage(stage) => {
                 let portion = if at % 4 == 3 { "alpha" } else { "rgb" };
@@ -135,6 +144,7 @@ impl<'a> Algebra for Listing<'a> {
     }
     fn register(&mut self, site: Site, value: impl FnOnce(&mut Self) -> Number<'a>) -> Number<'a> {
         let register = value(self);
+        self.sites.push(site);
         self.named(site, register);
         register
     }

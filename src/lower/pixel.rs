@@ -227,30 +227,7 @@ impl Function {
 
     /// Keeps what the result is made of, and numbers it anew.
     fn new(code: Code, result: Result, options: &Options) -> Function {
-        let lines = code.lines();
-        let mut used = vec![false; lines.len()];
-        let mut open: Vec<Operand> = result.operands();
-        while let Some(operand) = open.pop() {
-            if let Operand::Line(line) = operand
-                && !std::mem::replace(&mut used[line as usize], true)
-            {
-                open.extend(lines[line as usize].operation.operands());
-            }
-        }
-        let mut number = 0;
-        let numbers: Vec<u32> = used
-            .iter()
-            .map(|used| {
-                number += u32::from(*used);
-                number.wrapping_sub(1)
-            })
-            .collect();
-        let renamed = |operand: Operand| match operand {
-            Operand::Line(line) => Operand::Line(numbers[line as usize]),
-            constant => constant,
-        };
-        let lines = lines.into_iter().zip(&used).filter(|(_, used)| **used);
-        let lines = lines.map(|(line, _)| Line { operation: line.operation.renamed(renamed), ..line }).collect();
+        let (lines, renamed) = code.kept(&result.operands());
         Function { lines, result: result.renamed(renamed), uniform: options.uniform }
     }
 

@@ -6,7 +6,7 @@
 //! LICENSE                 CC0 1.0
 //! schema/*.schema.json    what the JSON files hold
 //! units/UNIT.tsv          the rows
-//! units/UNIT.hex, .json, .svh, .h, .jsonl    views, where asked for
+//! units/UNIT.hex, .jsonl, .rows.h and others  views, where asked for
 //! ```
 
 use std::io::Write;

@@ -1,7 +1,7 @@
 //! Views: the same rows for readers that want no text.
 //!
 //! `hex` packs a row into one word, the first column in its top bits, for `$readmemh`; `json`, `svh` and `h` say which bits a column has. `jsonl` has one
-//! object a row. `gpu` has draws ([`gpu`](super::gpu)).
+//! object a row. `c` has an array of structures, for tests without a reader. `gpu` has draws ([`gpu`](super::gpu)).
 
 use std::fmt::Write;
 
@@ -18,6 +18,8 @@ named! {
         Hex,
         /// One JSON object a row.
         Jsonl,
+        /// An array of structures for C.
+        C,
         /// Draws for a graphics card, of units that one can show.
         Gpu,
     }
@@ -45,6 +47,12 @@ impl View {
                 ("svh", Content::Whole(verilog_header)),
                 ("h", Content::Whole(c_header)),
             ],
+            View::C => {
+                vec![
+                    ("rows.h", Content::Whole(rows_header)),
+                    ("rows.inc", Content::Rows(|_| String::new(), initializer)),
+                ]
+            }
             // Rows are put together before any is written.
             View::Gpu => Vec::new(),
             View::Jsonl => vec![("jsonl", Content::Rows(|_| String::new(), |layout, row| object(layout.writer, row)))],
@@ -125,6 +133,44 @@ fn object(writer: &Writer, row: &Row) -> String {
     Value::Object(object).to_string()
 }
 
+/// A row as an initializer of C: the numbers of its columns, then its id.
+fn initializer(layout: &Layout, row: &Row) -> String {
+    let columns = layout.slices.iter().map(|slice| &slice.column.kind);
+    let numbers = columns.zip(row.inputs.iter().chain(&row.results)).map(|(kind, value)| match kind {
+        Kind::Hex(_) => format!("{value:#x}u"),
+        _ => value.to_string(),
+    });
+    format!("{{{}, \"{}\"}},", numbers.collect::<Vec<_>>().join(", "), layout.writer.id(&row.inputs))
+}
+
+/// The structure of a row and the array of all of them, for C.
+fn rows_header(layout: &Layout) -> String {
+    let unit = layout.unit();
+    let lower = identifier(unit).to_lowercase();
+    let mut text = format!("/* The rows of {unit}.tsv: `{lower}_rows`. */\n#include <stdint.h>\n\n");
+    let names = layout.slices.iter().filter_map(|slice| match slice.column.kind {
+        Kind::Name(names) => Some((&slice.column.name, names)),
+        _ => None,
+    });
+    for (column, names) in names {
+        let name = format!("{}_{}", identifier(unit), identifier(column));
+        let all: Vec<String> = names.iter().map(|variant| format!("{name}_{}", identifier(variant))).collect();
+        let _ = writeln!(text, "enum {{ {} }};", all.join(", "));
+    }
+    let _ = writeln!(text, "struct {lower}_row {{");
+    for Slice { column, .. } in &layout.slices {
+        let sign = if column.kind.is_signed() { "" } else { "u" };
+        let bits = column.kind.bits().next_power_of_two().max(8);
+        let halves = if matches!(column.kind, Kind::Halves(_)) { " /* in halves */" } else { "" };
+        let _ = writeln!(text, "    {sign}int{bits}_t {};{halves}", identifier(&column.name).to_lowercase());
+    }
+    let _ = write!(
+        text,
+        "    const char *id;\n}};\nstatic const struct {lower}_row {lower}_rows[] = {{\n#include \"{unit}.rows.inc\"\n}};\n"
+    );
+    text
+}
+
 fn layout_json(layout: &Layout) -> String {
     let fields: Vec<Value> = layout
         .slices
@@ -182,4 +228,37 @@ fn c_header(layout: &Layout) -> String {
     }
     text.push_str("\n#endif\n");
     text
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
+    use super::*;
+    use crate::cases::Level;
+    use crate::table::Contents;
+    use crate::units;
+    use ninebit::state::Profile;
+
+    /// An initializer has a number for each member, and every member holds what its column can be.
+    #[test]
+    fn structures_hold_their_rows() {
+        for unit in units::all() {
+            let writer = Writer::new(Contents { unit, profile: Profile::Nv2a, level: Level::L0, seed: 1 });
+            let layout = Layout::new(&writer);
+            let header = rows_header(&layout);
+            for slice in &layout.slices {
+                let member = header.lines().find(|line| {
+                    let name = line.split(' ').rfind(|word| word.ends_with(';')).unwrap_or_default();
+                    name.trim_end_matches(';') == identifier(&slice.column.name).to_lowercase()
+                });
+                let member = member.unwrap().trim();
+                let (least, greatest) = slice.column.kind.range();
+                let bits: u32 = member.split_once("int").unwrap().1.split_once("_t").unwrap().0.parse().unwrap();
+                let signed = !member.starts_with('u');
+                assert!(least >= 0 || signed, "{member}");
+                assert!(i128::from(greatest) < 1 << (bits - u32::from(signed)), "{member}");
+                assert!(!signed || i128::from(least) >= -(1 << (bits - 1)), "{member}");
+            }
+        }
+    }
 }

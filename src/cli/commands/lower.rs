@@ -1,13 +1,13 @@
 //! `ninebit lower`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::shown;
 use ninebit::state::{Draw, Scene};
-use ninebit_files::output::write_text;
-use ninebit_lower::{Function, Language, Named, Options, Textures};
+use ninebit_files::output::{write_below, write_text};
+use ninebit_lower::{Function, Generic, Language, Named, Options, Sources, Textures};
 use ninebit_program::{registers, text};
 use ninebit_scene::register_words;
 
@@ -19,8 +19,14 @@ use super::scene::{PolicyArguments, chosen_draws, load};
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// The scene file, or a pixel program in a file of its own
-    #[arg(value_name = "SCENE|PROGRAM")]
-    source: PathBuf,
+    #[arg(value_name = "SCENE|PROGRAM", required_unless_present = "generic")]
+    source: Option<PathBuf>,
+    /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs
+    #[arg(long, conflicts_with_all = ["source", "language", "draw", "uniform", "textures", "fragment"])]
+    generic: bool,
+    /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c to this folder; without it, one text of both goes to stdout
+    #[arg(short, long, value_name = "FOLDER", requires = "generic")]
+    output: Option<PathBuf>,
     #[command(flatten)]
     program: ProgramArguments,
     #[command(flatten)]
@@ -83,7 +89,8 @@ impl Form {
 
 /// Prints programs in another form.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let (path, program) = (&arguments.source, &arguments.program);
+    let program = &arguments.program;
+    let Some(path) = &arguments.source else { return generic(arguments) };
     let alone = program.language(path);
     let scene = match alone {
         Some(language) => program.read(path, language, context)?.0,
@@ -91,10 +98,32 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     };
     let draws = chosen_draws(&scene, arguments.draw)?;
     let out = match arguments.to.language() {
-        Some(language) => functions(arguments, language, &scene, &draws, alone.is_some())?,
+        Some(language) => functions(arguments, path, language, &scene, &draws, alone.is_some())?,
         None => programs(arguments, &scene, &draws, alone.is_some()),
     };
     Ok(write_text(&out)?)
+}
+
+/// The text for every program.
+fn generic(arguments: &Arguments) -> Result<(), Failure> {
+    let text = Generic { chip: arguments.program.profile(), policies: arguments.policies.policies()? };
+    match (arguments.to, &arguments.output) {
+        (Form::C99, Some(folder)) => {
+            let Sources { header, source } = text.c99();
+            write_below(&folder.join("ninebit_combiners.h"), header.as_bytes())?;
+            Ok(write_below(&folder.join("ninebit_combiners.c"), source.as_bytes())?)
+        }
+        (Form::C99, None) => Ok(write_text(&text.c99().whole())?),
+        (Form::Glsl, None) => Ok(write_text(&text.glsl())?),
+        (Form::Glsl, Some(_)) => Err(Failure::usage(
+            "`--output` is for the two files of C99".to_string(),
+            "a shader is one text: leave `--output` out and take it from stdout",
+        )),
+        _ => Err(Failure::usage(
+            "there is no generic text of this form".to_string(),
+            "take `--to c99` or `--to glsl`; every other form needs a scene or a program",
+        )),
+    }
 }
 
 /// The programs of draws as text or as words.
@@ -125,6 +154,7 @@ fn programs(arguments: &Arguments, scene: &Scene, draws: &[(usize, &Draw)], alon
 /// Draws, or a program alone, as functions.
 fn functions(
     arguments: &Arguments,
+    path: &Path,
     language: Language,
     scene: &Scene,
     draws: &[(usize, &Draw)],
@@ -145,7 +175,7 @@ fn functions(
         .iter()
         .map(|(number, draw)| {
             if alone {
-                let about = format!("{} on {}", shown::path(&arguments.source), arguments.program.profile_name());
+                let about = format!("{} on {}", shown::path(path), arguments.program.profile_name());
                 let function = Function::of_program(&draw.combiners, &options);
                 return ("ninebit_program".to_string(), about, function);
             }

@@ -114,6 +114,11 @@ impl ProgramArguments {
     }
 
     /// The name of the chip.
+    pub(crate) fn profile(&self) -> Profile {
+        self.profile
+    }
+
+    /// Its name.
     pub(crate) fn profile_name(&self) -> &'static str {
         self.profile.name()
     }

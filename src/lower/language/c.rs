@@ -114,6 +114,7 @@ impl Syntax for C99 {
             Input::BlendConstant(c) => format!("constants->blend[{c}]"),
             Input::AlphaReference => "constants->alpha_reference".to_string(),
             Input::BorderColor(n, c) => format!("constants->border[{n}][{c}]"),
+            Input::Local(local) => local.name.to_string(),
         }
     }
 

@@ -86,6 +86,7 @@ impl Syntax for Glsl {
             Input::BlendConstant(c) => format!("constants.blend.{}", letter(c)),
             Input::AlphaReference => "constants.alpha_reference".to_string(),
             Input::BorderColor(n, c) => format!("constants.border[{n}].{}", letter(c)),
+            Input::Local(local) => local.name.to_string(),
         }
     }
 

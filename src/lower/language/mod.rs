@@ -56,7 +56,7 @@ impl Language {
         self.syntax().input(input)
     }
 
-    fn syntax(self) -> &'static dyn Syntax {
+    pub(crate) fn syntax(self) -> &'static dyn Syntax {
         match self {
             Language::C99 => &c::C99,
             Language::Glsl => &glsl::Glsl,
@@ -67,7 +67,7 @@ impl Language {
 }
 
 /// What a language says differently.
-trait Syntax {
+pub(crate) trait Syntax {
     /// What stands before all functions.
     fn head(&self, functions: &[Named<'_>]) -> String;
     /// A whole function.
@@ -94,7 +94,7 @@ trait Syntax {
 
 /// What languages write differently.
 #[derive(Clone, Copy, Debug)]
-enum Call {
+pub(crate) enum Call {
     Least,
     Greatest,
     /// Test, then, otherwise.
@@ -105,7 +105,7 @@ enum Call {
 
 /// A piece of text.
 #[derive(Clone, Debug)]
-enum Text {
+pub(crate) enum Text {
     /// A name, a constant, a call: nothing binds into it.
     Term(String),
     /// Operators that nothing encloses.
@@ -128,34 +128,43 @@ impl Text {
 }
 
 /// The lines of a function as text.
-struct Body<'f> {
+pub(crate) struct Body<'f> {
     /// Declarations, in order.
-    declarations: Vec<String>,
+    pub(crate) declarations: Vec<String>,
     lines: &'f [Line],
     texts: Vec<(Text, BTreeSet<&'static str>)>,
 }
 
 impl<'f> Body<'f> {
     fn new(syntax: &(impl Syntax + ?Sized), function: &'f Function) -> Body<'f> {
-        let lines = &function.lines[..];
+        let test = match function.result {
+            Result::Stored { test: Some(Test(_, operands)), .. } => operands.to_vec(),
+            _ => Vec::new(),
+        };
+        Body::of(syntax, &function.lines, &function.result.operands(), &test)
+    }
+
+    /// Lines of which these values are the results, and of these some are compared.
+    pub(crate) fn of(
+        syntax: &(impl Syntax + ?Sized),
+        lines: &'f [Line],
+        results: &[Operand],
+        test: &[Operand],
+    ) -> Body<'f> {
         let mut uses = vec![0; lines.len()];
-        let all = lines.iter().flat_map(|line| line.operation.operands()).chain(function.result.operands());
+        let all = lines.iter().flat_map(|line| line.operation.operands()).chain(results.iter().copied());
         for operand in all {
             if let Operand::Line(line) = operand {
                 uses[line as usize] += 1;
             }
         }
-        let test = match function.result {
-            Result::Stored { test: Some(Test(_, operands)), .. } => operands.to_vec(),
-            _ => Vec::new(),
-        };
         let compared = lines.iter().flat_map(|line| match line.operation {
             Operation::Least(a, b) | Operation::Greatest(a, b) | Operation::Select(Test(_, [a, b]), _) => vec![a, b],
             Operation::Word(a) => vec![a],
             _ => Vec::new(),
         });
         let mut named = vec![false; lines.len()];
-        for operand in compared.chain(test) {
+        for operand in compared.chain(test.iter().copied()) {
             if let Operand::Line(line) = operand {
                 named[line as usize] = syntax.compares_names();
             }
@@ -200,6 +209,18 @@ impl<'f> Body<'f> {
             Operand::Constant(value) => Text::Term(syntax.constant(value, kind)),
             Operand::Line(line) => self.texts[line as usize].0.clone(),
         }
+    }
+
+    /// A result as text, and the rules that it has not told of.
+    pub(crate) fn result(&self, syntax: &(impl Syntax + ?Sized), operand: Operand, kind: Kind) -> (String, String) {
+        let rules = match operand {
+            Operand::Constant(_) => String::new(),
+            Operand::Line(line) => {
+                let rules = self.texts[line as usize].1.iter().copied().filter(|rule| !rule.is_empty());
+                rules.collect::<Vec<_>>().join(", ")
+            }
+        };
+        (self.operand(syntax, operand, kind).open(), rules)
     }
 
     fn test(&self, syntax: &(impl Syntax + ?Sized), Test(function, operands): Test) -> String {
@@ -292,7 +313,7 @@ fn comment(text: &str) -> String {
 }
 
 /// The rule of division, for the heads.
-const ROUNDING: [&str; 3] = [
+pub(crate) const ROUNDING: [&str; 3] = [
     "Numbers are two's complement and stay within 32 bits: nothing overflows. Registers hold -256 to 255, 1.0 is 255. Where a",
     "number below zero is divided, whole multiples of the divisor are added before and taken off after, because a quotient is",
     "the floor: (2 n + 255) / 510 is the nearest 255th (NUM-2). Each line has its rules and its range.",

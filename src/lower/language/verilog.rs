@@ -75,6 +75,7 @@ impl Syntax for Verilog {
             Input::BlendConstant(c) => format!("blend_constant_{}", letter(c)),
             Input::AlphaReference => "alpha_reference".to_string(),
             Input::BorderColor(n, c) => format!("border{n}_{}", letter(c)),
+            Input::Local(local) => local.name.to_string(),
         }
     }
 

@@ -59,6 +59,7 @@ fn given(steps: &HashMap<&str, (i64, &str)>, draw: &Draw, input: Input) -> i64 {
         Input::BlendConstant(c) => draw.blend_constant[c].into(),
         Input::AlphaReference => draw.alpha_test.unwrap().reference.into(),
         Input::BorderColor(n, c) => draw.textures[n].unwrap().border_color[c].into(),
+        Input::Local(local) => panic!("a draw does not read {local:?}"),
     }
 }
 

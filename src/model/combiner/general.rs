@@ -51,6 +51,12 @@ pub fn sum<A: Algebra>(ab: A::Sum, cd: A::Sum, a: &mut A) -> A::Sum {
     }
 }
 
+/// The third output at full width: the mux (CMB-10) or the sum (CMB-7).
+#[inline(always)]
+pub fn third<A: Algebra>(mux: bool, takes_cd: A::Choice, ab: A::Sum, cd: A::Sum, a: &mut A) -> A::Sum {
+    if mux { a.select(takes_cd, cd, ab) } else { sum(ab, cd, a) }
+}
+
 /// CMB-9: rounded, biased, scaled, saturated.
 #[inline(always)]
 pub fn output<A: Algebra>(portion: &Portion, raw: A::Sum, a: &mut A) -> A::Register {
@@ -132,11 +138,10 @@ fn evaluate_portion<A: Algebra, const N: usize>(
     let ab = product(Site::product(0, first), ab_dot, &factors[0], &factors[1], a);
     let cd = product(Site::product(1, first), cd_dot, &factors[2], &factors[3], a);
     let site = Site::third(first);
-    let third = match (portion.mux, ab_dot && cd_dot) {
-        (true, true) => [a.sum(site, |a| a.select(takes_cd, cd[0], ab[0])); N],
-        (true, false) => a.sums(site, |a, c| a.select(takes_cd, cd[c], ab[c])),
-        (false, true) => [a.sum(site, |a| sum(ab[0], cd[0], a)); N],
-        (false, false) => a.sums(site, |a, c| sum(ab[c], cd[c], a)),
+    let third = if ab_dot && cd_dot {
+        [a.sum(site, |a| third(portion.mux, takes_cd, ab[0], cd[0], a)); N]
+    } else {
+        a.sums(site, |a, c| third(portion.mux, takes_cd, ab[c], cd[c], a))
     };
     let outputs = [
         finish(Site::output(0, first), ab_dot, portion, &ab, a),
@@ -147,9 +152,9 @@ fn evaluate_portion<A: Algebra, const N: usize>(
     Values { factors, products, third, outputs }
 }
 
-/// AB or CD, of which the first channel is at this place.
+/// CMB-6, CMB-8: AB or CD at full width, of which the first channel is at this place.
 #[inline(always)]
-fn product<A: Algebra, const N: usize>(
+pub fn product<A: Algebra, const N: usize>(
     site: Site,
     is_dot: bool,
     x: &[A::Factor; N],

@@ -1,6 +1,6 @@
 //! Fields of single words: codes of registers, mappings and operations, and what a chip takes.
 
-use super::{Refusal, Word};
+use super::{Refusal, Word, layout};
 use ninebit::state::{
     Bias, CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Portion, Profile, Register, Scale,
 };
@@ -24,7 +24,7 @@ const REGISTERS: [(u32, FinalRegister); 14] = [
 ];
 
 /// The code of a register.
-pub(super) fn register_code(register: impl Into<FinalRegister>) -> u32 {
+pub fn register_code(register: impl Into<FinalRegister>) -> u32 {
     let register = register.into();
     REGISTERS.iter().find(|(_, known)| *known == register).map_or(0, |(code, _)| *code)
 }
@@ -41,38 +41,47 @@ fn general_register(code: u32) -> Register {
 /// A byte of an input word: mapping, component, register.
 pub(super) fn input_byte(input: &CombinerInput) -> u32 {
     let mapping = InputMapping::ALL.iter().position(|mapping| *mapping == input.mapping).unwrap_or(0) as u32;
-    mapping << 5 | u32::from(input.component == Component::Alpha) << 4 | register_code(input.register)
+    layout::MAPPING.put(mapping)
+        | layout::ALPHA.put((input.component == Component::Alpha).into())
+        | layout::REGISTER.put(register_code(input.register))
 }
 
 /// What such a byte says in an RGB or alpha portion.
 pub(super) fn input_of(byte: u32, alpha: bool) -> CombinerInput {
     CombinerInput {
-        register: general_register(byte),
-        component: component(byte, if alpha { Component::Blue } else { Component::Rgb }),
-        mapping: InputMapping::ALL[(byte >> 5 & 7) as usize],
+        register: general_register(layout::REGISTER.of(byte)),
+        component: component(byte, alpha),
+        mapping: InputMapping::ALL[layout::MAPPING.of(byte) as usize],
     }
 }
 
-fn component(byte: u32, otherwise: Component) -> Component {
-    if byte >> 4 & 1 == 1 { Component::Alpha } else { otherwise }
+/// What such a byte brings of its register to an RGB or alpha portion.
+pub fn component(byte: u32, alpha: bool) -> Component {
+    match (layout::ALPHA.is_set(byte), alpha) {
+        (true, _) => Component::Alpha,
+        (false, true) => Component::Blue,
+        (false, false) => Component::Rgb,
+    }
 }
 
 /// A byte of a final word: invert, component, register.
 pub(super) fn final_byte(input: &FinalInput) -> u32 {
-    u32::from(input.invert) << 5 | u32::from(input.component == Component::Alpha) << 4 | register_code(input.register)
+    layout::INVERT.put(input.invert.into())
+        | layout::ALPHA.put((input.component == Component::Alpha).into())
+        | layout::REGISTER.put(register_code(input.register))
 }
 
 /// What such a byte says. `alpha`: it is G.
 pub(super) fn final_of(byte: u32, alpha: bool) -> FinalInput {
     FinalInput {
-        register: final_register(byte),
-        component: component(byte, if alpha { Component::Blue } else { Component::Rgb }),
-        invert: byte >> 5 & 1 == 1,
+        register: final_register(layout::REGISTER.of(byte)),
+        component: component(byte, alpha),
+        invert: layout::INVERT.is_set(byte),
     }
 }
 
 /// Codes of scale and bias together: 5 and 7 would be a bias with x4 and x1/2.
-const OPERATIONS: [(u32, Bias, Scale); 6] = [
+pub const OPERATIONS: [(u32, Bias, Scale); 6] = [
     (0, Bias::None, Scale::One),
     (1, Bias::NegativeHalf, Scale::One),
     (2, Bias::None, Scale::Two),
@@ -84,34 +93,38 @@ const OPERATIONS: [(u32, Bias, Scale); 6] = [
 /// The output word of a portion, without what nv10 keeps beside it.
 pub(super) fn output_word(portion: &Portion) -> u32 {
     let operation = OPERATIONS.iter().find(|(_, bias, scale)| (*bias, *scale) == (portion.bias, portion.scale));
-    register_code(portion.cd_output)
-        | register_code(portion.ab_output) << 4
-        | register_code(portion.sum_output) << 8
-        | u32::from(portion.cd_dot_product) << 12
-        | u32::from(portion.ab_dot_product) << 13
-        | u32::from(portion.mux) << 14
-        | operation.map_or(0, |(code, _, _)| *code) << 15
-        | u32::from(portion.cd_blue_to_alpha) << 18
-        | u32::from(portion.ab_blue_to_alpha) << 19
+    let [ab, cd, sum] = layout::OUTPUTS;
+    let ([ab_dot, cd_dot], [ab_blue, cd_blue]) = (layout::DOT_PRODUCTS, layout::BLUE_TO_ALPHA);
+    ab.put(register_code(portion.ab_output))
+        | cd.put(register_code(portion.cd_output))
+        | sum.put(register_code(portion.sum_output))
+        | ab_dot.put(portion.ab_dot_product.into())
+        | cd_dot.put(portion.cd_dot_product.into())
+        | layout::MUX.put(portion.mux.into())
+        | layout::OPERATION.put(operation.map_or(0, |(code, _, _)| *code))
+        | ab_blue.put(portion.ab_blue_to_alpha.into())
+        | cd_blue.put(portion.cd_blue_to_alpha.into())
 }
 
 /// A portion of an input and an output word that the chip takes.
 pub(super) fn portion_of(inputs: u32, output: u32, alpha: bool) -> Portion {
-    let bit = |n: u32| output >> n & 1 == 1;
-    let operation = OPERATIONS.iter().find(|(code, _, _)| *code == output >> 15 & 7);
+    let operation = OPERATIONS.iter().find(|(code, _, _)| *code == layout::OPERATION.of(output));
     let (_, bias, scale) = operation.copied().unwrap_or(OPERATIONS[0]);
+    let [ab_output, cd_output, sum_output] = layout::OUTPUTS.map(|field| general_register(field.of(output)));
+    let [ab_dot_product, cd_dot_product] = layout::DOT_PRODUCTS.map(|field| field.is_set(output));
+    let [ab_blue_to_alpha, cd_blue_to_alpha] = layout::BLUE_TO_ALPHA.map(|field| field.is_set(output));
     Portion {
-        inputs: [24, 16, 8, 0].map(|shift| input_of(inputs >> shift, alpha)),
-        cd_output: general_register(output),
-        ab_output: general_register(output >> 4),
-        sum_output: general_register(output >> 8),
-        cd_dot_product: bit(12),
-        ab_dot_product: bit(13),
-        mux: bit(14),
+        inputs: layout::BYTES.map(|field| input_of(field.of(inputs), alpha)),
+        cd_output,
+        ab_output,
+        sum_output,
+        cd_dot_product,
+        ab_dot_product,
+        mux: layout::MUX.is_set(output),
         scale,
         bias,
-        cd_blue_to_alpha: bit(18),
-        ab_blue_to_alpha: bit(19),
+        cd_blue_to_alpha,
+        ab_blue_to_alpha,
     }
 }
 
@@ -165,8 +178,8 @@ pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Re
         return refuse("NB0361", message, help);
     }
     let stages = match (word, chip) {
-        (Word::RcOutRgb, Profile::Nv10) if index == 1 => Some((value >> 28 & 3, "bits 28 and 29")),
-        (Word::RcConfig, _) => Some((value & 15, "bits 0 to 3")),
+        (Word::RcOutRgb, Profile::Nv10) if index == 1 => Some((layout::stages(chip).of(value), "bits 28 and 29")),
+        (Word::RcConfig, _) => Some((layout::stages(chip).of(value), "bits 0 to 3")),
         _ => None,
     };
     let most = chip.general_stages() as u32;
@@ -180,7 +193,7 @@ pub fn refusal(word: Word, index: usize, value: u32, chip: Profile) -> Option<Re
 }
 
 fn operation(word: Word, value: u32) -> Option<u32> {
-    matches!(word, Word::RcOutAlpha | Word::RcOutRgb).then_some(value >> 15 & 7)
+    matches!(word, Word::RcOutAlpha | Word::RcOutRgb).then_some(layout::OPERATION.of(value))
 }
 
 /// What a register field is for: which codes it takes.

@@ -5,12 +5,14 @@
 
 mod code;
 mod describe;
+pub mod layout;
 mod program;
+pub mod raster;
 mod text;
 
 use ninebit::state::{Named, Profile, named};
 
-pub use code::{refusal, stored};
+pub use code::{OPERATIONS, component, refusal, register_code, stored};
 pub use describe::{Description, describe};
 pub use program::{decode, encode, word_of};
 pub use text::{Written, read};
@@ -73,6 +75,14 @@ impl Word {
             (Word::RcFinal1, _) => 0x28c,
             (Word::RcConfig, _) => 0x1e60,
         }
+    }
+
+    /// The word that a method sets, and which of them; `None` if it sets none of these.
+    pub fn of_method(method: u32, chip: Profile) -> Option<(Word, usize)> {
+        Word::ALL.iter().find_map(|word| {
+            let at = method.checked_sub(word.method(chip))?;
+            (at % 4 == 0 && ((at / 4) as usize) < word.count(chip)).then_some((*word, at as usize / 4))
+        })
     }
 
     /// How it is written: `RC_IN_RGB[1]`, or `RC_FINAL0` if there is only one.

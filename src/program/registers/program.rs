@@ -1,7 +1,7 @@
 //! Whole programs from words, and back.
 
 use super::code::{final_byte, final_of, input_byte, output_word, portion_of, refusal};
-use super::{Refusal, RegisterWords, Word};
+use super::{Refusal, RegisterWords, Word, layout};
 use crate::{Part, Place};
 use ninebit::state::{Combiners, FinalCombiner, GeneralStage, MuxSelect, Profile};
 
@@ -18,16 +18,10 @@ pub fn decode(words: &RegisterWords) -> Result<Combiners, Vec<Refusal>> {
     }
     let color = |index| color_of(words.get(Word::RcColor, index));
     let shared = [color(0), color(1)];
-    let (count, msb, own) = match chip {
-        Profile::Nv10 => {
-            let word = words.get(Word::RcOutRgb, 1);
-            (word >> 28 & 3, word >> 27 & 1 == 1, [false; 2])
-        }
-        Profile::Nv2a => {
-            let word = words.get(Word::RcConfig, 0);
-            (word & 15, word >> 8 & 1 == 1, [12, 16].map(|bit| word >> bit & 1 == 1))
-        }
-    };
+    let (word, index) = layout::config(chip);
+    let config = words.get(word, index);
+    let (count, msb) = (layout::stages(chip).of(config), layout::mux_by_msb(chip).is_set(config));
+    let own = layout::OWN_CONSTANTS.map(|field| chip == Profile::Nv2a && field.is_set(config));
     let stages = (0..count as usize).map(|n| {
         let portion = |inputs, outputs, alpha| portion_of(words.get(inputs, n), words.get(outputs, n), alpha);
         let constants = match chip {
@@ -45,17 +39,18 @@ pub fn decode(words: &RegisterWords) -> Result<Combiners, Vec<Refusal>> {
         }
     });
     let (final0, final1) = (words.get(Word::RcFinal0, 0), words.get(Word::RcFinal1, 0));
-    let [a, b, c, d] = [24, 16, 8, 0].map(|shift| final_of(final0 >> shift, false));
-    let [e, f] = [24, 16].map(|shift| final_of(final1 >> shift, false));
+    let [a, b, c, d] = layout::BYTES.map(|field| final_of(field.of(final0), false));
+    let [e, f, g, _] = layout::BYTES.map(|field| field.of(final1));
+    let [e, f] = [e, f].map(|byte| final_of(byte, false));
     Ok(Combiners {
         stages: stages.collect(),
         mux_select: if msb { MuxSelect::Msb } else { MuxSelect::Lsb },
         final_combiner: FinalCombiner {
             inputs: [a, b, c, d, e, f],
-            g: final_of(final1 >> 8, true),
-            color_sum_clamp: final1 >> 7 & 1 == 1,
-            invert_secondary: final1 >> 6 & 1 == 1,
-            invert_spare0: final1 >> 5 & 1 == 1,
+            g: final_of(g, true),
+            color_sum_clamp: layout::COLOR_SUM_CLAMP.is_set(final1),
+            invert_secondary: layout::INVERT_SECONDARY.is_set(final1),
+            invert_spare0: layout::INVERT_SPARE0.is_set(final1),
             constants: shared,
         },
     })
@@ -71,21 +66,22 @@ pub fn encode(combiners: &Combiners, chip: Profile) -> RegisterWords {
             [(&stage.rgb, Word::RcInRgb, Word::RcOutRgb), (&stage.alpha, Word::RcInAlpha, Word::RcOutAlpha)]
         {
             let [a, b, c, d] = [0, 1, 2, 3].map(|k| input_byte(&portion.inputs[k]));
-            words.set(inputs, n, a << 24 | b << 16 | c << 8 | d);
+            words.set(inputs, n, u32::from_be_bytes([a, b, c, d].map(|byte| byte as u8)));
             words.set(outputs, n, output_word(portion));
         }
     }
-    let msb = u32::from(combiners.mux_select == MuxSelect::Msb);
+    let msb = layout::mux_by_msb(chip).put((combiners.mux_select == MuxSelect::Msb).into());
+    let counted = layout::stages(chip).put(count as u32) | msb;
     match chip {
         Profile::Nv10 => {
             let second = words.get(Word::RcOutRgb, 1);
-            words.set(Word::RcOutRgb, 1, second | msb << 27 | (count as u32) << 28);
+            words.set(Word::RcOutRgb, 1, second | counted);
         }
         Profile::Nv2a => {
-            let mut config = count as u32 | msb << 8;
+            let mut config = counted;
             for (k, word) in [Word::RcConstantColor0, Word::RcConstantColor1].into_iter().enumerate() {
                 let own = stages.windows(2).any(|pair| pair[0].constants[k] != pair[1].constants[k]);
-                config |= u32::from(own) << [12, 16][k];
+                config |= layout::OWN_CONSTANTS[k].put(own.into());
                 for (n, stage) in stages.iter().enumerate().take(if own { count } else { 1 }) {
                     words.set(word, n, color_word(stage.constants[k]));
                 }
@@ -99,9 +95,9 @@ pub fn encode(combiners: &Combiners, chip: Profile) -> RegisterWords {
     }
     let [a, b, c, d, e, f] = [0, 1, 2, 3, 4, 5].map(|n| final_byte(&state.inputs[n]));
     words.set(Word::RcFinal0, 0, a << 24 | b << 16 | c << 8 | d);
-    let flags = u32::from(state.color_sum_clamp) << 7
-        | u32::from(state.invert_secondary) << 6
-        | u32::from(state.invert_spare0) << 5;
+    let flags = layout::COLOR_SUM_CLAMP.put(state.color_sum_clamp.into())
+        | layout::INVERT_SECONDARY.put(state.invert_secondary.into())
+        | layout::INVERT_SPARE0.put(state.invert_spare0.into());
     words.set(Word::RcFinal1, 0, e << 24 | f << 16 | final_byte(&state.g) << 8 | flags);
     words
 }

@@ -198,7 +198,7 @@ fn finish(statement: &mut Vec<Token<'_>>, written: &mut Written, findings: &mut 
     let Some((name, rest)) = tokens.split_first() else { return };
     let chip = written.words.chip;
     let (first, mut values) = match name.number() {
-        Some(method) => (of_method(method, chip), rest),
+        Some(method) => (Word::of_method(method, chip), rest),
         None => {
             let upper = name.text.to_uppercase();
             let bare = ["NV_", "NV10_", "NV20_", "NV097_", "NV10TCL_", "NV20TCL_"];
@@ -260,14 +260,6 @@ fn finish(statement: &mut Vec<Token<'_>>, written: &mut Written, findings: &mut 
 /// Whether a token says which word of an array is meant.
 fn is_index(token: &Token<'_>, word: Word, chip: Profile) -> bool {
     token.bracketed && token.number().is_some_and(|n| (n as usize) < word.count(chip))
-}
-
-/// The word that a method sets.
-fn of_method(method: u32, chip: Profile) -> Option<(Word, usize)> {
-    Word::ALL.iter().find_map(|word| {
-        let at = method.checked_sub(word.method(chip))?;
-        (at % 4 == 0 && ((at / 4) as usize) < word.count(chip)).then_some((*word, at as usize / 4))
-    })
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     /// Only rows that a policy changes: those to ask a real card first
     #[arg(long)]
     deciding: bool,
-    /// Also write a view: hex (packed words for $readmemh, with layouts for Verilog and C) or jsonl; may be given several times
+    /// Also write a view: hex (packed words for $readmemh, with layouts for Verilog and C), jsonl or c (an array of structures); may be given several times
     #[arg(long = "view", value_name = "VIEW", value_parser = super::named::<View>)]
     views: Vec<View>,
     /// Also write draws for a graphics card, for the program in vectors/harness/gl: the view `gpu`

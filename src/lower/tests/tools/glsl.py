@@ -4,7 +4,7 @@ import sys
 import moderngl
 import numpy
 
-COLUMNS = 64
+COLUMNS = int(sys.argv[2]) if len(sys.argv) > 2 else 64
 count = int(sys.argv[1])
 pool = numpy.fromfile("pool.bin", "<i4").reshape(-1, COLUMNS)
 rows = len(pool)

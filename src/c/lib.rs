@@ -1,0 +1,492 @@
+//! The library for C: scenes, frames, traces, register words.
+//!
+//! `include/ninebit.h` is made of this file by `cbindgen`; `docs/c.md` shows how it is used. Every function is one of a status and of what it writes through
+//! its pointers: it takes pointers that may be null and lengths that may be wrong, and returns a status for both. No panic crosses the boundary. What one
+//! function allocates another one frees. A scene is never changed after it was made, so that any number of threads may use it at once.
+
+use std::ffi::{CStr, CString, c_char};
+use std::path::Path;
+use std::ptr;
+
+use ninebit::combiner::registers::Registers;
+
+use ninebit::engine::{self, RenderOptions};
+use ninebit::limits::Limits;
+use ninebit::state::{Policies, Profile, Register};
+use ninebit_files::guard::{Panic, caught};
+use ninebit_program::registers::{RegisterWords, Word, decode};
+use ninebit_report::trace_json;
+use ninebit_scene::{Loaded, SceneError};
+
+/// How a call ended. The numbers are the exit statuses of the program.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NinebitStatus {
+    /// As asked.
+    Ok = 0,
+    /// A null pointer, a number that is too large, a buffer that is too small.
+    Argument = 2,
+    /// A scene, one of its files, or register words are invalid.
+    Invalid = 3,
+    /// A file is missing.
+    Missing = 4,
+    /// A limit was exceeded.
+    Limit = 5,
+    /// A fault of this library.
+    Internal = 6,
+}
+
+/// A chip.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NinebitChip {
+    /// GeForce 256: methods of the Celsius class.
+    Nv10 = 0,
+    /// GeForce 3 and Xbox: methods of the Kelvin class.
+    Nv2a = 1,
+}
+
+/// A scene that was read and checked. Threads may share it.
+#[derive(Debug)]
+pub struct NinebitScene {
+    loaded: Loaded,
+}
+
+/// What a pixel brings to the combiners: R, G, B, A of each register, textures -256 to 255, colours and fog 0 to 255. Fog's alpha is the factor.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default)]
+pub struct NinebitInputs {
+    /// Interpolated diffuse.
+    pub primary: [i32; 4],
+    /// Interpolated specular.
+    pub secondary: [i32; 4],
+    /// Fog colour and factor.
+    pub fog: [i32; 4],
+    /// What each texture unit yields.
+    pub texture: [[i32; 4]; 4],
+}
+
+/// A method of the chip's 3D class and the word written to it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug)]
+pub struct NinebitMethod {
+    /// Its number, 0x0ac0 for example.
+    pub method: u32,
+    /// The word.
+    pub word: u32,
+}
+
+/// Why a call failed.
+struct Failure {
+    status: NinebitStatus,
+    text: String,
+}
+
+impl Failure {
+    fn argument(text: impl Into<String>) -> Failure {
+        Failure { status: NinebitStatus::Argument, text: text.into() }
+    }
+}
+
+impl From<SceneError> for Failure {
+    fn from(error: SceneError) -> Failure {
+        let status = match error.exit_code() {
+            4 => NinebitStatus::Missing,
+            5 => NinebitStatus::Limit,
+            _ => NinebitStatus::Invalid,
+        };
+        Failure { status, text: error.render(false) }
+    }
+}
+
+/// Runs a call: whatever fails becomes its status, and its text goes to `message` where that is not null.
+fn call(message: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failure>) -> NinebitStatus {
+    // SAFETY: the caller of every function promises that `message` is null or may be written.
+    unsafe { put(message, ptr::null_mut()) };
+    let failure = match caught(work) {
+        Ok(Ok(())) => return NinebitStatus::Ok,
+        Ok(Err(failure)) => failure,
+        Err(panic) => Failure {
+            status: NinebitStatus::Internal,
+            text: format!("error[{}]: {panic}\n  help: {}\n", Panic::CODE, Panic::HELP),
+        },
+    };
+    // A text that nobody takes would never be freed.
+    if !message.is_null() {
+        // SAFETY: as above.
+        unsafe { put(message, text(failure.text)) };
+    }
+    failure.status
+}
+
+/// Writes through a pointer that may be null.
+///
+/// # Safety
+/// It is null or may be written.
+unsafe fn put<T>(place: *mut T, value: T) {
+    if !place.is_null() {
+        // SAFETY: the caller promises that it may be written, and it is not null.
+        unsafe { place.write(value) };
+    }
+}
+
+/// A text for C; a zero in it would be its end.
+fn text(text: String) -> *mut c_char {
+    CString::new(text.replace('\0', "\u{fffd}")).map_or(ptr::null_mut(), CString::into_raw)
+}
+
+/// A text of C.
+///
+/// # Safety
+/// `text` is null or points to bytes that end with a zero and live as long as the result is used.
+unsafe fn text_of<'a>(text: *const c_char, what: &str) -> Result<&'a str, Failure> {
+    if text.is_null() {
+        return Err(Failure::argument(format!("{what} is null")));
+    }
+    // SAFETY: the caller promises that it ends with a zero, and it is not null.
+    let text = unsafe { CStr::from_ptr(text) };
+    text.to_str().map_err(|_| Failure::argument(format!("{what} is not UTF-8")))
+}
+
+/// An array of C.
+///
+/// # Safety
+/// `first` is null or points to `count` values that live, and are changed by nobody else, as long as the result is used.
+unsafe fn array<'a, T>(first: *const T, count: usize, what: &str) -> Result<&'a [T], Failure> {
+    checked(first, count, what)?;
+    if count == 0 {
+        return Ok(&[]);
+    }
+    // SAFETY: it is not null, is aligned, and its bytes are no more than an isize holds; the caller promises the rest.
+    Ok(unsafe { std::slice::from_raw_parts(first, count) })
+}
+
+/// An array of C that is written.
+///
+/// # Safety
+/// `first` is null or points to `count` values that may be written, and are used by nobody else, as long as the result is used.
+unsafe fn array_mut<'a, T>(first: *mut T, count: usize, what: &str) -> Result<&'a mut [T], Failure> {
+    checked(first, count, what)?;
+    if count == 0 {
+        return Ok(&mut []);
+    }
+    // SAFETY: as in `array`.
+    Ok(unsafe { std::slice::from_raw_parts_mut(first, count) })
+}
+
+/// What can be known of an array without looking into it.
+fn checked<T>(first: *const T, count: usize, what: &str) -> Result<(), Failure> {
+    if count == 0 {
+        return Ok(());
+    }
+    if first.is_null() || !first.is_aligned() {
+        return Err(Failure::argument(format!("{what} is null or not aligned")));
+    }
+    match count.checked_mul(size_of::<T>()) {
+        Some(bytes) if isize::try_from(bytes).is_ok() => Ok(()),
+        _ => Err(Failure::argument(format!("{what} cannot have {count} elements"))),
+    }
+}
+
+/// A scene of C.
+///
+/// # Safety
+/// `scene` is null or came from this library and was not freed.
+unsafe fn scene_of<'a>(scene: *const NinebitScene) -> Result<&'a NinebitScene, Failure> {
+    // SAFETY: the caller promises that it is one of ours where it is not null; nobody ever changes one.
+    unsafe { scene.as_ref() }.ok_or_else(|| Failure::argument("the scene is null"))
+}
+
+/// The version of the library, `0.1.0` for example. Do not free it.
+#[unsafe(no_mangle)]
+pub extern "C" fn ninebit_version() -> *const c_char {
+    const VERSION: &CStr = match CStr::from_bytes_with_nul(concat!(env!("CARGO_PKG_VERSION"), "\0").as_bytes()) {
+        Ok(version) => version,
+        Err(_) => c"",
+    };
+    VERSION.as_ptr()
+}
+
+/// Reads and checks the scene file at `path`; files that it names are looked for in its folder. Free the scene with `ninebit_scene_free`.
+///
+/// Where it fails, `*scene` is null and `*message` says why, with places and stable codes. `message` may be null.
+///
+/// # Safety
+/// `path` ends with a zero; `scene` and `message` are null or may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_scene_load(
+    path: *const c_char,
+    scene: *mut *mut NinebitScene,
+    message: *mut *mut c_char,
+) -> NinebitStatus {
+    call(message, || {
+        // SAFETY: the caller promises what both ask for.
+        unsafe {
+            begin(scene)?;
+            let path = text_of(path, "the path")?;
+            // `-` would be standard input, which is the calling program's.
+            let path = if path == "-" { Path::new("./-") } else { Path::new(path) };
+            finish(scene, ninebit_scene::load(path, &Limits::default())?);
+        }
+        Ok(())
+    })
+}
+
+/// Reads and checks a scene from its text, `length` bytes of UTF-8. `origin` is its path: messages name it, and the files that the scene names are looked for
+/// in its folder. Otherwise as `ninebit_scene_load`.
+///
+/// # Safety
+/// `text` points to `length` bytes, `origin` ends with a zero; `scene` and `message` are null or may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_scene_parse(
+    text: *const c_char,
+    length: usize,
+    origin: *const c_char,
+    scene: *mut *mut NinebitScene,
+    message: *mut *mut c_char,
+) -> NinebitStatus {
+    call(message, || {
+        // SAFETY: the caller promises what each asks for.
+        unsafe {
+            begin(scene)?;
+            let text = std::str::from_utf8(array(text.cast::<u8>(), length, "the text")?)
+                .map_err(|error| Failure::argument(format!("the text is not UTF-8: {error}")))?;
+            finish(scene, ninebit_scene::parse(text, Path::new(text_of(origin, "the origin")?), &Limits::default())?);
+        }
+        Ok(())
+    })
+}
+
+/// # Safety
+/// `scene` is null or may be written.
+unsafe fn begin(scene: *mut *mut NinebitScene) -> Result<(), Failure> {
+    // SAFETY: promised.
+    unsafe { put(scene, ptr::null_mut()) };
+    if scene.is_null() { Err(Failure::argument("there is no place for the scene")) } else { Ok(()) }
+}
+
+/// # Safety
+/// `scene` may be written.
+unsafe fn finish(scene: *mut *mut NinebitScene, loaded: Loaded) {
+    // SAFETY: promised.
+    unsafe { put(scene, Box::into_raw(Box::new(NinebitScene { loaded }))) };
+}
+
+/// Frees a scene; null is none.
+///
+/// # Safety
+/// `scene` is null or came from this library, was not freed before and is used by no other thread.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_scene_free(scene: *mut NinebitScene) {
+    if !scene.is_null() {
+        // SAFETY: promised: it came from `Box::into_raw` and is freed once.
+        drop(unsafe { Box::from_raw(scene) });
+    }
+}
+
+/// Frees a text that this library has made; null is none.
+///
+/// # Safety
+/// `text` is null or came from this library and was not freed before.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_text_free(text: *mut c_char) {
+    if !text.is_null() {
+        // SAFETY: promised: it came from `CString::into_raw` and is freed once.
+        drop(unsafe { CString::from_raw(text) });
+    }
+}
+
+/// Columns and rows of target number `target`.
+///
+/// # Safety
+/// `scene` is one of this library's; `width`, `height` and `message` are null or may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_target_size(
+    scene: *const NinebitScene,
+    target: usize,
+    width: *mut u32,
+    height: *mut u32,
+    message: *mut *mut c_char,
+) -> NinebitStatus {
+    call(message, || {
+        // SAFETY: the caller promises what it asks for.
+        let loaded = &unsafe { scene_of(scene) }?.loaded;
+        let target = target_of(loaded, target)?;
+        // SAFETY: the caller promises that both are null or may be written.
+        unsafe {
+            put(width, target.width);
+            put(height, target.height);
+        }
+        Ok(())
+    })
+}
+
+fn target_of(loaded: &Loaded, target: usize) -> Result<&ninebit::state::Target, Failure> {
+    let count = loaded.scene.targets.len();
+    let none = || Failure::argument(format!("the scene has no target {target}: it has {count}, numbered from 0"));
+    loaded.scene.targets.get(target).ok_or_else(none)
+}
+
+/// Renders the scene and hands over target number `target`, row by row from above: its stored words, and R, G, B, A bytes as a picture shows them. Either may
+/// be null. `threads`: 0 takes one a core; no byte depends on it.
+///
+/// # Safety
+/// `scene` is one of this library's; `words` is null or has room for `pixels` words, `rgba` is null or for `pixels` times 4 bytes; `message` is null or may be
+/// written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_render(
+    scene: *const NinebitScene,
+    target: usize,
+    threads: usize,
+    words: *mut u32,
+    rgba: *mut u8,
+    pixels: usize,
+    message: *mut *mut c_char,
+) -> NinebitStatus {
+    call(message, || {
+        // SAFETY: the caller promises what it asks for.
+        let loaded = &unsafe { scene_of(scene) }?.loaded;
+        let size = target_of(loaded, target)?;
+        let wanted = size.width as usize * size.height as usize;
+        if pixels != wanted {
+            return Err(Failure::argument(format!("the target has {wanted} pixels, and there is room for {pixels}")));
+        }
+        let bytes = pixels.checked_mul(4).ok_or_else(|| Failure::argument("so many bytes there are not"))?;
+        // Before anything is drawn: wrong buffers are told of at once.
+        // SAFETY: the caller promises that each is null or has that room.
+        let (words, rgba) = unsafe {
+            let words = if words.is_null() { None } else { Some(array_mut(words, pixels, "the place of the words")?) };
+            (words, if rgba.is_null() { None } else { Some(array_mut(rgba, bytes, "the place of the bytes")?) })
+        };
+        let frames = engine::render(&loaded.plan, &RenderOptions { threads, ..RenderOptions::default() });
+        let surface = &frames.surfaces[target];
+        if let Some(words) = words {
+            words.copy_from_slice(&surface.words);
+        }
+        if let Some(rgba) = rgba {
+            rgba.copy_from_slice(surface.rgba8().as_flattened());
+        }
+        Ok(())
+    })
+}
+
+/// How pixel (x, y) of target number `target` came to be, every integer with its rule: the document of `ninebit trace --format json`. Free it with
+/// `ninebit_text_free`.
+///
+/// # Safety
+/// `scene` is one of this library's; `json` and `message` are null or may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_trace(
+    scene: *const NinebitScene,
+    target: usize,
+    x: u32,
+    y: u32,
+    json: *mut *mut c_char,
+    message: *mut *mut c_char,
+) -> NinebitStatus {
+    call(message, || {
+        // SAFETY: the caller promises that it is null or may be written.
+        unsafe { put(json, ptr::null_mut()) };
+        // SAFETY: the caller promises what it asks for.
+        let loaded = &unsafe { scene_of(scene) }?.loaded;
+        target_of(loaded, target)?;
+        if json.is_null() {
+            return Err(Failure::argument("there is no place for the document"));
+        }
+        let trace =
+            engine::trace(&loaded.plan, target, (x, y), None).map_err(|error| Failure::argument(error.to_string()))?;
+        // SAFETY: the caller promises that it may be written.
+        unsafe { put(json, text(trace_json(&loaded.plan, &trace))) };
+        Ok(())
+    })
+}
+
+/// Runs the program that register words are on pixels: R, G, B, A of each fragment, four bytes a pixel, as they reach the raster operations. Methods that are not
+/// the combiners' are passed over; words that are not written are 0.
+///
+/// # Safety
+/// `methods` points to `method_count` pairs, `inputs` to `pixels` inputs, `fragments` to room for `pixels` times 4 bytes; `message` is null or may be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn ninebit_evaluate(
+    chip: i32,
+    methods: *const NinebitMethod,
+    method_count: usize,
+    inputs: *const NinebitInputs,
+    fragments: *mut u8,
+    pixels: usize,
+    message: *mut *mut c_char,
+) -> NinebitStatus {
+    call(message, || {
+        let chip = match chip {
+            0 => Profile::Nv10,
+            1 => Profile::Nv2a,
+            _ => return Err(Failure::argument("the chip is 0 (nv10) or 1 (nv2a)")),
+        };
+        let bytes = pixels.checked_mul(4).ok_or_else(|| Failure::argument("so many bytes there are not"))?;
+        // SAFETY: the caller promises what each asks for.
+        let (methods, inputs, fragments) = unsafe {
+            let methods = array(methods, method_count, "the list of methods")?;
+            let inputs = array(inputs, pixels, "the list of inputs")?;
+            (methods, inputs, array_mut(fragments, bytes, "the place of the fragments")?)
+        };
+        let mut words = RegisterWords::new(chip);
+        for NinebitMethod { method, word } in methods {
+            if let Some((register, index)) = Word::of_method(*method, chip) {
+                words.set(register, index, *word);
+            }
+        }
+        let program = decode(&words).map_err(|refusals| {
+            let lines = refusals.iter().map(|r| format!("error[{}]: {}\n  help: {}\n", r.code, r.message, r.help));
+            Failure { status: NinebitStatus::Invalid, text: lines.collect() }
+        })?;
+        for (given, fragment) in inputs.iter().zip(fragments.as_chunks_mut::<4>().0) {
+            *fragment = program.run(registers(given)?, &Policies::DEFAULT);
+        }
+        Ok(())
+    })
+}
+
+fn registers(given: &NinebitInputs) -> Result<Registers<i32>, Failure> {
+    let mut registers = Registers::new();
+    let [t0, t1, t2, t3] = given.texture;
+    for (register, values, least) in [
+        (Register::PrimaryColor, given.primary, 0),
+        (Register::SecondaryColor, given.secondary, 0),
+        (Register::Fog, given.fog, 0),
+        (Register::Texture0, t0, -256),
+        (Register::Texture1, t1, -256),
+        (Register::Texture2, t2, -256),
+        (Register::Texture3, t3, -256),
+    ] {
+        if let Some(value) = values.iter().find(|value| !(least..=255).contains(*value)) {
+            return Err(Failure::argument(format!("{register:?} is given {value}; it is {least} to 255")));
+        }
+        registers.load(register, values);
+    }
+    Ok(registers)
+}
+
+/// Threads may share scenes.
+const _: () = {
+    const fn shared<T: Send + Sync>() {}
+    shared::<NinebitScene>();
+};
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A panic is a status and a text, and the next call is as good as any.
+    #[test]
+    fn panics_do_not_cross() {
+        let mut message = ptr::null_mut();
+        assert_eq!(call(&raw mut message, || panic!("a fault that is planted")), NinebitStatus::Internal);
+        // SAFETY: `call` has made the text.
+        let text = unsafe { CStr::from_ptr(message) }.to_string_lossy().into_owned();
+        assert!(text.starts_with("error[NB0801]") && text.contains("a fault that is planted"), "{text}");
+        // SAFETY: it is freed once.
+        unsafe { ninebit_text_free(message) };
+        assert_eq!(call(&raw mut message, || Ok(())), NinebitStatus::Ok);
+        assert!(message.is_null());
+    }
+}

@@ -1,0 +1,547 @@
+//! The rules of the generic text, a piece each: what the order makes of given values, once for every value of the field that chooses.
+
+use ninebit::algebra::{Algebra, Site};
+use ninebit::combiner::registers::Registers;
+use ninebit::combiner::{final_combiner, general};
+use ninebit::number::Register as _;
+use ninebit::rop::{blend, surface};
+use ninebit::state::{
+    Bias, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, Component, FinalCombiner, FinalInput,
+    FinalRegister, HalfBiasConstant, InputMapping, MuxSelect, Named, Policies, Portion, Register, Scale, SurfaceFormat,
+};
+use ninebit_program::registers::{OPERATIONS, raster};
+
+use crate::code::{Code, Kind, Line, Operand, Operation, Range, Test};
+use crate::input::{Input, Local};
+use crate::number::{Factor, Number, Sum, Word};
+use crate::order::{Block, Listing};
+
+/// A function of the generic text.
+#[derive(Debug)]
+pub(super) struct Piece {
+    /// What it does, for its comment.
+    pub(super) about: &'static str,
+    pub(super) name: &'static str,
+    /// The parameter that chooses a case; none, if there is one case.
+    pub(super) chooses: Option<&'static str>,
+    /// The other parameters as text.
+    pub(super) parameters: &'static str,
+    /// Where the results go: one value that is returned, or an array.
+    pub(super) array: Option<&'static str>,
+    /// The array holds what is given, and each of these channels becomes what the case says.
+    pub(super) each: Option<usize>,
+    pub(super) kind: Kind,
+    pub(super) cases: Vec<Case>,
+}
+
+/// What comes out where the field has this value.
+#[derive(Debug)]
+pub(super) struct Case {
+    pub(super) value: u32,
+    pub(super) name: String,
+    pub(super) lines: Vec<Line>,
+    pub(super) results: Vec<Operand>,
+    pub(super) range: Range,
+}
+
+/// A register as stages write it.
+const REGISTER: Range = (-256, 255);
+/// A byte.
+const BYTE: Range = (0, 255);
+/// An input of the final combiner: SPARE0 + SECONDARY can be as much (FIN-3).
+const FINAL: Range = (0, 510);
+
+const A: [&str; 3] = ["a[0]", "a[1]", "a[2]"];
+const B: [&str; 3] = ["b[0]", "b[1]", "b[2]"];
+const FRAGMENT: [&str; 4] = ["fragment[0]", "fragment[1]", "fragment[2]", "fragment[3]"];
+const SOURCE: [&str; 4] = ["source[0]", "source[1]", "source[2]", "source[3]"];
+const DESTINATION: [&str; 4] = ["destination[0]", "destination[1]", "destination[2]", "destination[3]"];
+const CONSTANT: [&str; 4] = ["constant[0]", "constant[1]", "constant[2]", "constant[3]"];
+
+/// Reads a rule for one value of a field.
+struct Reader<'a> {
+    code: &'a Code,
+    listing: Listing<'a>,
+    /// Sums are halved so often: twice where factors come in halves.
+    halvings: u32,
+}
+
+impl<'a> Reader<'a> {
+    fn given(&self, name: &'static str, range: Range) -> Number<'a> {
+        let local = Local { name, kind: Kind::Number, range };
+        Number::new(self.code, self.code.input(Input::Local(local), range))
+    }
+
+    fn all<const N: usize>(&self, names: [&'static str; N], range: Range) -> [Number<'a>; N] {
+        names.map(|name| self.given(name, range))
+    }
+
+    fn word(&self, name: &'static str) -> Word<'a> {
+        let range = (0, 0xffff_ffff);
+        let local = Local { name, kind: Kind::Word, range };
+        Word(Number::new(self.code, self.code.input(Input::Local(local), range)))
+    }
+
+    fn factor(&self, value: Number<'a>) -> Factor<'a> {
+        Factor { value, halves: self.halvings > 0 }
+    }
+
+    /// A sum in the steps that all of them have.
+    fn sum(&self, sum: Sum<'a>) -> Number<'a> {
+        let none = Sum { value: Number::Constant(0), halvings: self.halvings };
+        sum.alike(none)[0].value
+    }
+
+    /// 1 where the test holds.
+    fn holds(&self, test: Test) -> Number<'a> {
+        match self.code.decided(test) {
+            Some(holds) => Number::Constant(holds.into()),
+            None => Number::Constant(1).selected(test, self.code, Number::Constant(0)),
+        }
+    }
+}
+
+/// Makes pieces under policies.
+struct Maker {
+    policies: Policies,
+    block: Block,
+}
+
+impl Maker {
+    fn case(&self, value: u32, name: &str, of: impl for<'a> FnOnce(&mut Reader<'a>) -> Vec<Number<'a>>) -> Case {
+        let code = Code::default();
+        let mut listing = Listing::new(&code, self.policies);
+        listing.enter(self.block);
+        let halvings = if self.policies.half_bias == HalfBiasConstant::Half127And5 { 2 } else { 0 };
+        let results: Vec<Operand> =
+            of(&mut Reader { code: &code, listing, halvings }).into_iter().map(Number::operand).collect();
+        let ranges = results.iter().map(|result| code.range(*result));
+        let range = ranges.fold((i64::MAX, i64::MIN), |all, one| (all.0.min(one.0), all.1.max(one.1)));
+        let (lines, renamed) = code.kept(&results);
+        Case { value, name: name.to_string(), lines, results: results.into_iter().map(renamed).collect(), range }
+    }
+
+    /// A case for each value of a field.
+    fn cases<T: Named + 'static>(
+        &self,
+        value: impl Fn(T) -> u32,
+        of: impl for<'a> Fn(&mut Reader<'a>, T) -> Vec<Number<'a>>,
+    ) -> Vec<Case> {
+        T::ALL.iter().map(|one| self.case(value(*one), one.name(), |reader| of(reader, *one))).collect()
+    }
+}
+
+fn range(cases: &[Case]) -> Range {
+    cases.iter().fold((i64::MAX, i64::MIN), |all, case| (all.0.min(case.range.0), all.1.max(case.range.1)))
+}
+
+/// All pieces, in the order in which a pixel passes them.
+pub(super) fn pieces(policies: Policies) -> Vec<Piece> {
+    let mut pieces = combiners(&Maker { policies, block: Block::Piece });
+    pieces.extend(raster(&Maker { policies, block: Block::Raster }));
+    pieces
+}
+
+fn combiners(maker: &Maker) -> Vec<Piece> {
+    let color = maker.case(0, "", |reader| {
+        reader.code.by("NUM-5");
+        surface::channels(SurfaceFormat::A8R8G8B8, reader.word("word")).map(Word::number).to_vec()
+    });
+    let mapped = |x: &'static str| {
+        maker.cases(
+            |mapping: InputMapping| mapping as u32,
+            |reader, mapping| {
+                let x = reader.given(x, REGISTER);
+                let factor = reader.listing.map(mapping, x);
+                let whole = reader.halvings > 0 && !factor.halves;
+                vec![if whole { factor.value.multiplied(Number::Constant(2)) } else { factor.value }]
+            },
+        )
+    };
+    let factor = range(&mapped("x"));
+    let flags = |no: &'static str, yes: &'static str| [(0, no), (1, yes)];
+    let products: Vec<Case> = flags("a product of each channel", "a dot product, the same in each")
+        .map(|(value, name)| {
+            maker.case(value, name, |reader| {
+                let [x, y] = [A, B].map(|names| reader.all(names, factor).map(|value| reader.factor(value)));
+                let sums = general::product(Site::product(0, 0), value != 0, &x, &y, &mut reader.listing);
+                sums.map(|sum| reader.sum(sum)).to_vec()
+            })
+        })
+        .into();
+    let product = maker.case(0, "", |reader| {
+        let [x, y] = ["a", "b"].map(|name| [reader.factor(reader.given(name, factor))]);
+        let [sum] = general::product(Site::product(0, 3), false, &x, &y, &mut reader.listing);
+        vec![reader.sum(sum)]
+    });
+    let full = range(&products);
+    let takes_cd = maker.cases(
+        |select: MuxSelect| (select == MuxSelect::Msb).into(),
+        |reader, select| {
+            let alpha = reader.given("spare0_alpha", REGISTER);
+            let test = reader.listing.choice(select, alpha);
+            vec![reader.holds(test)]
+        },
+    );
+    let third: Vec<Case> = flags("the sum", "the mux")
+        .map(|(value, name)| {
+            maker.case(value, name, |reader| {
+                let [ab, cd] = reader.all(["ab", "cd"], full).map(|value| Sum { value, halvings: reader.halvings });
+                let takes_cd = reader.given("takes_cd", (0, 1)).compared(CompareFunction::NotEqual, Number::ZERO);
+                let third = general::third(value != 0, takes_cd, ab, cd, &mut reader.listing);
+                vec![reader.sum(third)]
+            })
+        })
+        .into();
+    let most = range(&third);
+    let sums = (most.0.min(full.0), most.1.max(full.1));
+    let output = |sum: &'static str| -> Vec<Case> {
+        let case = |(value, bias, scale): &(u32, Bias, Scale)| {
+            maker.case(*value, &format!("{}, {}", bias.name(), scale.name()), |reader| {
+                let portion = Portion { bias: *bias, scale: *scale, ..Portion::idle(Component::Rgb) };
+                let sum = Sum { value: reader.given(sum, sums), halvings: reader.halvings };
+                vec![general::output(&portion, sum, &mut reader.listing)]
+            })
+        };
+        OPERATIONS.iter().map(case).collect()
+    };
+    let invert = |x: &'static str| -> Vec<Case> {
+        let case = |(value, name)| {
+            maker.case(value, name, |reader| {
+                let x = reader.given(x, (REGISTER.0, FINAL.1));
+                vec![final_combiner::input(x, value != 0, &mut reader.listing)]
+            })
+        };
+        flags("as it is", "inverted").map(case).into()
+    };
+    let color_sum: Vec<Case> = flags("as it is", "limited to one")
+        .map(|(value, name)| {
+            maker.case(value, name, |reader| {
+                let [spare0, secondary] = reader.all(["spare0", "secondary"], BYTE);
+                let state = FinalCombiner { color_sum_clamp: value != 0, ..FinalCombiner::default() };
+                reader.code.by("FIN-3");
+                vec![final_combiner::color_sum(spare0, secondary, &state, &mut reader.listing)]
+            })
+        })
+        .into();
+    let final_product = maker.case(0, "", |reader| {
+        let [e, f] = reader.all(["e", "f"], FINAL);
+        vec![final_combiner::product(e, f, &mut reader.listing)]
+    });
+    let rgb = maker.case(0, "", |reader| {
+        let from = [FinalRegister::Fog, FinalRegister::PrimaryColor, FinalRegister::Texture0, FinalRegister::Texture1];
+        let mut state = FinalCombiner::default();
+        let mut registers = Registers::of(Number::ZERO);
+        for (n, value) in reader.all(["a", "b", "c", "d"], FINAL).into_iter().enumerate() {
+            state.inputs[n] = FinalInput { register: from[n], component: Component::Rgb, invert: false };
+            registers.load(final_combiner::general(from[n]), [value; 4]);
+        }
+        vec![final_combiner::evaluate(&state, &registers, &mut reader.listing).fragment[0]]
+    });
+    vec![
+        Piece {
+            about: "A constant: R, G, B, A of A8R8G8B8.",
+            name: "nb_color",
+            chooses: None,
+            parameters: "@uint word",
+            array: Some("channels[4]"),
+            each: None,
+            kind: Kind::Number,
+            cases: vec![color],
+        },
+        Piece {
+            about: "An input by its mapping.",
+            name: "nb_mapped",
+            chooses: Some("mapping"),
+            parameters: "@int x",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: mapped("x"),
+        },
+        Piece {
+            about: "The same of R, G and B.",
+            name: "nb_mapped_rgb",
+            chooses: Some("mapping"),
+            parameters: "",
+            array: Some("x[3]"),
+            each: Some(3),
+            kind: Kind::Number,
+            cases: mapped("x[c]"),
+        },
+        Piece {
+            about: "AB or CD of an RGB portion, not yet rounded.",
+            name: "nb_products",
+            chooses: Some("is_dot"),
+            parameters: "@in @int a[3], @in @int b[3]",
+            array: Some("sums[3]"),
+            each: None,
+            kind: Kind::Number,
+            cases: products,
+        },
+        Piece {
+            about: "AB or CD of an alpha portion, not yet rounded.",
+            name: "nb_product",
+            chooses: None,
+            parameters: "@int a, @int b",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: vec![product],
+        },
+        Piece {
+            about: "Whether muxes take CD: by the least or the most significant bit of SPARE0's alpha.",
+            name: "nb_takes_cd",
+            chooses: Some("by_most"),
+            parameters: "@int spare0_alpha",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: takes_cd,
+        },
+        Piece {
+            about: "The third output of a portion, not yet rounded.",
+            name: "nb_third",
+            chooses: Some("mux"),
+            parameters: "@int takes_cd, @int ab, @int cd",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: third,
+        },
+        Piece {
+            about: "An output as a register: rounded, biased, scaled, limited.",
+            name: "nb_output",
+            chooses: Some("operation"),
+            parameters: "@int sum",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: output("sum"),
+        },
+        Piece {
+            about: "The same of R, G and B.",
+            name: "nb_output_rgb",
+            chooses: Some("operation"),
+            parameters: "",
+            array: Some("sum[3]"),
+            each: Some(3),
+            kind: Kind::Number,
+            cases: output("sum[c]"),
+        },
+        Piece {
+            about: "An input of the final combiner.",
+            name: "nb_final_input",
+            chooses: Some("invert"),
+            parameters: "@int x",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: invert("x"),
+        },
+        Piece {
+            about: "The same of R, G and B.",
+            name: "nb_final_input_rgb",
+            chooses: Some("invert"),
+            parameters: "",
+            array: Some("x[3]"),
+            each: Some(3),
+            kind: Kind::Number,
+            cases: invert("x[c]"),
+        },
+        Piece {
+            about: "SPARE0 + SECONDARY.",
+            name: "nb_color_sum",
+            chooses: Some("clamp_sum"),
+            parameters: "@int spare0, @int secondary",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: color_sum,
+        },
+        Piece {
+            about: "E times F.",
+            name: "nb_final_product",
+            chooses: None,
+            parameters: "@int e, @int f",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: vec![final_product],
+        },
+        Piece {
+            about: "A channel of the fragment: A B + (1 - A) C + D.",
+            name: "nb_final_rgb",
+            chooses: None,
+            parameters: "@int a, @int b, @int c, @int d",
+            array: None,
+            each: None,
+            kind: Kind::Number,
+            cases: vec![rgb],
+        },
+    ]
+}
+
+fn raster(maker: &Maker) -> Vec<Piece> {
+    let format = raster::surface_format;
+    let passes = maker.cases(raster::compare_function, |reader, function: CompareFunction| {
+        reader.code.by("ROP-1");
+        let [alpha, reference] = reader.all(["alpha", "reference"], BYTE);
+        vec![reader.holds(alpha.compared(function, reference))]
+    });
+    let factors = maker.cases(raster::blend_factor, |reader, factor: BlendFactor| {
+        let [source, destination, constant] = [SOURCE, DESTINATION, CONSTANT].map(|names| reader.all(names, BYTE));
+        reader.code.by("ROP-4");
+        let all = [0, 1, 2, 3];
+        all.map(|c| blend::factor(factor, c, &source, &destination, &constant, &mut reader.listing)).to_vec()
+    });
+    let blended = maker.cases(raster::blend_equation, |reader, equation: BlendEquation| {
+        let [s, d, fs, fd] = reader.all(["s", "d", "fs", "fd"], BYTE);
+        let state = Blend { equation, source: BlendFactor::ConstantColor, destination: BlendFactor::ConstantAlpha };
+        let constant = [fs, Number::ZERO, Number::ZERO, fd];
+        reader.code.by("ROP-2");
+        vec![blend::evaluate(&state, 0, &[s; 4], &[d; 4], &constant, &mut reader.listing).blended]
+    });
+    let truncated = maker.cases(format, |reader, format: SurfaceFormat| {
+        let fragment = reader.all(FRAGMENT, BYTE);
+        blend::truncated(format, fragment, &mut reader.listing).to_vec()
+    });
+    let channels = maker.cases(format, |reader, format: SurfaceFormat| {
+        reader.code.by("ROP-5");
+        surface::channels(format, reader.word("word")).map(Word::number).to_vec()
+    });
+    let packed = maker.cases(format, |reader, format: SurfaceFormat| {
+        let rgba = reader.all(FRAGMENT, BYTE);
+        reader.code.by("ROP-5");
+        vec![surface::packed(format, rgba.map(Number::word)).0]
+    });
+    let mask = maker.cases(format, |reader, format: SurfaceFormat| {
+        reader.code.by("ROP-6");
+        let word = reader.word("color_mask");
+        let bits = [0, 1, 2, 3].map(|n: usize| {
+            let field = raster::COLOR_MASK[n];
+            let bits = surface::write_mask(format, std::array::from_fn(|c| c == n));
+            (word >> field.shift & Word::from(field.most())) * Word::from(bits)
+        });
+        let [r, g, b, a] = bits;
+        vec![(r | g | b | a).0]
+    });
+    let blends = maker.cases(format, |_, format: SurfaceFormat| vec![Number::Constant(surface::blends(format).into())]);
+    let byte = |name, about, chooses, parameters, cases| Piece {
+        about,
+        name,
+        chooses: Some(chooses),
+        parameters,
+        array: None,
+        each: None,
+        kind: Kind::Number,
+        cases,
+    };
+    let four = |name, about, chooses, parameters, array, cases| Piece {
+        array: Some(array),
+        ..byte(name, about, chooses, parameters, cases)
+    };
+    vec![
+        byte("nb_passes", "The alpha test.", "function", "@int alpha, @int reference", passes),
+        byte("nb_blends", "Whether a surface can be blended with.", "format", "", blends),
+        four(
+            "nb_truncated",
+            "A fragment without what the surface drops.",
+            "format",
+            "@in @int fragment[4]",
+            "source[4]",
+            truncated,
+        ),
+        four("nb_channels", "What a surface holds: R, G, B, A.", "format", "@uint word", "destination[4]", channels),
+        four(
+            "nb_blend_factors",
+            "A blend factor, of each channel.",
+            "factor",
+            "@in @int source[4], @in @int destination[4], @in @int constant[4]",
+            "factors[4]",
+            factors,
+        ),
+        byte("nb_blended", "A blended channel.", "equation", "@int s, @int d, @int fs, @int fd", blended),
+        Piece {
+            kind: Kind::Word,
+            ..byte("nb_packed", "A fragment as a stored word.", "format", "@in @int fragment[4]", packed)
+        },
+        Piece {
+            kind: Kind::Word,
+            ..byte("nb_write_mask", "The bits of a stored word that are written.", "format", "@uint color_mask", mask)
+        },
+    ]
+}
+
+/// A write of a stage: the output, and the channel, or blue of it to alpha.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Write {
+    Channel { output: usize, channel: usize },
+    BlueToAlpha { output: usize },
+}
+
+/// The writes of a stage in their order, as CMB-1 and CMB-11 have it. Channel 3 is that of the alpha portion.
+pub(super) fn writes() -> Vec<Write> {
+    let code = Code::default();
+    let mut listing = Listing::new(&code, Policies::DEFAULT);
+    listing.enter(Block::Piece);
+    let portion = |component| {
+        let outputs = Portion {
+            ab_output: Register::Spare0,
+            cd_output: Register::Spare0,
+            sum_output: Register::Spare0,
+            ..Portion::idle(component)
+        };
+        match component {
+            Component::Rgb => Portion { ab_blue_to_alpha: true, cd_blue_to_alpha: true, ..outputs },
+            _ => outputs,
+        }
+    };
+    let (rgb, alpha) = (portion(Component::Rgb), portion(Component::Alpha));
+    let stage = general::PlannedStage {
+        index: 0,
+        rgb: general::PlannedPortion::whole(rgb, 7),
+        alpha: general::PlannedPortion::whole(alpha, 8),
+        constants: [[0; 4]; 2],
+        reads_constants: false,
+    };
+    let mut registers = Registers::of(Number::ZERO);
+    let values = general::evaluate(&stage, MuxSelect::Lsb, &registers, &mut listing);
+    listing.take_sites();
+    general::write(&stage, &values, &mut registers, &mut listing);
+    let blue = |site: Site| (0..2).find(|n| site == Site::blue_to_alpha(*n));
+    let channel = |site: Site| {
+        let all = (0..3).flat_map(|output| (0..4).map(move |channel| (output, channel)));
+        all.into_iter().find(|(output, channel)| site == Site::write(*output, *channel))
+    };
+    let sites = listing.take_sites().into_iter();
+    sites
+        .filter_map(|site| match (blue(site), channel(site)) {
+            (Some(output), _) => Some(Write::BlueToAlpha { output }),
+            (None, Some((output, channel))) => Some(Write::Channel { output, channel }),
+            (None, None) => None,
+        })
+        .collect()
+}
+
+/// What SPARE0 holds before the first stage (CMB-13): for each channel the channel of TEXTURE0 that it is, or none: 0.
+pub(super) fn initial_spare0() -> [Option<usize>; 4] {
+    let mut program = Combiners { stages: Vec::new(), ..Combiners::default() };
+    program.final_combiner.inputs[3].register = FinalRegister::Spare0;
+    program.final_combiner.g =
+        FinalInput { register: FinalRegister::Spare0, component: Component::Alpha, invert: false };
+    let code = Code::default();
+    let mut listing = Listing::new(&code, Policies::DEFAULT);
+    listing.enter(Block::Piece);
+    let mut registers = Registers::of(Number::ZERO);
+    let texture = [0, 1, 2, 3].map(|c| Number::new(&code, code.input(Input::Texture(0, c), BYTE)));
+    registers.load(Register::Texture0, texture);
+    let fragment = program.evaluate(registers, |_, _, _| [[Number::ZERO; 4]; 2], &mut listing);
+    fragment.map(|value| match value.operand() {
+        Operand::Line(line) => match code.operation_at(line) {
+            Operation::Input(Input::Texture(_, channel)) => Some(channel),
+            _ => None,
+        },
+        Operand::Constant(_) => None,
+    })
+}

@@ -1,0 +1,529 @@
+//! The generic text: pieces as functions, and what calls them.
+
+use std::fmt::Write as _;
+
+use ninebit::combiner::general::component_channel;
+use ninebit::combiner::registers::channel_name;
+use ninebit::state::{FinalRegister, Named, Profile};
+use ninebit_program::registers::layout::{self, Field};
+use ninebit_program::registers::{Word, component, raster, register_code};
+
+use super::pieces::{Case, Piece, Write, initial_spare0, pieces, writes};
+use super::{Generic, Sources};
+use crate::code::Kind;
+use crate::language::{Body, Language, ROUNDING, Syntax};
+
+/// What of the text differs between the two languages. The text is written with these on the left.
+const C99: [(&str, &str); 15] = [
+    ("@fn ", "static inline "),
+    ("@uint(", "(uint32_t)("),
+    ("@int(", "(int32_t)("),
+    ("@uint", "uint32_t"),
+    ("@int", "int32_t"),
+    ("@in ", "const "),
+    ("@out ", ""),
+    ("@both ", ""),
+    ("@registers", "int32_t r[16][4]"),
+    ("@changed", "int32_t r[16][4]"),
+    ("@state", "const struct nb_state *state"),
+    ("@s.", "state->"),
+    ("@inputs", "const struct nb_inputs *inputs"),
+    ("@i.", "inputs->"),
+    ("@public ", ""),
+];
+const GLSL: [(&str, &str); 15] = [
+    ("@fn ", ""),
+    ("@uint(", "uint("),
+    ("@int(", "int("),
+    ("@uint", "uint"),
+    ("@int", "int"),
+    ("@in ", ""),
+    ("@out ", "out "),
+    ("@both ", "inout "),
+    ("@registers", "ivec4 r[16]"),
+    ("@changed", "inout ivec4 r[16]"),
+    ("@state", "NinebitState state"),
+    ("@s.", "state."),
+    ("@inputs", "NinebitInputs inputs"),
+    ("@i.", "inputs."),
+    ("@public ", ""),
+];
+
+/// The words that a chip has: name, how many, first method.
+pub(super) fn words(chip: Profile) -> impl Iterator<Item = (&'static str, usize, u32)> {
+    let words = Word::ALL.iter().map(move |word| (word.name(), word.count(chip), word.method(chip)));
+    let raster = raster::Method::ALL.iter().map(|method| (method.name(), 1, method.number()));
+    words.chain(raster).filter(|(_, count, _)| *count > 0)
+}
+
+struct Printer<'g> {
+    generic: &'g Generic,
+    syntax: &'static dyn Syntax,
+}
+
+pub(super) fn c99(generic: &Generic) -> Sources {
+    let printer = Printer { generic, syntax: Language::C99.syntax() };
+    let (mut header, mut source) = (String::new(), String::new());
+    let chip = printer.chip();
+    let _ = write!(
+        header,
+        "/* The combiners and raster operations of the {chip} class, from register words to the stored word. Integers only; nothing is allocated. */\n\
+         #ifndef NINEBIT_COMBINERS_H\n#define NINEBIT_COMBINERS_H\n\n#include <stdint.h>\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
+         /* Words as a driver writes them, with the methods that write them. What is not written is 0. */\nstruct nb_state {{\n{}}};\n\n\
+         /* What one pixel brings. Colours are R, G, B, A. */\nstruct nb_inputs {{\n{}}};\n\n",
+        printer.members(),
+        C99_INPUTS
+    );
+    header.push_str(
+        "/* Writes the word of a method. 0: it is none of these. */\nint nb_method(struct nb_state *state, uint32_t method, uint32_t word);\n\
+         /* R, G, B, A as they leave the final combiner: 0 to 255. */\n\
+         void nb_fragment(const struct nb_state *state, const struct nb_inputs *inputs, int32_t fragment[4]);\n\
+         /* Alpha test (ROP-1): 0 if the fragment is dropped. */\n\
+         int nb_kept(const struct nb_state *state, const int32_t fragment[4]);\n\
+         /* What a surface that holds a word holds after a fragment that was not dropped. */\n\
+         uint32_t nb_stored(const struct nb_state *state, const int32_t fragment[4], uint32_t destination);\n\
+         /* All of it: what the surface holds after the pixel. */\n\
+         uint32_t nb_pixel(const struct nb_state *state, const struct nb_inputs *inputs);\n\n\
+         #ifdef __cplusplus\n}\n#endif\n\n#endif\n",
+    );
+    let [first, second, third] = ROUNDING;
+    let _ = write!(source, "/* {first}\n   {second}\n   {third} */\n#include \"ninebit_combiners.h\"\n\n");
+    source.push_str("static inline int32_t ninebit_least(int32_t a, int32_t b) { return a < b ? a : b; }\n");
+    source.push_str("static inline int32_t ninebit_greatest(int32_t a, int32_t b) { return a > b ? a : b; }\n\n");
+    source.push_str(&printer.method());
+    source.push_str(&translated(&printer.body(), &C99));
+    Sources { header, source }
+}
+
+pub(super) fn glsl(generic: &Generic) -> String {
+    let printer = Printer { generic, syntax: Language::Glsl.syntax() };
+    let chip = printer.chip();
+    let mut out = format!(
+        "// The combiners and raster operations of the {chip} class, from register words to the stored word.\n"
+    );
+    out.push_str(&ROUNDING.map(|line| format!("// {line}\n")).concat());
+    out.push_str(
+        "// For GLSL 3.30 and GLSL ES 3.00: the line that tells the version stands above.\nprecision highp int;\n\n",
+    );
+    let members = printer.members().replace("uint32_t", "uint");
+    let _ = write!(
+        out,
+        "/* Words as a driver writes them, with the methods that write them. What is not written is 0. */\nstruct NinebitState {{\n{members}}};\n\n\
+         /* What one pixel brings. Colours are R, G, B, A. */\nstruct NinebitInputs {{\n{GLSL_INPUTS}}};\n\n"
+    );
+    out + &translated(&printer.body(), &GLSL)
+}
+
+const C99_INPUTS: &str = "    int32_t primary[4];    /* interpolated diffuse, 0 to 255 */
+    int32_t secondary[4];  /* interpolated specular, 0 to 255 */
+    int32_t fog[4];        /* fog colour and, in alpha, factor: 0 to 255 */
+    int32_t texture[4][4]; /* what each unit yields: 0 to 255, signed channels -256 to 254; a unit that is off: 0, 0, 0, 255 */
+    uint32_t destination;  /* the word that the surface holds */
+";
+const GLSL_INPUTS: &str = "    ivec4 primary;    /* interpolated diffuse, 0 to 255 */
+    ivec4 secondary;  /* interpolated specular, 0 to 255 */
+    ivec4 fog;        /* fog colour and, in alpha, factor: 0 to 255 */
+    ivec4 texture[4]; /* what each unit yields: 0 to 255, signed channels -256 to 254; a unit that is off: 0, 0, 0, 255 */
+    uint destination; /* the word that the surface holds */
+";
+
+fn translated(text: &str, words: &[(&str, &str)]) -> String {
+    words.iter().fold(unrolled(text), |text, (from, to)| text.replace(from, to))
+}
+
+/// Statements for each of R, G and B, one below the other: compilers leave such loops as they are, and take a third more time.
+fn unrolled(text: &str) -> String {
+    const LOOP: &str = "for (@int c = 0; c < 3; c++) ";
+    let mut out = String::with_capacity(2 * text.len());
+    for line in text.lines() {
+        match line.split_once(LOOP) {
+            Some((indent, statement)) => {
+                (0..3).for_each(|c| _ = writeln!(out, "{indent}{}", statement.replace("[c]", &format!("[{c}]"))))
+            }
+            None => _ = writeln!(out, "{line}"),
+        }
+    }
+    out
+}
+
+/// The code of a register as text.
+fn code(register: FinalRegister) -> u32 {
+    register_code(register)
+}
+
+/// A field of a word.
+fn field(word: &str, field: Field) -> String {
+    match (field.shift, field.shift + field.bits) {
+        (0, _) => format!("{word} & {}u", field.most()),
+        (shift, 32) => format!("{word} >> {shift}"),
+        (shift, _) => format!("{word} >> {shift} & {}u", field.most()),
+    }
+}
+
+/// Whether a field is not 0.
+fn is_set(word: &str, name: Field) -> String {
+    format!("({}) != 0u", field(word, name))
+}
+
+impl Printer<'_> {
+    fn chip(&self) -> &'static str {
+        match self.generic.chip {
+            Profile::Nv10 => "NV10 (Celsius)",
+            Profile::Nv2a => "NV20 (Kelvin, NV2A)",
+        }
+    }
+
+    fn members(&self) -> String {
+        let lines = words(self.generic.chip).map(|(name, count, method)| {
+            let name = if count > 1 { format!("{name}[{count}];") } else { format!("{name};") };
+            format!("    uint32_t {name:<24} /* {method:#06x} */\n")
+        });
+        lines.collect()
+    }
+
+    fn method(&self) -> String {
+        let mut out = "int nb_method(struct nb_state *state, uint32_t method, uint32_t word)\n{\n".to_string();
+        for (name, count, method) in words(self.generic.chip) {
+            if count > 1 {
+                let last = method + 4 * (count as u32 - 1);
+                let _ = write!(
+                    out,
+                    "    if (method >= {method:#x}u && method <= {last:#x}u && method % 4u == 0u) {{\n        state->{name}[(method - {method:#x}u) / 4u] = word;\n        return 1;\n    }}\n"
+                );
+            }
+        }
+        out.push_str("    switch (method) {\n");
+        for (name, _, method) in words(self.generic.chip).filter(|(_, count, _)| *count == 1) {
+            let _ = writeln!(out, "    case {method:#x}u: state->{name} = word; return 1;");
+        }
+        out + "    default: return 0;\n    }\n}\n\n"
+    }
+
+    /// All functions.
+    fn body(&self) -> String {
+        let mut out = String::new();
+        for piece in pieces(self.generic.policies) {
+            out.push_str(&self.piece(&piece));
+        }
+        for part in [operands(), self.stage(), self.fragment(), store()] {
+            out.push_str(&part);
+            out.push('\n');
+        }
+        out.truncate(out.trim_end().len());
+        out + "\n"
+    }
+
+    /// A piece as a function.
+    fn piece(&self, piece: &Piece) -> String {
+        let kind = if piece.kind == Kind::Word { "@uint" } else { "@int" };
+        let mut parameters: Vec<String> = piece.chooses.iter().map(|name| format!("@uint {name}")).collect();
+        parameters.extend((!piece.parameters.is_empty()).then(|| piece.parameters.to_string()));
+        let way = if piece.each.is_some() { "@both" } else { "@out" };
+        parameters.extend(piece.array.iter().map(|array| format!("{way} {kind} {array}")));
+        let yields = if piece.array.is_some() { "void" } else { kind };
+        let mut out = format!("/* {} */\n@fn {yields} {}({})\n{{\n", piece.about, piece.name, parameters.join(", "));
+        let is_one = piece.chooses.is_none();
+        let place = |n: usize| match piece.array {
+            Some(array) => {
+                let index = if piece.each.is_some() { "c".to_string() } else { n.to_string() };
+                format!("{}[{index}]", array.split('[').next().unwrap_or_default())
+            }
+            None if is_one => "return".to_string(),
+            None => "result".to_string(),
+        };
+        if let Some(chooses) = piece.chooses {
+            if piece.array.is_none() {
+                let _ = writeln!(out, "    {kind} result;");
+            }
+            let _ = writeln!(out, "    switch ({chooses}) {{");
+        }
+        // Equal cases stand together.
+        let mut groups: Vec<(Vec<&Case>, Vec<String>)> = Vec::new();
+        for case in &piece.cases {
+            let lines = self.statements(piece, case, &place);
+            match groups.iter_mut().find(|(_, known)| *known == lines) {
+                Some((cases, _)) => cases.push(case),
+                None => groups.push((vec![case], lines)),
+            }
+        }
+        for (n, (cases, lines)) in groups.iter().enumerate() {
+            if !is_one {
+                for case in cases {
+                    let value =
+                        if case.value > 15 { format!("{:#x}u", case.value) } else { format!("{}u", case.value) };
+                    let _ = writeln!(out, "    case {value}: /* {} */", case.name);
+                }
+                if n == 0 {
+                    out.push_str("    default:\n");
+                }
+            }
+            let indent = if is_one { "    " } else { "        " };
+            lines.iter().for_each(|line| _ = writeln!(out, "{indent}{line}"));
+            if !is_one {
+                out.push_str("        break;\n");
+            }
+        }
+        if !is_one {
+            out.push_str("    }\n");
+            if piece.array.is_none() {
+                out.push_str("    return result;\n");
+            }
+        }
+        out + "}\n\n"
+    }
+
+    /// What a case does.
+    fn statements(&self, piece: &Piece, case: &Case, place: &impl Fn(usize) -> String) -> Vec<String> {
+        let body = Body::of(self.syntax, &case.lines, &case.results, &[]);
+        let declares = !body.declarations.is_empty() && piece.chooses.is_some();
+        let mut inner: Vec<String> = body.declarations.clone();
+        for (n, result) in case.results.iter().enumerate() {
+            let (value, rules) = body.result(self.syntax, *result, piece.kind);
+            let comment = if rules.is_empty() { String::new() } else { format!(" /* {rules} */") };
+            let equals = if piece.array.is_none() && piece.chooses.is_none() { "" } else { " =" };
+            // What stays as it is need not be said.
+            if place(n) != value {
+                inner.push(format!("{}{equals} {value};{comment}", place(n)));
+            }
+        }
+        let block = |lines: &[String], out: &mut Vec<String>| {
+            if declares {
+                out.push("{".to_string());
+                out.extend(lines.iter().map(|line| format!("    {line}")));
+                out.push("}".to_string());
+            } else {
+                out.extend(lines.iter().cloned());
+            }
+        };
+        let mut out: Vec<String> = Vec::new();
+        match piece.each {
+            Some(count) => (0..count).for_each(|c| {
+                let lines: Vec<String> = inner.iter().map(|line| line.replace("[c]", &format!("[{c}]"))).collect();
+                block(&lines, &mut out);
+            }),
+            None => block(&inner, &mut out),
+        }
+        out
+    }
+
+    /// The word with the number of stages.
+    fn config(&self) -> String {
+        let chip = self.generic.chip;
+        let (word, index) = layout::config(chip);
+        if word.count(chip) > 1 { format!("@s.{}[{index}]", word.name()) } else { format!("@s.{}", word.name()) }
+    }
+
+    /// A general stage.
+    fn stage(&self) -> String {
+        let by_most = field(&self.config(), layout::mux_by_msb(self.generic.chip));
+        let [ab, cd, sum] = layout::OUTPUTS;
+        let (rgb, alpha) = ("out_rgb", "out_alpha");
+        let mut out = "/* A general stage: all of it is read, then all of it is written (CMB-1). What is ZERO throughout or has no destination is left out. */\n\
+             @fn void nb_stage(@state, @int stage, @changed)\n{\n"
+            .to_string();
+        for (name, word) in
+            [("in_rgb", Word::RcInRgb), (rgb, Word::RcOutRgb), ("in_alpha", Word::RcInAlpha), (alpha, Word::RcOutAlpha)]
+        {
+            let _ = writeln!(out, "    @in @uint {name} = @s.{}[stage];", word.name());
+        }
+        out.push_str("    @int a[3], b[3], ab[3], cd[3], third[3], takes_cd = 0, alpha_ab = 0, alpha_cd = 0;\n");
+        out.push_str("    for (@int c = 0; c < 3; c++) cd[c] = 0;\n");
+        for (n, result) in ["ab", "cd"].into_iter().enumerate() {
+            let [x, y] = [2 * n, 2 * n + 1].map(|n| field("in_rgb", layout::BYTES[n]));
+            let dot = field(rgb, layout::DOT_PRODUCTS[n]);
+            let step = format!("nb_operands({x}, r, a);\nnb_operands({y}, r, b);\nnb_products({dot}, a, b, {result});");
+            let both = layout::BYTES[2 * n].put(255) | layout::BYTES[2 * n + 1].put(255);
+            let (guard, indent) = if n == 0 { ("", "    ") } else { ("    if ((in_rgb & {}u) != 0u) {\n", "        ") };
+            out.push_str(&guard.replace("{}", &both.to_string()));
+            step.lines().for_each(|line| _ = writeln!(out, "{indent}{line}"));
+            out.push_str(if n == 0 { "" } else { "    }\n" });
+        }
+        let [third_rgb, third_alpha] = [rgb, alpha].map(|word| field(word, sum));
+        let mux = |word| field(word, layout::MUX);
+        let _ = writeln!(out, "    if (({third_rgb}) != 0u || ({third_alpha}) != 0u) {{");
+        let _ = writeln!(out, "        takes_cd = nb_takes_cd({by_most}, r[{}][3]);", code(FinalRegister::Spare0));
+        let _ = writeln!(
+            out,
+            "        for (@int c = 0; c < 3; c++) third[c] = nb_third({}, takes_cd, ab[c], cd[c]);\n    }}",
+            mux(rgb)
+        );
+        let _ = writeln!(out, "    if (({alpha} & {}u) != 0u) {{", ab.put(15) | cd.put(15) | sum.put(15));
+        for (n, result) in ["alpha_ab", "alpha_cd"].into_iter().enumerate() {
+            let [x, y] = [2 * n, 2 * n + 1].map(|n| field("in_alpha", layout::BYTES[n]));
+            let _ = writeln!(out, "        {result} = nb_product(nb_operand({x}, r), nb_operand({y}, r));");
+        }
+        out.push_str("    }\n");
+        let mut open: Option<(usize, bool)> = None;
+        for write in writes() {
+            let (output, channel) = match write {
+                Write::Channel { output, channel } => (output, channel),
+                Write::BlueToAlpha { output } => (output, 2),
+            };
+            let is_alpha = matches!(write, Write::Channel { channel: 3, .. });
+            let word = if is_alpha { alpha } else { rgb };
+            let destination = field(word, layout::OUTPUTS[output]);
+            let (operation, raw) = (field(word, layout::OPERATION), ["ab", "cd", "third"][output]);
+            if open != Some((output, is_alpha)) {
+                out.push_str(if open.is_some() { "    }\n" } else { "" });
+                let _ = writeln!(out, "    if (({destination}) != 0u) {{");
+                if !is_alpha {
+                    let _ = writeln!(out, "        nb_output_rgb({operation}, {raw});");
+                }
+                open = Some((output, is_alpha));
+            }
+            let value = match (is_alpha, output) {
+                (false, _) => format!("{raw}[{channel}]"),
+                (true, 2) => format!("nb_output({operation}, nb_third({}, takes_cd, alpha_ab, alpha_cd))", mux(alpha)),
+                (true, _) => format!("nb_output({operation}, alpha_{raw})"),
+            };
+            let (guard, to) = match write {
+                Write::Channel { channel, .. } => (String::new(), channel),
+                Write::BlueToAlpha { output } => (format!("if ({}) ", is_set(word, layout::BLUE_TO_ALPHA[output])), 3),
+            };
+            let _ = writeln!(out, "        {guard}r[{destination}][{to}] = {value};");
+        }
+        out + "    }\n}\n"
+    }
+
+    /// The constants of a stage, or of the final combiner, where they are not the last ones.
+    fn constants(&self, stage: bool, indent: &str) -> String {
+        let chip = self.generic.chip;
+        let mut out = String::new();
+        for (n, register) in [FinalRegister::ConstantColor0, FinalRegister::ConstantColor1].into_iter().enumerate() {
+            let word = match (chip, stage) {
+                (Profile::Nv2a, true) => {
+                    let word = [Word::RcConstantColor0, Word::RcConstantColor1][n].name();
+                    format!("@s.{word}[{} ? stage : 0]", is_set(&self.config(), layout::OWN_CONSTANTS[n]))
+                }
+                _ => format!("@s.{}[{n}]", Word::RcColor.name()),
+            };
+            let _ = write!(
+                out,
+                "{indent}word = {word};\n{indent}if (word != loaded{n}) {{\n{indent}    loaded{n} = word;\n{indent}    nb_color(word, constant);\n\
+                 {indent}    for (@int c = 0; c < 4; c++) r[{}][c] = constant[c];\n{indent}}}\n",
+                code(register)
+            );
+        }
+        out
+    }
+
+    /// From inputs to the fragment.
+    fn fragment(&self) -> String {
+        let given = [
+            (FinalRegister::PrimaryColor, "@i.primary[c]"),
+            (FinalRegister::SecondaryColor, "@i.secondary[c]"),
+            (FinalRegister::Fog, "@i.fog[c]"),
+            (FinalRegister::Texture0, "@i.texture[0][c]"),
+            (FinalRegister::Texture1, "@i.texture[1][c]"),
+            (FinalRegister::Texture2, "@i.texture[2][c]"),
+            (FinalRegister::Texture3, "@i.texture[3][c]"),
+        ];
+        let mut out = format!(
+            "@public void nb_fragment(@state, @inputs, @out @int fragment[4])\n{{\n    @int x[3], y[3], a[3], b[3], constant[4];\n    @registers;\n\
+             \x20   @in @uint final0 = @s.{}, final1 = @s.{};\n    @uint word, loaded0 = 0u, loaded1 = 0u;\n    for (@int c = 0; c < 4; c++) {{\n",
+            Word::RcFinal0.name(),
+            Word::RcFinal1.name()
+        );
+        for number in 0..16 {
+            let value = given.iter().find(|(register, _)| code(*register) == number).map_or("0", |(_, value)| value);
+            let _ = writeln!(out, "        r[{number}][c] = {value};");
+        }
+        out.push_str("    }\n");
+        let spare0 = code(FinalRegister::Spare0);
+        for (channel, from) in initial_spare0().into_iter().enumerate() {
+            if let Some(from) = from {
+                let texture0 = code(FinalRegister::Texture0);
+                let _ = writeln!(out, "    r[{spare0}][{channel}] = r[{texture0}][{from}]; /* CMB-13 */");
+            }
+        }
+        let stages = field(&self.config(), layout::stages(self.generic.chip));
+        let most = self.generic.chip.general_stages();
+        let _ = write!(
+            out,
+            "    for (@int stage = 0; stage < {most} && @uint(stage) < ({stages}); stage++) {{\n{}        nb_stage(state, stage, r);\n    }}\n{}",
+            self.constants(true, "        "),
+            self.constants(false, "    ")
+        );
+        let secondary = code(FinalRegister::SecondaryColor);
+        let [sum, product] = [FinalRegister::Spare0PlusSecondary, FinalRegister::ETimesF].map(code);
+        let [e, f, g, _] = layout::BYTES.map(|byte| field("final1", byte));
+        let [a, b, c, d] = layout::BYTES.map(|byte| field("final0", byte));
+        let inverted = |register: u32, by: Field| format!("nb_final_input({}, r[{register}][c])", field("final1", by));
+        // The bits that both codes have, and no other register has all of.
+        let both = layout::REGISTER.put(sum & product);
+        let lowest = layout::BYTES.iter().fold(0, |all, byte| all | byte.put(both & both.wrapping_neg()));
+        let others = (1..both.count_ones()).map(|n| format!("final0 >> {n} & ")).collect::<String>();
+        let lerp = !layout::BYTES[3].put(255);
+        let _ = write!(
+            out,
+            "    /* Where A to D may read what exists only here: SPARE0 + SECONDARY and E times F. */\n\
+             \x20   if ((final0 & {others}{lowest:#x}u) != 0u) {{\n\
+             \x20       for (@int c = 0; c < 3; c++) r[{sum}][c] = nb_color_sum({}, {}, {});\n\
+             \x20       nb_final_operands({e}, r, x);\n        nb_final_operands({f}, r, y);\n\
+             \x20       for (@int c = 0; c < 3; c++) r[{product}][c] = nb_final_product(x[c], y[c]);\n    }}\n\
+             \x20   nb_final_operands({d}, r, b);\n    if ((final0 & {lerp:#x}u) != 0u) {{\n\
+             \x20       nb_final_operands({a}, r, x);\n        nb_final_operands({b}, r, y);\n        nb_final_operands({c}, r, a);\n\
+             \x20       for (@int c = 0; c < 3; c++) fragment[c] = nb_final_rgb(x[c], y[c], a[c], b[c]);\n    }} else {{\n\
+             \x20       for (@int c = 0; c < 3; c++) fragment[c] = nb_final_rgb(0, 0, 0, b[c]);\n    }}\n\
+             \x20   fragment[3] = nb_final_alpha({g}, r);\n}}\n",
+            field("final1", layout::COLOR_SUM_CLAMP),
+            inverted(spare0, layout::INVERT_SPARE0),
+            inverted(secondary, layout::INVERT_SECONDARY),
+        );
+        out
+    }
+}
+
+/// What inputs read.
+fn operands() -> String {
+    let channel = |is_alpha: bool, portion_alpha: bool, own: usize| {
+        component_channel(component(layout::ALPHA.put(is_alpha.into()), portion_alpha), own)
+    };
+    let (alpha, blue) = (channel(true, false, 0), channel(false, true, 3));
+    let register = field("byte", layout::REGISTER);
+    let is_alpha = is_set("byte", layout::ALPHA);
+    let (mapping, invert) = (field("byte", layout::MAPPING), field("byte", layout::INVERT));
+    let read = |own: &str| format!("r[{register}][{is_alpha} ? {alpha} : {own}]");
+    let one = read(&blue.to_string());
+    let all = format!(
+        "    if ({is_alpha}) {{\n        for (@int c = 0; c < 3; c++) x[c] = r[{register}][{alpha}];\n    }} else {{\n        for (@int c = 0; c < 3; c++) x[c] = r[{register}][c];\n    }}\n"
+    );
+    format!(
+        "/* An input of an RGB portion: register, component, mapping. */\n\
+         @fn void nb_operands(@uint byte, @registers, @out @int x[3])\n{{\n{all}    nb_mapped_rgb({mapping}, x);\n}}\n\n\
+         /* An input of an alpha portion: {} unless it is {}. */\n\
+         @fn @int nb_operand(@uint byte, @registers)\n{{\n    return nb_mapped({mapping}, {one});\n}}\n\n\
+         /* An input of the final combiner. */\n\
+         @fn void nb_final_operands(@uint byte, @registers, @out @int x[3])\n{{\n{all}    nb_final_input_rgb({invert}, x);\n}}\n\n\
+         /* The alpha of the fragment. */\n\
+         @fn @int nb_final_alpha(@uint byte, @registers)\n{{\n    return nb_final_input({invert}, {one});\n}}\n",
+        channel_name(blue),
+        channel_name(alpha),
+    )
+}
+
+/// From the fragment to the stored word.
+fn store() -> String {
+    let name = |method: raster::Method| format!("@s.{}", method.name());
+    let format = field(&name(raster::Method::SurfaceFormat), raster::SURFACE_COLOR);
+    format!(
+        "@public int nb_kept(@state, @in @int fragment[4])\n{{\n    if ({} == 0u) return 1;\n    return nb_passes({}, fragment[3], @int({} & 255u));\n}}\n\n\
+         @public @uint nb_stored(@state, @in @int fragment[4], @uint destination)\n{{\n    @uint format = {format}, mask = nb_write_mask(format, {});\n\
+         \x20   @int channels[4], source[4], held[4], constant[4], factors[4], other[4];\n    for (@int c = 0; c < 4; c++) channels[c] = fragment[c];\n\
+         \x20   if ({} != 0u && nb_blends(format) != 0) {{\n        nb_truncated(format, fragment, source);\n        nb_channels(format, destination, held);\n\
+         \x20       nb_color({}, constant);\n        nb_blend_factors({}, source, held, constant, factors);\n        nb_blend_factors({}, source, held, constant, other);\n\
+         \x20       for (@int c = 0; c < 4; c++) channels[c] = nb_blended({}, source[c], held[c], factors[c], other[c]);\n    }}\n\
+         \x20   return (destination & ~mask) | (nb_packed(format, channels) & mask); /* ROP-6 */\n}}\n\n\
+         @public @uint nb_pixel(@state, @inputs)\n{{\n    @int fragment[4];\n    nb_fragment(state, inputs, fragment);\n\
+         \x20   return nb_kept(state, fragment) != 0 ? nb_stored(state, fragment, @i.destination) : @i.destination;\n}}\n",
+        name(raster::Method::AlphaTestEnable),
+        name(raster::Method::AlphaFunc),
+        name(raster::Method::AlphaRef),
+        name(raster::Method::ColorMask),
+        name(raster::Method::BlendEnable),
+        name(raster::Method::BlendColor),
+        name(raster::Method::BlendFuncSfactor),
+        name(raster::Method::BlendFuncDfactor),
+        name(raster::Method::BlendEquation),
+    )
+}

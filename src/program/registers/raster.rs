@@ -1,0 +1,124 @@
+//! Methods of the raster operations and what their values mean: the same numbers in the NV10 and the NV20 class. Names are those of the Xbox's headers, in lower case.
+
+use super::layout::Field;
+use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, SurfaceFormat, named};
+
+named! {
+    /// A method of the raster operations.
+    pub enum Method {
+        /// Format of the surface: colour in the lowest four bits.
+        SurfaceFormat = "surface_format",
+        /// Whether fragments are tested.
+        AlphaTestEnable = "alpha_test_enable",
+        /// Whether fragments are blended.
+        BlendEnable = "blend_enable",
+        /// Comparison of the alpha test.
+        AlphaFunc = "alpha_func",
+        /// Its reference, 0 to 255.
+        AlphaRef = "alpha_ref",
+        /// Factor of the source.
+        BlendFuncSfactor = "blend_func_sfactor",
+        /// Factor of the destination.
+        BlendFuncDfactor = "blend_func_dfactor",
+        /// Blend constant, A8R8G8B8.
+        BlendColor = "blend_color",
+        /// Equation.
+        BlendEquation = "blend_equation",
+        /// Channels that are written.
+        ColorMask = "color_mask",
+    }
+}
+
+impl Method {
+    /// Its number.
+    pub fn number(self) -> u32 {
+        match self {
+            Method::SurfaceFormat => 0x208,
+            Method::AlphaTestEnable => 0x300,
+            Method::BlendEnable => 0x304,
+            Method::AlphaFunc => 0x33c,
+            Method::AlphaRef => 0x340,
+            Method::BlendFuncSfactor => 0x344,
+            Method::BlendFuncDfactor => 0x348,
+            Method::BlendColor => 0x34c,
+            Method::BlendEquation => 0x350,
+            Method::ColorMask => 0x358,
+        }
+    }
+}
+
+/// The colour of [`Method::SurfaceFormat`].
+pub const SURFACE_COLOR: Field = Field { shift: 0, bits: 4 };
+
+/// R, G, B, A of [`Method::ColorMask`].
+pub const COLOR_MASK: [Field; 4] = [
+    Field { shift: 16, bits: 1 },
+    Field { shift: 8, bits: 1 },
+    Field { shift: 0, bits: 1 },
+    Field { shift: 24, bits: 1 },
+];
+
+/// The value of a comparison.
+pub fn compare_function(function: CompareFunction) -> u32 {
+    0x200
+        + match function {
+            CompareFunction::Never => 0,
+            CompareFunction::Less => 1,
+            CompareFunction::Equal => 2,
+            CompareFunction::LessOrEqual => 3,
+            CompareFunction::Greater => 4,
+            CompareFunction::NotEqual => 5,
+            CompareFunction::GreaterOrEqual => 6,
+            CompareFunction::Always => 7,
+        }
+}
+
+/// The value of a blend factor.
+pub fn blend_factor(factor: BlendFactor) -> u32 {
+    match factor {
+        BlendFactor::Zero => 0,
+        BlendFactor::One => 1,
+        BlendFactor::SourceColor => 0x300,
+        BlendFactor::OneMinusSourceColor => 0x301,
+        BlendFactor::SourceAlpha => 0x302,
+        BlendFactor::OneMinusSourceAlpha => 0x303,
+        BlendFactor::DestinationAlpha => 0x304,
+        BlendFactor::OneMinusDestinationAlpha => 0x305,
+        BlendFactor::DestinationColor => 0x306,
+        BlendFactor::OneMinusDestinationColor => 0x307,
+        BlendFactor::SourceAlphaSaturate => 0x308,
+        BlendFactor::ConstantColor => 0x8001,
+        BlendFactor::OneMinusConstantColor => 0x8002,
+        BlendFactor::ConstantAlpha => 0x8003,
+        BlendFactor::OneMinusConstantAlpha => 0x8004,
+    }
+}
+
+/// The value of a blend equation.
+pub fn blend_equation(equation: BlendEquation) -> u32 {
+    match equation {
+        BlendEquation::Add => 0x8006,
+        BlendEquation::Min => 0x8007,
+        BlendEquation::Max => 0x8008,
+        BlendEquation::Subtract => 0x800a,
+        BlendEquation::ReverseSubtract => 0x800b,
+        BlendEquation::SignedReverseSubtract => 0xf005,
+        BlendEquation::SignedAdd => 0xf006,
+    }
+}
+
+/// The colour of a surface format.
+pub fn surface_format(format: SurfaceFormat) -> u32 {
+    match format {
+        SurfaceFormat::X1R5G5B5Z => 1,
+        SurfaceFormat::X1R5G5B5O => 2,
+        SurfaceFormat::R5G6B5 => 3,
+        SurfaceFormat::X8R8G8B8Z => 4,
+        SurfaceFormat::X8R8G8B8O => 5,
+        SurfaceFormat::X1A7R8G8B8Z => 6,
+        SurfaceFormat::X1A7R8G8B8O => 7,
+        SurfaceFormat::A8R8G8B8 => 8,
+        SurfaceFormat::B8 => 9,
+        SurfaceFormat::G8B8 => 10,
+    }
+}
