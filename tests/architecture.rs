@@ -11,7 +11,7 @@ fn files(folder: &Path, found: &mut Vec<PathBuf>) {
         let path = entry.unwrap().path();
         if path.is_dir() {
             files(&path, found);
-        } else {
+        } else if path.extension().is_none_or(|ending| ending != "gz") {
             found.push(path);
         }
     }

@@ -28,6 +28,9 @@ fn used(folder: &Path, codes: &mut BTreeSet<String>) {
             used(&path, codes);
             continue;
         }
+        if path.extension().is_some_and(|ending| ending == "gz") {
+            continue;
+        }
         let text = std::fs::read_to_string(&path).unwrap();
         for (at, _) in text.match_indices("\"NB") {
             let code = &text[at + 1..text[at + 1..].find('"').map_or(text.len(), |end| at + 1 + end)];

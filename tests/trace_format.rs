@@ -186,7 +186,7 @@ fn files_under(folder: &Path, files: &mut Vec<PathBuf>) {
         let path = entry.unwrap().path();
         if path.is_dir() {
             files_under(&path, files);
-        } else {
+        } else if path.extension().is_none_or(|ending| ending != "gz") {
             files.push(path);
         }
     }

@@ -1,8 +1,8 @@
 #!/bin/sh
-# Measures Mesa's llvmpipe as an evaluator of W1, a dot product of a filtered normal map: nanoseconds a pixel on one thread, and how far its own
-# frame is from ninebit's bytes. Prints the file that `ninebit chart --evaluators FILE` reads.
+# Measures other evaluators of W1, a dot product of a filtered normal map: Mesa's llvmpipe, and the printed C of the draw. Nanoseconds a pixel on one
+# thread, and how far their own pixels are from ninebit's bytes. Prints the file that `ninebit chart --evaluators FILE` reads.
 #   benches/peers/evaluators.sh [ROUNDS] >benches/peers/evaluators.json
-# Needs what compare.sh installs. NINEBIT may name the program.
+# Needs what compare.sh installs, and python3. NINEBIT may name the program.
 set -eu
 rounds=${1:-9}
 here=$(cd "$(dirname "$0")" && pwd)
@@ -33,5 +33,8 @@ awk -v renderer="$(grep -m 1 '^#' "$work/all" | sed 's/^# //; s/["\\]//g')" -v a
         printf "      \"name\": \"llvmpipe\",\n      \"surface\": \"one unit, one stage\",\n"
         printf "      \"yields\": \"bytes by floats, W1 of the benches (%s)\",\n", renderer
         printf "      \"error\": %s,\n      \"largest\": %s,\n", of[2], of[4]
-        printf "      \"time\": { \"median\": %s, \"lower\": %s, \"upper\": %s }\n    }\n  ]\n}\n", at(0.5), at(0.25), at(0.75)
+        printf "      \"time\": { \"median\": %s, \"lower\": %s, \"upper\": %s }\n    },\n", at(0.5), at(0.25), at(0.75)
     }' "$work/times"
+# shellcheck disable=SC2086
+$pin "$here/c_text.py" "$ninebit" "$scenes/w1.ron" "$rounds" "$work" | sed 's/^/    /'
+printf '  ]\n}\n'

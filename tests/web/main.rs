@@ -176,7 +176,7 @@ fn refused() -> Result<(), Failed> {
         r#"{"do":"trace","target":0,"pixel":[-1,"a"]}"#,
         r#"{"do":"heat","target":0,"against":"picture"}"#,
         r#"{"do":"heat","target":0,"against":{"CMB-3":"neither"}}"#,
-        r#"{"do":"policies","values":{"CMB-99":"x"}}"#,
+        r#"{"do":"policies","values":{"NUM":"x"}}"#,
         r#"{"do":"program","draw":99}"#,
         r#"{"do":"edit","draw":0,"path":["stages",99,"rgb","scale"],"value":"Two"}"#,
         r#"{"do":"edit","draw":0,"path":["stages",0,"rgb","scale"],"value":"Nine"}"#,
