@@ -6,10 +6,12 @@ use std::path::{Path, PathBuf};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use clap::Args;
+use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
+use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit::state::{POLICIES, Policies};
-use ninebit_files::output::Destination;
+use ninebit_files::output::{Compression, Destination, encode_png};
 use ninebit_scene::assets::Gathered;
 use ninebit_scene::load_with;
 use serde_json::{Value, json};
@@ -50,6 +52,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         bundle.files.iter().map(|(name, bytes)| (name, STANDARD.encode(bytes))).collect();
     let data = json!({
         "name": name,
+        "picture": first_picture(&loaded.plan, &policies)?,
         "version": env!("CARGO_PKG_VERSION"),
         "text": loaded.source.text,
         "files": files,
@@ -58,6 +61,18 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         "rules": page::rules(),
     });
     Ok(arguments.output.write(page::page(&name, &data).as_bytes())?)
+}
+
+/// The first target as a PNG, to be seen before the module has been compiled. None where other policies would draw another one.
+fn first_picture(plan: &Plan, policies: &Policies) -> Result<Option<String>, Failure> {
+    if *policies != plan.policies {
+        return Ok(None);
+    }
+    let frames = render(plan, &RenderOptions::default());
+    let Some(surface) = frames.surfaces.first() else { return Ok(None) };
+    // Alpha is a channel like others here; the page's picture is opaque.
+    let pixels: Vec<[u8; 4]> = surface.rgba8().into_iter().map(|[r, g, b, _]| [r, g, b, 255]).collect();
+    Ok(Some(STANDARD.encode(encode_png(surface.width, surface.height, &pixels, Compression::Small)?)))
 }
 
 /// The rules that have alternatives.

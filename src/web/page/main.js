@@ -9,9 +9,10 @@ const encoded = (value) => btoa(String.fromCharCode(...new TextEncoder().encode(
 const decoded = (text) => JSON.parse(new TextDecoder().decode(Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0))));
 
 class Page {
-  constructor(data, model) {
+  constructor(data, model, view) {
     Object.assign(this, { data, model, rules: data.rules, alternatives: data.policies, policies: { ...data.chosen }, text: data.text, past: [], future: [], target: 0, until: null, against: "", at: null, times: {} });
-    this.view = new View((pixel) => this.choose(pixel), (pixel) => this.hovered(pixel));
+    Object.assign(view, { choose: (pixel) => this.choose(pixel), hover: (pixel) => this.hovered(pixel) });
+    this.view = view;
     this.chain = new Chain(this);
     this.change = new Change(this);
     this.programs = new Map();
@@ -369,8 +370,12 @@ class Page {
 (async () => {
   const started = performance.now();
   try {
+    const data = JSON.parse($("data").textContent);
+    const view = new View(() => {}, () => {});
+    const preview = view.preview(data.picture);
     const model = await Model.load($("module").textContent.trim());
-    window.inspector = new Page(JSON.parse($("data").textContent), model);
+    window.inspector = new Page(data, model, view);
+    window.inspector.times.preview = await preview;
     window.inspector.times.first = performance.now() - started;
     window.inspector.times.opened = performance.now();
   } catch (error) {

@@ -61,6 +61,21 @@ export class View {
     else this.paint();
   }
 
+  // What the program drew, until the module is there to draw it again. When it was seen.
+  async preview(png) {
+    if (!png) return null;
+    const image = new Image();
+    image.src = `data:image/png;base64,${png}`;
+    await image.decode();
+    if (this.picture) return null;
+    const sheet = document.createElement("canvas");
+    [sheet.width, sheet.height] = [image.width, image.height];
+    const context = sheet.getContext("2d");
+    context.drawImage(image, 0, 0);
+    this.show({ width: image.width, height: image.height, pixels: context.getImageData(0, 0, image.width, image.height).data });
+    return performance.now();
+  }
+
   show(picture) {
     const other = !this.picture || this.picture.width !== picture.width || this.picture.height !== picture.height;
     this.picture = picture;
