@@ -21,7 +21,7 @@ fn normal_map() -> Texture {
             0xff00_0000 | wave(x, y) << 16 | wave(y, x) << 8 | (230 + (x ^ y) % 20)
         })
         .collect();
-    let texels = Texels { width: 256, height: 256, levels: 1, border: false, words: words.into() };
+    let texels = Texels { width: 256, height: 256, levels: 1, layers: 1, border: false, words: words.into() };
     let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
     Texture { name: "normals".to_string(), kind, format: TextureFormat::A8R8G8B8, image }
 }

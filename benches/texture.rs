@@ -21,7 +21,7 @@ fn texture(kind: TextureKind, format: TextureFormat, levels: u32) -> Texture {
     let faces = if kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
     let mask = if format.bytes() < 4 { (1 << (8 * format.bytes())) - 1 } else { u32::MAX };
     let words = (0..faces * face).map(|n| (n as u32).wrapping_mul(2_654_435_761) & mask).collect();
-    let texels = Texels { width: SIDE, height: SIDE, levels, border: false, words };
+    let texels = Texels { width: SIDE, height: SIDE, levels, layers: 1, border: false, words };
     Texture { name: "texture".to_string(), kind, format, image: TextureImage::Texels(texels) }
 }
 

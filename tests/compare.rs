@@ -66,6 +66,11 @@ fn single_rules_stay_within_their_bounds_on_random_scenes() {
         check_bounds(&format!("{:?} {scene:?}", plan.policies), &comparison);
         seen.extend(comparison.rules.iter().map(|rule| rule.rule.name()));
     });
+    // Anisotropy comes with scenes that are made for it.
+    let floor = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes/sampling/anisotropy.ron");
+    let floor = compare(&scene::load(&floor, &Limits::default()).unwrap().plan, &options(Mode::PerOp));
+    check_bounds("anisotropy.ron", &floor);
+    seen.extend(floor.rules.iter().map(|rule| rule.rule.name()));
     // Every rule that can be off has been met.
     assert_eq!(seen.len(), Rule::ALL.len(), "{seen:?}");
 }

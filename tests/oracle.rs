@@ -10,8 +10,8 @@ use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{
-    AddressMode, DotMapping, Filter, FogFunction, FogMode, Named, POLICIES, Policies, Profile, Scene, TextureFormat,
-    TextureKind,
+    AddressMode, CompareFunction, DotMapping, Filter, FogFunction, FogMode, Named, POLICIES, Policies, Profile, Scene,
+    ShadowReference, TextureFormat, TextureKind,
 };
 use ninebit::vertex::fog::passed;
 use ninebit_report::trace_text;
@@ -93,6 +93,31 @@ fn wider_random_scenes_agree() {
 }
 
 #[test]
+fn wider_random_scenes_sample_in_every_way() {
+    let strategy = random_scene::wide::scene();
+    let mut runner = runner(400);
+    model::tally::take();
+    for _ in 0..400 {
+        model::render(&strategy.new_tree(&mut runner).unwrap().current(), &Policies::DEFAULT);
+    }
+    let tally = model::tally::take();
+    println!("{tally:#?}");
+    let mut missing = Vec::new();
+    let mut need = |group: &'static str, names: &[&'static str]| {
+        missing.extend(names.iter().filter(|n| tally.get(&(group, **n)).is_none_or(|n| *n < 10)).map(|n| (group, *n)));
+    };
+    need("TextureFormat", TextureFormat::NAMES);
+    need("TextureKind", TextureKind::NAMES);
+    need("shadow", CompareFunction::NAMES);
+    need("reference", ShadowReference::NAMES);
+    need("layer", AddressMode::NAMES);
+    need("layer", &["inside"]);
+    need("taps", &["1", "2", "4", "6", "8"]);
+    need("cylinder", &["moved", "stays"]);
+    assert!(missing.is_empty(), "too seldom: {missing:?}");
+}
+
+#[test]
 fn random_scenes_draw_something_of_everything() {
     let strategy = random_scene::scene();
     let mut runner = runner(400);
@@ -122,8 +147,10 @@ fn random_scenes_draw_something_of_everything() {
     let mut need = |group: &'static str, names: &[&'static str]| {
         missing.extend(names.iter().filter(|n| tally.get(&(group, **n)).is_none_or(|n| *n < 500)).map(|n| (group, *n)));
     };
-    need("TextureFormat", TextureFormat::NAMES);
-    need("TextureKind", TextureKind::NAMES);
+    // Depths and volumes come with the wider scenes.
+    let depths = TextureFormat::ALL.iter().position(|format| format.depth().is_some()).unwrap_or(0);
+    need("TextureFormat", &TextureFormat::NAMES[..depths]);
+    need("TextureKind", &TextureKind::NAMES[..3]);
     need("outside", AddressMode::NAMES);
     need("cube edge", &["Wrap"]);
     need("border", &["color", "texels"]);

@@ -203,7 +203,7 @@ fn texels_are_packed_by_cutting_off() {
         let loaded = draw("Nv2a", &top, "textures: [\"t\"]");
         match &loaded.scene.textures[0].image {
             TextureImage::Texels(texels) => texels.words.to_vec(),
-            TextureImage::Target { .. } => panic!("texels expected"),
+            TextureImage::Target { .. } | TextureImage::Depth { .. } => panic!("texels expected"),
         }
     };
     let solid = "Solid(width: 1, height: 1, color: (0x9f, 0x87, 0x4f, 0x12))";

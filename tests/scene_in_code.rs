@@ -16,7 +16,8 @@ fn compile(scene: &Scene) -> Result<Plan, Vec<PlanError>> {
 
 /// A texture of one colour, 4 x 4.
 fn texture() -> Texture {
-    let texels = Texels { width: 4, height: 4, levels: 1, border: false, words: vec![0xff80_4020; 16].into() };
+    let texels =
+        Texels { width: 4, height: 4, levels: 1, layers: 1, border: false, words: vec![0xff80_4020; 16].into() };
     let image = TextureImage::Texels(texels);
     Texture { name: "grey".to_owned(), kind: TextureKind::TwoDimensional, format: TextureFormat::A8R8G8B8, image }
 }
@@ -76,7 +77,7 @@ type Case = (&'static str, fn(&mut Scene));
 fn texels(scene: &mut Scene) -> &mut Texels {
     match &mut scene.textures[0].image {
         TextureImage::Texels(texels) => texels,
-        TextureImage::Target { .. } => panic!("texels"),
+        TextureImage::Target { .. } | TextureImage::Depth { .. } => panic!("texels"),
     }
 }
 

@@ -30,7 +30,7 @@ fn plans_share_the_words() {
     let plan = Plan::compile(&loaded.scene, &PlanOptions::default()).unwrap();
     let words = |texture: &ninebit::state::Texture| match &texture.image {
         TextureImage::Texels(texels) => texels.words.clone(),
-        TextureImage::Target { .. } => panic!("texels expected"),
+        TextureImage::Target { .. } | TextureImage::Depth { .. } => panic!("texels expected"),
     };
     let (ours, planned) = (words(&loaded.scene.textures[0]), words(&plan.textures[0]));
     assert!(Arc::ptr_eq(&ours, &planned));

@@ -17,7 +17,7 @@ fuzz_target!(|bytes: &[u8]| {
     let faces = if image.cube { CUBE_FACES } else { 1 };
     assert_eq!(image.words.len(), face * faces as usize);
     let (width, height, levels) = (image.width, image.height, image.levels);
-    let texels = Texels { width, height, levels, border: false, words: image.words.into() };
+    let texels = Texels { width, height, levels, layers: 1, border: false, words: image.words.into() };
     let palette = image.palette.unwrap_or_default();
     for (face, level) in (0..faces).flat_map(|face| (0..levels).map(move |level| (face, level))) {
         let shown = show::level(&texels, image.format, &palette, bytes.len() % 2 == 0, face, level);

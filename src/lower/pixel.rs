@@ -6,7 +6,9 @@ use ninebit::plan::PlannedDraw;
 use ninebit::rop::{blend, surface};
 use ninebit::state::{
     AlphaTest, Blend, Combiners, CompareFunction, Draw, Policies, Register, Scene, ShaderOperation, SurfaceFormat,
+    TextureKind,
 };
+use ninebit::texture::unit::PlannedUnit;
 
 use crate::code::{Code, Line, Operand, Operation, Range, Test};
 use crate::input::Input;
@@ -191,11 +193,7 @@ impl Function {
             }
             let unit = planned.units.iter().find(|unit| unit.index == n);
             match unit {
-                Some(unit)
-                    if options.textures == Textures::Words
-                        && planned.shader.is_none()
-                        && unit.state.color_key.is_none() =>
-                {
+                Some(unit) if options.textures == Textures::Words && planned.shader.is_none() && reads_words(unit) => {
                     let sampler = Sampler::new(unit);
                     let border = builder.constants(unit.state.border_color, |c| Input::BorderColor(n, c));
                     sampler.register(border, |input| builder.given(input), &code)
@@ -277,4 +275,13 @@ impl Result {
             },
         }
     }
+}
+
+/// Whether what a unit yields is made of a texel's words by a filter alone: it compares nothing, and its texel is one of a plane.
+fn reads_words(unit: &PlannedUnit) -> bool {
+    let state = &unit.state;
+    state.color_key.is_none()
+        && state.shadow.is_none()
+        && state.anisotropy == 1
+        && unit.kind != TextureKind::ThreeDimensional
 }

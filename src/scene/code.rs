@@ -69,6 +69,8 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0330", "a rectangle texture that the chip does not take"),
     ("NB0331", "border texels where there are none"),
     ("NB0332", "a length of palette that the chip lacks"),
+    ("NB0333", "what a texture unit of the chip cannot do"),
+    ("NB0334", "layers that a texture cannot have"),
     ("NB0340", "a texture shader on a chip that has none"),
     ("NB0341", "a texture shader operation where the chip does not allow it"),
     ("NB0342", "an earlier unit, or a mapping, that a texture shader stage cannot have"),

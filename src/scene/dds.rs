@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::image::{ImageError, ImageLimits};
 use super::texels;
-use ninebit::state::{CUBE_FACES, Level, TextureFormat};
+use ninebit::state::{CUBE_FACES, LARGEST_VOLUME, Level, TextureFormat};
 
 mod pixel_format;
 
@@ -36,15 +36,17 @@ pub const FACES: [&str; CUBE_FACES as usize] = ["+X", "-X", "+Y", "-Y", "+Z", "-
 pub struct Dds {
     /// Six faces; one picture otherwise.
     pub cube: bool,
+    /// Layers of a volume.
+    pub layers: Option<u32>,
     /// Meaning of the words.
     pub format: TextureFormat,
     /// Columns of level 0.
     pub width: u32,
     /// Rows of level 0.
     pub height: u32,
-    /// Levels, at least 1, at most as many as the sides can be halved.
+    /// Levels, at least 1, at most as many as the sides can be halved; of a volume the first alone is read.
     pub levels: u32,
-    /// Face after face, in it level after level, as in [`Texels::words`](ninebit::state::Texels::words).
+    /// Face after face, or layer after layer, in it level after level, as in [`Texels::words`](ninebit::state::Texels::words).
     pub words: Vec<u32>,
     /// 256 words A8R8G8B8 where the format is [`TextureFormat::P8`].
     pub palette: Option<Vec<u32>>,
@@ -58,13 +60,14 @@ impl Dds {
             return None;
         }
         let used = texels::used_bits(format);
-        Some(self.words.iter().map(|word| word & used).collect())
+        Some(self.words.iter().map(|word| texels::stored(word & used, format)).collect())
     }
 }
 
 /// What a header says, once it can be true.
 struct Header {
     cube: bool,
+    layers: Option<u32>,
     format: TextureFormat,
     width: u32,
     height: u32,
@@ -84,7 +87,7 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, Im
     let named = || path.to_path_buf();
     let damaged = |reason: String| ImageError::Damaged { path: named(), reason };
     let header = header(bytes, path)?;
-    let Header { cube, format, width, height, levels, before, .. } = header;
+    let Header { cube, layers, format, width, height, levels, before, .. } = header;
     if width == 0 || height == 0 {
         return Err(damaged(format!("it is {width} x {height}")));
     }
@@ -92,15 +95,21 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, Im
     if width > limit || height > limit {
         return Err(ImageError::Side { path: named(), width, height, limit });
     }
+    if let Some(layers) = layers
+        && !(1..=LARGEST_VOLUME).contains(&layers)
+    {
+        return Err(damaged(format!("it has {layers} layers, and 1 to {LARGEST_VOLUME} can be")));
+    }
     if cube && width != height {
         return Err(damaged(format!("faces of a cube map are square, and it is {width} x {height}")));
     }
-    let most = Level::most(width, height);
+    let most = Level::most(width.max(layers.unwrap_or(1)), height);
     if levels > most {
         return Err(damaged(format!("it claims {levels} levels, and {width} x {height} texels have {most} at most")));
     }
     let faces = if cube { CUBE_FACES } else { 1 };
-    let decoded: u64 = u64::from(faces) * sides(&header).map(|(w, h)| 4 * words(format, w, h)).sum::<u64>();
+    let decoded: u64 =
+        u64::from(faces) * sides(&header).map(|(w, h, layers)| 4 * layers * words(format, w, h)).sum::<u64>();
     if decoded > limits.maximum_decoded_bytes {
         return Err(ImageError::DecodedBytes { path: named(), bytes: decoded, limit: limits.maximum_decoded_bytes });
     }
@@ -115,11 +124,15 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Dds, Im
         let what = if (has as u64) < needs { "is cut off" } else { "is longer than its header says" };
         return Err(damaged(format!("it {what}: {has} bytes of texels, {needs} are expected")));
     };
-    let words = match rows {
+    let mut words = match rows {
         Rows::Tight => texels::from_bytes(texels, format),
         Rows::Padded => texels::from_bytes(&without_padding(&header, texels), format),
     };
-    Ok(Dds { cube, format, width, height, levels, words, palette })
+    if let Some(layers) = layers {
+        words.truncate(layers as usize * format.words(width, height));
+        return Ok(Dds { cube, layers: Some(layers), format, width, height, levels: 1, words, palette });
+    }
+    Ok(Dds { cube, layers, format, width, height, levels, words, palette })
 }
 
 /// Reads the header, and refuses what the model lacks.
@@ -132,9 +145,7 @@ fn header(bytes: &[u8], path: &Path) -> Result<Header, ImageError> {
         return Err(damaged("the sizes in its header are not those of a DDS file"));
     }
     let (mut cube, caps, mut before) = (field(112) & CUBE != 0, field(112), HEADER);
-    if caps & VOLUME != 0 {
-        return Err(unsupported("a volume texture".to_owned()));
-    }
+    let mut layers = (caps & VOLUME != 0).then(|| field(24));
     let four_characters = fixed[84..88].first_chunk::<4>().copied().unwrap_or_default();
     let pixels = pixel_format::PixelFormat {
         flags: field(80),
@@ -142,6 +153,7 @@ fn header(bytes: &[u8], path: &Path) -> Result<Header, ImageError> {
         bits: field(88),
         masks: [92, 96, 100, 104].map(field),
     };
+    let layers_of_header = field(24);
     let format = if pixels.has_further_header() {
         let Some(further) = bytes.get(HEADER..HEADER + FURTHER) else {
             return Err(damaged("the header is cut off"));
@@ -150,7 +162,7 @@ fn header(bytes: &[u8], path: &Path) -> Result<Header, ImageError> {
             |n: usize| u32::from_le_bytes([further[4 * n], further[4 * n + 1], further[4 * n + 2], further[4 * n + 3]]);
         match field(1) {
             3 => {}
-            4 => return Err(unsupported("a volume texture".to_owned())),
+            4 => layers = Some(layers_of_header),
             _ => return Err(unsupported("a texture of one dimension".to_owned())),
         }
         if field(3) > 1 {
@@ -166,16 +178,21 @@ fn header(bytes: &[u8], path: &Path) -> Result<Header, ImageError> {
         }
         pixels.format().map_err(unsupported)?
     };
+    if cube && layers.is_some() {
+        return Err(damaged("it claims to be a cube map and a volume"));
+    }
     if format == TextureFormat::P8 {
         before += PALETTE;
     }
-    Ok(Header { cube, format, width: field(16), height: field(12), levels: field(28).max(1), before, pitch: field(20) })
+    let (width, height, levels, pitch) = (field(16), field(12), field(28).max(1), field(20));
+    Ok(Header { cube, layers, format, width, height, levels, before, pitch })
 }
 
-/// Sides of each level.
-fn sides(header: &Header) -> impl Iterator<Item = (u32, u32)> {
-    let (width, height) = (header.width, header.height);
-    (0..header.levels.min(32)).map(move |n| ((width >> n).max(1), (height >> n).max(1)))
+/// Sides of each level, and its layers.
+fn sides(header: &Header) -> impl Iterator<Item = (u32, u32, u64)> {
+    let (width, height, layers) = (header.width, header.height, header.layers.unwrap_or(1));
+    (0..header.levels.min(32))
+        .map(move |n| ((width >> n).max(1), (height >> n).max(1), u64::from((layers >> n).max(1))))
 }
 
 /// Words of a level in memory here.
@@ -210,12 +227,12 @@ fn row_layout(header: &Header, bytes: u64) -> Option<Rows> {
 
 /// Bytes of all levels of a face in the file.
 fn stored(header: &Header, padded: bool) -> u64 {
-    let level = |(width, height): (u32, u32)| {
+    let level = |(width, height, layers): (u32, u32, u64)| {
         if header.format.is_compressed() {
-            return 4 * words(header.format, width, height);
+            return 4 * layers * words(header.format, width, height);
         }
         let row = u64::from(header.format.bytes()) * u64::from(width);
-        u64::from(height) * if padded { row.next_multiple_of(4) } else { row }
+        layers * u64::from(height) * if padded { row.next_multiple_of(4) } else { row }
     };
     sides(header).map(level).sum()
 }
@@ -225,9 +242,9 @@ fn without_padding(header: &Header, texels: &[u8]) -> Vec<u8> {
     let mut tight = Vec::with_capacity(texels.len());
     let mut rest = texels;
     while !rest.is_empty() {
-        for (width, height) in sides(header) {
+        for (width, height, layers) in sides(header) {
             let row = (header.format.bytes() * width) as usize;
-            for _ in 0..height {
+            for _ in 0..u64::from(height) * layers {
                 let (padded, after) = rest.split_at(row.next_multiple_of(4).min(rest.len()));
                 tight.extend_from_slice(&padded[..row.min(padded.len())]);
                 rest = after;

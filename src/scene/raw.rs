@@ -7,7 +7,7 @@
 use std::fmt;
 use std::marker::PhantomData;
 
-use serde::de::{self, Deserialize, Deserializer, MapAccess, SeqAccess, Visitor};
+use serde::de::{self, Deserialize, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visitor};
 
 /// The text of a value that will be read as a `T`.
 pub(super) struct Raw<'a, T> {
@@ -47,7 +47,7 @@ impl<T> Clone for Raw<'_, T> {
 
 impl<T> Copy for Raw<'_, T> {}
 
-impl<'de: 'a, 'a, T> Deserialize<'de> for Raw<'a, T> {
+impl<'de: 'a, 'a> Deserialize<'de> for Raw<'a, ()> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         <&'de ron::value::RawValue>::deserialize(deserializer).map(|raw| Raw::new(raw.get_ron()))
     }
@@ -87,11 +87,11 @@ fn block_comment(text: &str) -> usize {
 /// The entries of a map in the order of the text; the same key may come twice.
 pub(super) struct Entries<'a, T>(pub(super) Vec<(Raw<'a, String>, Raw<'a, T>)>);
 
-impl<'de: 'a, 'a, T> Deserialize<'de> for Entries<'a, T> {
+impl<'de: 'a, 'a> Deserialize<'de> for Entries<'a, ()> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct EntriesVisitor<'a, T>(PhantomData<fn() -> (Raw<'a, T>,)>);
-        impl<'de: 'a, 'a, T> Visitor<'de> for EntriesVisitor<'a, T> {
-            type Value = Entries<'a, T>;
+        struct EntriesVisitor;
+        impl<'de> Visitor<'de> for EntriesVisitor {
+            type Value = Vec<(Raw<'de, ()>, Raw<'de, ()>)>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("`{ \"name\": value, ... }`")
             }
@@ -100,21 +100,69 @@ impl<'de: 'a, 'a, T> Deserialize<'de> for Entries<'a, T> {
                 while let Some(entry) = map.next_entry()? {
                     entries.push(entry);
                 }
-                Ok(Entries(entries))
+                Ok(entries)
             }
         }
-        deserializer.deserialize_map(EntriesVisitor(PhantomData))
+        let entries = deserializer.deserialize_map(EntriesVisitor)?;
+        Ok(Entries(entries.into_iter().map(|(key, value)| (key.as_other(), value)).collect()))
+    }
+}
+
+/// The values of a structure's fields, in the order of their names: reads one of that name with those fields, each at most once.
+pub(super) struct Fields(pub(super) &'static str, pub(super) &'static [&'static str]);
+
+impl<'de> DeserializeSeed<'de> for Fields {
+    type Value = Vec<Option<Raw<'de, ()>>>;
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<Self::Value, D::Error> {
+        deserializer.deserialize_struct(self.0, self.1, self)
+    }
+}
+
+impl<'de> Visitor<'de> for Fields {
+    type Value = Vec<Option<Raw<'de, ()>>>;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "struct {}", self.0)
+    }
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Self::Value, A::Error> {
+        let mut values: Vec<Option<Option<Raw<'de, ()>>>> = vec![None; self.1.len()];
+        while let Some(index) = map.next_key_seed(FieldName(self.1))? {
+            if values[index].is_some() {
+                return Err(de::Error::duplicate_field(self.1[index]));
+            }
+            values[index] = Some(map.next_value()?);
+        }
+        Ok(values.into_iter().map(Option::flatten).collect())
+    }
+}
+
+/// The index of a field by its name.
+struct FieldName(&'static [&'static str]);
+
+impl<'de> DeserializeSeed<'de> for FieldName {
+    type Value = usize;
+    fn deserialize<D: Deserializer<'de>>(self, deserializer: D) -> Result<usize, D::Error> {
+        deserializer.deserialize_identifier(self)
+    }
+}
+
+impl Visitor<'_> for FieldName {
+    type Value = usize;
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("field identifier")
+    }
+    fn visit_str<E: de::Error>(self, name: &str) -> Result<usize, E> {
+        self.0.iter().position(|known| *known == name).ok_or_else(|| E::unknown_field(name, self.0))
     }
 }
 
 /// Values in parentheses without names, as many as were written.
 pub(super) struct Tuple<'a, T>(pub(super) Vec<Raw<'a, T>>);
 
-impl<'de: 'a, 'a, T> Deserialize<'de> for Tuple<'a, T> {
+impl<'de: 'a, 'a> Deserialize<'de> for Tuple<'a, ()> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct TupleVisitor<'a, T>(PhantomData<fn() -> (Raw<'a, T>,)>);
-        impl<'de: 'a, 'a, T> Visitor<'de> for TupleVisitor<'a, T> {
-            type Value = Tuple<'a, T>;
+        struct TupleVisitor;
+        impl<'de> Visitor<'de> for TupleVisitor {
+            type Value = Vec<Raw<'de, ()>>;
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
                 f.write_str("values in parentheses")
             }
@@ -123,10 +171,10 @@ impl<'de: 'a, 'a, T> Deserialize<'de> for Tuple<'a, T> {
                 while let Some(value) = seq.next_element()? {
                     values.push(value);
                 }
-                Ok(Tuple(values))
+                Ok(values)
             }
         }
-        deserializer.deserialize_tuple(1, TupleVisitor(PhantomData))
+        deserializer.deserialize_tuple(1, TupleVisitor).map(Tuple)
     }
 }
 

@@ -6,7 +6,6 @@ use std::ops::Range;
 use ron::Options;
 use ron::error::{Error, SpannedError};
 use ron::extensions::Extensions;
-use serde::Deserialize;
 
 use super::assets::Assets;
 use super::diagnostic::Diagnostic;
@@ -89,13 +88,13 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads the value, which is known to be well formed; `None` once the reason has been recorded.
-    pub(super) fn read<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+    pub(super) fn read<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
         T::split(raw.text).or_else(|| self.parse(raw))
     }
 
     /// Reads the value with the parser, down to its innermost bracket.
-    pub(super) fn parse<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
-        match self.options.from_str::<T>(raw.text) {
+    pub(super) fn parse<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+        match T::parse(&self.options, raw.text) {
             Ok(value) => Some(value),
             Err(error) => {
                 let diagnostic = self.translate(raw.text, &error, T::EXPECTED);
@@ -106,12 +105,12 @@ impl<'a> Reader<'a> {
     }
 
     /// Reads the value if it can be read; says nothing otherwise.
-    pub(super) fn attempt<T: Deserialize<'a>>(&self, text: &'a str) -> Option<T> {
-        self.options.from_str(text).ok()
+    pub(super) fn attempt<T: Expected<'a>>(&self, text: &'a str) -> Option<T> {
+        T::parse(&self.options, text).ok()
     }
 
     /// The value of an optional field; `default` if it is absent or wrong.
-    pub(super) fn or<T: Deserialize<'a> + Expected<'a>>(&mut self, raw: &Option<Raw<'a, T>>, default: T) -> T {
+    pub(super) fn or<T: Expected<'a>>(&mut self, raw: &Option<Raw<'a, T>>, default: T) -> T {
         raw.as_ref().and_then(|raw| self.read(raw)).unwrap_or(default)
     }
 

@@ -3,10 +3,11 @@
 //! Every field is the unread text of a value ([`Raw`]). Fields are optional here; what happens to an absent one stands where it is
 //! used, and in `docs/scene-format.md`. Variants (`Window(...)`, `File(...)`) are taken apart by their readers.
 
-use serde::Deserialize;
+use ron::Options;
+use ron::error::SpannedResult;
 
 use super::outline::{Described, Form};
-use super::raw::{Entries, Numbers, Plain, Raw, Reserved, Tuple};
+use super::raw::{Entries, Few, Fields, Numbers, Plain, Raw, Reserved, Tuple};
 use super::reader::Name;
 use super::split;
 use crate::truth;
@@ -24,16 +25,28 @@ pub(super) trait Expected<'a>: Sized {
     fn split(_text: &'a str) -> Option<Self> {
         None
     }
+
+    /// Takes any text apart with the parser.
+    ///
+    /// Structures and lists are taken apart as texts, whatever they are to be read as: one parser is compiled and not one for each.
+    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self>;
 }
 
 macro_rules! expected {
-    ($($type:ty: $text:literal),+ $(,)?) => { $(impl Expected<'_> for $type { const EXPECTED: &'static str = $text; })+ };
+    ($($type:ty: $text:literal),+ $(,)?) => { $(impl<'a> Expected<'a> for $type {
+        const EXPECTED: &'static str = $text;
+        fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
+            options.from_str(text)
+        }
+    })+ };
 }
 expected! {
     String: "a text in double quotes",
     u8: "a whole number from 0 to 255",
     u32: "a whole number from 0 to 4294967295",
     f32: "a number",
+    Few<u8>: "one to four bytes in parentheses",
+    Numbers: "one to four numbers in parentheses",
     bool: "`true` or `false`",
 }
 impl Expected<'_> for Vec<u32> {
@@ -41,11 +54,18 @@ impl Expected<'_> for Vec<u32> {
     fn split(text: &str) -> Option<Self> {
         split::items(text, b'[', b']')?.into_iter().map(u32::plain).collect()
     }
+    fn parse(options: &Options, text: &str) -> SpannedResult<Self> {
+        options.from_str(text)
+    }
 }
 impl<'a, T> Expected<'a> for Vec<Raw<'a, T>> {
     const EXPECTED: &'static str = "a list in square brackets";
     fn split(text: &'a str) -> Option<Self> {
         Some(split::items(text, b'[', b']')?.into_iter().map(Raw::new).collect())
+    }
+    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
+        let items: Vec<Raw<'a, ()>> = options.from_str(text)?;
+        Ok(items.iter().map(Raw::as_other).collect())
     }
 }
 impl<'a, T> Expected<'a> for Entries<'a, T> {
@@ -53,6 +73,10 @@ impl<'a, T> Expected<'a> for Entries<'a, T> {
     fn split(text: &'a str) -> Option<Self> {
         let entries = split::entries(text)?;
         Some(Entries(entries.into_iter().map(|(key, value)| (Raw::new(key), Raw::new(value))).collect()))
+    }
+    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
+        let entries: Entries<'a, ()> = options.from_str(text)?;
+        Ok(Entries(entries.0.into_iter().map(|(key, value)| (key, value.as_other())).collect()))
     }
 }
 impl<'a, T> Expected<'a> for Tuple<'a, T> {
@@ -63,13 +87,15 @@ impl<'a, T> Expected<'a> for Tuple<'a, T> {
         let named = |item: &&str| Raw::<()>::new(item).split().1.starts_with(':');
         (!items.iter().any(named)).then(|| Tuple(items.into_iter().map(Raw::new).collect()))
     }
+    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
+        let items: Tuple<'a, ()> = options.from_str(text)?;
+        Ok(Tuple(items.0.iter().map(Raw::as_other).collect()))
+    }
 }
 
 macro_rules! source {
     ($($(#[$meta:meta])* struct $name:ident { $($field:ident : $type:ty),* $(,)? })+) => { $(
         $(#[$meta])*
-        #[derive(Deserialize)]
-        #[serde(deny_unknown_fields, bound(deserialize = "'de: 'a"))]
         pub(super) struct $name<'a> { $(pub(super) $field: Option<Raw<'a, $type>>),* }
         impl<'a> $name<'a> {
             /// The fields that are written, with their texts.
@@ -96,6 +122,12 @@ macro_rules! source {
                     }
                 }
                 Some(fields)
+            }
+            fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
+                const NAMES: &[&str] = &[$(stringify!($field)),*];
+                #[allow(unused_mut, unused_variables, reason = "a structure may have no field")]
+                let mut fields = options.from_str_seed(text, Fields(stringify!($name), NAMES))?.into_iter();
+                Ok($name { $($field: fields.next().flatten().map(|raw| raw.as_other())),* })
             }
         }
     )+ };
@@ -244,7 +276,7 @@ source! {
         border: bool,
         first_level: u32,
     }
-    struct RawFile { file: String, width: u32, height: u32 }
+    struct RawFile { file: String, width: u32, height: u32, layers: u32 }
     struct Faces {
         positive_x: ImageSource,
         negative_x: ImageSource,
@@ -372,6 +404,7 @@ source! {
         address: Name<state::AddressMode>,
         address_s: Name<state::AddressMode>,
         address_t: Name<state::AddressMode>,
+        address_r: Name<state::AddressMode>,
         min_filter: Name<state::Filter>,
         mag_filter: Name<state::Filter>,
         mip_filter: Name<state::MipFilter>,
@@ -381,9 +414,11 @@ source! {
         min_lod: f32,
         max_lod: f32,
         anisotropy: u32,
-        cylindrical_wrap: bool,
+        cylindrical_wrap: Tuple<'a, bool>,
         color_key: ColorKey<'a>,
+        shadow: ShadowComparison<'a>,
     }
+    struct ShadowComparison { function: Name<state::CompareFunction>, reference: Name<state::ShadowReference> }
     struct StageState {
         operation: ShaderOperation,
         previous: u32,
@@ -398,6 +433,7 @@ source! {
         function: Name<state::CompareFunction>,
         write: bool,
         vertex_depths: Name<state::VertexDepths>,
+        w_buffer: bool,
         range: DepthRange<'a>,
         offset: PolygonOffset<'a>,
     }

@@ -15,16 +15,25 @@ pub fn used_bits(format: TextureFormat) -> u32 {
 /// Texels or blocks as they lie in memory, little-endian, as words of the state. Bytes that make no whole texel are left out.
 pub fn from_bytes(bytes: &[u8], format: TextureFormat) -> Vec<u32> {
     let used = used_bits(format);
+    let stored = |word: u32| stored(word & used, format);
     match format.bytes() {
         1 => bytes.iter().map(|byte| u32::from(*byte)).collect(),
-        2 => bytes.as_chunks().0.iter().map(|pair| u32::from(u16::from_le_bytes(*pair)) & used).collect(),
-        _ => bytes.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four) & used).collect(),
+        2 => bytes.as_chunks().0.iter().map(|pair| stored(u32::from(u16::from_le_bytes(*pair)))).collect(),
+        _ => bytes.as_chunks().0.iter().map(|four| stored(u32::from_le_bytes(*four))).collect(),
     }
 }
 
-/// Whether pixels can be [packed](pack) into the format: not into indices, nor into blocks.
+/// A word of memory as the state has it: of 24 bits of depth with the stencil below them, with the stencil above.
+pub fn stored(word: u32, format: TextureFormat) -> u32 {
+    match format {
+        TextureFormat::Z24S8 | TextureFormat::Z24S8F => word.rotate_right(8),
+        _ => word,
+    }
+}
+
+/// Whether pixels can be [packed](pack) into the format: not into indices, blocks or depths.
 pub fn can_pack(format: TextureFormat) -> bool {
-    format != TextureFormat::P8 && !format.is_compressed()
+    format != TextureFormat::P8 && !format.is_compressed() && format.depth().is_none()
 }
 
 /// Eight bits a channel into words: low bits that do not fit are cut off, channels that the format lacks are dropped.
@@ -52,6 +61,7 @@ fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
         TextureFormat::R8B8 => r << 8 | b,
         // Refused by whoever has asked `can_pack`.
         TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => 0,
+        TextureFormat::Z16 | TextureFormat::Z24S8 | TextureFormat::Z16F | TextureFormat::Z24S8F => 0,
     }
 }
 

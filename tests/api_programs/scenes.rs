@@ -205,7 +205,7 @@ fn first_levels_are_left_out() {
     let (later, _) = drawn("Nv2a", &later, "t0: (0.25, 0.5)", "textures: [\"t\"]");
     let texels = |loaded: &Loaded| match &loaded.scene.textures[0].image {
         TextureImage::Texels(texels) => (texels.width, texels.height, texels.levels, texels.words.clone()),
-        TextureImage::Target { .. } => panic!("texels were given"),
+        TextureImage::Target { .. } | TextureImage::Depth { .. } => panic!("texels were given"),
     };
     let ((width, height, levels, words), rest) = (texels(&whole), texels(&later));
     assert_eq!((width, height, levels), (8, 8, 4));

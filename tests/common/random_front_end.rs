@@ -156,7 +156,7 @@ fn shader(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     };
     let Ok(lowered) = pixel_shader::lower(&parsed.program, &context) else { return };
     let kinds: Vec<TextureKind> = scene.textures.iter().map(|texture| texture.kind).collect();
-    let own = |t: usize| matches!(scene.textures[t].image, TextureImage::Target { target } if target == draw.target);
+    let own = |t: usize| scene.textures[t].image.target() == Some(draw.target);
     let palette_free = |t: usize| scene.textures[t].format != TextureFormat::P8;
     let mut changed = draw.clone();
     for (k, using) in lowered.units.iter().enumerate() {

@@ -15,7 +15,8 @@ fn formats(profile: Profile, kind: TextureKind) -> Vec<TextureFormat> {
         (Profile::Nv2a, TextureKind::Rectangle) => !f.is_compressed() && f != TextureFormat::P8,
         (Profile::Nv2a, _) => true,
     };
-    TextureFormat::ALL.iter().copied().filter(|f| legal(*f)).collect()
+    // Depths come with the wider scenes.
+    TextureFormat::ALL.iter().copied().filter(|f| legal(*f) && f.depth().is_none()).collect()
 }
 
 /// 32 to 256 colours.
@@ -58,7 +59,7 @@ pub(super) fn texels(c: &mut Choices<'_>, profile: Profile, n: u32) -> Texture {
     let (even, seed, step) = (c.once_in(2), c.word(), c.word());
     let word = |k: u32| if even { seed.wrapping_add(step.wrapping_mul(k)) } else { scrambled(seed, k) };
     let words: Arc<[u32]> = (0..faces * face_words as u32).map(|k| word(k) & mask).collect();
-    let image = TextureImage::Texels(Texels { width, height, levels, border, words });
+    let image = TextureImage::Texels(Texels { width, height, levels, layers: 1, border, words });
     Texture { name: format!("texture{n}"), kind, format, image }
 }
 

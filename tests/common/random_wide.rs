@@ -84,7 +84,7 @@ fn attempt(scene: &mut Scene, change: impl FnOnce(&mut Scene)) {
 type Change = fn(&mut Choices<'_>, &mut Scene, usize);
 
 /// What may happen to a draw, in order.
-const CHANGES: [Change; 11] = [
+const CHANGES: [Change; 12] = [
     share_mesh,
     share_texture,
     front_end::change,
@@ -96,6 +96,7 @@ const CHANGES: [Change; 11] = [
     stencil_and_clips,
     color_keys,
     depths,
+    samplings,
 ];
 
 /// A rectangle that begins within a target, now and then an empty one.
@@ -158,6 +159,14 @@ fn depths(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     if c.once_in(3) {
         test.offset = PolygonOffset { bias: step(c), factor: f32::from(c.byte()) / 16.0 - 4.0 };
     }
+    if c.once_in(5) {
+        (test.w_buffer, test.offset.factor) = (true, 0.0);
+        if c.once_in(2) {
+            // w of many steps.
+            let scale = c.pick(&[16.0, 1024.0, 65536.0]);
+            draw.vertices.map_positions(|[x, y, z, w]| [x, y, z, (w * scale).min(1_048_576.0)]);
+        }
+    }
 }
 
 /// Colour keys of texels that the textures have, where that is easily said.
@@ -188,6 +197,109 @@ fn color_keys(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
     }
 }
 
+/// Units that compare depths, read volumes, take several taps, or go around a cylinder.
+#[allow(clippy::float_arithmetic, reason = "choosing coordinates")]
+fn samplings(c: &mut Choices<'_>, scene: &mut Scene, index: usize) {
+    let function = c.any();
+    for k in 0..scene.profile.texture_units() {
+        let c = &mut c.part(14);
+        if scene.draws[index].textures[k].is_none() {
+            continue;
+        }
+        match c.below(6) {
+            0 => attempt(scene, |scene| compares(c, scene, (index, k), function)),
+            1 => attempt(scene, |scene| reads_layers(c, scene, (index, k))),
+            2 => attempt(scene, |scene| {
+                let set = scene.draws[index].texture_shader[k].coordinate_set;
+                let Some(unit) = &mut scene.draws[index].textures[k] else { return };
+                unit.anisotropy = 2 << c.below(3);
+                let stretch = c.pick(&[1.0, 6.0, 40.0]);
+                (unit.min_filter, unit.mip_filter, unit.color_key) = (unit.mag_filter, MipFilter::None, None);
+                scene.draws[index].vertices.update(|_, vertex| vertex.texture_coordinates[set][1] *= stretch);
+            }),
+            3 => attempt(scene, |scene| {
+                let Some(unit) = &mut scene.draws[index].textures[k] else { return };
+                unit.cylindrical_wrap = [c.once_in(2), c.below(3) != 0];
+            }),
+            _ => {}
+        }
+    }
+}
+
+/// A depth buffer, or words that are taken for depths, and r near what they hold.
+#[allow(clippy::float_arithmetic, reason = "choosing coordinates")]
+fn compares(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize), function: CompareFunction) {
+    let target = c.below(scene.targets.len() as u32) as usize;
+    let buffer = scene.targets[target].depth.filter(|_| target != scene.draws[draw].target && c.once_in(2));
+    let Some(unit) = &mut scene.draws[draw].textures[k] else { return };
+    let mut texture = scene.textures[unit.texture].clone();
+    if let Some(buffer) = buffer {
+        let formats: Vec<TextureFormat> = TextureFormat::ALL
+            .iter()
+            .copied()
+            .filter(|f| f.depth().is_some_and(|depth| depth.bits() == buffer.format.bits()))
+            .collect();
+        (texture.kind, texture.format) = (TextureKind::Rectangle, c.pick(&formats));
+        texture.image = TextureImage::Depth { target };
+    } else if let TextureImage::Texels(texels) = &texture.image {
+        let format = c.pick(&[TextureFormat::Z16, TextureFormat::Z24S8, TextureFormat::Z16F, TextureFormat::Z24S8F]);
+        let bits = if format.bytes() == 2 { 16 } else { 32 };
+        let count = texels.width as usize * texels.height as usize;
+        // Few words, so that many are met.
+        let words = texels.words.iter().cycle().take(count).map(|word| word % 8 * 0x1111 << (bits - 16)).collect();
+        let texels = Texels { levels: 1, layers: 1, border: false, words, ..*texels };
+        (texture.format, texture.image) = (format, TextureImage::Texels(texels));
+        if texture.kind == TextureKind::Cube {
+            texture.kind = TextureKind::TwoDimensional;
+        }
+    }
+    let format = texture.format;
+    scene.textures.push(texture);
+    unit.texture = scene.textures.len() - 1;
+    unit.shadow = Some(ShadowComparison { function, reference: c.any() });
+    (unit.min_filter, unit.mag_filter, unit.mip_filter) = (Filter::Nearest, Filter::Nearest, MipFilter::None);
+    (unit.signed, unit.color_key, unit.palette) = ([false; 4], None, None);
+    for mode in [&mut unit.address_s, &mut unit.address_t] {
+        if *mode == AddressMode::ClampToBorder {
+            *mode = AddressMode::Wrap;
+        }
+    }
+    let draw = &mut scene.draws[draw];
+    draw.texture_shader[k].operation = ShaderOperation::Sample;
+    let (set, steps) = (draw.texture_shader[k].coordinate_set, c.below(8) as f32);
+    let full = format.depth().map_or(0, DepthFormat::largest) as f32;
+    let base = if format.depth().is_some_and(DepthFormat::is_float) { 0.125 } else { steps * full / 15.0 };
+    let sloped = c.once_in(2);
+    draw.vertices.update(|n, vertex| {
+        let across = if sloped { (n % 3) as f32 * base * 0.25 } else { 0.0 };
+        vertex.texture_coordinates[set][2] = (base + across).floor() * vertex.texture_coordinates[set][3];
+    });
+}
+
+/// A texture in layers.
+#[allow(clippy::float_arithmetic, reason = "choosing coordinates")]
+fn reads_layers(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize)) {
+    let Some(unit) = &mut scene.draws[draw].textures[k] else { return };
+    let mut texture = scene.textures[unit.texture].clone();
+    let TextureImage::Texels(texels) = &texture.image else { return };
+    let layers = 1 << c.below(4);
+    let count = layers as usize * texture.format.words(texels.width, texels.height);
+    let words = texels.words.iter().cycle().take(count).copied().collect();
+    let texels = Texels { levels: 1, layers, border: false, words, ..*texels };
+    (texture.kind, texture.image) = (TextureKind::ThreeDimensional, TextureImage::Texels(texels));
+    scene.textures.push(texture);
+    unit.texture = scene.textures.len() - 1;
+    unit.address_r = c.any();
+    (unit.min_filter, unit.mag_filter, unit.mip_filter) = (Filter::Nearest, Filter::Nearest, MipFilter::None);
+    let draw = &mut scene.draws[draw];
+    draw.texture_shader[k].operation = ShaderOperation::Sample;
+    let (set, from) = (draw.texture_shader[k].coordinate_set, c.between(-1.5, 1.5));
+    let step = c.pick(&[0.0, 0.25, 0.3]);
+    draw.vertices.update(|n, vertex| {
+        vertex.texture_coordinates[set][2] = from + (n % 4) as f32 * step;
+    });
+}
+
 /// Another reading of the same words.
 fn texture_format(c: &mut Choices<'_>, texture: &mut Texture) {
     if c.once_in(2) {
@@ -196,7 +308,7 @@ fn texture_format(c: &mut Choices<'_>, texture: &mut Texture) {
             .iter()
             .copied()
             .filter(|f| f.bytes() == bytes && f.is_compressed() == texture.format.is_compressed())
-            .filter(|f| *f != TextureFormat::P8)
+            .filter(|f| *f != TextureFormat::P8 && f.depth().is_none())
             .collect();
         if texture.format != TextureFormat::P8 {
             texture.format = c.pick(&fitting);

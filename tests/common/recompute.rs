@@ -44,6 +44,12 @@ fn is_parameter(name: &str) -> bool {
         "levels",
         "write_mask",
         "z_max",
+        "limit",
+        "tap",
+        "Z16",
+        "Z16F",
+        "Z24S8",
+        "Z24S8F",
         "bias",
         "factor",
         "area",
@@ -379,17 +385,30 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "not_equal" => plain(i128::from(v(0) != v(1))),
         "greater_or_equal" => plain(i128::from(v(0) >= v(1))),
         "always" => plain(1),
-        "depth" => {
+        "depth" | "w" => {
             let full = v(inputs.len() - 1);
             Number {
                 value: depth(inputs, full).map_or(0, |z| z.floor().clamp(0.0, full as f64) as i128),
                 per_one: full,
             }
         }
-        "depth_float_16" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 12, 7, 0xffff))),
-        "depth_float_24" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 16, 127, 0xff_ffff))),
-        "depth_inside" => plain(depth(inputs, 0).is_some().into()),
+        "depth_float_16" | "w_float_16" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 12, 7, 0xffff))),
+        "depth_float_24" | "w_float_24" => plain(depth(inputs, 0).map_or(0, |z| float_word(z, 16, 127, 0xff_ffff))),
+        "depth_inside" | "w_inside" => plain(depth(inputs, 0).is_some().into()),
         "drop_2_bits" => byte(v(0) >> 2 << 2),
+        "depth_word" | "depth_word_of_ratio" => plain(shader::depth_word(inputs)),
+        "depth_of_word" => plain(v(0) & 0xff_ffff),
+        "all_or_nothing" => byte(255 * v(0)),
+        "tap_u" | "tap_v" => {
+            let axis = usize::from(operation == "tap_v");
+            let (offset, _) = tap([v(1), v(2)], inputs.get(3..).unwrap_or_default());
+            Number { value: v(0) + offset[axis], per_one: 256 }
+        }
+        "tap_weight" => Number { value: tap([v(0), v(1)], inputs.get(2..).unwrap_or_default()).1, per_one: 256 },
+        "weighted_sum" => {
+            let sum: i128 = (0..inputs.len() / 2).map(|k| v(2 * k) * v(2 * k + 1)).sum();
+            Number { value: (sum + 128) >> 8, per_one: n(0).per_one }
+        }
         "equals_key" => {
             let half = inputs.len() / 2;
             plain(i128::from((0..half).all(|k| v(k) == v(k + half))))
@@ -687,9 +706,15 @@ fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
     }
     let number = |name: &str| inputs.iter().find(|(given, _)| given == name).map(|(_, n)| real(*n));
     let three = |name: &dyn Fn(usize) -> String| [0, 1, 2].map(|k| number(&name(k)).unwrap());
-    let z = three(&|k| format!("vertex{k}.z"));
-    let e = three(&|k| format!("E{k}"));
-    let edges = e.map(|e| if e == 0.0 { 0.0 } else { cut(e, two(power(e) - 23)) });
+    let first_24 = |n: f64| if n == 0.0 { 0.0 } else { cut(n, two(power(n) - 23)) };
+    let of_w = number("vertex0.w").is_some();
+    let z = three(&|k| format!("vertex{k}.{}", if of_w { "w" } else { "z" }));
+    let mut e = three(&|k| format!("E{k}"));
+    let mut edges = e.map(first_24);
+    if of_w {
+        edges = [0, 1, 2].map(|k| first_24(edges[k] * first_24(z[1] / z[k])));
+        e = edges;
+    }
     let most = e.into_iter().filter(|e| *e > 0.0).map(power).max().unwrap();
     let sum: f64 = edges.into_iter().map(|e| cut(e, two(most - 28))).sum();
     let top = power(sum);
@@ -697,10 +722,23 @@ fn depth(inputs: &[(String, Number)], largest: i128) -> Option<f64> {
     let whole = (sum / two(top - 30)) as i128;
     let low = ((1_i128 << 63) - 3 * whole).div_euclid(16 * whole) as f64 * two(-29 - top);
     let reciprocal = if whole == 1 << 30 { 1.0 / sum } else { low };
-    let reference = [1, 0, 2].into_iter().find(|k| e[*k] > 0.0 && power(e[*k]) == most).unwrap();
+    let nearest = [1, 0, 2].into_iter().find(|k| e[*k] > 0.0 && power(e[*k]) == most).unwrap();
+    let reference = if of_w { 1 } else { nearest };
+    let mut weights = edges.map(|edge| first_24(edge * reciprocal));
+    if of_w {
+        let class = weights.map(|weight| if weight > 0.0 { power(weight) } else { i32::MIN });
+        let dominant = match class {
+            [a, b, c] if a >= b && a > c => 0,
+            [a, b, c] if c > b && c >= a || a == b && b == c => 2,
+            _ => 1,
+        };
+        let others = [weights[(dominant + 1) % 3], weights[(dominant + 2) % 3]];
+        let rest = 1.0 - others[0] - others[1];
+        // A double rounds what is left of 1 up.
+        weights[dominant] = if rest == 1.0 && others != [0.0; 2] { 1.0 - two(-24) } else { first_24(rest) };
+    }
     let terms = [0, 1, 2].map(|k| {
-        let weight = edges[k] * reciprocal;
-        let weight = if weight == 0.0 { 0.0 } else { cut(weight, two(power(weight) - 23)) };
+        let weight = weights[k];
         if k == reference { z[k] } else { weight * f64::from((z[k] - z[reference]) as f32) }
     });
     let largest_term = terms.into_iter().filter(|term| *term != 0.0).map(power).max();
@@ -739,4 +777,26 @@ fn float_word(z: f64, kept: i32, bias: i32, largest: i128) -> i128 {
         field if field > if kept == 12 { 15 } else { 254 } => largest,
         field => i128::from(field) * (1 << kept) + fraction,
     }
+}
+
+/// TEX-17: where a tap lies beside the pixel's coordinates, 1/256 texel, and its weight. u and v of the quad's three pixels follow; without them there
+/// is one tap.
+fn tap([limit, number]: [i128; 2], quad: &[(String, Number)]) -> ([i128; 2], i128) {
+    let c = |k: usize| quad.get(k).map_or(0, |input| input.1.value);
+    let limited = |n: i128| n.clamp(-1 << 40, 1 << 40);
+    let axes = [2, 4].map(|k| [limited(c(k) - c(0)), limited(c(k + 1) - c(1))]);
+    let length = |[u, v]: [i128; 2]| ((u * u + v * v) as u128).isqrt() as i128;
+    let lengths = axes.map(length);
+    let longer = usize::from(lengths[1] > lengths[0]);
+    let (axis, long, short) = (axes[longer], lengths[longer], lengths[1 - longer]);
+    let width = short.max((long + limit - 1) / limit).max(65536);
+    if long <= width {
+        return ([0; 2], 256);
+    }
+    let pairs = (long + 2 * width - 1) / (2 * width);
+    let (pair, sign) = (number / 2, 1 - 2 * (number % 2));
+    let reach = if pairs == 1 { long - width } else { (2 * pair + 1) * width };
+    let inner = 256 * width / long;
+    let weight = if pair == pairs - 1 { 128 - (pairs - 1) * inner } else { inner };
+    (axis.map(|n| sign * (n * reach / (2 * long) / 256)), weight)
 }

@@ -187,3 +187,46 @@ pub fn luminance(inputs: &Inputs) -> i128 {
     let value = if exponent < 0 { n >> (-exponent).min(127) } else { n.saturating_mul(1 << exponent.min(90)) };
     value.div_euclid(255 * 255).clamp(0, 1 << 20)
 }
+
+/// SHD-1, DEP-3: the word of r, or of r/q where q's numbers follow r's; the format's name comes last.
+pub fn depth_word(inputs: &Inputs) -> i128 {
+    let Some(((format, _), numbers)) = inputs.split_last() else { return 0 };
+    let (r, q) = numbers.split_at(8.min(numbers.len()));
+    let mut n = (numerator(r), value(r, 7) as i32);
+    let mut d = if q.is_empty() { (value(r, 6), 0) } else { (numerator(q), value(q, 7) as i32) };
+    if d.0 < 0 {
+        (n.0, d.0) = (-n.0, -d.0);
+    }
+    let (bits, kept, bias) = match format.as_str() {
+        "Z16" => (16, 0, 0),
+        "Z24S8" => (24, 0, 0),
+        "Z16F" => (16, 12, 7),
+        _ => (24, 16, 127),
+    };
+    let full = (1 << bits) - 1;
+    if n.0 <= 0 {
+        return 0;
+    }
+    if d.0 == 0 {
+        return full;
+    }
+    // Sixty bits of the quotient, bit by bit.
+    let (mut quotient, mut rest, mut exponent) = (n.0 / d.0, n.0 % d.0, n.1 - d.1);
+    while quotient >> 59 == 0 {
+        rest *= 2;
+        quotient = 2 * quotient + i128::from(rest >= d.0);
+        rest %= d.0;
+        exponent -= 1;
+    }
+    let top = 127 - quotient.leading_zeros() as i32 + exponent;
+    if kept == 0 {
+        return if top > 40 { full } else { (quotient >> (-exponent).clamp(0, 127)).min(full) };
+    }
+    let field = top + bias;
+    let mantissa = quotient >> (127 - quotient.leading_zeros() as i32 - kept);
+    match field {
+        ..=0 => 0,
+        beyond if beyond > if kept == 12 { 15 } else { 254 } => full,
+        field => (i128::from(field) << kept) + mantissa - (1 << kept),
+    }
+}

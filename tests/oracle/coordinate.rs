@@ -127,6 +127,16 @@ impl Place {
         }
     }
 
+    /// A further component of a coordinate set, as `at` has s and t.
+    pub fn along(&self, setup: &Setup, sample: &Sample, n: usize, size: u32) -> Option<i128> {
+        let Place::Set(set) = self else { return None };
+        if setup.is_plane(*set) {
+            return Some(plane(setup, sample, *set, n, size));
+        }
+        let [r, q, _] = setup.three(*set, [n, 3, 3]);
+        Some(ratio(setup, sample, r, q, size))
+    }
+
     /// The face that a quad is measured on (TEX-11).
     pub fn face(&self, setup: &Setup, sample: &Sample) -> usize {
         match self {

@@ -10,6 +10,7 @@ pub mod fog;
 pub mod raster;
 pub mod real;
 pub mod rop;
+pub mod sampling;
 pub mod shader;
 pub mod tally;
 pub mod texel;

@@ -199,6 +199,7 @@ fn snap(x: f32) -> i128 {
 }
 
 /// A triangle after set-up.
+#[derive(Clone)]
 pub struct Setup {
     pub vertices: [Vertex; 3],
     snapped: [[i128; 2]; 3],
@@ -345,8 +346,24 @@ impl Setup {
             }
             _ => v.position[2],
         });
+        // DEP-6: times w_1/w_k, 24 bits each, as fractions of 2^-WIDE.
+        const WIDE: i32 = 40;
+        let w = self.vertices.map(|v| v.position[3]);
+        let in_perspective = |k: usize| {
+            let ((m, e), (n, f)) = (split(w[1]), split(w[k]));
+            let ratio = (m << 60) / n;
+            let ratio = keep(ratio, bits(ratio) - 24);
+            let zeros = ratio.trailing_zeros() as i32;
+            let edge = keep(sample.e[k], bits(sample.e[k]) - 24);
+            let product = edge * (ratio >> zeros);
+            shift(keep(product, bits(product) - 24), e - f - 60 + zeros + WIDE)
+        };
         // Edge numbers with 24 bits, their sum in steps of the 29th bit of the largest.
-        let edges = sample.e.map(|e| keep(e, bits(e) - 24));
+        let edges = match test.w_buffer {
+            true => [0, 1, 2].map(in_perspective),
+            false => sample.e.map(|e| keep(e, bits(e) - 24)),
+        };
+        let values = if test.w_buffer { w } else { z };
         let step = edges.iter().map(|e| bits(*e)).max().unwrap() - 29;
         let sum = edges.iter().map(|e| keep(*e, step)).sum::<i128>().max(1);
         // 1 / sum, in units of 2^-(28 + bits of the sum): 29 bits, 3/16 low but for powers of two.
@@ -355,15 +372,31 @@ impl Setup {
         let reciprocal = if power { 1 << 29 } else { ((1 << (28 + length + 4)) - 3 * sum).div_euclid(16 * sum) };
         let order = [1, 0, 2];
         let size = |k: usize| bits(sample.e[k].max(0));
-        let reference = order.into_iter().find(|k| (0..3).all(|other| size(other) <= size(*k))).unwrap();
+        let largest = order.into_iter().find(|k| (0..3).all(|other| size(other) <= size(*k))).unwrap();
+        let reference = if test.w_buffer { 1 } else { largest };
+        let mut weights = edges.map(|edge| {
+            let weight = edge * reciprocal;
+            keep(weight, bits(weight) - 24)
+        });
+        if test.w_buffer {
+            // The dominant weight, by its exponent, is what the others leave of 1.
+            let class = weights.map(|weight| if weight > 0 { bits(weight) } else { -1 });
+            let dominant = match class {
+                [a, b, c] if a >= b && a > c => 0,
+                [a, b, c] if c > b && c >= a || a == b && b == c => 2,
+                _ => 1,
+            };
+            let others = weights[(dominant + 1) % 3] + weights[(dominant + 2) % 3];
+            let rest = (1 << (28 + length)) - others;
+            weights[dominant] = keep(rest, bits(rest) - 24);
+        }
         let terms = [0, 1, 2].map(|k| {
             if k == reference {
-                return fixed(z[k]);
+                return fixed(values[k]);
             }
-            let weight = edges[k] * reciprocal;
-            let weight = keep(weight, bits(weight) - 24);
+            let weight = weights[k];
             let zeros = weight.trailing_zeros().min(100) as i32;
-            let (m, e) = split(z[k] - z[reference]);
+            let (m, e) = split(values[k] - values[reference]);
             shift((weight >> zeros) * m, zeros - (28 + length) + e + POINT)
         });
         let step = terms.iter().map(|term| bits(*term)).max().unwrap() - 29;
@@ -383,7 +416,7 @@ impl Setup {
             shift(sum.abs(), 24 - step) / self.area
         };
         let slope = if largest == 0 { 0 } else { along(0).max(along(1)) };
-        let (m, e) = split(test.offset.factor);
+        let (m, e) = if test.w_buffer { (0, 0) } else { split(test.offset.factor) };
         depth += fixed(test.offset.bias) + shift(slope * m, e + step);
         if let Some(range) = test.range {
             let (lowest, highest) = (fixed(range.lowest), fixed(range.highest));

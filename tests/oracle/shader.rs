@@ -3,6 +3,7 @@
 use super::coordinate::{Place, lod};
 use super::raster::{Sample, Setup};
 use super::real::{factor_byte, floor_div, floor_sum, nearest_f32, shift, split};
+use super::sampling;
 use super::tally::{count, count_named};
 use super::texel::{Color, signed};
 use super::texture::Image;
@@ -17,12 +18,19 @@ pub struct Units<'a> {
     setup: &'a Setup,
     policies: &'a Policies,
     /// One lod a unit and quad.
+    /// The triangle as units with a cylindrical wrap see it.
+    wrapped: [Option<Setup>; 4],
     lods: RefCell<HashMap<(usize, i128, i128), i128>>,
 }
 
 impl<'a> Units<'a> {
     pub fn new(draw: &'a Draw, images: &'a [Option<Image>], setup: &'a Setup, policies: &'a Policies) -> Units<'a> {
-        Units { draw, images, setup, policies, lods: RefCell::default() }
+        let wrapped = |k: usize| {
+            let unit = images[k].as_ref()?.unit;
+            sampling::wrapped(setup, &unit, draw.texture_shader[k].coordinate_set)
+        };
+        let wrapped = [0, 1, 2, 3].map(wrapped);
+        Units { draw, images, setup, policies, wrapped, lods: RefCell::default() }
     }
 
     /// The four texture registers of a covered pixel; none where a unit drops it.
@@ -77,8 +85,34 @@ impl<'a> Units<'a> {
     /// What a unit fetches, before a luminance.
     fn sampled(&self, k: usize, image: &Image, i: i128, j: i128, sample: &Sample) -> Color {
         let Some(place) = self.place(k, i, j, sample) else { return Color::plain([0, 0, 0, 255]) };
+        let setup = self.setup_of(k);
+        if let Some(shadow) = image.unit.shadow {
+            return image.compare(shadow, setup, sample, &place, self.draw.texture_shader[k].coordinate_set);
+        }
+        let taps = match image.unit.anisotropy {
+            1 => vec![([0, 0], 256)],
+            limit => sampling::taps(self.corners(k, image, i, j), limit),
+        };
         let lod = image.limited_lod(self.lod(k, image, i, j));
-        image.sample(self.setup, sample, &place, lod)
+        image.sample(setup, sample, &place, lod, &taps)
+    }
+
+    /// The triangle as a unit sees it.
+    fn setup_of(&self, k: usize) -> &Setup {
+        self.wrapped[k].as_ref().unwrap_or(self.setup)
+    }
+
+    /// TEX-11: coordinates at the quad that a pixel lies in.
+    fn corners(&self, k: usize, image: &Image, i: i128, j: i128) -> [Option<[i128; 2]>; 3] {
+        let (left, top) = (i & !1, j & !1);
+        let mut face = None;
+        [(left, top), (left + 1, top), (left, top + 1)].map(|(i, j)| {
+            let sample = self.setup.sample(i, j);
+            let place = self.place(k, i, j, &sample)?;
+            let setup = self.setup_of(k);
+            let face = *face.get_or_insert_with(|| place.face(setup, &sample));
+            place.fine(setup, &sample, image.scale(0), face)
+        })
     }
 
     /// The bytes that a unit reads of an earlier one.
@@ -171,15 +205,7 @@ impl<'a> Units<'a> {
         if let Some(lod) = self.lods.borrow().get(&key) {
             return *lod;
         }
-        let (left, top) = (i & !1, j & !1);
-        let mut face = None;
-        let corners = [(left, top), (left + 1, top), (left, top + 1)].map(|(i, j)| {
-            let sample = self.setup.sample(i, j);
-            let place = self.place(k, i, j, &sample)?;
-            let face = *face.get_or_insert_with(|| place.face(self.setup, &sample));
-            place.fine(self.setup, &sample, image.scale(0), face)
-        });
-        let lod = lod(corners);
+        let lod = lod(self.corners(k, image, i, j));
         count("lod", if lod == -32768 { "least" } else { "measured" });
         self.lods.borrow_mut().insert(key, lod);
         lod

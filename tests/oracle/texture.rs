@@ -3,21 +3,23 @@
 use super::block;
 use super::coordinate::Place;
 use super::raster::{Sample, Setup};
+use super::sampling;
 use super::tally::{count, count_named};
 use super::texel::{self, Color};
 use ninebit::frame::Surface;
 use ninebit::state::{
-    AddressMode, ColorKey, ColorKeyMode, Filter, MipFilter, Named, Profile, Scene, TextureFormat, TextureImage,
-    TextureKind, TextureUnit,
+    AddressMode, ColorKey, ColorKeyMode, DepthFormat, Filter, MipFilter, Named, Profile, Scene, ShadowComparison,
+    TextureFormat, TextureImage, TextureKind, TextureUnit,
 };
 
 /// A bound unit and its texture's words as they stand when a draw begins.
 pub struct Image {
-    unit: TextureUnit,
+    pub unit: TextureUnit,
     kind: TextureKind,
     format: TextureFormat,
     size: [u32; 2],
     levels: u32,
+    layers: u32,
     border: bool,
     words: Vec<u32>,
     palette: Vec<u32>,
@@ -27,8 +29,16 @@ pub struct Image {
 impl Image {
     pub fn new(scene: &Scene, unit: TextureUnit, surfaces: &[Surface]) -> Image {
         let texture = &scene.textures[unit.texture];
+        let mut layers = 1;
         let (size, levels, border, words) = match &texture.image {
-            TextureImage::Texels(t) => ([t.width, t.height], t.levels, t.border, t.words.to_vec()),
+            TextureImage::Texels(t) => {
+                layers = t.layers;
+                ([t.width, t.height], t.levels, t.border, t.words.to_vec())
+            }
+            TextureImage::Depth { target } => {
+                let s = &surfaces[*target];
+                ([s.width, s.height], 1, false, s.depth.clone())
+            }
             TextureImage::Target { target } => {
                 let s = &surfaces[*target];
                 ([s.width, s.height], 1, false, s.words.clone())
@@ -36,7 +46,7 @@ impl Image {
         };
         let palette = unit.palette.map_or(Vec::new(), |p| scene.palettes[p].entries.to_vec());
         let nv2a = scene.profile == Profile::Nv2a;
-        Image { unit, kind: texture.kind, format: texture.format, size, levels, border, words, palette, nv2a }
+        Image { unit, kind: texture.kind, format: texture.format, size, levels, layers, border, words, palette, nv2a }
     }
 
     pub fn is_cube(&self) -> bool {
@@ -114,7 +124,15 @@ impl Image {
     }
 
     /// TEX-7, TEX-8, TEX-14: the texel at an index that may lie outside.
-    fn fetch(&self, face: usize, level: u32, index: [i128; 2]) -> [i128; 4] {
+    fn fetch(&self, face: Option<usize>, level: u32, index: [i128; 2]) -> [i128; 4] {
+        match (face, self.inside(level, index)) {
+            (Some(face), Some(at)) => self.stored_texel(face, level, at),
+            _ => self.border_color(),
+        }
+    }
+
+    /// TEX-7: one axis; none is the border colour.
+    fn inside(&self, level: u32, index: [i128; 2]) -> Option<[usize; 2]> {
         let modes = [self.unit.address_s, self.unit.address_t];
         let mut at = [0; 2];
         for axis in 0..2 {
@@ -136,16 +154,54 @@ impl Image {
                     count("border", "texels");
                     i.clamp(-4, n + 3)
                 }
-                AddressMode::ClampToBorder if i < 0 || i >= n => return self.border_color(),
+                AddressMode::ClampToBorder if i < 0 || i >= n => return None,
                 AddressMode::ClampToBorder => i,
             };
             at[axis] = (inside + origin) as usize;
         }
-        self.stored_texel(face, level, at)
+        Some(at)
+    }
+
+    /// VOL-1: the layer.
+    fn layer(&self, setup: &Setup, sample: &Sample, place: &Place) -> Option<usize> {
+        let (n, i) = (i128::from(self.layers), sampling::layer(place, setup, sample, self.layers) >> 8);
+        count("layer", if (0..n).contains(&i) { "inside" } else { self.unit.address_r.name() });
+        let layer = match self.unit.address_r {
+            AddressMode::Wrap => i.rem_euclid(n),
+            AddressMode::Mirror => (i.rem_euclid(2 * n)).min(2 * n - 1 - i.rem_euclid(2 * n)),
+            AddressMode::ClampToEdge | AddressMode::Clamp => i.clamp(0, n - 1),
+            AddressMode::ClampToBorder if (0..n).contains(&i) => i,
+            AddressMode::ClampToBorder => return None,
+        };
+        Some(layer as usize)
+    }
+
+    /// SHD-1.
+    pub fn compare(
+        &self,
+        shadow: ShadowComparison,
+        setup: &Setup,
+        sample: &Sample,
+        place: &Place,
+        set: usize,
+    ) -> Color {
+        count_named(self.format);
+        let (_, [u, v]) = place.at(setup, sample, self.scale(0));
+        // Never the border: such units are refused.
+        let at = self.inside(0, [u >> 8, v >> 8]).unwrap_or_default();
+        let stored = i128::from(self.words[at[1] * self.size[0] as usize + at[0]] % (1 << 24));
+        let format = match self.format {
+            TextureFormat::Z16 => DepthFormat::Z16,
+            TextureFormat::Z16F => DepthFormat::Z16F,
+            TextureFormat::Z24S8 => DepthFormat::Z24S8,
+            _ => DepthFormat::Z24S8F,
+        };
+        let reference = sampling::reference(setup, sample, set, format);
+        Color::of_channels([sampling::compared(shadow, reference, stored); 4], [false; 4])
     }
 
     /// TEX-5, TEX-6 within a level.
-    fn filtered(&self, filter: Filter, face: usize, level: u32, [u, v]: [i128; 2]) -> [i128; 4] {
+    fn filtered(&self, filter: Filter, face: Option<usize>, level: u32, [u, v]: [i128; 2]) -> [i128; 4] {
         match filter {
             Filter::Nearest => self.fetch(face, level, [u >> 8, v >> 8]),
             Filter::Linear => {
@@ -179,7 +235,14 @@ impl Image {
     }
 
     /// What is sampled at a place, at a lod that is already limited.
-    pub fn sample(&self, setup: &Setup, sample: &Sample, place: &Place, lod: i128) -> Color {
+    pub fn sample(
+        &self,
+        setup: &Setup,
+        sample: &Sample,
+        place: &Place,
+        lod: i128,
+        taps: &[([i128; 2], i128)],
+    ) -> Color {
         count_named(self.format);
         count_named(self.kind);
         let last = i128::from(self.levels) - 1;
@@ -187,7 +250,17 @@ impl Image {
             let (face, at) = place.at(setup, sample, self.scale(n as u32));
             count("face", ["+X", "-X", "+Y", "-Y", "+Z", "-Z"][face]);
             count("level", ["0", "1", "2", "3", "4", "5", "6", "7"][(n as usize).min(7)]);
-            self.filtered(filter, face, n as u32, at)
+            let image =
+                if self.kind == TextureKind::ThreeDimensional { self.layer(setup, sample, place) } else { Some(face) };
+            if let [_] = taps {
+                return self.filtered(filter, image, n as u32, at);
+            }
+            let mut sum = [128; 4];
+            for (offset, weight) in taps {
+                let tap = self.filtered(filter, image, n as u32, [at[0] + offset[0], at[1] + offset[1]]);
+                sum = std::array::from_fn(|c| sum[c] + tap[c] * weight);
+            }
+            sum.map(|sum| sum >> 8)
         };
         let min = self.unit.min_filter;
         let value = match self.unit.mip_filter {

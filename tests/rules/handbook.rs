@@ -8,8 +8,10 @@ use std::fmt::Debug;
 use std::path::{Path, PathBuf};
 use std::sync::LazyLock;
 
-const PREFIXES: [&str; 14] =
-    ["NUM", "RAS", "INT", "FOG", "DEP", "TEX", "KEY", "TSH", "CMB", "FIN", "ROP", "STN", "CLP", "VTX"];
+const PREFIXES: [&str; 17] = [
+    "NUM", "RAS", "INT", "FOG", "DEP", "TEX", "KEY", "TSH", "CMB", "FIN", "ROP", "STN", "CLP", "VTX", "VOL", "SHD",
+    "CYL",
+];
 
 /// Every entry of the handbook, in its order.
 pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(entries);

@@ -166,7 +166,7 @@ fn examples_of_depth_words_ranges_and_offsets() {
     );
     let steps = DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Less, true) };
     let test = DepthTest { range: Some(range(true)), ..steps };
-    let whole = DepthPlane::new(&test, DepthFormat::Z16, &of_the_section(), [201.0, 202.0, 250.0]);
+    let whole = DepthPlane::new(&test, DepthFormat::Z16, &of_the_section(), ([201.0, 202.0, 250.0], [1.0; 3]));
     dep4.gives("the triangle", whole, None);
 
     let dep5 = example(
@@ -182,6 +182,13 @@ fn examples_of_depth_words_ranges_and_offsets() {
     let z = p.map(|p| p[2]);
     dep5.gives("the slope", depth::slope(&triangle, z), Binary { mantissa: 7783, exponent: -4 });
     let test = DepthTest { offset: PolygonOffset { bias: 0.0, factor: 16.0 }, ..steps };
-    let plane = DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, z).unwrap();
+    let plane = DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, (z, [1.0; 3])).unwrap();
     dep5.gives("the offset", depth::word(DepthFormat::Z24S8, plane.offset), 7783);
+}
+
+#[test]
+fn examples_of_w_buffers() {
+    let rule = example("DEP-6", "w of 325, 325, 58 where the edge numbers are 408448, 51072, 51200: the word is 222.");
+    let w = depth::interpolate_w([408_448, 51_072, 51_200], [325.0, 325.0, 58.0]);
+    rule.gives("the word", depth::word(DepthFormat::Z16, w), 222);
 }

@@ -14,6 +14,7 @@ mod interpolation;
 mod numbers;
 mod raster_operations;
 mod rasteriser;
+mod sampling;
 mod texture_formats;
 mod texture_levels;
 mod texture_shader;

@@ -15,7 +15,7 @@ fn sampled(profile: Profile, format: TextureFormat, words: &[u32], x: u32) -> Pi
     draw.combiners.final_combiner.g =
         FinalInput { register: FinalRegister::Texture0, component: Component::Alpha, invert: false };
     let mut scene = scene(profile, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
-    let texels = Texels { width: 4, height: 4, levels: 1, border: false, words: words.into() };
+    let texels = Texels { width: 4, height: 4, levels: 1, layers: 1, border: false, words: words.into() };
     let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
     scene.textures.push(Texture { name: "block".to_string(), kind, format, image });
     Pixel::of(&scene, Policies::DEFAULT)

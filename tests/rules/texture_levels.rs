@@ -1,9 +1,9 @@
 //! Examples of levels and cube maps.
 
-use crate::handbook::{example, root};
+use crate::handbook::example;
 use crate::pixel::{Pixel, covering, scene};
-use ninebit::limits::Limits;
 use ninebit::state::*;
+use ninebit::texture::anisotropy;
 use ninebit::texture::cube::Face;
 use ninebit::texture::lod::log2_ratio;
 
@@ -22,7 +22,8 @@ fn sampled(kind: TextureKind, side: u32, levels: u32, st: [f32; 3], step: [f32; 
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
     let (_, face) = Level::chain(TextureFormat::L8, side, side, levels, false);
     let faces = if kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
-    let texels = Texels { width: side, height: side, levels, border: false, words: vec![255; faces * face].into() };
+    let texels =
+        Texels { width: side, height: side, levels, layers: 1, border: false, words: vec![255; faces * face].into() };
     let (name, format, image) = ("white".to_string(), TextureFormat::L8, TextureImage::Texels(texels));
     scene.textures.push(Texture { name, kind, format, image });
     Pixel::of(&scene, Policies::DEFAULT)
@@ -88,15 +89,23 @@ fn examples_of_cubes() {
 }
 
 #[test]
-fn anisotropy_is_refused() {
-    let tex17 = example("TEX-17", "`anisotropy: 2` is refused; `anisotropy: 1` is the same as none.");
-    let findings = |taps: u32| {
-        let text = format!(
-            "(version: 1, profile: Nv2a, textures: {{\"t\": (source: Solid(width: 1, height: 1, color: (1, 2, 3)))}}, \
-             draws: [(vertices: Window([]), textures: [(texture: \"t\", anisotropy: {taps})])])"
-        );
-        let read = ninebit_scene::parse(&text, &root(), &Limits::default());
-        read.err().map(|refused| format!("{refused:?}").contains("NB0402"))
+fn anisotropy_takes_taps_along_the_longer_axis() {
+    let tex17 = example(
+        "TEX-17",
+        "l = 1.226, k = 0.2, A = 2: m = 1, taps 28/256 to both sides. l = 885: m = 442.5, taps 221.25 to both sides.",
+    );
+    // Lengths in 1/65536 texel, down the screen and across.
+    let along = |l: f64, k: f64| {
+        let [l, k] = [l, k].map(|texels| (65536.0 * texels) as i64);
+        let taps = anisotropy::taps(Some([[0, 0], [k, 0], [0, l]]), 2);
+        (taps.count, [taps.offsets[0][1], taps.offsets[1][1]])
     };
-    tex17.gives("2", findings(2), Some(true)).gives("1", findings(1), None);
+    tex17.gives("l = 1.226", along(1.226, 0.2), (2, [28, -28]));
+    tex17.gives("l = 885", along(885.0, 0.2), (2, [56_640, -56_640])).shows("in texels", 56_640.0 / 256.0, 2, "221.25");
+
+    let vertical = |anisotropy: u32| TextureUnit { anisotropy, ..TextureUnit::new(0) };
+    let two = sampled(TextureKind::TwoDimensional, 64, 1, [0.5; 3], [0.0, 3.0 / 64.0, 0.0], vertical(2));
+    // Three texels a pixel: m = 1.5, the taps 0.75 to both sides.
+    let [up, down] = ["unit0.tap1.v", "unit0.tap0.v"].map(|tap| two.value(tap) - two.value("unit0.v"));
+    assert_eq!((up, down, two.value("unit0.tap0.weight")), (-192, 192, 128));
 }

@@ -7,7 +7,7 @@ use ninebit::texture::shader;
 
 fn texture(name: &str, kind: TextureKind, width: u32, words: &[u32]) -> Texture {
     let height = words.len() as u32 / width / if kind == TextureKind::Cube { CUBE_FACES } else { 1 };
-    let texels = Texels { width, height, levels: 1, border: false, words: words.into() };
+    let texels = Texels { width, height, levels: 1, layers: 1, border: false, words: words.into() };
     let (name, format) = (name.to_string(), TextureFormat::A8R8G8B8);
     Texture { name, kind, format, image: TextureImage::Texels(texels) }
 }

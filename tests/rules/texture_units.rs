@@ -15,7 +15,8 @@ fn sampled(format: TextureFormat, words: &[u32], s: f32, q: f32, change: impl Fn
     draw.textures[0] = Some(unit);
     draw.combiners = Combiners::showing(FinalRegister::Texture0);
     let mut scene = scene(Profile::Nv2a, SurfaceFormat::A8R8G8B8, [0; 4], vec![draw]);
-    let texels = Texels { width: words.len() as u32, height: 1, levels: 1, border: false, words: words.into() };
+    let texels =
+        Texels { width: words.len() as u32, height: 1, levels: 1, layers: 1, border: false, words: words.into() };
     let (kind, image) = (TextureKind::TwoDimensional, TextureImage::Texels(texels));
     scene.textures.push(Texture { name: "row".to_string(), kind, format, image });
     Pixel::of(&scene, Policies::DEFAULT)

@@ -50,7 +50,7 @@ impl Sheet {
         let mut words: Vec<u32> = texels.map(|[r, g, b, a]| u32::from_be_bytes([a, r, g, b])).collect();
         words.resize(WIDTH, 0);
         let (width, words) = (WIDTH as u32, words.into());
-        let texels = Texels { width, height: 1, levels: 1, border: false, words };
+        let texels = Texels { width, height: 1, levels: 1, layers: 1, border: false, words };
         self.texture(TextureFormat::A8R8G8B8, TextureImage::Texels(texels))
     }
 

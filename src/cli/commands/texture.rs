@@ -32,6 +32,9 @@ pub(crate) struct Arguments {
     /// This face of a cube map only: +X, -X, +Y, -Y, +Z or -Z [default: all, as a cross]
     #[arg(long, value_name = "FACE", requires = "decode", allow_hyphen_values = true, value_parser = face)]
     face: Option<u32>,
+    /// This layer of a volume only [default: all, in rows]
+    #[arg(long, value_name = "N", requires = "decode", conflicts_with = "face")]
+    layer: Option<u32>,
     /// Which chip reads a file, Nv10 or Nv2a: they differ in DXT1. A scene says so itself [default: Nv2a]
     #[arg(long, value_name = "PROFILE", value_parser = named::<Profile>)]
     profile: Option<Profile>,
@@ -63,10 +66,22 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
             return Err(Failure::usage(format!("the texture has no level {level}"), has));
         }
     };
-    let faces = match arguments.face {
-        None => 0..opened.faces(),
-        Some(face) if opened.kind == TextureKind::Cube => face..face + 1,
-        Some(_) => return Err(Failure::usage("the texture has no faces: it is no cube map", "leave out `--face`")),
+    let volume = opened.kind == TextureKind::ThreeDimensional;
+    let faces = match (arguments.face, arguments.layer) {
+        (None, None) => 0..opened.faces(),
+        (_, Some(layer)) if volume && layer < texels.layers => layer..layer + 1,
+        (_, Some(layer)) if volume => {
+            let last = texels.layers - 1;
+            let message = format!("the texture has no layer {layer}");
+            return Err(Failure::usage(message, format!("its layers are 0 to {last}")));
+        }
+        (_, Some(_)) => {
+            return Err(Failure::usage("the texture has no layers: it is no volume", "leave out `--layer`"));
+        }
+        (Some(face), _) if opened.kind == TextureKind::Cube => face..face + 1,
+        (Some(_), _) => {
+            return Err(Failure::usage("the texture has no faces: it is no cube map", "leave out `--face`"));
+        }
     };
     let picture = layout::picture(&opened, faces, levels);
     Ok(destination.write(&encode_png(picture.width, picture.height, &picture.pixels, Compression::Small)?)?)
@@ -87,6 +102,9 @@ fn describe(opened: &Opened) -> String {
     if opened.kind == TextureKind::Cube {
         line("faces", format!("{CUBE_FACES}: {}", FACES.join(", ")));
     }
+    if opened.kind == TextureKind::ThreeDimensional {
+        line("layers", texels.layers.to_string());
+    }
     line("levels", format!("{}: {}", texels.levels, sides.join(", ")));
     if texels.border {
         line("border", format!("{BORDER_TEXELS} texels beyond each edge of each level"));
@@ -95,7 +113,8 @@ fn describe(opened: &Opened) -> String {
         line("palette", format!("{} entries", opened.palette.len()));
     }
     if let Some(target) = &opened.target {
-        line("contents", format!("render target `{}` after the last draw", shown::name(target)));
+        let what = if format.depth().is_some() { "depths of render target" } else { "render target" };
+        line("contents", format!("{what} `{}` after the last draw", shown::name(target)));
     }
     line("bytes", bytes.to_string());
     text

@@ -274,6 +274,7 @@ pub fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Image<'a, L
     let words = |texture: &'a Texture| match &texture.image {
         TextureImage::Texels(texels) => &texels.words[..],
         TextureImage::Target { target } => surfaces.get(*target).map_or(&[][..], |surface| &surface.words),
+        TextureImage::Depth { target } => surfaces.get(*target).map_or(&[][..], |surface| &surface.depth),
     };
     plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
 }

@@ -17,7 +17,7 @@ use crate::state::{
     stencil_of,
 };
 use crate::texture::chain::Chain;
-use crate::texture::place::{Coordinates, Interpolated};
+use crate::texture::place::{self, Coordinates, Interpolated};
 use crate::texture::stage::ShaderSetup;
 use crate::texture::unit::{self, Image, PlannedUnit};
 use crate::trace::{Decision, Observer, Rule, Step, Work, report};
@@ -150,8 +150,8 @@ impl<'a> TriangleContext<'a> {
         self.primary = colored.map(|c| c.primary);
         self.secondary = colored.map(|c| c.secondary);
         if let Some(test) = &draw.depth_test {
-            let z = self.vertices().position(2);
-            match DepthPlane::new(test, draw.depth_format, &self.triangle, z) {
+            let (z, w) = (self.vertices().position(2), self.vertices().position(3));
+            match DepthPlane::new(test, draw.depth_format, &self.triangle, (z, w)) {
                 Some(plane) => self.depth = plane,
                 None => return false,
             }
@@ -189,6 +189,13 @@ impl<'a> TriangleContext<'a> {
     #[inline(always)]
     pub(super) fn coordinate_set(&self, set: usize) -> [[f32; 4]; 3] {
         self.vertices().coordinates(set)
+    }
+
+    /// The same of what a unit of the draw samples at, by its index there (CYL-1).
+    #[inline(always)]
+    pub(super) fn sampled_coordinates(&self, unit: usize) -> [[f32; 4]; 3] {
+        let unit = &self.draw.units[unit];
+        place::wrapped(unit, self.coordinate_set(unit.stage.coordinate_set))
     }
 
     /// A colour of vertex `corner` of the three, as it was given: its own, or the provoking vertex's.
@@ -460,8 +467,7 @@ impl<'a> TriangleContext<'a> {
         {
             return None;
         }
-        let drops = |test: &DepthTest| test.range.is_some_and(|range| !range.clamps);
-        if draw.depth_test.as_ref().is_some_and(drops) && self.depth_word(sample).is_none() {
+        if draw.depth_test.as_ref().is_some_and(DepthTest::drops_by_range) && self.depth_word(sample).is_none() {
             if O::ON {
                 self.report_depth(sample, None, observer);
             }
@@ -555,7 +561,9 @@ impl<'a> TriangleContext<'a> {
             |weights| ideal::linear(weights, self.vertices().position(3), self.draw.perspective),
         );
         let Some(test) = &self.draw.depth_test else { return 0.0 };
-        ideal::depth(linear, self.vertices().position(2), test, self.draw.depth_format, &self.triangle)
+        let vertices = self.vertices();
+        let values = (vertices.position(2), vertices.position(3));
+        ideal::depth(linear, values, test, self.draw.depth_format, &self.triangle)
     }
 
     /// The ideal's weights of the three vertices.

@@ -286,13 +286,15 @@ impl TriangleContext<'_> {
         // Fractions of a fixed-point buffer are whole numbers of steps.
         let whole = test.vertex_depths == VertexDepths::Fractions && !draw.depth_format.is_float();
         let mut inputs = Vec::new();
-        for (k, z) in self.depth.z.iter().enumerate() {
-            let name = format!("vertex{k}.z");
-            if whole {
+        let (letter, values) = self.depth.w.map_or(("z", self.depth.z), |w| ("w", w));
+        let first = if test.w_buffer { "DEP-6" } else { "DEP-1" };
+        for (k, z) in values.iter().enumerate() {
+            let name = format!("vertex{k}.{letter}");
+            if whole && !test.w_buffer {
                 observer.step(Step::given(DEPTH, "DEP-1", name.clone(), *z as i64));
                 inputs.push(plain(name, *z as i64));
             } else {
-                observer.step(float_step(DEPTH, "DEP-1", name.clone(), *z, f64::from(*z)));
+                observer.step(float_step(DEPTH, first, name.clone(), *z, f64::from(*z)));
                 inputs.push(float(name, *z));
             }
         }
@@ -309,17 +311,21 @@ impl TriangleContext<'_> {
             if !range.clamps {
                 let step = Step::given(DEPTH, "DEP-4", "depth_range.inside", i64::from(word.is_some()));
                 let note = word.is_none().then(|| "outside: the fragment is dropped".to_owned());
-                observer.step(step.by("depth_inside", inputs.clone()).note(note));
+                observer
+                    .step(step.by(["depth_inside", "w_inside"][usize::from(test.w_buffer)], inputs.clone()).note(note));
             }
         }
         let Some(word) = word else { return };
         inputs.push(plain("z_max", largest));
-        let operation = match draw.depth_format {
-            DepthFormat::Z16 | DepthFormat::Z24S8 => "depth",
-            DepthFormat::Z16F => "depth_float_16",
-            DepthFormat::Z24S8F => "depth_float_24",
+        let operation = match (draw.depth_format, test.w_buffer) {
+            (DepthFormat::Z16 | DepthFormat::Z24S8, false) => "depth",
+            (DepthFormat::Z16F, false) => "depth_float_16",
+            (DepthFormat::Z24S8F, false) => "depth_float_24",
+            (DepthFormat::Z16 | DepthFormat::Z24S8, true) => "w",
+            (DepthFormat::Z16F, true) => "w_float_16",
+            (DepthFormat::Z24S8F, true) => "w_float_24",
         };
-        let rule = if draw.depth_format.is_float() { "DEP-3" } else { "DEP-1" };
+        let rule = if draw.depth_format.is_float() { "DEP-3" } else { first };
         let step = Step::given(DEPTH, rule, "z", i64::from(word)).per(self.depth_unit()).by(operation, inputs);
         observer.step(step.ideal(Some(self.ideal_depth(sample))));
     }

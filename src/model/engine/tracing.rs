@@ -9,7 +9,7 @@ use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Piece;
 use crate::rop::surface;
-use crate::state::{Rectangle, StageOrigin, Target, TextureImage};
+use crate::state::{Rectangle, StageOrigin, Target};
 use crate::texture::unit::Image;
 use crate::trace::{Observer, Recorder, Silent, Step};
 
@@ -238,7 +238,7 @@ impl<'a> Tracer<'a> {
         let (plan, description) = (self.plan, self.target());
         let mut frames = cleared(plan);
         // Whole frames are needed only where a later draw reads one.
-        let rendered = plan.textures.iter().any(|t| matches!(t.image, TextureImage::Target { .. }));
+        let rendered = plan.textures.iter().any(|t| t.image.target().is_some());
         let at = self.pixel.1 as usize * description.width as usize + self.pixel.0 as usize;
         let word = frames.surfaces[self.target].words[at];
         let depth = frames.surfaces[self.target].depth.get(at).copied().unwrap_or(0);

@@ -12,9 +12,9 @@ use crate::place::Places;
 use crate::raster::GUARD;
 use crate::rop::surface;
 use crate::state::{
-    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, FinalRegister, Level, Named, Palette, PolygonOffset,
-    Positions, Profile, Scale, Scene, ShaderOperation, ShaderStage, Target, Texels, Texture, TextureFormat,
-    TextureImage, TextureKind, TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
+    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, FinalRegister, LARGEST_VOLUME, Level, Named, Palette,
+    PolygonOffset, Positions, Profile, Scale, Scene, ShaderOperation, ShaderStage, Target, Texels, Texture,
+    TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
 };
 
 /// At most this many errors of one kind of thing: the rest would say the same.
@@ -37,6 +37,8 @@ pub(super) fn check(scene: &Scene, limits: &Limits) -> Vec<PlanError> {
     check.errors
 }
 
+mod unit;
+
 struct Check<'s> {
     scene: &'s Scene,
     limits: &'s Limits,
@@ -47,7 +49,8 @@ struct Check<'s> {
 
 impl Check<'_> {
     fn refuse(&mut self, rule: impl Into<Option<&'static str>>, message: String, help: impl Into<String>) {
-        let error = PlanError { draw: self.draw, vertex: None, rule: rule.into(), message, help: help.into() };
+        let (draw, help) = (self.draw, help.into());
+        let error = PlanError { draw, vertex: None, unit: None, unknown: false, rule: rule.into(), message, help };
         self.errors.push(error);
     }
 
@@ -153,17 +156,32 @@ impl Check<'_> {
                         self.texels(texture, texels);
                     }
                 }
-                TextureImage::Target { target } => {
+                TextureImage::Target { target } | TextureImage::Depth { target } => {
                     let Some(shown) = self.scene.targets.get(*target) else {
                         let (message, help) = missing("target", *target, self.scene.targets.len());
                         self.refuse(None, format!("texture `{name}` shows {message}"), help);
                         continue;
                     };
-                    let fits = texture.format.bytes() == shown.format.bytes() && !texture.format.is_compressed();
-                    if texture.kind == TextureKind::Cube || texture.format == TextureFormat::P8 || !fits {
+                    let of_depths = matches!(texture.image, TextureImage::Depth { .. });
+                    let fits = match texture.format.depth() {
+                        Some(format) => {
+                            of_depths && shown.depth.is_some_and(|depth| depth.format.bits() == format.bits())
+                        }
+                        None => {
+                            let bytes = texture.format.bytes() == shown.format.bytes();
+                            !of_depths
+                                && bytes
+                                && !texture.format.is_compressed()
+                                && texture.format != TextureFormat::P8
+                        }
+                    };
+                    if matches!(texture.kind, TextureKind::Cube | TextureKind::ThreeDimensional) || !fits {
                         let (kind, format) = (texture.kind.name(), texture.format.name());
-                        let message = format!("texture `{name}` shows target `{}` as {kind}, {format}", shown.name);
-                        let help = "take TwoDimensional or Rectangle, and a format of texels as long as the pixels";
+                        let what = if of_depths { "the depths of " } else { "" };
+                        let message =
+                            format!("texture `{name}` shows {what}target `{}` as {kind}, {format}", shown.name);
+                        let help = "take TwoDimensional or Rectangle, and a format of texels as long as the pixels, of depths \
+                                    for a depth buffer";
                         self.refuse("TEX-1", message, help);
                     }
                     self.sides(texture, shown.width, shown.height);
@@ -197,11 +215,23 @@ impl Check<'_> {
     /// Levels, border and words of a texture whose sides are legal.
     fn texels(&mut self, texture: &Texture, texels: &Texels) {
         let Texture { name, kind, format, .. } = texture;
-        let Texels { width, height, levels, border, words } = texels;
-        let most = if *kind == TextureKind::Rectangle { 1 } else { Level::most(*width, *height) };
+        let Texels { width, height, levels, layers, border, words } = texels;
+        let single = matches!(kind, TextureKind::Rectangle | TextureKind::ThreeDimensional);
+        let most = if single { 1 } else { Level::most(*width, *height) };
         if !(1..=most).contains(levels) {
             let message = format!("texture `{name}` has {levels} levels");
             self.refuse("TEX-9", message, format!("{} of {width} x {height} take 1 to {most}", kind.name()));
+            return;
+        }
+        let volume = *kind == TextureKind::ThreeDimensional;
+        self.only_nv2a("VOL-1", volume, "textures of three dimensions");
+        if if volume { !layers.is_power_of_two() || *layers > LARGEST_VOLUME } else { *layers != 1 } {
+            let message = format!("texture `{name}` ({}) has {layers} layers", kind.name());
+            self.refuse(
+                "VOL-1",
+                message,
+                "a volume has a power of two of them, at most 512, and everything else has one",
+            );
             return;
         }
         self.only_nv2a("TEX-7", *border, "textures with border texels");
@@ -209,7 +239,7 @@ impl Check<'_> {
             let message = format!("texture `{name}` has border texels and is {}, {}", kind.name(), format.name());
             self.refuse("TEX-7", message, "border texels go with uncompressed textures of two dimensions");
         }
-        let faces = if *kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
+        let faces = if *kind == TextureKind::Cube { CUBE_FACES as usize } else { *layers as usize };
         let expected = faces * Level::chain(*format, *width, *height, *levels, *border).1;
         if words.len() != expected {
             let message = format!("texture `{name}` has {} words", words.len());
@@ -217,7 +247,8 @@ impl Check<'_> {
             return;
         }
         let bits = 8 * format.bytes();
-        if bits < 32
+        if format.depth().is_none()
+            && bits < 32
             && let Some(at) = words.iter().position(|word| word >> bits != 0)
         {
             let message = format!("word {at} of texture `{name}` is {:#x}", words[at]);
@@ -269,6 +300,13 @@ impl Check<'_> {
                 format!("the polygon offset has bias {bias} and factor {factor}"),
                 "take finite numbers",
             );
+        }
+        if test.w_buffer && factor != 0.0 {
+            let message = "it is not known how a polygon offset's factor counts in a w buffer".to_owned();
+            let help = "take a bias alone, or a z buffer";
+            let (draw, unit, rule) = (self.draw, None, Some("DEP-6"));
+            let help = help.to_string();
+            self.errors.push(PlanError { draw, vertex: None, unit, unknown: true, rule, message, help });
         }
         if let Some(DepthRange { lowest, highest, .. }) = test.range
             && !(lowest.is_finite() && highest.is_finite() && lowest <= highest)
@@ -393,9 +431,7 @@ impl Check<'_> {
             }
             _ => {}
         }
-        if let TextureImage::Target { target } = image
-            && *target == draw.target
-        {
+        if image.target() == Some(draw.target) {
             let message = format!("unit {index} samples the target that the draw goes into");
             self.refuse(None, message, "draw into another target and sample that one");
         }
@@ -407,6 +443,7 @@ impl Check<'_> {
             let message = format!("a colour key on the format {} is not known", format.name());
             self.refuse("KEY-1", message, "take a format of bytes");
         }
+        self.sampling(draw, index, unit, texture);
         let modes = [unit.address_s, unit.address_t];
         if profile == Profile::Nv10 {
             self.only_nv2a("TEX-7", modes.contains(&AddressMode::ClampToBorder), "border colour");
@@ -431,7 +468,7 @@ impl Check<'_> {
 fn texel_bytes(texture: &Texture) -> u64 {
     match &texture.image {
         TextureImage::Texels(texels) => 4 * texels.words.len() as u64,
-        TextureImage::Target { .. } => 0,
+        TextureImage::Target { .. } | TextureImage::Depth { .. } => 0,
     }
 }
 

@@ -48,6 +48,10 @@ pub struct PlanError {
     pub draw: Option<usize>,
     /// Index of the vertex, if one is to blame.
     pub vertex: Option<usize>,
+    /// Index of the texture unit of the draw, if one is to blame.
+    pub unit: Option<usize>,
+    /// Nobody knows what the chip does.
+    pub unknown: bool,
     /// Rule that sets the limit, if one does.
     pub rule: Option<&'static str>,
     /// What is wrong.
@@ -62,6 +66,9 @@ impl fmt::Display for PlanError {
             (Some(draw), Some(vertex)) => write!(f, "draw {draw}, vertex {vertex}: ")?,
             (Some(draw), None) => write!(f, "draw {draw}: ")?,
             (None, _) => {}
+        }
+        if let Some(unit) = self.unit {
+            write!(f, "texture unit {unit}: ")?;
         }
         f.write_str(&self.message)?;
         if let Some(rule) = self.rule {
@@ -198,8 +205,7 @@ named! {
 impl Plan {
     /// Whether a draw reads what others have drawn: a texture that is a target.
     pub fn reads_target(&self, planned: &PlannedDraw) -> bool {
-        let is_target = |texture: usize| matches!(self.textures[texture].image, TextureImage::Target { .. });
-        planned.units.iter().any(|unit| is_target(unit.state.texture))
+        planned.units.iter().any(|unit| self.textures[unit.state.texture].image.target().is_some())
     }
 
     /// Plans a scene, whoever made it, within the default [`Limits`].
@@ -229,6 +235,8 @@ impl Plan {
                     PlanError {
                         draw: Some(index),
                         vertex: Some(p.vertex),
+                        unit: None,
+                        unknown: false,
                         rule: Some("RAS-0"),
                         message: format!(
                             "window position x = {}, y = {}, w = {} lies outside the rasteriser's domain",
@@ -266,7 +274,9 @@ impl Plan {
 pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
     match &scene.textures[texture].image {
         TextureImage::Texels(texels) => (texels.width, texels.height),
-        TextureImage::Target { target } => (scene.targets[*target].width, scene.targets[*target].height),
+        TextureImage::Target { target } | TextureImage::Depth { target } => {
+            (scene.targets[*target].width, scene.targets[*target].height)
+        }
     }
 }
 
@@ -285,6 +295,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
             let set = draw.vertices.coordinates(vertex, stage.coordinate_set);
             // TSH-7 has no use for q.
             let plane = set[3] == 1.0 || moves(stage);
+            let turns = sampled.is_some_and(|unit| unit.cylindrical_wrap != [false; 2]);
             let far = |n: usize, side: u32| plane && set[n].abs() > (TEXEL_LIMIT / i64::from(side)) as f32;
             let finite = set.iter().all(|c| c.is_finite());
             let outside = match texture {
@@ -293,8 +304,24 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                     far(0, width) || far(1, height)
                 }
                 Some((Texture { kind: TextureKind::Rectangle, .. }, _)) => far(0, 1) || far(1, 1),
+                Some((Texture { kind: TextureKind::ThreeDimensional, image, .. }, (width, height))) => {
+                    let layers = if let TextureImage::Texels(texels) = image { texels.layers } else { 1 };
+                    far(0, width) || far(1, height) || far(2, layers)
+                }
                 _ => false,
             };
+            if turns && finite && set[3] != 1.0 && found < MOST_ERRORS {
+                found += 1;
+                errors.push(PlanError {
+                    draw: Some(index),
+                    vertex: Some(vertex),
+                    unit: None,
+                    unknown: true,
+                    rule: Some("CYL-1"),
+                    message: format!("a texture with a cylindrical wrap has q = {}", set[3]),
+                    help: "what comes out of projected coordinates is not known: take q = 1".to_string(),
+                });
+            }
             if outside && found < MOST_ERRORS {
                 found += 1;
                 let what = match texture {
@@ -311,6 +338,8 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                 errors.push(PlanError {
                     draw: Some(index),
                     vertex: Some(vertex),
+                    unit: None,
+                    unknown: false,
                     rule: Some("RAS-0"),
                     message: format!("texture coordinate ({}, {}) {what}", set[0], set[1]),
                     help: "shift the coordinates by whole repeats, or split the geometry".to_string(),
@@ -416,9 +445,13 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
 fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage, live: u8) -> PlannedUnit {
     let texture = &scene.textures[state.texture];
     let (width, height) = texture_size(scene, state.texture);
+    let layers = match &texture.image {
+        TextureImage::Texels(texels) => texels.layers,
+        TextureImage::Target { .. } | TextureImage::Depth { .. } => 1,
+    };
     let (count, border) = match &texture.image {
         TextureImage::Texels(texels) => (texels.levels, texels.border),
-        TextureImage::Target { .. } => (1, false),
+        TextureImage::Target { .. } | TextureImage::Depth { .. } => (1, false),
     };
     // Levels that no lod can reach are not planned.
     let reachable = if state.mip_filter == MipFilter::None { 1 } else { count };
@@ -432,6 +465,7 @@ fn plan_unit(scene: &Scene, index: usize, state: TextureUnit, stage: ShaderStage
         format: texture.format,
         levels,
         face_words,
+        layers,
         border,
         dithered: scene.profile == Profile::Nv2a,
         palette: state.palette.map(|palette| scene.palettes[palette].entries.clone()),

@@ -4,6 +4,7 @@
 //! With E the edge functions and P the perspective weights, the value is sum P x E / sum P E (INT-1, INT-4). An [`Attribute`] keeps
 //! P x of the three vertices, a [`Quotient`] the ratio at a sample; rounding it to a float or to steps sees the exact remainder.
 
+use super::depth::Binary;
 use super::interpolate::{Sample, Settled};
 use super::setup::Triangle;
 use crate::number::convert::{align, shift, split};
@@ -70,6 +71,16 @@ impl Sample<'_> {
 }
 
 impl Quotient {
+    /// The value as a binary number of at least 40 bits, cut toward zero; what is not positive is 0.
+    pub fn binary(&self) -> Binary {
+        positive_ratio(self.numerator, i128::from(self.denominator), self.exponent)
+    }
+
+    /// The same of this value by another of the same sample; by 0 it is larger than everything.
+    pub fn binary_ratio(&self, by: &Quotient) -> Binary {
+        positive_ratio(self.numerator, by.numerator, self.exponent - by.exponent)
+    }
+
     /// The nearest single-precision number, ties to even; too large ones are infinite, 0 is positive (TSH-4).
     pub fn rounded_f32(&self) -> f32 {
         let sign = u32::from(self.numerator < 0) << 31;
@@ -165,6 +176,24 @@ impl Quotient {
     }
 }
 
+/// n / d * 2^exponent, cut to 40 bits or some more; 0 where it is not positive. By 0 it is more than every depth.
+fn positive_ratio(n: i128, d: i128, exponent: i32) -> Binary {
+    const KEPT: i32 = 40;
+    if n == 0 || d == 0 || (n < 0) != (d < 0) {
+        return if n > 0 && d == 0 { Binary { mantissa: 1, exponent: 1000 } } else { Binary::default() };
+    }
+    let (n, d) = (n.unsigned_abs(), d.unsigned_abs());
+    let (mut quotient, mut rest) = (n / d, n % d);
+    let more = KEPT - bits(n) + bits(d);
+    for _ in 0..more {
+        rest <<= 1;
+        let bit = u128::from(rest >= d);
+        rest -= bit * d;
+        quotient = quotient << 1 | bit;
+    }
+    Binary { mantissa: (quotient >> (-more).max(0)) as i64, exponent: exponent - more }
+}
+
 fn bits(n: u128) -> i32 {
     128 - n.leading_zeros() as i32
 }
@@ -208,6 +237,20 @@ mod tests {
             prop_assert_eq!(small, ((n as f64) / (d as f64) * 2_f64.powi(-147)) as f32);
             let large = quotient(i128::from(n), d, 110).rounded_f32();
             prop_assert_eq!(large, ((n as f64) / (d as f64) * 2_f64.powi(110)) as f32);
+        }
+
+        #[test]
+        fn ratios_are_cut(n in 1_i64..1 << 60, d in 1_i64..1 << 60, e in -90..90, less in 0..50_u32) {
+            let (n, d) = (n >> less, (d >> (50 - less) as u32).max(1_i64));
+            let of = |numerator: i64| quotient(i128::from(numerator), 5, e);
+            let Binary { mantissa, exponent } = of(n).binary_ratio(&of(d));
+            prop_assume!(n > 0);
+            // mantissa d <= n 2^-exponent < (mantissa + 1) d
+            let (low, high) = (i128::from(mantissa) * i128::from(d), (i128::from(mantissa) + 1) * i128::from(d));
+            prop_assert!(mantissa >= 1 << 38 && (-60..=24).contains(&exponent));
+            let n = if exponent > 0 { i128::from(n) >> exponent } else { i128::from(n) << -exponent };
+            prop_assert!(low <= n && n < high);
+            prop_assert_eq!(of(-n as i64 | -1).binary_ratio(&of(d)), Binary::default());
         }
 
         #[test]
@@ -282,6 +325,14 @@ mod tests {
                 prop_assert!((value - exact).abs() <= exact.abs() * 6e-8 + size * 1e-14, "{value} {exact}");
             }
         }
+    }
+
+    #[test]
+    fn ratios_of_nothing() {
+        let of = |n: i128, d: i128| quotient(n, 1, 0).binary_ratio(&quotient(d, 1, 0));
+        assert_eq!([of(0, 0), of(-1, 0), of(0, 3), of(-4, 2)], [Binary::default(); 4]);
+        assert_eq!(crate::raster::depth::word(crate::state::DepthFormat::Z24S8, of(1, 0)), 0xff_ffff);
+        assert_eq!(crate::raster::depth::word(crate::state::DepthFormat::Z24S8, of(-6, -2)), 3);
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //!
 //! On the way a depth is a [`Binary`]: nothing is rounded but where a rule says so.
 
+use super::interpolate::most_dominant;
 use super::setup::Triangle;
 use crate::number::convert::{align, depth as fraction, split};
 use crate::state::{DepthFormat, DepthRange, DepthTest, PolygonOffset, VertexDepths};
@@ -40,14 +41,21 @@ impl Binary {
 pub struct DepthPlane {
     /// z of the vertices, finite.
     pub z: [f32; 3],
+    /// w of the vertices, where the buffer holds w (DEP-6).
+    pub w: Option<[f32; 3]>,
     /// DEP-5.
     pub offset: Binary,
 }
 
 impl DepthPlane {
-    /// That of a triangle whose vertices have these z, as `test` reads them for a buffer of `format`. `None`: the triangle is dropped (DEP-4).
+    /// That of a triangle whose vertices have these z and w, as `test` reads them for a buffer of `format`. `None`: the triangle is dropped (DEP-4).
     #[inline(always)]
-    pub fn new(test: &DepthTest, format: DepthFormat, triangle: &Triangle, z: [f32; 3]) -> Option<DepthPlane> {
+    pub fn new(
+        test: &DepthTest,
+        format: DepthFormat,
+        triangle: &Triangle,
+        (z, w): ([f32; 3], [f32; 3]),
+    ) -> Option<DepthPlane> {
         let z = match test.vertex_depths {
             // Whole numbers of 24 bits: binary32 holds them.
             VertexDepths::Fractions if !format.is_float() => z.map(|z| fraction(z, format.bits()) as f32),
@@ -58,15 +66,21 @@ impl DepthPlane {
         {
             return None;
         }
-        let offset =
-            if test.offset == PolygonOffset::default() { Binary::default() } else { offset(test, triangle, z) };
-        Some(DepthPlane { z, offset })
+        let offset = match test.offset {
+            PolygonOffset { bias: 0.0, factor: 0.0 } => Binary::default(),
+            PolygonOffset { bias, .. } if test.w_buffer => Binary::new(bias),
+            _ => offset(test, triangle, z),
+        };
+        Some(DepthPlane { z, w: test.w_buffer.then_some(w), offset })
     }
 
-    /// DEP-1, DEP-5: the depth where the edge functions are `e`.
+    /// DEP-1, DEP-5, DEP-6: the depth where the edge functions are `e`.
     #[inline]
     pub fn at(&self, e: [i64; 3]) -> Binary {
-        let depth = interpolate(e, self.z);
+        let depth = match self.w {
+            Some(w) => interpolate_w(e, w),
+            None => interpolate(e, self.z),
+        };
         if self.offset.mantissa == 0 { depth } else { depth.plus(self.offset) }
     }
 }
@@ -155,12 +169,58 @@ pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
         if k == reference {
             return split(z[k]);
         }
-        let weight = i128::from(edges[k]) * i128::from(reciprocal);
-        let dropped = (128 - weight.unsigned_abs().leading_zeros() as i32 - 24).max(0);
-        let mantissa = if weight < 0 { -((-weight) >> dropped) } else { weight >> dropped };
+        let (mantissa, dropped) = first_24(i128::from(edges[k]) * i128::from(reciprocal));
         let (by, power) = split(difference(z[k], z[reference]));
-        (mantissa as i64 * by, dropped - exponent + power)
+        (mantissa * by, dropped - exponent + power)
     });
+    sum_of_terms(terms)
+}
+
+/// DEP-6: w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with weights in perspective, each term cut as in DEP-1.
+pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
+    let (of_first, power_of_first) = split(w[1]);
+    // Edge numbers times w_1/w_k, either of 24 bits, the product too.
+    let edges = std::array::from_fn(|k| {
+        let (mantissa, power) = split(w[k]);
+        let (ratio, dropped) = first_24((i128::from(of_first) << 62) / i128::from(mantissa.max(1)));
+        let (edge, of_edge) = first_24(i128::from(e[k]));
+        let (product, more) = first_24(i128::from(edge) * i128::from(ratio));
+        (product, power_of_first - power - 62 + dropped + of_edge + more)
+    });
+    let (edges, _) = align(edges, 61);
+    let (reciprocal, exponent) = reciprocal(edges);
+    let mut weights = edges.map(|edge| {
+        let (mantissa, dropped) = first_24(i128::from(edge) * i128::from(reciprocal));
+        (mantissa, dropped - exponent)
+    });
+    // INT-3: the dominant weight is what the others leave.
+    let size = |(mantissa, exponent): (i64, i32)| {
+        if mantissa > 0 { 64 - mantissa.leading_zeros() as i32 + exponent } else { i32::MIN }
+    };
+    let dominant = match most_dominant(weights.map(size)) {
+        [true, _] => 0,
+        [_, true] => 2,
+        _ => 1,
+    };
+    let ([whole, one, other], exponent) = align([(1, 0), weights[(dominant + 1) % 3], weights[(dominant + 2) % 3]], 61);
+    let (rest, dropped) = first_24(i128::from(whole) - i128::from(one) - i128::from(other));
+    weights[dominant] = (rest, dropped + exponent);
+    let term = |k: usize| {
+        let (by, power) = split(difference(w[k], w[1]));
+        (weights[k].0 * by, weights[k].1 + power)
+    };
+    sum_of_terms([term(0), split(w[1]), term(2)])
+}
+
+/// The first 24 bits of a number, toward zero, and by how many bits it was shifted.
+fn first_24(n: i128) -> (i64, i32) {
+    let dropped = (128 - n.unsigned_abs().leading_zeros() as i32 - 24).max(0);
+    let magnitude = (n.unsigned_abs() >> dropped) as i64;
+    (if n < 0 { -magnitude } else { magnitude }, dropped)
+}
+
+/// DEP-1: terms aligned to the largest, cut toward zero at its 29th bit, and added.
+fn sum_of_terms(terms: [(i64, i32); 3]) -> Binary {
     let bits = |n: i64| 64 - n.unsigned_abs().leading_zeros() as i32;
     let Some(top) = terms.iter().filter(|term| term.0 != 0).map(|term| bits(term.0) + term.1).max() else {
         return Binary::default();
@@ -278,7 +338,10 @@ mod tests {
             offset: PolygonOffset { bias, factor },
             ..DepthTest::new(CompareFunction::Less, true)
         };
-        (DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, p.map(|p| p[2])).expect("no range"), triangle)
+        (
+            DepthPlane::new(&test, DepthFormat::Z24S8, &triangle, (p.map(|p| p[2]), [1.0; 3])).expect("no range"),
+            triangle,
+        )
     }
 
     #[test]
@@ -310,6 +373,25 @@ mod tests {
         assert_eq!(biased.offset.mantissa as f64 * 2.0_f64.powi(biased.offset.exponent), 7782.5);
     }
 
+    /// Words of captured buffers: TriH and LargeZ.
+    #[test]
+    fn w_is_interpolated_in_perspective() {
+        let word_at = |e, w| word(DepthFormat::Z24S8, interpolate_w(e, w));
+        let steep = [325.0, 325.0, 58.0];
+        assert_eq!(word_at([408_448, 51_072, 51_200], steep), 222);
+        assert_eq!(word_at([229_504, 153_216, 128_000], steep), 150);
+        assert_eq!(word_at([24_448, 51_072, 435_200], steep), 66);
+        let large = [16_777_046.0, 16_777_047.0, 16_777_047.0];
+        assert_eq!(word_at([1_556_480, 24_637_440, 52_449_280], large), 16_777_047);
+        assert_eq!(word_at([13_025_280, 24_637_440, 40_980_480], large), 16_777_046);
+        // Equal w leave no trace.
+        assert_eq!(
+            interpolate_w([5, 70_000, 3], [10.0; 3]).mantissa as f64
+                * 2.0_f64.powi(interpolate_w([5, 70_000, 3], [10.0; 3]).exponent),
+            10.0
+        );
+    }
+
     #[test]
     fn a_flat_triangle_beyond_a_limit_is_dropped_whole() {
         let p = [[0.0, 0.0, 5.0, 1.0], [8.0, 0.0, 6.0, 1.0], [0.0, 8.0, 7.0, 1.0]];
@@ -318,7 +400,7 @@ mod tests {
             let range = Some(DepthRange { lowest, highest, clamps: true, drops_triangles });
             let test =
                 DepthTest { vertex_depths: VertexDepths::Steps, range, ..DepthTest::new(CompareFunction::Less, true) };
-            DepthPlane::new(&test, DepthFormat::Z16, &triangle, [5.0, 6.0, 7.0]).is_some()
+            DepthPlane::new(&test, DepthFormat::Z16, &triangle, ([5.0, 6.0, 7.0], [1.0; 3])).is_some()
         };
         assert!(at(7.0, 9.0, true) && at(0.0, 5.0, true) && at(8.0, 9.0, false));
         assert!(!at(8.0, 9.0, true) && !at(0.0, 4.0, true));

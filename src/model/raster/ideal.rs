@@ -95,16 +95,33 @@ fn power_of_two(x: f64) -> f64 {
 }
 
 /// Depth in words of a buffer; of one that holds floats the words between two neighbours stand for what lies between them.
-pub fn depth(weights: [f64; 3], z: [f32; 3], test: &DepthTest, format: DepthFormat, triangle: &Triangle) -> f64 {
+pub fn depth(
+    weights: [f64; 3],
+    (z, w): ([f32; 3], [f32; 3]),
+    test: &DepthTest,
+    format: DepthFormat,
+    triangle: &Triangle,
+) -> f64 {
     let full = f64::from(format.largest());
     let fractions = test.vertex_depths == VertexDepths::Fractions && !format.is_float();
     let z = z.map(|z| if fractions { f64::from(z).clamp(0.0, 1.0) * full } else { f64::from(z) });
+    if test.w_buffer {
+        let depth = 1.0 / mix(weights, w.map(|w| 1.0 / f64::from(w))) + f64::from(test.offset.bias);
+        let range = test.range.map_or((f64::NEG_INFINITY, f64::INFINITY), |r| (r.lowest.into(), r.highest.into()));
+        return in_words(format, depth.max(range.0).min(range.1));
+    }
     let along = |edges: [i64; 3]| mix(edges.map(|edge| edge as f64), z).abs() / triangle.doubled_area as f64;
     let slope = along(triangle.a).max(along(triangle.b));
     let mut depth = mix(weights, z) + f64::from(test.offset.bias) + f64::from(test.offset.factor) * slope;
     if let Some(range) = test.range {
         depth = depth.max(f64::from(range.lowest)).min(f64::from(range.highest));
     }
+    in_words(format, depth)
+}
+
+/// A depth in steps as words of a buffer count it, with what lies between them.
+pub fn in_words(format: DepthFormat, depth: f64) -> f64 {
+    let full = f64::from(format.largest());
     if !format.is_float() {
         return depth.clamp(0.0, full);
     }

@@ -38,8 +38,9 @@ pub use rop::{
 };
 pub use shader::{DotMapping, ShaderOperation, ShaderStage};
 pub use texture::{
-    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, ColorKeyMode, Filter, Level, MipFilter, Palette, TEXTURE_UNITS,
-    Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
+    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, ColorKeyMode, Filter, LARGEST_VOLUME, Level, MipFilter, Palette,
+    ShadowComparison, ShadowReference, TEXTURE_UNITS, Texels, Texture, TextureFormat, TextureImage, TextureKind,
+    TextureUnit, largest_anisotropy,
 };
 pub use vertices::{TriangleVertices, Vertices};
 

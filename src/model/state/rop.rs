@@ -147,15 +147,22 @@ pub struct DepthTest {
     pub vertex_depths: VertexDepths,
     /// The range of depths; `None`: what the buffer holds, to which depths are limited.
     pub range: Option<DepthRange>,
-    /// What is added to depths.
+    /// What is added to depths; in a w buffer a bias alone.
     pub offset: PolygonOffset,
+    /// The buffer holds w, in its own steps, in place of z (DEP-6); limits of the range are of w, and triangles are dropped by z.
+    pub w_buffer: bool,
 }
 
 impl DepthTest {
     /// A test of depths between 0 and 1, without an offset or a range.
     pub fn new(function: CompareFunction, write: bool) -> DepthTest {
         let (vertex_depths, range, offset) = (VertexDepths::Fractions, None, PolygonOffset::default());
-        DepthTest { function, write, vertex_depths, range, offset }
+        DepthTest { function, write, vertex_depths, range, offset, w_buffer: false }
+    }
+
+    /// Whether pixels are dropped for their depth before any test (DEP-4).
+    pub fn drops_by_range(&self) -> bool {
+        self.range.is_some_and(|range| !range.clamps)
     }
 }
 

@@ -1,6 +1,6 @@
 //! Texture images and the units that sample them.
 
-use super::{Profile, named};
+use super::{CompareFunction, DepthFormat, Profile, named};
 use std::sync::Arc;
 
 /// Number of texture units in the state. NV10 has the first two.
@@ -8,6 +8,9 @@ pub const TEXTURE_UNITS: usize = 4;
 
 /// Texels that a texture with border texels stores beyond each edge (TEX-7).
 pub const BORDER_TEXELS: u32 = 4;
+
+/// The longest side of a volume, and the most layers.
+pub const LARGEST_VOLUME: u32 = 512;
 
 /// Faces of a cube map, in the order +X, -X, +Y, -Y, +Z, -Z (TEX-12).
 pub const CUBE_FACES: u32 = 6;
@@ -21,6 +24,8 @@ named! {
         Cube,
         /// Two coordinates in texels; any sides, one level (the chip's linear layouts).
         Rectangle,
+        /// Layers that a third coordinate chooses from, 1.0 all of them; sides and layers are powers of two, one level (VOL-1; nv2a).
+        ThreeDimensional,
     }
 }
 
@@ -36,6 +41,7 @@ impl TextureKind {
                 | TextureFormat::Dxt5
         );
         match (profile, self) {
+            (_, TextureKind::ThreeDimensional) => LARGEST_VOLUME,
             (Profile::Nv2a, _) => 4096,
             (Profile::Nv10, TextureKind::TwoDimensional) => 2048,
             (Profile::Nv10, TextureKind::Rectangle) => 2047,
@@ -97,6 +103,14 @@ named! {
         Dxt3 = "DXT3",
         /// Blocks of 4 x 4 texels in 16 bytes, alpha between two bytes.
         Dxt5 = "DXT5",
+        /// A depth of 16 bits, which is compared (SHD-1; nv2a).
+        Z16,
+        /// A depth of 24 bits above eight bits that are ignored, likewise.
+        Z24S8,
+        /// A depth of 16 bits, a float, likewise.
+        Z16F,
+        /// A depth of 24 bits, a float, above eight bits that are ignored, likewise.
+        Z24S8F,
     }
 }
 
@@ -111,7 +125,19 @@ impl TextureFormat {
                 | TextureFormat::X1R5G5B5
                 | TextureFormat::L8
                 | TextureFormat::Y16
-        )
+        ) && self.depth().is_none()
+    }
+
+    /// The format of the depths that it holds, if it holds depths: a unit compares them (SHD-1).
+    #[inline(always)]
+    pub fn depth(self) -> Option<DepthFormat> {
+        match self {
+            TextureFormat::Z16 => Some(DepthFormat::Z16),
+            TextureFormat::Z24S8 => Some(DepthFormat::Z24S8),
+            TextureFormat::Z16F => Some(DepthFormat::Z16F),
+            TextureFormat::Z24S8F => Some(DepthFormat::Z24S8F),
+            _ => None,
+        }
     }
 
     /// Bytes of one texel, or of one block of a compressed format.
@@ -124,7 +150,9 @@ impl TextureFormat {
             | TextureFormat::A8B8G8R8
             | TextureFormat::B8G8R8A8
             | TextureFormat::R8G8B8A8
-            | TextureFormat::R16B16 => 4,
+            | TextureFormat::R16B16
+            | TextureFormat::Z24S8
+            | TextureFormat::Z24S8F => 4,
             TextureFormat::R5G6B5
             | TextureFormat::R6G5B5
             | TextureFormat::X1R5G5B5
@@ -133,7 +161,9 @@ impl TextureFormat {
             | TextureFormat::A8L8
             | TextureFormat::G8B8
             | TextureFormat::R8B8
-            | TextureFormat::Y16 => 2,
+            | TextureFormat::Y16
+            | TextureFormat::Z16
+            | TextureFormat::Z16F => 2,
             TextureFormat::L8 | TextureFormat::I8 | TextureFormat::A8 | TextureFormat::P8 => 1,
         }
     }
@@ -156,7 +186,7 @@ impl TextureFormat {
                 | TextureFormat::R8B8
                 | TextureFormat::R16B16
                 | TextureFormat::Y16
-        )
+        ) || self.depth().is_some()
     }
 
     /// Whether the chip has a linear layout of it, which rectangle textures need.
@@ -239,6 +269,21 @@ pub enum TextureImage {
         /// Index into [`Scene::targets`](super::Scene::targets).
         target: usize,
     },
+    /// The depth buffer of a render target, read in a format of depths of as many bytes; one level.
+    Depth {
+        /// Index into [`Scene::targets`](super::Scene::targets).
+        target: usize,
+    },
+}
+
+impl TextureImage {
+    /// The target whose colours or depths it shows.
+    pub fn target(&self) -> Option<usize> {
+        match self {
+            TextureImage::Texels(_) => None,
+            TextureImage::Target { target } | TextureImage::Depth { target } => Some(*target),
+        }
+    }
 }
 
 /// Raw texels of all faces and levels.
@@ -250,10 +295,12 @@ pub struct Texels {
     pub height: u32,
     /// Levels, at least 1. Sides halve from level to level, rounded down, at least 1.
     pub levels: u32,
+    /// Layers of a volume; of other kinds 1.
+    pub layers: u32,
     /// Each level stores [`BORDER_TEXELS`] more texels beyond each of its edges.
     pub border: bool,
-    /// The words: face after face (one, or six of a cube map), in it level after level, in it row after row from the top. One word a
-    /// texel, unused high bits zero; a compressed block is 2 (DXT1) or 4 words, little-endian, row of blocks after row of blocks.
+    /// The words: face after face (one, six of a cube map, or a volume's layers), in it level after level, in it row after row from the top. One word a
+    /// texel, unused high bits zero; of depths as [`depth_stencil`](super::depth_stencil) has them; a compressed block is 2 (DXT1) or 4 words, little-endian, row of blocks after row of blocks.
     /// Shared, because plans hold them too.
     pub words: Arc<[u32]>,
 }
@@ -326,6 +373,33 @@ pub struct ColorKey {
     pub mode: ColorKeyMode,
 }
 
+/// What a depth that a unit fetches is compared with (SHD-1).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ShadowComparison {
+    /// The reference stands on its left, the texel on its right. The chip has one for all units.
+    pub function: CompareFunction,
+    /// The reference.
+    pub reference: ShadowReference,
+}
+
+named! {
+    /// The reference of a comparison (SHD-1).
+    pub enum ShadowReference {
+        /// r/q: the stage projects in three dimensions.
+        R,
+        /// 0: the stage projects in two.
+        Zero,
+    }
+}
+
+/// Most taps that anisotropy can ask for along an axis of the screen (TEX-17), by profile.
+pub fn largest_anisotropy(profile: Profile) -> u32 {
+    match profile {
+        Profile::Nv10 => 2,
+        Profile::Nv2a => 8,
+    }
+}
+
 /// A texture unit's state.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TextureUnit {
@@ -337,6 +411,8 @@ pub struct TextureUnit {
     pub address_s: AddressMode,
     /// Along t.
     pub address_t: AddressMode,
+    /// Along the layers of a volume.
+    pub address_r: AddressMode,
     /// Filter within a level where the texture is minified (lod > 0).
     pub min_filter: Filter,
     /// Filter where it is magnified (lod <= 0).
@@ -355,6 +431,12 @@ pub struct TextureUnit {
     pub signed: [bool; 4],
     /// Colour key; the unit's filters are then nearest (KEY-1).
     pub color_key: Option<ColorKey>,
+    /// How long a footprint may be compared with its width: 1, 2, 4 or 8 (TEX-17). Levels are then not mixed.
+    pub anisotropy: u32,
+    /// Along s and t the vertices' coordinates go the shorter way around (CYL-1). Of 2D textures that are not projected.
+    pub cylindrical_wrap: [bool; 2],
+    /// What depths are compared with; given where the texture's format is one of depths, whose filters are nearest (SHD-1).
+    pub shadow: Option<ShadowComparison>,
 }
 
 impl TextureUnit {
@@ -375,6 +457,7 @@ impl TextureUnit {
             palette: None,
             address_s: AddressMode::Wrap,
             address_t: AddressMode::Wrap,
+            address_r: AddressMode::Wrap,
             min_filter: Filter::Linear,
             mag_filter: Filter::Linear,
             mip_filter: MipFilter::None,
@@ -384,6 +467,9 @@ impl TextureUnit {
             border_color: [0; 4],
             signed: [false; 4],
             color_key: None,
+            anisotropy: 1,
+            cylindrical_wrap: [false; 2],
+            shadow: None,
         }
     }
 }

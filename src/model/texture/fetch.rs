@@ -4,7 +4,6 @@
 
 use super::address::address;
 use super::compressed;
-use super::cube::Face;
 use super::format;
 use super::unit::{Image, PlannedUnit};
 use crate::number::Lane;
@@ -20,15 +19,15 @@ pub struct Texel {
     pub word: u32,
 }
 
-/// One image of a texture: a level of a face.
+/// One image of a texture: a level of a face, or a layer of a volume.
 #[derive(Clone, Copy, Debug)]
 pub struct Slice<'a> {
     /// The unit.
     pub unit: &'a PlannedUnit,
     /// The level.
     pub level: &'a Level,
-    /// The face.
-    pub face: Face,
+    /// The number of the face or layer; `None` beyond the layers of a volume, where everything is the border colour.
+    pub image: Option<usize>,
 }
 
 impl PlannedUnit {
@@ -47,7 +46,9 @@ impl PlannedUnit {
     pub fn modes(&self) -> [AddressMode; 2] {
         match self.kind {
             TextureKind::Cube => [AddressMode::ClampToEdge; 2],
-            TextureKind::TwoDimensional | TextureKind::Rectangle => [self.state.address_s, self.state.address_t],
+            TextureKind::TwoDimensional | TextureKind::Rectangle | TextureKind::ThreeDimensional => {
+                [self.state.address_s, self.state.address_t]
+            }
         }
     }
 
@@ -103,11 +104,11 @@ impl Slice<'_> {
     /// TEX-7: the texel inside, or the border colour, which is A8R8G8B8 whatever the format.
     #[inline(always)]
     fn inside(&self, words: &[u32], x: Option<i64>, y: Option<i64>) -> Texel {
-        let (Some(x), Some(y)) = (x, y) else {
+        let (Some(x), Some(y), Some(image)) = (x, y, self.image) else {
             let [r, g, b, a] = self.unit.state.border_color.map(u32::from);
             return Texel { at: None, word: a << 24 | r << 16 | g << 8 | b };
         };
-        let first = self.face as usize * self.unit.face_words + self.level.offset;
+        let first = image * self.unit.face_words + self.level.offset;
         if self.unit.format.is_compressed() {
             let pitch = self.level.width.div_ceil(4) as usize;
             let block = (y as usize / 4) * pitch + x as usize / 4;

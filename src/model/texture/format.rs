@@ -25,7 +25,7 @@ fn six_to_eight<W: Word>(v: W) -> W {
     v << 2 | v >> 4
 }
 
-/// R, G, B, A of a raw texel, each 0 to 255. Texels of P8 are looked up first, and those of compressed formats
+/// R, G, B, A of a raw texel, each 0 to 255; of a depth its highest byte. Texels of P8 are looked up first, and those of compressed formats
 /// [decoded](super::compressed::decode): here they are zero.
 #[inline(always)]
 pub fn channels<W: Word>(format: TextureFormat, word: W) -> [W; 4] {
@@ -53,6 +53,9 @@ pub fn channels<W: Word>(format: TextureFormat, word: W) -> [W; 4] {
         TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
         TextureFormat::R8B8 => [byte(8), byte(0), byte(0), byte(8)],
         TextureFormat::Y16 => [all, byte(8), byte(0), all],
+        // As it is shown; units compare it.
+        TextureFormat::Z16 | TextureFormat::Z16F => [byte(8), byte(8), byte(8), all],
+        TextureFormat::Z24S8 | TextureFormat::Z24S8F => [byte(16), byte(16), byte(16), all],
         TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => [none; 4],
     }
 }
@@ -133,6 +136,8 @@ mod tests {
             TextureFormat::G8B8 => [byte(0), byte(8), byte(0), byte(8)],
             TextureFormat::R8B8 => [byte(8), byte(0), byte(0), byte(8)],
             TextureFormat::Y16 => [Fixed(255), byte(8), byte(0), Fixed(255)],
+            TextureFormat::Z16 | TextureFormat::Z16F => [byte(8), byte(8), byte(8), Fixed(255)],
+            TextureFormat::Z24S8 | TextureFormat::Z24S8F => [byte(16), byte(16), byte(16), Fixed(255)],
             TextureFormat::P8 | TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => return None,
         })
     }

@@ -1,6 +1,7 @@
 //! Texture units: where they sample, which levels and texels, how texels become channels, how they are filtered.
 
 pub mod address;
+pub mod anisotropy;
 pub mod chain;
 pub mod color_key;
 pub mod compressed;
@@ -16,6 +17,7 @@ pub mod real;
 pub mod report;
 pub mod shader;
 mod shader_report;
+pub mod shadow;
 pub mod show;
 pub mod stage;
 pub mod unit;

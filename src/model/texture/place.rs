@@ -3,10 +3,13 @@
 use super::cube::{Face, Signed};
 use super::lod::Quad;
 use super::report::Report;
+use super::shader_report;
 use super::unit::PlannedUnit;
+use crate::raster::attribute::Attribute;
+use crate::raster::depth::Binary;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
 use crate::raster::{ideal, setup::Triangle};
-use crate::state::{Level, Named, TextureKind, TriangleVertices};
+use crate::state::{AddressMode, DepthFormat, Level, Named, TextureKind, TriangleVertices};
 use crate::trace::{Observer, Operand, Rule, Step, plain};
 
 /// A unit's coordinates, set up for one triangle.
@@ -24,7 +27,7 @@ impl Coordinates {
     /// Sets up the coordinates of a triangle. `vertices` holds s, t, r, q of its three vertices.
     #[inline(always)]
     pub fn new(triangle: &Triangle, vertices: [[f32; 4]; 3], unit: &PlannedUnit) -> Coordinates {
-        let [a, b, c] = vertices;
+        let [a, b, c] = wrapped(unit, vertices);
         let component = |n: usize| [a[n], b[n], c[n]];
         if unit.kind == TextureKind::Cube {
             return Coordinates::Direction(triangle.direction([component(0), component(1), component(2)]));
@@ -36,6 +39,27 @@ impl Coordinates {
             Coordinates::Ratio(triangle.direction([component(0), component(1), component(3)]))
         }
     }
+}
+
+/// CYL-1: the coordinates of a triangle's vertices, moved by whole repeats to within a half of those of the first.
+#[allow(clippy::float_arithmetic, reason = "CYL-1: repeats are counted and taken off in binary32")]
+#[inline]
+pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3] {
+    if unit.state.cylindrical_wrap == [false; 2] {
+        return vertices;
+    }
+    for (axis, mode) in unit.modes().into_iter().enumerate() {
+        if !unit.state.cylindrical_wrap[axis] || mode == AddressMode::Mirror {
+            continue;
+        }
+        let first = vertices[0][axis];
+        for vertex in &mut vertices[1..] {
+            let ahead = vertex[axis] - first;
+            // What lies exactly half a repeat away stays.
+            vertex[axis] -= if ahead > 0.0 { (ahead - 0.5).ceil().max(0.0) } else { (ahead + 0.5).floor().min(0.0) };
+        }
+    }
+    vertices
 }
 
 /// The three linear functions of sc, tc and |ma| of a direction on a face.
@@ -81,6 +105,30 @@ pub trait Place {
     );
     /// Tells an observer where the coordinates of the quad come from.
     fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O);
+
+    /// VOL-1: the place among so many layers, 1/256 layer. Only interpolated coordinates have one: 0.
+    fn layer(&self, _layers: u32) -> Settled {
+        Settled { value: 0, lowered: false }
+    }
+    /// The ideal's r/q, likewise.
+    fn real_r(&self) -> f64 {
+        0.0
+    }
+    /// Tells an observer where that comes from.
+    fn describe_layer<O: Observer>(&self, _report: &Report<'_>, _layers: u32, _settled: Settled, _observer: &mut O) {}
+    /// SHD-1: r/q in steps of a depth buffer, likewise.
+    fn reference(&self) -> Binary {
+        Binary::default()
+    }
+    /// Tells an observer where the word that it becomes comes from.
+    fn describe_reference<O: Observer>(
+        &self,
+        _report: &Report<'_>,
+        _format: DepthFormat,
+        _word: u32,
+        _observer: &mut O,
+    ) {
+    }
 }
 
 /// Coordinates interpolated from the vertices.
@@ -138,13 +186,38 @@ impl Interpolated<'_> {
         }
     }
 
+    /// One component of the vertices' coordinates.
+    fn component(&self, n: usize) -> [f32; 3] {
+        self.vertices.coordinates(self.unit.stage.coordinate_set).map(|vertex| vertex[n])
+    }
+
+    /// r as a plane over D, or r and q, of which the ratio counts.
+    fn layer_planes(&self, layers: u32) -> ([i64; 3], Option<[i64; 3]>) {
+        let (triangle, r) = (self.at.triangle, self.component(2));
+        match self.coordinates {
+            Coordinates::Ratio(_) => {
+                let q = self.component(3);
+                let [r, q, _] = triangle.direction([r, q, q]);
+                (r, Some(q))
+            }
+            Coordinates::Plane(_) | Coordinates::Direction(_) => (triangle.coordinate(r, layers), None),
+        }
+    }
+
+    /// r, and q where it is not 1 at all three vertices.
+    fn reference_parts(&self) -> (Attribute, Option<Attribute>) {
+        let q = self.component(3);
+        let r = self.at.triangle.attribute(self.component(2));
+        (r, (q != [1.0; 3]).then(|| self.at.triangle.attribute(q)))
+    }
+
     /// The ideal's weights of the vertices at edge functions that need not be covered.
     fn weights(&self, e: [i64; 3]) -> [f64; 3] {
         ideal::barycentrics(self.at.triangle, e, self.w, true)
     }
 
     fn real_at(&self, weights: [f64; 3], face: Option<Face>) -> Real {
-        let set = self.vertices.coordinates(self.unit.stage.coordinate_set);
+        let set = wrapped(self.unit, self.vertices.coordinates(self.unit.stage.coordinate_set));
         let component = |n: usize| ideal::mix(weights, set.map(|v| f64::from(v[n])));
         if let Coordinates::Direction(_) = self.coordinates {
             return real_direction([component(0), component(1), component(2)], face);
@@ -261,6 +334,57 @@ impl Place for Interpolated<'_> {
             inputs.push(lowered);
             report.coordinate(rule, letter, settled[axis], ideal[axis], (operation, inputs), observer);
         }
+    }
+
+    fn layer(&self, layers: u32) -> Settled {
+        match self.layer_planes(layers) {
+            (r, Some(q)) => self.at.ratio(&r, &q, layers),
+            (r, None) => self.at.coordinate(&r),
+        }
+    }
+
+    fn real_r(&self) -> f64 {
+        let weights = self.at.ideal.unwrap_or_else(|| self.weights(self.at.e));
+        let component = |n: usize| ideal::mix(weights, self.component(n).map(f64::from));
+        ideal::quotient(component(2), component(3))
+    }
+
+    fn describe_layer<O: Observer>(&self, report: &Report<'_>, layers: u32, settled: Settled, observer: &mut O) {
+        let (r, q) = self.layer_planes(layers);
+        let (rule, operation, mut inputs) = match q {
+            None => ("INT-4", "floor_plane", report.planes("INT-4", "G_w", &r, observer)),
+            Some(q) => {
+                let mut inputs = report.planes("INT-4", "N_w", &r, observer);
+                inputs.extend(report.planes("INT-4", "N_wq", &q, observer));
+                ("TEX-15", "floor_ratio", inputs)
+            }
+        };
+        inputs.extend((0..3).map(|k| plain(format!("E{k}"), self.at.e[k])));
+        inputs.push(if q.is_some() { plain("size", i64::from(layers)) } else { plain("D", self.at.d) });
+        inputs.push(plain("lowered", i64::from(settled.lowered)));
+        let ideal = real_coordinate(self.real_r(), layers);
+        report.coordinate(rule, "w", settled, ideal, (operation, inputs), observer);
+    }
+
+    fn reference(&self) -> Binary {
+        let (r, q) = self.reference_parts();
+        let r = self.at.attribute(&r);
+        q.map_or_else(|| r.binary(), |q| r.binary_ratio(&self.at.attribute(&q)))
+    }
+
+    fn describe_reference<O: Observer>(&self, report: &Report<'_>, format: DepthFormat, word: u32, observer: &mut O) {
+        let (r, q) = self.reference_parts();
+        let index = self.unit.index;
+        let mut inputs = shader_report::linear(index, 2, &r, self.at, observer);
+        let operation = if q.is_some() { "depth_word_of_ratio" } else { "depth_word" };
+        inputs.extend(q.map(|q| shader_report::linear(index, 3, &q, self.at, observer)).into_iter().flatten());
+        inputs.push(plain(format.name(), 0));
+        let real = ideal::in_words(format, self.real_r());
+        observer.step(
+            Step::given(&report.block(), "SHD-1", report.name("reference"), i64::from(word))
+                .by(operation, inputs)
+                .ideal(Some(real)),
+        );
     }
 
     fn describe_quad<O: Observer>(&self, report: &Report<'_>, observer: &mut O) {

@@ -2,13 +2,17 @@
 
 use super::color_key;
 use super::fetch::{self, Slice, Texel};
-use super::filter::lerp;
+use super::filter::{lerp, nearest};
 use super::lod::{Choice, Quad};
 use super::unit::PlannedUnit;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
 use crate::raster::interpolate::Settled;
-use crate::state::{AddressMode, ColorKey, ColorKeyMode, Filter, MipFilter, TextureFormat};
+use crate::rop::blend::compare_operation;
+use crate::state::{
+    AddressMode, ColorKey, ColorKeyMode, DepthFormat, Filter, MipFilter, Named, ShadowComparison, ShadowReference,
+    TextureFormat, TextureKind, depth_of,
+};
 use crate::trace::{Observer, Operand, Place, Step, part, plain, report};
 
 /// How many make one texel in the coordinates of a quad.
@@ -179,16 +183,105 @@ impl Report<'_> {
         }
     }
 
-    /// A texel: its place after addressing, its raw words, its lanes.
-    pub(super) fn texel<L: Lane, O: Observer>(
+    /// VOL-1: the layer that a place lies in.
+    pub(super) fn layer<O: Observer>(&self, w: i64, layer: Option<usize>, observer: &mut O) {
+        let index = nearest(w);
+        let block = self.block();
+        let step = Step::given(&block, "TEX-5", self.name("z"), index);
+        observer.step(step.by("nearest_texel", vec![part(self.name("w"), w)]));
+        if let Some(layer) = layer {
+            let inputs = vec![plain(self.name("z"), index), plain("size", i64::from(self.unit.layers))];
+            let name = self.name("layer");
+            observer.step(address_step(&block, name, self.unit.state.address_r, false, inputs, layer as i64));
+        }
+    }
+
+    /// TEX-17: one tap, in whose names the prefix is.
+    pub(super) fn tap<O: Observer>(
+        &self,
+        (quad, limit, tap): (Option<Quad>, u32, usize),
+        (coordinates, at, ideal): ([i64; 2], [i64; 2], [f64; 2]),
+        (weight, ideal_weight): (i64, Option<f64>),
+        observer: &mut O,
+    ) {
+        let block = self.block();
+        let of_unit = |name: &str| format!("unit{}.{name}", self.unit.index);
+        let footprint = || {
+            let mut inputs = vec![plain("limit", i64::from(limit)), plain("tap", tap as i64)];
+            for (pixel, at) in quad.iter().flatten().enumerate() {
+                for (n, letter) in ["u", "v"].into_iter().enumerate() {
+                    let name = of_unit(&format!("quad{pixel}.{letter}"));
+                    inputs.push(Operand { name, value: at[n], per_one: QUAD_PART });
+                }
+            }
+            inputs
+        };
+        for (n, letter) in ["u", "v"].into_iter().enumerate() {
+            let mut inputs = vec![part(of_unit(letter), coordinates[n])];
+            inputs.extend(footprint());
+            let step = Step::given(&block, "TEX-17", self.name(letter), at[n]).per(256);
+            observer.step(step.by(["tap_u", "tap_v"][n], inputs).ideal(Some(ideal[n])));
+        }
+        let step = Step::given(&block, "TEX-17", self.name("weight"), weight).per(256);
+        observer.step(step.by("tap_weight", footprint()).ideal(ideal_weight));
+    }
+
+    /// TEX-17: the sum of the taps.
+    pub(super) fn taps<L: Lane, O: Observer>(
+        &self,
+        lane: usize,
+        filter: Filter,
+        taps: &[([L; 4], L::Weight)],
+        value: L,
+        observer: &mut O,
+    ) {
+        let suffix = self.lane(lane);
+        let mut inputs = Vec::new();
+        for (n, (texel, weight)) in taps.iter().enumerate() {
+            let name = self.name(&format!("tap{n}.{}{suffix}", filtered(filter)));
+            inputs.push(self.lane_operand(name, texel[lane]));
+            inputs.push(part(self.name(&format!("tap{n}.weight")), L::observe_weight(*weight).0));
+        }
+        let step = self.lane_step("TEX-17", self.name(&format!("taps.{suffix}")), value);
+        observer.step(step.by("weighted_sum", inputs));
+    }
+
+    /// SHD-1: a reference, a word of a depth format, against what was fetched.
+    pub(super) fn shadow<L: Lane, O: Observer>(
+        &self,
+        shadow: ShadowComparison,
+        (format, reference): (DepthFormat, u32),
+        (stored, passes): (u32, bool),
+        result: L,
+        observer: &mut O,
+    ) {
+        let block = self.block();
+        let [depth, named] = ["texel.depth", "reference"].map(|name| self.name(name));
+        if shadow.reference == ShadowReference::Zero {
+            observer.step(Step::given(&block, "SHD-1", named.clone(), i64::from(reference)));
+        }
+        let note = format!("words of {}", format.name());
+        let inputs = vec![plain(named, i64::from(reference)), plain(depth, i64::from(stored))];
+        let operation = compare_operation(shadow.function);
+        let step = Step::given(&block, "SHD-1", self.name("passes"), i64::from(passes));
+        observer.step(step.by(operation, inputs).note(Some(note)));
+        for n in (0..4).filter(|n| self.unit.live >> n & 1 != 0) {
+            let inputs = vec![plain(self.name("passes"), i64::from(passes))];
+            let name = self.name(&format!("compared.{}", channel_name(n)));
+            observer.step(self.lane_step("SHD-1", name, result).by("all_or_nothing", inputs));
+        }
+    }
+
+    /// A texel as it was fetched: its place after addressing, and its raw words, of which the one that channels are made of is returned.
+    pub(super) fn fetched<O: Observer>(
         &self,
         slice: &Slice<'_>,
         words: &[u32],
-        (texel, lanes): (&Texel, &[L; 4]),
+        texel: &Texel,
         index: [(&str, i64); 2],
         suffix: &str,
         observer: &mut O,
-    ) {
+    ) -> u32 {
         let block = self.block();
         let texel_name = |what: &str| self.name(&format!("texel{suffix}.{what}"));
         let mut place = Vec::new();
@@ -203,14 +296,38 @@ impl Report<'_> {
                 observer.step(step);
                 place.push(plain(texel_name(axis), at[n]));
             }
+            if self.unit.kind == TextureKind::ThreeDimensional {
+                let layer = slice.image.map_or(0, |layer| layer as i64);
+                place.push(plain(format!("unit{}.layer", self.unit.index), layer));
+            }
         }
         let lies = texel.at.map(|at| Place {
             texture: self.unit.state.texture,
-            face: slice.face as usize,
+            face: slice.image.unwrap_or(0),
             level: self.unit.levels.iter().position(|level| level.offset == slice.level.offset).unwrap_or(0),
             at,
         });
         let word = self.word(words, texel, (place, lies), &texel_name, observer);
+        if self.unit.format.depth().is_some() {
+            let inputs = vec![plain(texel_name("word"), i64::from(word))];
+            let depth = Step::given(&block, "SHD-1", texel_name("depth"), i64::from(depth_of(word)));
+            observer.step(depth.by("depth_of_word", inputs));
+        }
+        word
+    }
+
+    /// A texel: its place after addressing, its raw words, its lanes.
+    pub(super) fn texel<L: Lane, O: Observer>(
+        &self,
+        slice: &Slice<'_>,
+        words: &[u32],
+        (texel, lanes): (&Texel, &[L; 4]),
+        index: [(&str, i64); 2],
+        suffix: &str,
+        observer: &mut O,
+    ) {
+        let texel_name = |what: &str| self.name(&format!("texel{suffix}.{what}"));
+        let word = self.fetched(slice, words, texel, index, suffix, observer);
         for lane in (0..4).filter(|lane| self.unit.live_lanes() >> lane & 1 != 0) {
             let signed = self.unit.signed_lane(lane);
             let rule = if signed { "TEX-18" } else { "TEX-1" };
@@ -268,7 +385,8 @@ impl Report<'_> {
                     tell("", &format!("block{n}"), *word, "fetch", place.clone());
                     inputs.push(plain(name(&format!("block{n}")), i64::from(*word)));
                 }
-                inputs.extend(place);
+                // Blocks lie in one layer.
+                inputs.extend(place.into_iter().take(2));
                 let decoded = super::compressed::decode(self.unit.format, self.unit.dithered, raw, x as u32, y as u32);
                 let [r, g, b, a] = decoded.bytes.map(u32::from);
                 let (rule, operation) = match (self.unit.format, self.unit.dithered) {

@@ -38,7 +38,7 @@ pub(super) fn constant<L: Lane, O: Observer>(
 }
 
 /// The numbers of a coordinate at the vertices and the edge functions, as operands: the value is their sum of products over D, times 2^exponent.
-fn linear<O: Observer>(
+pub(super) fn linear<O: Observer>(
     index: usize,
     n: usize,
     attribute: &Attribute,

@@ -57,7 +57,7 @@ mod tests {
     use super::*;
 
     fn texels(width: u32, height: u32, levels: u32, border: bool, words: &[u32]) -> Texels {
-        Texels { width, height, levels, border, words: words.into() }
+        Texels { width, height, levels, layers: 1, border, words: words.into() }
     }
 
     #[test]

@@ -1,5 +1,7 @@
 //! One texture unit: place, level, address, fetch, filter, register.
 
+use super::address::address;
+use super::anisotropy::{self, MOST_TAPS};
 use super::color_key;
 use super::cube::Face;
 use super::fetch::{Slice, Texel, lanes};
@@ -7,6 +9,7 @@ use super::filter::{bilinear, lerp, linear, nearest};
 use super::lod::{self, Choice};
 use super::place::{Place, real_coordinate};
 use super::report::{Report, filtered};
+use super::shadow;
 use crate::number::Lane;
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::state::{Filter, Level, MipFilter, ShaderStage, TextureFormat, TextureKind, TextureUnit};
@@ -30,6 +33,8 @@ pub struct PlannedUnit {
     pub levels: Vec<Level>,
     /// Words of each face.
     pub face_words: usize,
+    /// Layers of a volume; of other kinds 1.
+    pub layers: u32,
     /// Each level has border texels.
     pub border: bool,
     /// DXT1 is dithered (TEX-3; nv10: TEX-4).
@@ -78,6 +83,11 @@ pub fn sample<L: Lane, O: Observer>(
         face = if L::DECIDES { place.real(None).face } else { place.face() };
         observer.decided(Decision::Face, face as i64, || place.real(None).face as i64);
     }
+    let number = if unit.kind == TextureKind::ThreeDimensional {
+        layer::<L, O>(unit, place, observer)
+    } else {
+        Some(face as usize)
+    };
     let Chosen { choice, weight } = choose::<L, O>(unit, place, observer);
     let real = if wants_ideal { place.real(Some(face)).st } else { [0.0; 2] };
     if O::MEASURES {
@@ -97,11 +107,17 @@ pub fn sample<L: Lane, O: Observer>(
     }
     let one = |level: usize, prefix: &str, observer: &mut O| {
         let report = Report { unit, prefix };
-        let slice = Slice { unit, level: &unit.levels[level], face };
-        sample_level::<L, O>(&slice, image, place, real, choice.filter, &report, observer)
+        let slice = Slice { unit, level: &unit.levels[level], image: number };
+        let (coordinates, wanted) = coordinates::<L, O>(&slice, place, real, &report, observer);
+        if unit.state.anisotropy > 1 {
+            return taps(&slice, image, place, (coordinates, wanted), observer);
+        }
+        fetched(&slice, image, place, (coordinates, wanted), choice.filter, &report, observer)
     };
     let first = one(choice.level, "", observer);
     let (value, from) = match choice.next {
+        None if unit.state.shadow.is_some() => (first, "compared."),
+        None if unit.state.anisotropy > 1 => (first, "taps."),
         None => (first, filtered(choice.filter)),
         Some((next, _)) => {
             let second = one(next, "next.", observer);
@@ -142,24 +158,112 @@ fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer
     Chosen { choice, weight }
 }
 
-/// One level of one face.
+/// VOL-1: the layer of a volume. `None`: beyond them, in the border.
 #[inline(always)]
-fn sample_level<L: Lane, O: Observer>(
+fn layer<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer: &mut O) -> Option<usize> {
+    let settled = place.layer(unit.layers);
+    let of = |w: i64| address(unit.state.address_r, nearest(w), unit.layers, false).map(|layer| layer as usize);
+    let real = || of(floored(real_coordinate(place.real_r(), unit.layers)));
+    let layer = if L::DECIDES { real() } else { of(settled.value) };
+    if O::ON {
+        let report = Report { unit, prefix: "" };
+        place.describe_layer(&report, unit.layers, settled, observer);
+        report.layer(settled.value, layer, observer);
+    }
+    let code = |layer: Option<usize>| layer.map_or(-1, |layer| layer as i64);
+    observer.decided(Decision::Layer, code(layer), || code(real()));
+    layer
+}
+
+/// u and v on a level, 1/256 texel, and the ideal's where somebody wants them.
+#[inline(always)]
+fn coordinates<L: Lane, O: Observer>(
+    slice: &Slice<'_>,
+    place: &impl Place,
+    real: [f64; 2],
+    report: &Report<'_>,
+    observer: &mut O,
+) -> ([i64; 2], [f64; 2]) {
+    let settled = place.on(slice.level);
+    let wanted = if O::ON || O::MEASURES || L::DECIDES { real_on(slice.unit, slice.level, real) } else { [0.0; 2] };
+    if O::ON {
+        place.describe(report, slice.level, settled, wanted, observer);
+    }
+    (if L::DECIDES { wanted.map(floored) } else { settled.map(|c| c.value) }, wanted)
+}
+
+/// TEX-17: the taps of a footprint on level 0, each filtered.
+#[cold]
+fn taps<L: Lane, O: Observer>(
     slice: &Slice<'_>,
     image: &Image<'_, L>,
     place: &impl Place,
-    real: [f64; 2],
+    (coordinates, wanted): ([i64; 2], [f64; 2]),
+    observer: &mut O,
+) -> [L; 4] {
+    const PREFIXES: [&str; MOST_TAPS] = ["tap0.", "tap1.", "tap2.", "tap3.", "tap4.", "tap5.", "tap6.", "tap7."];
+    let unit = slice.unit;
+    let limit = unit.state.anisotropy;
+    let quad = place.quad();
+    let fixed = anisotropy::taps(quad, limit);
+    let real = || anisotropy::real_taps(place.real_quad(), unit.scale(slice.level), limit);
+    let ideal = if O::ON || O::MEASURES || L::DECIDES { Some(real()) } else { None };
+    let count = if L::DECIDES { ideal.map_or(1, |ideal| ideal.count) } else { fixed.count };
+    observer.decided(Decision::Level, count as i64, || real().count as i64);
+    // Where the ideal has another number of taps, it follows these.
+    let ideal = ideal.filter(|ideal| ideal.count == count);
+    if O::ON {
+        place.describe_quad(&Report { unit, prefix: "" }, observer);
+    }
+    let filter = unit.state.mag_filter;
+    let mut sum = [L::ZERO; 4];
+    let mut mixed = Vec::new();
+    for tap in 0..count {
+        let report = Report { unit, prefix: PREFIXES[tap] };
+        #[allow(clippy::float_arithmetic, reason = "the ideal's taps")]
+        let wanted: [f64; 2] = std::array::from_fn(|n| {
+            wanted[n] + ideal.map_or(fixed.offsets[tap][n] as f64, |ideal| ideal.offsets[tap][n])
+        });
+        let at: [i64; 2] =
+            if L::DECIDES { wanted.map(floored) } else { [0, 1].map(|n| coordinates[n] + fixed.offsets[tap][n]) };
+        let weight =
+            L::weight(fixed.weights[tap], || ideal.map_or(f64::from(fixed.weights[tap]), |ideal| ideal.weights[tap]));
+        let weight = observer.settle_weight::<L>(Rule::Tex17, weight);
+        if O::ON {
+            report.tap((quad, limit, tap), (coordinates, at, wanted), L::observe_weight(weight), observer);
+        }
+        let value = fetched(slice, image, place, (at, wanted), filter, &report, observer);
+        sum = std::array::from_fn(|lane| sum[lane] + value[lane].times(weight));
+        if O::ON {
+            mixed.push((value, weight));
+        }
+    }
+    observer.count(Work::Lerps, 4 * (count as u64 - 1));
+    let live = unit.live_lanes();
+    std::array::from_fn(|lane| {
+        if O::MEASURES && live >> lane & 1 == 0 {
+            return L::ZERO;
+        }
+        let value = settled_step(unit, lane, sum[lane].round8(), observer);
+        if O::ON && live >> lane & 1 != 0 {
+            Report { unit, prefix: "" }.taps(lane, filter, &mixed, value, observer);
+        }
+        value
+    })
+}
+
+/// What a unit reads at u and v on one level of one face, or layer.
+#[inline(always)]
+fn fetched<L: Lane, O: Observer>(
+    slice: &Slice<'_>,
+    image: &Image<'_, L>,
+    place: &impl Place,
+    ([u, v], wanted): ([i64; 2], [f64; 2]),
     filter: Filter,
     report: &Report<'_>,
     observer: &mut O,
 ) -> [L; 4] {
     let unit = slice.unit;
-    let settled = place.on(slice.level);
-    let wanted = if O::ON || O::MEASURES || L::DECIDES { real_on(unit, slice.level, real) } else { [0.0; 2] };
-    let [u, v] = if L::DECIDES { wanted.map(floored) } else { settled.map(|c| c.value) };
-    if O::ON {
-        place.describe(report, slice.level, settled, wanted, observer);
-    }
     match filter {
         Filter::Nearest => {
             let (x, y) = (nearest(u), nearest(v));
@@ -167,6 +271,13 @@ fn sample_level<L: Lane, O: Observer>(
                 report.nearest([u, v], [x, y], observer);
             }
             let texel = slice.texel(image.words, x, y);
+            if let Some(shadow) = unit.state.shadow {
+                if O::ON {
+                    report.fetched(slice, image.words, &texel, [("", x), ("", y)], "", observer);
+                }
+                observer.count(Work::Texels, 1);
+                return shadow::compare(unit, shadow, &texel, place, observer);
+            }
             let channels = lanes::<L, O>(unit, image, &texel, observer);
             if O::ON {
                 report.texel(slice, image.words, (&texel, &channels), [("", x), ("", y)], "", observer);

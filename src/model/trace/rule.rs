@@ -44,6 +44,8 @@ named! {
         Tex9 = "TEX-9",
         /// One linear step of the filter.
         Tex6 = "TEX-6",
+        /// The weight of a tap.
+        Tex17 = "TEX-17",
         /// Signed texels, filtered.
         Tex18 = "TEX-18",
         /// Unsigned mappings.
@@ -82,9 +84,15 @@ impl Rule {
             Rule::Num4 | Rule::Num6 | Rule::Fog2 | Rule::Fog4 | Rule::Int2 => Part::Interpolation,
             Rule::Int4 | Rule::Tex12 | Rule::Tex15 => Part::Interpolation,
             Rule::Tsh4 | Rule::Tsh6 | Rule::Tsh7 | Rule::Tsh9 => Part::Interpolation,
-            Rule::Tex1 | Rule::Tex2 | Rule::Tex3 | Rule::Tex4 | Rule::Tex6 | Rule::Tex9 | Rule::Tex18 | Rule::Tsh8 => {
-                Part::Filtering
-            }
+            Rule::Tex1
+            | Rule::Tex2
+            | Rule::Tex3
+            | Rule::Tex4
+            | Rule::Tex6
+            | Rule::Tex9
+            | Rule::Tex17
+            | Rule::Tex18
+            | Rule::Tsh8 => Part::Filtering,
             Rule::Cmb2 | Rule::Cmb3 | Rule::Cmb4 | Rule::Cmb5 => Part::Expansion,
             Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 | Rule::Cmb9 | Rule::Num3 | Rule::Fin2 | Rule::Fin4 => Part::Product,
             Rule::Rop2 | Rule::Rop5 => Part::Store,
@@ -101,6 +109,8 @@ named! {
         Face = "face",
         /// Which filter and levels.
         Level = "level",
+        /// Which layer of a volume.
+        Layer = "layer",
         /// Which texels are read.
         Texel = "texel",
         /// Which texel a dependent read is sent to.
@@ -109,6 +119,8 @@ named! {
         Kill = "texture shader",
         /// What a mux takes.
         Mux = "mux",
+        /// What a depth texture's comparison yields.
+        Shadow = "shadow comparison",
         /// The alpha test.
         AlphaTest = "alpha test",
         /// The depth test.

@@ -13,7 +13,7 @@ use ninebit::trace::Rule;
 const NEAREST: f64 = 127.0 / 255.0;
 
 /// Lowest and highest error, the definition minus the ideal, in steps (weights: 256ths). None is stated for TEX-15, whose error depends
-/// on how small q becomes.
+/// on how small q becomes, nor for TEX-17, whose taps depend on it.
 pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
     let policies = &plan.policies;
     let symmetric = |n: f64| Some((-n, n));
@@ -37,7 +37,7 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and what the weights are off.
         Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
-        Rule::Tex12 | Rule::Tex15 | Rule::Tex9 => None,
+        Rule::Tex12 | Rule::Tex15 | Rule::Tex9 | Rule::Tex17 => None,
         // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
         Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
         // A quotient by q magnifies what weights are off, as in TEX-15.

@@ -261,11 +261,13 @@ fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
                 if surface.texture_format() == texture.format { surface::sampled_channels(surface) } else { 0 };
             surfaces.get(*target).map(|s| (s, channels))
         }
+        TextureImage::Depth { target } => surfaces.get(*target).map(|s| (s, 0)),
         TextureImage::Texels(_) => None,
     };
     let words = |texture: &'a Texture| match &texture.image {
         TextureImage::Texels(texels) => &texels.words[..],
         TextureImage::Target { .. } => surface(texture).map_or(&[][..], |(s, _)| &s.words),
+        TextureImage::Depth { .. } => surface(texture).map_or(&[][..], |(s, _)| &s.depth),
     };
     Images {
         lane: plan

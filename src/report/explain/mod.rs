@@ -17,8 +17,8 @@ use ninebit::engine;
 use ninebit::plan::{Plan, PlanOptions, PlannedDraw};
 use ninebit::rop::{self, surface};
 use ninebit::state::{
-    Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, StageOrigin,
-    StencilOperation, StencilTest, TEXTURE_UNITS, TextureKind, VertexProgram,
+    Blend, CompareFunction, Draw, FogFunction, FogMode, MipFilter, Named, Register, Scene, ShadowReference,
+    StageOrigin, StencilOperation, StencilTest, TEXTURE_UNITS, TextureKind, VertexProgram,
 };
 use ninebit::texture::unit::PlannedUnit;
 use ninebit_program::text::print;
@@ -175,7 +175,7 @@ fn sampled(scene: &Scene, unit: &PlannedUnit) -> String {
     let texture = &scene.textures[unit.state.texture].name;
     let modes = format!("{}/{}", unit.state.address_s.name(), unit.state.address_t.name());
     format!(
-        "tex{}.{} = {}(`{texture}`, {} x {} {}{}, {})",
+        "tex{}.{} = {}(`{texture}`, {} x {} {}{}, {}{})",
         unit.index,
         channels(unit.live),
         filters(unit),
@@ -187,8 +187,31 @@ fn sampled(scene: &Scene, unit: &PlannedUnit) -> String {
             TextureKind::Cube => "cube map".to_string(),
             TextureKind::TwoDimensional => modes,
             TextureKind::Rectangle => format!("{modes}, in texels"),
-        }
+            TextureKind::ThreeDimensional => {
+                format!("{} layers, {modes}/{}", unit.layers, unit.state.address_r.name())
+            }
+        },
+        extras(unit),
     )
+}
+
+/// What a unit does beyond addressing and filtering.
+fn extras(unit: &PlannedUnit) -> String {
+    let state = &unit.state;
+    let mut extras = String::new();
+    if state.anisotropy > 1 {
+        extras += &format!(", anisotropy {}", state.anisotropy);
+    }
+    for (wraps, axis) in state.cylindrical_wrap.into_iter().zip(["s", "t"]) {
+        if wraps {
+            extras += &format!(", {axis} around a cylinder");
+        }
+    }
+    if let Some(shadow) = &state.shadow {
+        let reference = if shadow.reference == ShadowReference::R { "r/q" } else { "0" };
+        extras += &format!(", {reference} {} texel", comparison(shadow.function));
+    }
+    extras
 }
 
 /// How a unit filters: one word, or one for each side of lod 0 and one for levels.

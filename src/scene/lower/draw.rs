@@ -13,7 +13,7 @@ use super::*;
 use crate::mesh::Mesh;
 use ninebit::state::{
     Combiners, Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, Rectangle, ShadeModel, ShaderOperation,
-    Texture, TextureImage, Topology, Vertices,
+    Texture, Topology, Vertices,
 };
 
 /// A draw and what else is known of it.
@@ -202,7 +202,7 @@ fn draw<'a>(
     draw.indices = indices(reader, fields, geometry.triangles, draw.vertices.len(), topology)?;
     target?;
     budget.take(reader, &draw, &header.place)?;
-    let spans = DrawSpans { draw: header.place, vertices: geometry.spans };
+    let spans = DrawSpans { draw: header.place, vertices: geometry.spans, units: units.places };
     Some(Drawn { draw, spans, mesh: geometry.mesh, truth })
 }
 
@@ -226,7 +226,8 @@ fn clear<'a>(
     }
     let mut draw = Draw { name: header.name, target, ..Draw::default() };
     raster::clear(reader, names, targets, raw, &mut draw)?;
-    let spans = DrawSpans { draw: header.place.clone(), vertices: VertexSpans::All(header.place) };
+    let spans =
+        DrawSpans { draw: header.place.clone(), vertices: VertexSpans::All(header.place), ..DrawSpans::default() };
     Some(Drawn { draw, spans, mesh: None, truth: None })
 }
 
@@ -296,7 +297,7 @@ fn feedback(
     place: &Range<usize>,
     written: &[bool],
 ) {
-    let TextureImage::Target { target: sampled } = texture.image else { return };
+    let Some(sampled) = texture.image.target() else { return };
     let name = targets.list.get(sampled).map_or("", |target| target.name.as_str());
     if sampled == target {
         reader.push(

@@ -91,7 +91,7 @@ pub(super) fn vertex_side(
     viewer: Viewer,
     draw: &Range<usize>,
 ) -> bool {
-    let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone() };
+    let spans = DrawSpans { draw: draw.clone(), vertices: geometry.spans.clone(), ..DrawSpans::default() };
     if fog.function.is_none()
         && geometry.program.as_ref().is_some_and(|program| program.writes_fog)
         && let Some(index) = geometry.vertices.iter().position(|vertex| vertex.fog.is_nan())
@@ -277,7 +277,7 @@ fn matrix_geometry<'a>(
     vertices.map_positions(|position| ninebit::vertex::transform(&matrix, position));
     let finite = |vertex: usize| vertices.position(vertex).iter().all(|value| value.is_finite());
     if let Some(bad) = (0..vertices.len()).find(|vertex| !finite(*vertex)) {
-        let spans = DrawSpans { draw: opening, vertices: spans };
+        let spans = DrawSpans { draw: opening, vertices: spans, ..DrawSpans::default() };
         reader.push(
             Diagnostic::error("NB0207", spans.vertex(bad), format!("the matrix takes vertex {bad} beyond all numbers"))
                 .label("not finite after the matrix")

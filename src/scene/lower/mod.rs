@@ -54,6 +54,8 @@ pub struct DrawSpans {
     pub draw: Range<usize>,
     /// Its vertices; of a generated mesh, the mesh for each.
     pub vertices: VertexSpans,
+    /// Its texture units; empty for unbound ones.
+    pub units: [Range<usize>; ninebit::state::TEXTURE_UNITS],
 }
 
 /// Places of vertices.
@@ -193,15 +195,22 @@ fn plan(reader: &mut Reader<'_>, scene: &Scene, spans: &[DrawSpans]) -> Option<P
         Err(errors) => errors,
     };
     for error in errors {
-        let span = error.draw.and_then(|draw| spans.get(draw)).map(|draw| match error.vertex {
-            Some(vertex) => draw.vertex(vertex),
-            None => draw.draw.clone(),
+        let span = error.draw.and_then(|draw| spans.get(draw)).map(|draw| match (error.vertex, error.unit) {
+            (Some(vertex), _) => draw.vertex(vertex),
+            (None, Some(unit)) if !draw.units[unit].is_empty() => draw.units[unit].clone(),
+            (None, _) => draw.draw.clone(),
         });
+        let code = match error.unit {
+            _ if error.unknown => "NB0402",
+            Some(_) => "NB0333",
+            None => "NB0322",
+        };
         let label = match (error.vertex, error.draw.and_then(|draw| scene.draws.get(draw))) {
             (Some(vertex), Some(draw)) => format!("vertex {vertex} of `{}`", shorten(&draw.name)),
+            _ if error.unit.is_some() => "this unit".to_owned(),
             _ => "this draw".to_owned(),
         };
-        let mut finding = Diagnostic::error("NB0322", span, error.message).label(label).help(error.help);
+        let mut finding = Diagnostic::error(code, span, error.message).label(label).help(error.help);
         finding.rule = error.rule;
         reader.push(finding);
     }

@@ -151,7 +151,14 @@ fn depth_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthTest<'a>>)
     let vertex_depths = reader.name_or(&fields.vertex_depths, VertexDepths::Fractions);
     let range = fields.range.as_ref().and_then(|raw| depth_range(reader, raw));
     let offset = fields.offset.as_ref().and_then(|raw| polygon_offset(reader, raw)).unwrap_or_default();
-    Some(DepthTest { vertex_depths, range, offset, ..DepthTest::new(function, reader.or(&fields.write, true)) })
+    let w_buffer = reader.or(&fields.w_buffer, false);
+    Some(DepthTest {
+        vertex_depths,
+        range,
+        offset,
+        w_buffer,
+        ..DepthTest::new(function, reader.or(&fields.write, true))
+    })
 }
 
 fn depth_range<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthRange<'a>>) -> Option<DepthRange> {

@@ -150,7 +150,7 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
 }
 
 /// What stands in parentheses behind an operation; without them, no field.
-fn fields<'a, T: serde::Deserialize<'a> + source::Expected<'a>>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
+fn fields<'a, T: source::Expected<'a>>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
     reader.read(&Raw::new(if rest.is_empty() { "()" } else { rest }))
 }
 

@@ -10,7 +10,9 @@ use super::texture_levels::{self, Wanted};
 use super::texture_source::{Given, Request, Sources, Variant, only};
 use super::*;
 use crate::reader::Entry;
-use ninebit::state::{CUBE_FACES, Named, Texels, Texture, TextureFormat, TextureImage, TextureKind};
+use ninebit::state::{
+    CUBE_FACES, DepthFormat, Named, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
+};
 
 /// The textures, and where they were named. A texture with errors keeps its name but has no index.
 pub(super) struct Textures {
@@ -119,12 +121,14 @@ fn texture<'a>(
     };
     let source = reader.required(&fields.source, "source", "texture", opening)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
-    let texture = if Variant::ALL[variant] == Variant::Target {
-        of_target(reader, targets, rest, kind, format, &fields, &entry.name)?
+    let texture = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
+        let depths = Variant::ALL[variant] == Variant::Depth;
+        of_target(reader, targets, (rest, depths), kind, format, &fields, &entry.name)?
     } else {
         let request = Request {
             format: format.as_ref().map(|(format, _)| *format),
             faces: if kind == Some(TextureKind::Cube) { CUBE_FACES } else { 1 },
+            volume: kind == Some(TextureKind::ThreeDimensional),
             levels,
             border,
         };
@@ -149,6 +153,8 @@ fn texture<'a>(
         }
         let (width, height) = interior(reader, &given, border)?;
         legal::sides(reader, kind, given.format, width, height, place)?;
+        let layers = if kind == TextureKind::ThreeDimensional { given.faces.len() as u32 } else { 1 };
+        legal::layers(reader, kind, layers, given.place.clone())?;
         match &fields.mips {
             Some(raw) => texture_levels::listed(reader, sources, &mut given, raw, kind, &request)?,
             None => texture_levels::counted(reader, sources, &mut given, levels, &request)?,
@@ -163,7 +169,7 @@ fn texture<'a>(
         let [width, height] = [width, height].map(|side| (side >> first).max(1));
         let format = given.format;
         let words: Vec<u32> = given.faces.into_iter().flatten().flatten().collect();
-        let texels = Texels { width, height, levels, border, words: words.into() };
+        let texels = Texels { width, height, levels, layers, border, words: words.into() };
         let texture = Texture { name: entry.name.clone(), kind, format, image: TextureImage::Texels(texels) };
         return with_palette(reader, texture, palette.or(made), &fields);
     };
@@ -191,10 +197,6 @@ fn with_palette<'a>(
 }
 
 fn kind<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<TextureKind> {
-    if raw.split() == ("ThreeDimensional", "") {
-        reader.not_built(reader.span(raw), "volume textures");
-        return None;
-    }
     reader.name(&raw.as_other())
 }
 
@@ -209,57 +211,74 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
         return None;
     }
     if let (name, "") = raw.split()
-        && DEPTH_FORMATS.iter().any(|known| known.eq_ignore_ascii_case(name))
+        && let Some((_, own)) = DEPTH_FORMATS
+            .iter()
+            .find(|(known, own)| known.eq_ignore_ascii_case(name) && !own.eq_ignore_ascii_case(name))
     {
+        let help = if own.is_empty() { "take Z16, Z24S8, Z16F or Z24S8F" } else { own };
         reader.push(
-            Diagnostic::error(
-                "NB0402",
-                reader.span(raw),
-                format!("{name} holds depths, which a texture unit compares"),
-            )
-            .label("shadow maps are not modelled")
-            .rule("TEX-1")
-            .help("write Y16 or A8R8G8B8 for the bits as they are; the comparison with r has no form here"),
+            Diagnostic::error("NB0204", reader.span(raw), format!("`{name}` is not a texture format here"))
+                .label("a format of depths")
+                .rule("SHD-1")
+                .help(format!("write `{help}`, and give the unit a `shadow` comparison")),
         );
         return None;
     }
     reader.name(raw)
 }
 
-/// Names of depth formats in the chip's registers and in both APIs.
-const DEPTH_FORMATS: [&str; 24] = [
-    "Z16",
-    "Z24S8",
-    "Z24X8",
-    "D15S1",
-    "D16",
-    "D16_LOCKABLE",
-    "D24S8",
-    "D24X8",
-    "D24X4S4",
-    "D32",
-    "F16",
-    "F24S8",
-    "LIN_D16",
-    "LIN_D24S8",
-    "LIN_F16",
-    "LIN_F24S8",
-    "DEPTH_COMPONENT",
-    "DEPTH_COMPONENT16",
-    "DEPTH_COMPONENT24",
-    "DEPTH_COMPONENT32",
-    "DEPTH_X8_Y24_FIXED",
-    "DEPTH_X8_Y24_FLOAT",
-    "DEPTH_Y16_FIXED",
-    "DEPTH_Y16_FLOAT",
+/// Names of depth formats in the chip's registers and in both APIs, and those of the state.
+const DEPTH_FORMATS: [(&str, &str); 19] = [
+    ("Z24X8", "Z24S8"),
+    ("D15S1", ""),
+    ("D16", "Z16"),
+    ("D16_LOCKABLE", "Z16"),
+    ("D24S8", "Z24S8"),
+    ("D24X8", "Z24S8"),
+    ("D32", ""),
+    ("F16", "Z16F"),
+    ("F24S8", "Z24S8F"),
+    ("LIN_D16", "Z16"),
+    ("LIN_D24S8", "Z24S8"),
+    ("LIN_F16", "Z16F"),
+    ("LIN_F24S8", "Z24S8F"),
+    ("DEPTH_COMPONENT16", "Z16"),
+    ("DEPTH_COMPONENT24", "Z24S8"),
+    ("DEPTH_X8_Y24_FIXED", "Z24S8"),
+    ("DEPTH_X8_Y24_FLOAT", "Z24S8F"),
+    ("DEPTH_Y16_FIXED", "Z16"),
+    ("DEPTH_Y16_FLOAT", "Z16F"),
 ];
 
 /// What the texture is sampled as: as written, or a cube map where there are six faces.
 fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &Given) -> Option<TextureKind> {
-    let cube = given.faces.len() == CUBE_FACES as usize;
-    let kind = written.unwrap_or(if cube { TextureKind::Cube } else { TextureKind::TwoDimensional });
-    if cube == (kind == TextureKind::Cube) {
+    let cube = !given.volume && given.faces.len() == CUBE_FACES as usize;
+    let own = match (cube, given.volume) {
+        (true, _) => TextureKind::Cube,
+        (_, true) => TextureKind::ThreeDimensional,
+        _ => TextureKind::TwoDimensional,
+    };
+    let kind = written.unwrap_or(own);
+    let solid = |kind: TextureKind| matches!(kind, TextureKind::Cube | TextureKind::ThreeDimensional);
+    if kind == own || !solid(kind) && !solid(own) {
         return Some(kind);
+    }
+    if own == TextureKind::ThreeDimensional || kind == TextureKind::ThreeDimensional {
+        let (message, help) = if own == kind {
+            return Some(kind);
+        } else if own == TextureKind::ThreeDimensional {
+            (
+                format!("layers do not make a texture of kind {}", kind.name()),
+                "write `kind: ThreeDimensional`, or leave `kind` out",
+            )
+        } else {
+            (
+                "a volume has layers, and here are none".to_owned(),
+                "write `Layers([..., ...])`, or name a DDS file of a volume, or `Raw(...)` with `layers`",
+            )
+        };
+        reader.push(Diagnostic::error("NB0232", given.place.clone(), message).label("here").rule("VOL-1").help(help));
+        return None;
     }
     let (message, help) = if cube {
         (format!("six faces do not make a texture of kind {}", kind.name()), "write `kind: Cube`, or leave `kind` out")
@@ -293,7 +312,7 @@ fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32
 fn of_target<'a>(
     reader: &mut Reader<'a>,
     targets: &Targets,
-    text: &'a str,
+    (text, depths): (&'a str, bool),
     kind: Option<TextureKind>,
     format: Option<(TextureFormat, Range<usize>)>,
     fields: &source::Texture<'a>,
@@ -306,6 +325,7 @@ fn of_target<'a>(
     let kind = kind.unwrap_or(TextureKind::TwoDimensional);
     let extra = [
         (kind == TextureKind::Cube).then(|| (place.clone(), "face of a cube map")),
+        (kind == TextureKind::ThreeDimensional).then(|| (place.clone(), "volume")),
         fields.levels.as_ref().map(|raw| (reader.span(raw), "level of several")),
         fields.mips.as_ref().map(|raw| (reader.span(raw), "level of several")),
         fields.first_level.as_ref().map(|raw| (reader.span(raw), "level of several")),
@@ -319,6 +339,9 @@ fn of_target<'a>(
         );
         return None;
     }
+    if depths {
+        return of_depths(reader, (target, index), kind, format, place, name);
+    }
     let own = target.format.texture_format();
     let (format, format_place) = match format {
         Some((TextureFormat::P8, place)) => {
@@ -326,6 +349,16 @@ fn of_target<'a>(
                 Diagnostic::error("NB0232", place, "a render target does not hold indices of a palette")
                     .label("does not go with `Target`")
                     .help(format!("leave `format` out, which means {own:?} here")),
+            );
+            return None;
+        }
+        Some((format, place)) if format.depth().is_some() => {
+            reader.push(
+                Diagnostic::error("NB0232", place, "the colours of a render target are no depths")
+                    .label("does not go with `Target`")
+                    .help(format!(
+                        "write `Depth(...)` for its depth buffer, or leave `format` out, which means {own:?} here"
+                    )),
             );
             return None;
         }
@@ -345,4 +378,43 @@ fn of_target<'a>(
     legal::format(reader, format, format_place)?;
     legal::sides(reader, kind, format, target.width, target.height, place)?;
     Some(Texture { name: name.to_owned(), kind, format, image: TextureImage::Target { target: index } })
+}
+
+/// The depth buffer of a target as a texture.
+fn of_depths(
+    reader: &mut Reader<'_>,
+    (target, index): (&Target, usize),
+    kind: TextureKind,
+    format: Option<(TextureFormat, Range<usize>)>,
+    place: Range<usize>,
+    name: &str,
+) -> Option<Texture> {
+    let Some(depth) = target.depth else {
+        reader.push(
+            Diagnostic::error("NB0216", place, format!("target \"{}\" has no depth buffer", shorten(&target.name)))
+                .label("shows its depths")
+                .rule("SHD-1")
+                .help("give the target `depth: Z24S8`"),
+        );
+        return None;
+    };
+    let own = match depth.format {
+        DepthFormat::Z16 => TextureFormat::Z16,
+        DepthFormat::Z24S8 => TextureFormat::Z24S8,
+        DepthFormat::Z16F => TextureFormat::Z16F,
+        DepthFormat::Z24S8F => TextureFormat::Z24S8F,
+    };
+    let (format, format_place) = format.unwrap_or((own, place.clone()));
+    if format.depth().is_none_or(|format| format.bits() != depth.format.bits()) {
+        let message = format!("depths of {} cannot be read as {}", own.name(), format.name());
+        reader.push(
+            Diagnostic::error("NB0218", format_place, message)
+                .label("another size, or no depths")
+                .help(format!("leave `format` out, which means {} here", own.name())),
+        );
+        return None;
+    }
+    legal::format(reader, format, format_place)?;
+    legal::sides(reader, kind, format, target.width, target.height, place)?;
+    Some(Texture { name: name.to_owned(), kind, format, image: TextureImage::Depth { target: index } })
 }

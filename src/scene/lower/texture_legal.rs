@@ -1,7 +1,7 @@
 //! What the chips take: formats, sides, levels and border texels by kind of texture.
 
 use super::*;
-use ninebit::state::{Named, TextureFormat, TextureKind};
+use ninebit::state::{LARGEST_VOLUME, Named, TextureFormat, TextureKind};
 
 /// The largest side of a texture of any kind.
 pub(super) fn largest_side(reader: &Reader<'_>) -> u32 {
@@ -64,6 +64,7 @@ fn largest(reader: &Reader<'_>, kind: TextureKind, format: TextureFormat) -> (u3
         TextureKind::TwoDimensional => "a texture",
         TextureKind::Rectangle => "a rectangle texture",
         TextureKind::Cube => "a face of a cube map",
+        TextureKind::ThreeDimensional => "a layer of a volume",
     };
     (reader.limits.texture_side.min(kind.largest_side(format, reader.profile)), what)
 }
@@ -113,8 +114,38 @@ fn rectangle(
     None
 }
 
-/// A rectangle has one level.
+/// Layers of a volume, which nv2a has.
+pub(super) fn layers(reader: &mut Reader<'_>, kind: TextureKind, layers: u32, place: Range<usize>) -> Option<()> {
+    if kind != TextureKind::ThreeDimensional {
+        return Some(());
+    }
+    if reader.profile == Profile::Nv10 {
+        reader.push(target::only_nv2a("NB0334", place, "a texture of three dimensions", "VOL-1"));
+        return None;
+    }
+    if !layers.is_power_of_two() || layers > LARGEST_VOLUME {
+        reader.push(
+            Diagnostic::error("NB0334", place, format!("a volume cannot have {layers} layers"))
+                .label("a power of two of them")
+                .rule("VOL-1")
+                .help(format!("give it 1, 2, 4 and so on, at most {LARGEST_VOLUME}")),
+        );
+        return None;
+    }
+    Some(())
+}
+
+/// A rectangle has one level, and a volume.
 pub(super) fn levels(reader: &mut Reader<'_>, kind: TextureKind, levels: u32, place: Range<usize>) -> Option<()> {
+    if kind == TextureKind::ThreeDimensional && levels > 1 {
+        reader.push(
+            Diagnostic::error("NB0230", place, format!("a volume cannot have {levels} levels"))
+                .label("one at most")
+                .rule("VOL-1")
+                .help("write `levels: 1`: which of them a volume reads is not known"),
+        );
+        return None;
+    }
     if kind == TextureKind::Rectangle && levels > 1 {
         reader.push(
             Diagnostic::error("NB0230", place, format!("a rectangle texture cannot have {levels} levels"))

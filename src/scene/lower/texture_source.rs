@@ -22,6 +22,8 @@ pub(super) struct Given {
     pub(super) height: u32,
     /// Of each face (one, or six), of each level: its words.
     pub(super) faces: Vec<Vec<Vec<u32>>>,
+    /// They are the layers of a volume.
+    pub(super) volume: bool,
     /// Entries, where a file brings them along.
     pub(super) palette: Option<Vec<u32>>,
     /// Where messages about the texture point.
@@ -35,6 +37,8 @@ pub(super) struct Request {
     pub(super) format: Option<TextureFormat>,
     /// Faces that raw memory holds.
     pub(super) faces: u32,
+    /// Raw memory holds layers of a volume.
+    pub(super) volume: bool,
     /// Levels that raw memory holds.
     pub(super) levels: Wanted,
     /// Sources bring border texels.
@@ -50,6 +54,8 @@ ninebit::state::named! {
         Raw,
         /// Six sources.
         Faces,
+        /// Sources of the layers of a volume.
+        Layers,
         /// Words in hexadecimal.
         Texels,
         /// One colour.
@@ -60,6 +66,8 @@ ninebit::state::named! {
         Ramp,
         /// A render target.
         Target,
+        /// The depth buffer of one.
+        Depth,
     }
 }
 
@@ -96,6 +104,7 @@ impl<'a> Sources<'_, 'a> {
             Variant::File => self.file(reader, text, request, place),
             Variant::Raw => self.memory(reader, text, request),
             Variant::Faces => self.faces(reader, text, request, place),
+            Variant::Layers => self.layers(reader, text, request, place),
             Variant::Texels => self.words(reader, text, request),
             Variant::Solid | Variant::Checker | Variant::Ramp => {
                 let format = packable(reader, request, place)?;
@@ -104,7 +113,7 @@ impl<'a> Sources<'_, 'a> {
                 Some(one(format, picture.width, picture.height, words, picture.place))
             }
             // Lowered with the targets at hand.
-            Variant::Target => None,
+            Variant::Target | Variant::Depth => None,
         }
     }
 
@@ -169,7 +178,7 @@ impl<'a> Sources<'_, 'a> {
         ] {
             let Some(raw) = reader.required(field, name, "cube map", opening.clone()) else { continue };
             if let Some(face) = self.nested(reader, &raw, "source of a face", &Variant::OF_FACE, &request)
-                && six.first().is_none_or(|first| alike(reader, first, &face, reader.span(&raw)))
+                && six.first().is_none_or(|first| alike(reader, first, &face, reader.span(&raw), "face"))
             {
                 six.push(face);
             }
@@ -181,6 +190,36 @@ impl<'a> Sources<'_, 'a> {
         let mut first = six.next()?;
         first.faces.extend(six.flat_map(|face| face.faces));
         first.place = place;
+        Some(first)
+    }
+
+    /// Sources in a list, a layer each.
+    fn layers(
+        &mut self,
+        reader: &mut Reader<'a>,
+        text: &'a str,
+        request: &Request,
+        place: Range<usize>,
+    ) -> Option<Given> {
+        let raw = only::<source::List<'a, source::ImageSource>>(reader, text, "a list of sources")?;
+        let list = reader.read(&raw)?;
+        let request = Request { volume: false, ..*request };
+        let mut all: Vec<Given> = Vec::new();
+        for raw in &list {
+            let layer = self.nested(reader, raw, "source of a layer", &Variant::OF_FACE, &request)?;
+            if !all.first().is_none_or(|first| alike(reader, first, &layer, reader.span(raw), "layer")) {
+                return None;
+            }
+            all.push(layer);
+        }
+        let mut all = all.into_iter();
+        let Some(mut first) = all.next() else {
+            let finding = Diagnostic::error("NB0334", place, "a volume has no layer").label("empty");
+            reader.push(finding.rule("VOL-1").help("list a source for each layer"));
+            return None;
+        };
+        first.faces.extend(all.flat_map(|layer| layer.faces));
+        (first.place, first.volume) = (place, true);
         Some(first)
     }
 
@@ -219,7 +258,7 @@ impl<'a> Sources<'_, 'a> {
                     return None;
                 };
                 // Bits that the format ignores are zero in the state.
-                words.push(value & texels::used_bits(format));
+                words.push(texels::stored(value & texels::used_bits(format), format));
                 count += 1;
             }
             if count != width as usize {
@@ -286,11 +325,11 @@ pub(super) fn hexadecimal(word: &str, digits: usize) -> Option<u32> {
 
 /// One face of one level.
 fn one(format: TextureFormat, width: u32, height: u32, words: Vec<u32>, place: Range<usize>) -> Given {
-    Given { format, width, height, faces: vec![vec![words]], palette: None, place }
+    Given { format, width, height, faces: vec![vec![words]], volume: false, palette: None, place }
 }
 
-/// Whether a face goes with the first one; says so if not.
-fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Range<usize>) -> bool {
+/// Whether a face or layer goes with the first one; says so if not.
+fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Range<usize>, what: &str) -> bool {
     let describe = |given: &Given| {
         let levels = given.faces.first().map_or(1, Vec::len);
         let levels = if levels == 1 { String::new() } else { format!(" in {levels} levels") };
@@ -300,13 +339,13 @@ fn alike(reader: &mut Reader<'_>, first: &Given, face: &Given, place: Range<usiz
     if face.faces.len() == 1 && expected == found {
         return true;
     }
-    let found = if face.faces.len() == 1 { found } else { "a whole cube map".to_owned() };
+    let found = if face.faces.len() == 1 { found } else { "a whole cube map or volume".to_owned() };
     reader.push(
-        Diagnostic::error("NB0231", place, format!("this face is {found}, the first one {expected}"))
+        Diagnostic::error("NB0231", place, format!("this {what} is {found}, the first one {expected}"))
             .label("another picture than the first")
-            .related(first.place.clone(), "the first face")
-            .rule("TEX-12")
-            .help("give six faces of the same size, format and number of levels"),
+            .related(first.place.clone(), format!("the first {what}"))
+            .rule(if what == "face" { "TEX-12" } else { "VOL-1" })
+            .help(format!("give every {what} the same size, format and number of levels")),
     );
     false
 }
@@ -322,7 +361,9 @@ fn packable(reader: &mut Reader<'_>, request: &Request, place: Range<usize>) -> 
 }
 
 fn cannot_pack(format: TextureFormat, place: Range<usize>) -> Diagnostic {
-    let help = if format == TextureFormat::P8 {
+    let help = if format.depth().is_some() {
+        "depths come from `Texels`, `Raw(...)` or `Depth(...)` of a target"
+    } else if format == TextureFormat::P8 {
         "indices come from `Texels`, `Raw(...)` or a DDS file"
     } else {
         "blocks come from `Raw(...)` or a DDS file, made by a tool that compresses"

@@ -3,7 +3,10 @@
 use super::names::Names;
 use super::texture::Textures;
 use super::*;
-use ninebit::state::{AddressMode, ColorKey, Filter, MipFilter, ShaderStage, TEXTURE_UNITS, TextureUnit};
+use ninebit::state::{
+    AddressMode, ColorKey, Filter, MipFilter, ShaderStage, ShadowComparison, ShadowReference, TEXTURE_UNITS,
+    TextureUnit,
+};
 
 /// The units of a draw.
 pub(super) struct Units {
@@ -78,9 +81,13 @@ fn unit<'a>(
     let both = reader.name_or(&fields.address, AddressMode::Wrap);
     unit.address_s = reader.name_or(&fields.address_s, both);
     unit.address_t = reader.name_or(&fields.address_t, both);
-    for (field, mode) in
-        [(&fields.address, both), (&fields.address_s, unit.address_s), (&fields.address_t, unit.address_t)]
-    {
+    unit.address_r = reader.name_or(&fields.address_r, both);
+    for (field, mode) in [
+        (&fields.address, both),
+        (&fields.address_s, unit.address_s),
+        (&fields.address_t, unit.address_t),
+        (&fields.address_r, unit.address_r),
+    ] {
         if let Some(raw) = field
             && mode == AddressMode::ClampToBorder
             && reader.profile == Profile::Nv10
@@ -102,7 +109,7 @@ fn unit<'a>(
         }
     }
     lod(reader, &fields, &mut unit);
-    unknown_rules(reader, &fields);
+    sampling(reader, &fields, &mut unit);
     unit.color_key = fields.color_key.as_ref().and_then(|raw| color_key(reader, names, raw, &unit));
     unit.texture = found?;
     let place = texture.map_or(0..0, |raw| reader.span(&raw));
@@ -177,27 +184,33 @@ fn color_key<'a>(
     Some(ColorKey { mode: reader.name(&mode?)?, color: color? })
 }
 
-/// What the chip does, nobody knows how.
-fn unknown_rules<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>) {
-    if let Some(raw) = &fields.anisotropy
-        && let Some(taps) = reader.whole(raw, "anisotropy", 1..=8)
-        && taps > 1
-    {
-        reader.push(
-            Diagnostic::error("NB0402", reader.span(raw), format!("it is not known how {taps}x anisotropy filters"))
-                .label("cannot be modelled")
-                .rule("TEX-17")
-                .help("write 1, or leave it out"),
-        );
+/// TEX-17, CYL-1, SHD-1, VOL-1: what is known of them, and where they may stand, the plan says.
+fn sampling<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
+    if let Some(raw) = &fields.anisotropy {
+        unit.anisotropy = reader.whole(raw, "anisotropy", 1..=8).unwrap_or(1) as u32;
     }
     if let Some(raw) = &fields.cylindrical_wrap
-        && reader.read(raw) == Some(true)
+        && let Some(parts) = reader.read(raw)
     {
-        reader.push(
-            Diagnostic::error("NB0402", reader.span(raw), "it is not known how cylindrical wrap interpolates")
-                .label("cannot be modelled")
-                .rule("TEX-7")
-                .help("write `false`, or leave it out, and split triangles that cross the seam"),
-        );
+        if let [s, t] = parts.0[..] {
+            unit.cylindrical_wrap = [s, t].map(|part| reader.read(&part).unwrap_or(false));
+        } else {
+            let place = reader.span(raw);
+            let message = format!("`cylindrical_wrap` has two flags, not {}", parts.0.len());
+            reader.push(
+                Diagnostic::error("NB0211", place, message)
+                    .label("for s and t")
+                    .help("write `(true, false)`, for example"),
+            );
+        }
+    }
+    if let Some(raw) = &fields.shadow
+        && let Some(shadow) = reader.read(raw)
+    {
+        let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        let function = reader.required(&shadow.function, "function", "shadow comparison", opening);
+        let reference = reader.name_or(&shadow.reference, ShadowReference::R);
+        unit.shadow =
+            function.and_then(|raw| reader.name(&raw)).map(|function| ShadowComparison { function, reference });
     }
 }

@@ -159,7 +159,7 @@ fn run(
         }
         let outputs = evaluate(shader, constants, &registers);
         if let Some(what) = written.not_finite(&outputs) {
-            let spans = DrawSpans { draw: 0..0, vertices: given.spans.clone() };
+            let spans = DrawSpans { draw: 0..0, vertices: given.spans.clone(), ..DrawSpans::default() };
             reader.push(
                 Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
                     .label("what the vertex program makes of it")

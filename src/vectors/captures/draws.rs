@@ -34,6 +34,13 @@ pub(super) fn opaque(register: FinalRegister) -> Combiners {
     combiners
 }
 
+/// A program whose fragment has the colour of a register and the alpha of the primary colour.
+pub(super) fn opaque_alpha(register: FinalRegister) -> Combiners {
+    let mut combiners = Combiners::showing(register);
+    combiners.final_combiner.g.register = FinalRegister::PrimaryColor;
+    combiners
+}
+
 /// Quads at window positions, in one colour, blended; the fragment is a register.
 pub(super) fn quads(corners: &[[f32; 2]], color: VertexColor, shows: FinalRegister) -> Draw {
     let vertex = |[x, y]: &[f32; 2]| Vertex { position: [*x, *y, 0.0, 1.0], diffuse: color, ..Vertex::default() };
@@ -80,8 +87,12 @@ pub(super) fn nearest(texture: usize) -> TextureUnit {
 
 /// An image whose coordinates are texels.
 pub(super) fn linear_texture(format: TextureFormat, side: u32, texel: impl Fn(u32, u32) -> u32) -> Texture {
-    let words: Arc<[u32]> = (0..side * side).map(|at| texel(at % side, at / side)).collect();
-    let texels = Texels { width: side, height: side, levels: 1, border: false, words };
+    rectangle_kind(format, (side, side), (0..side * side).map(|at| texel(at % side, at / side)).collect())
+}
+
+/// The same, of any sides.
+pub(super) fn rectangle_kind(format: TextureFormat, (width, height): (u32, u32), words: Arc<[u32]>) -> Texture {
+    let texels = Texels { width, height, levels: 1, layers: 1, border: false, words };
     let (name, kind, image) = (String::from("image"), TextureKind::Rectangle, TextureImage::Texels(texels));
     Texture { name, kind, format, image }
 }

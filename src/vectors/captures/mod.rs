@@ -10,6 +10,7 @@ mod color_key;
 mod depth;
 mod draws;
 mod polygon_offset;
+mod shadow;
 mod stencil;
 
 use ninebit::engine::{RenderOptions, Renderer, render};
@@ -89,12 +90,13 @@ type Frames = Vec<(String, Drawn)>;
 /// A suite by name, and what draws its frames.
 type Suite = (&'static str, fn() -> Frames);
 
-const SUITES: [Suite; 7] = [
+const SUITES: [Suite; 8] = [
     ("Color_key", color_key::frames),
     ("Depth_buffer", depth::formats),
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),
     ("Surface_clip", clip::surface_clip),
+    ("Texture_shadow_comparator", shadow::given),
     ("W_buffering", polygon_offset::z_buffers),
     ("Window_clip", clip::window_clip),
 ];

@@ -348,6 +348,7 @@ impl Unit for LevelChoice {
             format: TextureFormat::A8R8G8B8,
             levels,
             face_words,
+            layers: 1,
             border: false,
             dithered: false,
             palette: None,

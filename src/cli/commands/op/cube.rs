@@ -87,6 +87,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         format: TextureFormat::R5G6B5,
         levels: vec![Level { offset: 0, width: side, height: side }],
         face_words: side as usize * side as usize,
+        layers: 1,
         border: false,
         dithered: false,
         palette: None,

@@ -76,6 +76,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
         format: TextureFormat::A8R8G8B8,
         levels: vec![Level { offset: 0, width: 1, height: 1 }],
         face_words: 1,
+        layers: 1,
         border: false,
         dithered: false,
         palette: None,

@@ -1,10 +1,11 @@
 //! Faces and levels of a texture in one picture.
 //!
 //! Six faces make a cross: -X, +Z, +X, -Z in a row, +Y above and -Y below +Z. Level 0 stands on the left, the others below one another on
-//! its right. What no texel covers is transparent.
+//! its right. Layers of a volume stand in rows. What no texel covers is transparent.
 
 use std::ops::Range;
 
+use ninebit::state::TextureKind;
 use ninebit::texture::show::{self, Shown};
 use ninebit_scene::image::Rgba;
 
@@ -40,9 +41,14 @@ fn of_level(opened: &Opened, faces: &Range<u32>, level: u32) -> Rgba {
         return show(faces.start);
     }
     let mut picture: Option<Rgba> = None;
-    for (face, (column, row)) in (0..).zip(CROSS) {
+    let count = faces.len() as u32;
+    let across = if opened.kind == TextureKind::Cube { 4 } else { count.isqrt().next_power_of_two() };
+    let down = if opened.kind == TextureKind::Cube { 3 } else { count.div_ceil(across) };
+    for face in faces.clone() {
+        let cross = CROSS.get(face as usize).filter(|_| opened.kind == TextureKind::Cube);
+        let (column, row) = cross.copied().unwrap_or((face % across, face / across));
         let shown = show(face);
-        let picture = picture.get_or_insert_with(|| empty(4 * shown.width, 3 * shown.height));
+        let picture = picture.get_or_insert_with(|| empty(across * shown.width, down * shown.height));
         place(picture, (column * shown.width, row * shown.height), &shown);
     }
     picture.unwrap_or_else(|| empty(1, 1))

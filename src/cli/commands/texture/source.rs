@@ -30,9 +30,9 @@ pub(super) struct Opened {
 }
 
 impl Opened {
-    /// Six of a cube map, else one.
+    /// Six faces of a cube map, a volume's layers, else one.
     pub(super) fn faces(&self) -> u32 {
-        if self.kind == TextureKind::Cube { CUBE_FACES } else { 1 }
+        if self.kind == TextureKind::Cube { CUBE_FACES } else { self.texels.layers }
     }
 }
 
@@ -71,7 +71,12 @@ fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, F
             }
             let (width, height) = (picture.width, picture.height);
             let words = texels::pack(&picture.pixels, format).into();
-            (plain_kind(width, height), format, Texels { width, height, levels: 1, border: false, words }, None)
+            (
+                plain_kind(width, height),
+                format,
+                Texels { width, height, levels: 1, layers: 1, border: false, words },
+                None,
+            )
         }
         Contents::Texture(dds) => {
             let format = arguments.format.unwrap_or(dds.format);
@@ -79,9 +84,13 @@ fn of_file(arguments: &Arguments, path: &Path, name: String) -> Result<Opened, F
                 let message = format!("`{name}` holds {}, not {}", dds.format.name(), format.name());
                 return Err(Failure::usage(message, "leave out `--format`"));
             };
-            let kind = if dds.cube { TextureKind::Cube } else { plain_kind(dds.width, dds.height) };
-            let (width, height, levels) = (dds.width, dds.height, dds.levels);
-            let texels = Texels { width, height, levels, border: false, words: words.into() };
+            let kind = match dds.layers {
+                Some(_) => TextureKind::ThreeDimensional,
+                None if dds.cube => TextureKind::Cube,
+                None => plain_kind(dds.width, dds.height),
+            };
+            let (width, height, levels, layers) = (dds.width, dds.height, dds.levels, dds.layers.unwrap_or(1));
+            let texels = Texels { width, height, levels, layers, border: false, words: words.into() };
             (kind, format, texels, dds.palette.filter(|_| format == TextureFormat::P8))
         }
     };
@@ -116,12 +125,14 @@ fn of_scene(
     let texture = &scene.textures[index];
     let (texels, target) = match &texture.image {
         TextureImage::Texels(texels) => (texels.clone(), None),
-        TextureImage::Target { target } => {
+        TextureImage::Target { target } | TextureImage::Depth { target } => {
             let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
             let surface = frames.surfaces.swap_remove(*target);
-            let (width, height, words) = (surface.width, surface.height, surface.words.into());
+            let (width, height) = (surface.width, surface.height);
+            let depths = matches!(texture.image, TextureImage::Depth { .. });
+            let words = if depths { surface.depth.into() } else { surface.words.into() };
             let name = scene.targets[*target].name.clone();
-            (Texels { width, height, levels: 1, border: false, words }, Some(name))
+            (Texels { width, height, levels: 1, layers: 1, border: false, words }, Some(name))
         }
     };
     Ok(Opened {

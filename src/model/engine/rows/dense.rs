@@ -132,6 +132,7 @@ fn scene(
             width: side,
             height: side,
             levels,
+            layers: 1,
             border: false,
             words: (0..Level::chain(TextureFormat::A8R8G8B8, side, side, levels, false).1 as u32 * faces)
                 .map(|n| n.wrapping_mul(0x9e37_79b9))

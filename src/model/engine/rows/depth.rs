@@ -58,7 +58,11 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
     // Zero, or far from where binary32 or the steps between are at their ends.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
-    let unknown = if test.range.is_none()
+    let unknown = if plane.w.is_some() {
+        // A w buffer: few scenes have one.
+        out.fill(UNKNOWN);
+        true
+    } else if test.range.is_none()
         && offset == 0.0
         && !format.is_float()
         && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole))

@@ -94,8 +94,6 @@ pub(crate) struct Sampler {
     index: usize,
     /// Its number.
     unit: usize,
-    /// The coordinate set that it is given.
-    set: usize,
     /// Bilinear.
     filters: bool,
     cube: bool,
@@ -188,10 +186,13 @@ impl Rows {
         let mut compiled = compiled.clone();
         for sampler in compiled.samplers.iter_mut().filter(|sampler| sampler.table.is_none()) {
             let unit = &plan.draws[index].units[sampler.index];
-            if let (TextureImage::Target { target }, Some(axes)) =
-                (&plan.textures[unit.state.texture].image, table::axes(unit))
-            {
-                let image = Image { words: &surfaces[*target].words, memory: None };
+            let words = match &plan.textures[unit.state.texture].image {
+                TextureImage::Target { target } => &surfaces[*target].words,
+                TextureImage::Depth { target } => &surfaces[*target].depth,
+                TextureImage::Texels(_) => continue,
+            };
+            if let Some(axes) = table::axes(unit) {
+                let image = Image { words, memory: None };
                 sampler.table = Some(Arc::new(Table::new(unit, &axes, &image, false)));
             }
         }
@@ -289,6 +290,7 @@ fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     !(one.mixes || other.mixes || one.cube || other.cube || one.depends || other.depends)
         && one.filters == other.filters
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
+        && a.state.cylindrical_wrap == b.state.cylindrical_wrap
         // Coordinates are limited where they stand.
         && table::axes(a) == table::axes(b)
         && draw.assembly.vertices.same_coordinates(first, second)
@@ -321,12 +323,11 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
                 tables.push((table_key, Arc::clone(&table)));
                 Some(table)
             }
-            (TextureImage::Target { .. }, None) => None,
+            (TextureImage::Target { .. } | TextureImage::Depth { .. }, None) => None,
         };
         samplers.push(Sampler {
             index,
             unit: unit.index,
-            set: unit.stage.coordinate_set,
             filters: unit.state.mag_filter == Filter::Linear,
             cube: unit.kind == TextureKind::Cube,
             sides: unit.scale(&unit.levels[0]),

@@ -141,7 +141,7 @@ pub(super) fn interpolate<const FMA: bool>(
     let mut count = 0;
     for (n, sampler) in compiled.samplers.iter().enumerate() {
         if sampler.shares.is_none() {
-            let [a, b, c] = context.coordinate_set(sampler.set);
+            let [a, b, c] = context.sampled_coordinates(sampler.index);
             if [a[3], b[3], c[3]] != [1.0; 3] {
                 return false;
             }
@@ -190,7 +190,7 @@ fn divide<const FMA: bool>(
                 Pair::None => {}
                 Pair::Sampler(n) => {
                     let sampler = &compiled.samplers[n];
-                    let (sets, [width, height]) = (context.coordinate_set(sampler.set), sampler.sides);
+                    let (sets, [width, height]) = (context.sampled_coordinates(sampler.index), sampler.sides);
                     let (width, height) = (f64::from(256 * width), f64::from(256 * height));
                     for k in 0..3 {
                         g[k][u] = f64::from(sets[k][0]) * width * ground.p[k];

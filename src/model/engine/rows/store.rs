@@ -91,7 +91,7 @@ pub(super) fn test_depth_stencil(
     memory: &mut [u32; BLOCK],
     alive: &mut [bool; BLOCK],
 ) -> bool {
-    if draw.depth_test.is_some_and(|test| test.range.is_some_and(|range| !range.clamps)) {
+    if draw.depth_test.is_some_and(|test| test.drops_by_range()) {
         for (alive, incoming) in alive.iter_mut().zip(incoming) {
             *alive &= *incoming != OUTSIDE;
         }

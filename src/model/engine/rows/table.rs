@@ -1,10 +1,14 @@
 //! Textures laid out for rows: texels decoded once, every address mode reduced to limits and a mask.
 
 use crate::number::Lane;
-use crate::state::{AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, Filter, Level, Named, TextureKind};
+use crate::state::{
+    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, Filter, Level, Named, ShadowComparison, ShadowReference,
+    TextureKind,
+};
 use crate::texture::color_key;
 use crate::texture::cube::Face;
 use crate::texture::fetch::{Slice, lanes};
+use crate::texture::shadow;
 use crate::texture::unit::{Image, PlannedUnit};
 use crate::trace::Silent;
 
@@ -165,6 +169,7 @@ pub(super) struct Key {
     border_color: [u8; 4],
     signed: [bool; 4],
     color_key: Option<ColorKey>,
+    shadow: Option<ShadowComparison>,
 }
 
 impl Key {
@@ -180,6 +185,7 @@ impl Key {
             border_color: state.border_color,
             signed: state.signed,
             color_key: state.color_key,
+            shadow: state.shadow,
         }
     }
 }
@@ -189,10 +195,13 @@ fn linear(unit: &PlannedUnit) -> bool {
     unit.needs_lod() || unit.is_wide() || unit.state.mag_filter == Filter::Linear
 }
 
-/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: it is filtered at 16 bits, and the
-/// lod counts.
+/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: rows do not sample it (16 bits whose lod
+/// counts, volumes, anisotropy, a depth compared with r).
 pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
-    if unit.is_wide() && unit.needs_lod() {
+    if unit.is_wide() && unit.needs_lod() || unit.kind == TextureKind::ThreeDimensional || unit.state.anisotropy > 1 {
+        return None;
+    }
+    if unit.state.shadow.is_some_and(|shadow| shadow.reference == ShadowReference::R) {
         return None;
     }
     let count = if unit.needs_lod() { unit.levels.len() } else { 1 };
@@ -240,7 +249,7 @@ impl Table {
                 if *face == faces[0] && mixes {
                     placed.push(Placed { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
                 }
-                let slice = Slice { unit, level, face: *face };
+                let slice = Slice { unit, level, image: Some(*face as usize) };
                 for y in 0..rows.count + beyond {
                     // Past the end of smaller levels nobody reads.
                     let texel = |x: i32| decode(&slice, image, x.min(columns.count) + columns.first, y + rows.first);
@@ -290,6 +299,9 @@ impl Table {
 fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, x: i32, y: i32) -> u32 {
     let texel = slice.texel(image.words, i64::from(x), i64::from(y));
     let unit = slice.unit;
+    if let Some(shadow) = unit.state.shadow {
+        return if shadow::passes(shadow, 0, &texel) { u32::MAX } else { 0 };
+    }
     let channels = lanes::<i32, Silent>(unit, image, &texel, &mut Silent);
     if unit.is_wide() {
         let half = |lane: usize| {

@@ -3,7 +3,7 @@
 use super::*;
 use crate::image::{self, Contents, ImageError, ImageLimits};
 use ninebit::limits::FileLimit;
-use ninebit::state::Level;
+use ninebit::state::{LARGEST_VOLUME, Level};
 
 impl<'a> Sources<'_, 'a> {
     /// A picture, or a DDS file with its levels and faces.
@@ -43,10 +43,11 @@ impl<'a> Sources<'_, 'a> {
             );
             return None;
         };
-        let faces = if dds.cube { CUBE_FACES } else { 1 };
+        let faces = if dds.cube { CUBE_FACES } else { dds.layers.unwrap_or(1) };
         let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
         let palette = dds.palette.filter(|_| format == TextureFormat::P8);
-        Some(Given { format, width: dds.width, height: dds.height, faces, palette, place: source })
+        let volume = dds.layers.is_some();
+        Some(Given { format, width: dds.width, height: dds.height, faces, volume, palette, place: source })
     }
 
     /// Texels as they lie in memory.
@@ -60,7 +61,12 @@ impl<'a> Sources<'_, 'a> {
         let inside = [width.saturating_sub(beyond).max(1), height.saturating_sub(beyond).max(1)];
         let levels = texture_levels::number(reader, request.levels, inside, place.clone())?;
         let (_, face) = Level::chain(format, inside[0], inside[1], levels, request.border);
-        let words = u64::from(request.faces) * face as u64;
+        let layers = match &fields.layers {
+            Some(raw) => Some(reader.whole(raw, "the layers", 1..=LARGEST_VOLUME)?),
+            None => request.volume.then_some(1),
+        };
+        let pictures = layers.unwrap_or(request.faces);
+        let words = u64::from(pictures) * face as u64;
         self.afford(reader, place.clone(), words)?;
         let limit = reader.limits.image_file();
         let bytes = read_file(reader, self.folder, &file, limit, |bytes, _| Ok(bytes.to_vec()))?;
@@ -73,7 +79,7 @@ impl<'a> Sources<'_, 'a> {
                     .label("another length")
                     .note(format!(
                         "{} of {} of {width} x {height} texels {}, one after another",
-                        counted(request.faces, "face"),
+                        counted(pictures, if layers.is_some() { "layer" } else { "face" }),
                         counted(levels, "level"),
                         format.name()
                     ))
@@ -82,8 +88,8 @@ impl<'a> Sources<'_, 'a> {
             return None;
         }
         let words = texels::from_bytes(&bytes, format);
-        let faces = divide(words, format, inside, request.faces, levels, request.border);
-        Some(Given { format, width, height, faces, palette: None, place })
+        let faces = divide(words, format, inside, pictures, levels, request.border);
+        Some(Given { format, width, height, faces, volume: layers.is_some(), palette: None, place })
     }
 }
 
