@@ -4,17 +4,12 @@ use ninebit::engine::{Engine, RenderOptions};
 use ninebit_vectors::captures::{self, SIZE};
 use rayon::prelude::*;
 
+/// A sample of all suites; all frames by `ninebit captures check`.
 #[test]
 fn every_frame_is_exact() {
     let frames = captures::frames(&[]).unwrap_or_else(|unmatched| panic!("{unmatched:#?}"));
-    assert_eq!((captures::suites().count(), frames.len()), (7, 1069));
-    // The frames of Depth_buffer are one geometry in four formats: two of each 98 are drawn here, colours and words, all by `ninebit captures check`.
-    let frames: Vec<_> = frames
-        .into_iter()
-        .enumerate()
-        .filter(|(n, frame)| frame.suite() != "Depth_buffer" || n % 49 == 3)
-        .map(|(_, frame)| frame)
-        .collect();
+    assert_eq!((captures::suites().count(), frames.len()), (44, 3661));
+    let frames = captures::sample(frames, 300);
     let wrong: Vec<String> = frames
         .par_iter()
         .enumerate()
@@ -29,6 +24,26 @@ fn every_frame_is_exact() {
     assert!(wrong.is_empty(), "{} of {} frames differ: {wrong:#?}", wrong.len(), frames.len());
     let compared: u64 = frames.iter().map(captures::Frame::compared).sum();
     println!("{} frames, {compared} pixels", frames.len());
+}
+
+/// A sample has frames of every suite, none twice, and is all of them where so many are asked for.
+#[test]
+fn samples_are_spread() {
+    let all = || captures::frames(&[]).unwrap();
+    let names = |frames: Vec<captures::Frame>| -> Vec<String> {
+        frames.iter().map(|frame| format!("{}/{}", frame.suite(), frame.name())).collect()
+    };
+    assert_eq!(names(captures::sample(all(), usize::MAX / 10_000)), names(all()));
+    let sample = captures::sample(all(), 300);
+    assert!((300..340).contains(&sample.len()), "{}", sample.len());
+    let mut suites: Vec<&str> = sample.iter().map(captures::Frame::suite).collect();
+    suites.dedup();
+    assert_eq!(suites, captures::suites().collect::<Vec<_>>());
+    let mut sorted = names(sample);
+    sorted.sort_unstable();
+    let count = sorted.len();
+    sorted.dedup();
+    assert_eq!(sorted.len(), count);
 }
 
 /// The comparison can fail: one pixel makes the difference, and one under the text makes none.

@@ -7,8 +7,8 @@
 use std::path::Path;
 
 use super::image::{ImageError, ImageLimits};
-use super::texels;
 use ninebit::state::{CUBE_FACES, LARGEST_VOLUME, Level, TextureFormat};
+use ninebit_files::texels;
 
 mod pixel_format;
 

@@ -20,7 +20,6 @@ mod reader;
 mod render;
 mod source;
 mod split;
-pub mod texels;
 pub mod truth;
 pub mod vector;
 mod wording;

@@ -796,7 +796,7 @@ fn tap([limit, number]: [i128; 2], quad: &[(String, Number)]) -> ([i128; 2], i12
     let pairs = (long + 2 * width - 1) / (2 * width);
     let (pair, sign) = (number / 2, 1 - 2 * (number % 2));
     let reach = if pairs == 1 { long - width } else { (2 * pair + 1) * width };
-    let inner = 256 * width / long;
+    let inner = ((512 * width / long + 1) / 2).min(128 / (pairs - 1).max(1));
     let weight = if pair == pairs - 1 { 128 - (pairs - 1) * inner } else { inner };
     (axis.map(|n| sign * (n * reach / (2 * long) / 256)), weight)
 }

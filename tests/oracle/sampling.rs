@@ -137,7 +137,7 @@ pub fn taps(corners: [Option<[i128; 2]>; 3], limit: u32) -> Vec<([i128; 2], i128
     }
     let half = (l + 2 * m - 1) / (2 * m);
     count("taps", ["4", "6", "8"][half as usize - 2]);
-    let inner = 256 * m / l;
+    let inner = ((512 * m / l + 1) / 2).min(128 / (half - 1));
     let outer = 128 - (half - 1) * inner;
     (0..half)
         .flat_map(|n| {

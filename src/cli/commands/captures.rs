@@ -38,6 +38,9 @@ pub(crate) struct CheckArguments {
     /// Draw this suite only; may be given several times
     #[arg(long = "suite", value_name = "SUITE")]
     suites: Vec<String>,
+    /// Draw about so many frames only: of each suite as large a part, at least one
+    #[arg(long, value_name = "COUNT")]
+    sample: Option<usize>,
     /// The folder `results` of the captures: compare with its pictures, SUITE/FRAME.png
     #[arg(long, value_name = "DIR")]
     captures: Option<PathBuf>,
@@ -65,10 +68,10 @@ fn frames(suites: &[&str]) -> Result<Vec<Frame>, Failure> {
 
 fn list() -> Result<(), Failure> {
     let all = frames(&[])?;
-    let mut text = format!("source  {SOURCE}\n\nsuite           frames\n");
+    let mut text = format!("source  {SOURCE}\n\n{:<32}frames\n", "suite");
     for suite in captures::suites() {
         let count = all.iter().filter(|frame| frame.suite() == suite).count();
-        let _ = writeln!(text, "{suite:<16}{count:>6}");
+        let _ = writeln!(text, "{suite:<32}{count:>6}");
     }
     Ok(write_text(&text)?)
 }
@@ -94,7 +97,11 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let team = rayon::ThreadPoolBuilder::new().num_threads(arguments.engine.threads).build();
     let team = team.map_err(|error| Failure::fault(&error.to_string()))?;
     let outcomes: Vec<Outcome> = team.install(|| {
-        let drawn = frames(&suites)?.into_par_iter().map(|frame| draw(frame, &options, arguments.captures.as_deref()));
+        let mut frames = frames(&suites)?;
+        if let Some(count) = arguments.sample {
+            frames = captures::sample(frames, count);
+        }
+        let drawn = frames.into_par_iter().map(|frame| draw(frame, &options, arguments.captures.as_deref()));
         drawn.collect::<Result<_, Failure>>()
     })?;
     match arguments.format {
@@ -149,7 +156,7 @@ fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Resul
 }
 
 fn text(outcomes: &[Outcome], has_captures: bool) -> String {
-    let mut text = String::from("suite           frames   exact         pixels\n");
+    let mut text = format!("{:<32}frames   exact         pixels\n", "suite");
     for suite in captures::suites() {
         let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.frame.suite() == suite).collect();
         if of.is_empty() {
@@ -157,7 +164,7 @@ fn text(outcomes: &[Outcome], has_captures: bool) -> String {
         }
         let exact = of.iter().filter(|outcome| outcome.exact).count();
         let pixels: u64 = of.iter().map(|outcome| outcome.frame.compared()).sum();
-        let _ = writeln!(text, "{suite:<16}{:>6}{exact:>8}{pixels:>15}", of.len());
+        let _ = writeln!(text, "{suite:<32}{:>6}{exact:>8}{pixels:>15}", of.len());
     }
     let mut open = BTreeMap::<&str, (usize, u64)>::new();
     for known in outcomes.iter().filter(|outcome| outcome.is_as_known()).filter_map(|outcome| outcome.frame.open()) {

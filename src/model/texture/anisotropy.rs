@@ -41,7 +41,8 @@ pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
     // Half the distance of two taps, as parts of the axis: `step` of twice its length.
     let pairs = long.div_ceil(2 * width) as usize;
     let step = if pairs == 1 { long - width } else { width };
-    let inner = (256 * width / long) as i32;
+    // To nearest; what the outermost two weigh is not negative.
+    let inner = ((512 * width / long).div_ceil(2) as i32).min(128 / (pairs as i32 - 1).max(1));
     taps.count = 2 * pairs;
     for pair in 0..pairs {
         let reach = ((2 * pair as i128 + 1) * step as i128, 2 * long as i128);

@@ -2,8 +2,8 @@
 
 use super::texture_source::{Given, Request, Sources};
 use super::*;
-use crate::texels;
 use ninebit::state::{BORDER_TEXELS, Level, Named, TextureKind};
+use ninebit_files::texels;
 
 /// `levels` of a texture.
 #[derive(Clone, Copy, PartialEq, Eq)]

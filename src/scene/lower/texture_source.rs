@@ -5,8 +5,8 @@ use super::texture_legal as legal;
 use super::texture_levels::{self, Wanted};
 use super::*;
 use crate::raw::Tuple;
-use crate::texels;
 use ninebit::state::{CUBE_FACES, Named, TextureFormat};
+use ninebit_files::texels;
 
 mod made;
 mod stored;

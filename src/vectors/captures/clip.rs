@@ -42,7 +42,7 @@ pub(super) fn window_clip() -> Frames {
         cases.extend(SECOND.iter().flat_map(|second| FIRST.map(|first| (exclusive, false, first, *second))));
         cases.push((exclusive, true, [60, 60, 64, 64], [0, 0, 64, 64]));
     }
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for (exclusive, first_is_last, first, second) in cases {
         let name = |[x, y, width, height]: Area| format!("x{x}y{y}_w{width}h{height}");
         let (order, kind) = (if first_is_last { "s" } else { "" }, if exclusive { "E" } else { "I" });
@@ -57,13 +57,13 @@ pub(super) fn window_clip() -> Frames {
         let window_clip = Some(WindowClip { rectangles, exclusive });
         let draws = vec![square(bytes(0x33, 0x77, 0x88)), Draw { window_clip, ..square(bytes(0xff, 0x77, 0x33)) }];
         let direct = scene(vec![frame_buffer(0xfe11_1213)], vec![], draws.clone());
-        frames.push((name.clone(), Drawn { scene: direct, view: None, shown: Shown::Colors }));
+        frames.push(name.clone(), Drawn::colors(direct));
         let target = Target { name: "rt".into(), ..Target::new(256, 256, SurfaceFormat::A8R8G8B8) };
         let mut draws: Vec<Draw> = draws.into_iter().map(|draw| Draw { target: 1, ..draw }).collect();
         draws.push(show([0.0, 0.0, 256.0, 256.0], [192.0, 112.0, 448.0, 368.0]));
         let textures = vec![target_texture(TextureFormat::A8R8G8B8, 1)];
         let through = scene(vec![frame_buffer(0xfe33_2233), target], textures, draws);
-        frames.push((format!("r{name}"), Drawn { scene: through, view: None, shown: Shown::Colors }));
+        frames.push(format!("r{name}"), Drawn::colors(through));
     }
     frames
 }
@@ -106,19 +106,19 @@ fn image([x, y, width, height]: Area, clip: Area) -> Vec<Draw> {
 
 /// Surface_clip: on the frame buffer, on views of it, and on a texture.
 pub(super) fn surface_clip() -> Frames {
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for area in CLIPS {
         let [x, y, width, height] = area;
         let name = format!("x{x}y{y}_w{width}h{height}");
         let of = |draws| scene(vec![frame_buffer(0xfc11_1155)], vec![], draws);
-        let direct = Drawn { scene: of(image(area, area)), view: None, shown: Shown::Colors };
-        frames.push((format!("{name}_A8R8G8B8"), direct));
+        let direct = Drawn::colors(of(image(area, area)));
+        frames.push(format!("{name}_A8R8G8B8"), direct);
         for (suffix, format) in
             [("", SurfaceFormat::R5G6B5), ("_B8", SurfaceFormat::B8), ("_G8B8", SurfaceFormat::G8B8)]
         {
             let view = scene(vec![Target::new(SIZE.0, SIZE.1, format)], vec![], image(area, area));
             let drawn = Drawn { scene: of(vec![]), view: Some(view), shown: Shown::Colors };
-            frames.push((format!("{name}{suffix}"), drawn));
+            frames.push(format!("{name}{suffix}"), drawn);
         }
         // A texture of no columns or rows is drawn whole.
         let or = |size: u32, whole: u32| if size == 0 { whole } else { size };
@@ -133,7 +133,7 @@ pub(super) fn surface_clip() -> Frames {
         let target = Target { name: "rt".into(), clear_color, ..Target::new(SIZE.0, SIZE.1, SurfaceFormat::R5G6B5) };
         let textures = vec![target_texture(TextureFormat::R5G6B5, 1)];
         let through = scene(vec![frame_buffer(0xff26_2422), target], textures, draws);
-        frames.push((format!("rt_{name}"), Drawn { scene: through, view: None, shown: Shown::Colors }));
+        frames.push(format!("rt_{name}"), Drawn::colors(through));
     }
     frames
 }

@@ -1,7 +1,7 @@
 //! KEY-1: four units, each with a key and with an opposite that shares its alpha, in every mode.
 
 use super::draws::{frame_buffer, linear_texture, nearest, opaque, quads, scene, textured};
-use super::{Drawn, Frames, Shown};
+use super::{Drawn, Frames};
 use ninebit::state::{
     ColorKey, ColorKeyMode, Combiners, Draw, FinalRegister, Scene, Texture, TextureFormat, TextureUnit, VertexColor,
 };
@@ -58,7 +58,7 @@ fn keyed(unit: usize, place: Vec<[f32; 2]>, state: TextureUnit, combiners: Combi
 
 fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> Drawn {
     let scene: Scene = scene(vec![frame_buffer(clear)], textures, draws);
-    Drawn { scene, view: None, shown: Shown::Colors }
+    Drawn::colors(scene)
 }
 
 /// Color_key.
@@ -76,7 +76,7 @@ pub(super) fn frames() -> Frames {
         ("Color", Some(ColorKeyMode::Color)),
         ("AlphaColor", Some(ColorKeyMode::Texel)),
     ];
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for (prefix, ignores_alpha) in [("", false), ("IgnAlphaCh_", true)] {
         for (suffix, mode) in modes {
             for (kind, offset) in [("FixedTex", 0.53125), ("ProgTex", 0.0)] {
@@ -90,7 +90,7 @@ pub(super) fn frames() -> Frames {
                         draws.push(keyed(unit, square(center, offset), state, combiners));
                     }
                 }
-                frames.push((format!("{prefix}{kind}_{suffix}"), drawn(0xff00_cc00, textures.clone(), draws)));
+                frames.push(format!("{prefix}{kind}_{suffix}"), drawn(0xff00_cc00, textures.clone(), draws));
             }
         }
     }
@@ -101,10 +101,10 @@ pub(super) fn frames() -> Frames {
     let mut unread = keyed(0, square([1.6, 0.0], 0.0), texel(0, KEYS[0]), shown());
     unread.textures[1] = Some(texel(1, KEYS[1] | 0xff00_0000));
     unread.texture_shader[1] = ninebit::state::ShaderStage::conventional(1, true);
-    frames.push(("UnsampledTex".to_owned(), drawn(0xff00_cc00, textures, vec![plain, unread])));
+    frames.push("UnsampledTex", drawn(0xff00_cc00, textures, vec![plain, unread]));
     let opposites = [0xcc00_ff00, 0x0000_ff00];
     let without_alpha = linear_texture(TextureFormat::X8R8G8B8, 64, |x, y| checker(x, y, opposites, 16));
     let draw = keyed(0, square([0.0, 0.0], 0.0), texel(0, 0xcc00_ff00), shown());
-    frames.push(("XAlphaFormat".to_owned(), drawn(0xff99_9999, vec![without_alpha], vec![draw])));
+    frames.push("XAlphaFormat", drawn(0xff99_9999, vec![without_alpha], vec![draw]));
     frames
 }

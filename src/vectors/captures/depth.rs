@@ -79,7 +79,7 @@ fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
 
 /// Depth_buffer.
 pub(super) fn formats() -> Frames {
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for (format, bits, deepest) in FORMATS {
         let vertices = vertices(format, deepest);
         let draw = Draw {
@@ -105,8 +105,8 @@ pub(super) fn formats() -> Frames {
                 let float = if format.is_float() { "y" } else { "n" };
                 let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");
                 let drawn = |shown| Drawn { scene: scene.clone(), view: None, shown };
-                frames.push((format!("{name}_ZB"), drawn(Shown::DepthStencil)));
-                frames.push((name, drawn(Shown::Colors)));
+                frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
+                frames.push(name, drawn(Shown::Colors));
             }
         }
     }

@@ -1,8 +1,8 @@
 //! What the programs' draws have in common.
 
-use super::SIZE;
+use super::{Drawn, SIZE, images};
 use ninebit::state::{
-    AddressMode, Blend, BlendEquation, BlendFactor, Combiners, Draw, Filter, FinalRegister, Profile, Scene,
+    AddressMode, Blend, BlendEquation, BlendFactor, Combiners, Draw, Filter, FinalRegister, Palette, Profile, Scene,
     ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
     TextureUnit, Topology, Vertex, VertexColor,
 };
@@ -35,31 +35,153 @@ pub(super) fn opaque(register: FinalRegister) -> Combiners {
 }
 
 /// A program whose fragment has the colour of a register and the alpha of the primary colour.
-pub(super) fn opaque_alpha(register: FinalRegister) -> Combiners {
+pub(super) fn with_primary_alpha(register: FinalRegister) -> Combiners {
     let mut combiners = Combiners::showing(register);
     combiners.final_combiner.g.register = FinalRegister::PrimaryColor;
     combiners
 }
 
-/// Quads at window positions, in one colour, blended; the fragment is a register.
-pub(super) fn quads(corners: &[[f32; 2]], color: VertexColor, shows: FinalRegister) -> Draw {
-    let vertex = |[x, y]: &[f32; 2]| Vertex { position: [*x, *y, 0.0, 1.0], diffuse: color, ..Vertex::default() };
-    let vertices: Vec<Vertex> = corners.iter().map(vertex).collect();
-    let indices: Arc<[u32]> = (0..vertices.len() as u32).collect();
+/// A vertex at a window position.
+pub(super) fn vertex([x, y]: [f32; 2], diffuse: VertexColor) -> Vertex {
+    Vertex { position: [x, y, 0.0, 1.0], diffuse, ..Vertex::default() }
+}
+
+/// Vertices in their order, blended; the fragment is the primary colour.
+pub(super) fn draw(topology: Topology, vertices: Vec<Vertex>) -> Draw {
     Draw {
+        indices: (0..vertices.len() as u32).collect::<Arc<[u32]>>(),
         vertices: vertices.into(),
-        indices,
-        topology: Topology::Quads,
-        combiners: Combiners::showing(shows),
+        topology,
+        combiners: Combiners::showing(FinalRegister::PrimaryColor),
         blend: OVER,
         ..Draw::default()
     }
+}
+
+/// Quads at window positions, in one colour, blended; the fragment is a register.
+pub(super) fn quads(corners: &[[f32; 2]], color: VertexColor, shows: FinalRegister) -> Draw {
+    let vertices = corners.iter().map(|corner| vertex(*corner, color)).collect();
+    Draw { combiners: Combiners::showing(shows), ..draw(Topology::Quads, vertices) }
 }
 
 /// A rectangle, given by its edges.
 pub(super) fn rectangle([left, top, right, bottom]: [f32; 4], color: VertexColor) -> Draw {
     let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
     quads(&corners, color, FinalRegister::PrimaryColor)
+}
+
+/// How far the programs' inverse of the viewport lies off, in pixels: positions that went through it have this added.
+pub(super) const UNPROJECTED: f32 = 0.53125;
+
+/// A rectangle through the programs' inverse of the viewport.
+pub(super) fn unprojected(edges: [f32; 4]) -> [f32; 4] {
+    edges.map(|edge| edge + UNPROJECTED)
+}
+
+/// Upper left corner and sides as edges.
+pub(super) fn sized([left, top]: [f32; 2], [width, height]: [f32; 2]) -> [f32; 4] {
+    [left, top, left + width, top + height]
+}
+
+/// The register that a unit fetches into.
+pub(super) const FETCHED: [FinalRegister; TEXTURE_UNITS] =
+    [FinalRegister::Texture0, FinalRegister::Texture1, FinalRegister::Texture2, FinalRegister::Texture3];
+
+/// A white rectangle that shows the texture of a unit: coordinates at its edges.
+pub(super) fn pasted(edges: [f32; 4], unit: usize, state: TextureUnit, [s0, t0, s1, t1]: [f32; 4]) -> Draw {
+    let draw = rectangle(edges, VertexColor::Bytes([255; 4]));
+    let draw = textured(draw, unit, state, [[s0, t0], [s1, t0], [s1, t1], [s0, t1]]);
+    Draw { combiners: Combiners::showing(FETCHED[unit]), ..draw }
+}
+
+/// Coordinates of a whole texture whose size counts as 1.
+pub(super) const WHOLE: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
+
+/// The draw with a fragment of alpha 1.
+pub(super) fn without_alpha(draw: Draw, shows: FinalRegister) -> Draw {
+    Draw { combiners: opaque(shows), ..draw }
+}
+
+/// A word A8B8G8R8 as a colour of bytes.
+pub(super) fn abgr(word: u32) -> [u8; 4] {
+    word.to_le_bytes()
+}
+
+/// A word A8R8G8B8 as a colour of bytes.
+pub(super) fn argb(word: u32) -> [u8; 4] {
+    let [b, g, r, a] = word.to_le_bytes();
+    [r, g, b, a]
+}
+
+/// What is drawn, in which textures and targets stand under the numbers that they are given here.
+#[derive(Default)]
+pub(super) struct Canvas {
+    scene: Scene,
+}
+
+impl Canvas {
+    /// The frame buffer, cleared to a word A8R8G8B8.
+    pub(super) fn new(clear: u32) -> Canvas {
+        Canvas { scene: scene(vec![frame_buffer(clear)], vec![], vec![]) }
+    }
+
+    /// The frame buffer.
+    pub(super) fn frame_buffer(&mut self) -> &mut Target {
+        &mut self.scene.targets[0]
+    }
+
+    pub(super) fn texture(&mut self, texture: &Texture) -> usize {
+        self.scene.textures.push(texture.clone());
+        self.scene.textures.len() - 1
+    }
+
+    pub(super) fn palette(&mut self, entries: impl Iterator<Item = u32>) -> usize {
+        let name = format!("palette {}", self.scene.palettes.len());
+        self.scene.palettes.push(Palette { name, entries: entries.collect() });
+        self.scene.palettes.len() - 1
+    }
+
+    pub(super) fn target(&mut self, target: Target) -> usize {
+        let name = format!("target {}", self.scene.targets.len());
+        self.scene.targets.push(Target { name, ..target });
+        self.scene.targets.len() - 1
+    }
+
+    /// Another target that begins as an image of its size, and its draws.
+    pub(super) fn painted(
+        &mut self,
+        first: &Texture,
+        format: SurfaceFormat,
+        draws: impl IntoIterator<Item = Draw>,
+    ) -> usize {
+        let TextureImage::Texels(Texels { width, height, .. }) = first.image else { return 0 };
+        let target = self.target(Target::new(width, height, format));
+        let texture = Texture { kind: TextureKind::Rectangle, ..first.clone() };
+        let contents = self.texture(&texture);
+        let [width, height] = [width, height].map(|side| f32::from(side as u16));
+        let copy = pasted([0.0, 0.0, width, height], 0, nearest(contents), [0.0, 0.0, width, height]);
+        self.draw_into(target, [Draw { blend: None, ..copy }]);
+        self.draw_into(target, draws);
+        target
+    }
+
+    /// A texture that shows a target.
+    pub(super) fn shown(&mut self, target: usize, kind: TextureKind, format: TextureFormat) -> usize {
+        self.texture(&Texture { kind, ..target_texture(format, target) })
+    }
+
+    pub(super) fn draw(&mut self, draw: Draw) {
+        self.scene.draws.push(draw);
+    }
+
+    pub(super) fn draw_into(&mut self, target: usize, draws: impl IntoIterator<Item = Draw>) {
+        self.scene.draws.extend(draws.into_iter().map(|draw| Draw { target, ..draw }));
+    }
+
+    /// The colours of the frame buffer.
+    pub(super) fn colors(self) -> Drawn {
+        Drawn::colors(self.scene)
+    }
 }
 
 /// A draw whose first unit shows a texture by coordinates in texels: those of `texels` at its four vertices.
@@ -87,14 +209,8 @@ pub(super) fn nearest(texture: usize) -> TextureUnit {
 
 /// An image whose coordinates are texels.
 pub(super) fn linear_texture(format: TextureFormat, side: u32, texel: impl Fn(u32, u32) -> u32) -> Texture {
-    rectangle_kind(format, (side, side), (0..side * side).map(|at| texel(at % side, at / side)).collect())
-}
-
-/// The same, of any sides.
-pub(super) fn rectangle_kind(format: TextureFormat, (width, height): (u32, u32), words: Arc<[u32]>) -> Texture {
-    let texels = Texels { width, height, levels: 1, layers: 1, border: false, words };
-    let (name, kind, image) = (String::from("image"), TextureKind::Rectangle, TextureImage::Texels(texels));
-    Texture { name, kind, format, image }
+    let words = (0..side * side).map(|at| texel(at % side, at / side)).collect();
+    images::of_words(TextureKind::Rectangle, format, [side, side], 1, words)
 }
 
 /// A render target, read by coordinates in texels.

@@ -5,13 +5,25 @@
 //! the programs printed their text, which is left out, and the SHA-256 of the captured pixels outside.
 #![allow(clippy::float_arithmetic, reason = "positions that programs gave the chip")]
 
+mod assets;
+mod blend;
 mod clip;
 mod color_key;
+mod combiner;
 mod depth;
 mod draws;
+mod fog;
+mod images;
 mod polygon_offset;
+mod primitives;
+mod rounding;
+mod sampling;
+mod shader;
 mod shadow;
+mod space;
 mod stencil;
+mod texel_formats;
+mod texgen;
 
 use ninebit::engine::{RenderOptions, Renderer, render};
 use ninebit::frame::Surface;
@@ -21,7 +33,9 @@ use ninebit::rop::surface;
 use ninebit::state::{Rectangle, Scene, SurfaceFormat};
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
 use std::fmt;
+use std::sync::Arc;
 
 /// Columns and rows of every frame.
 pub const SIZE: (u32, u32) = (640, 480);
@@ -48,12 +62,19 @@ struct Drawn {
     shown: Shown,
 }
 
+impl Drawn {
+    /// The colours of a scene's first target.
+    fn colors(scene: Scene) -> Drawn {
+        Drawn { scene, view: None, shown: Shown::Colors }
+    }
+}
+
 /// A frame that was captured.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 pub struct Frame {
     suite: &'static str,
     name: String,
-    drawn: Drawn,
+    make: Make,
     text: Vec<Rectangle>,
     digest: &'static str,
     open: Option<Open>,
@@ -66,6 +87,12 @@ pub struct Open {
     pub rule: &'static str,
     /// Pixels that differ.
     pub pixels: u64,
+}
+
+impl fmt::Debug for Frame {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Frame").field(&self.suite).field(&self.name).finish()
+    }
 }
 
 /// Frames of the table that nothing here draws, or the other way round: an error of this crate.
@@ -85,18 +112,71 @@ pub fn suites() -> impl Iterator<Item = &'static str> {
     SUITES.iter().map(|(name, _)| *name)
 }
 
+/// What makes a frame's scenes, when they are wanted: those of all frames together take much memory.
+type Make = Arc<dyn Fn() -> Drawn + Send + Sync>;
+
 /// Frames by name.
-type Frames = Vec<(String, Drawn)>;
+#[derive(Default)]
+struct Frames(Vec<(String, Make)>);
+
+impl Frames {
+    /// A frame that is there.
+    fn push(&mut self, name: impl Into<String>, drawn: Drawn) {
+        self.make(name, move || drawn.clone());
+    }
+
+    /// A frame that is made when it is wanted.
+    fn make(&mut self, name: impl Into<String>, make: impl Fn() -> Drawn + Send + Sync + 'static) {
+        self.0.push((name.into(), Arc::new(make)));
+    }
+}
+
 /// A suite by name, and what draws its frames.
 type Suite = (&'static str, fn() -> Frames);
 
-const SUITES: [Suite; 8] = [
+const SUITES: &[Suite] = &[
+    ("3D_primitive", primitives::solids),
+    ("Alpha_func", blend::alpha_function),
+    ("Attrib_float", primitives::float_colors),
+    ("Attrib_setter", primitives::setters),
+    ("Blend_surface", blend::surfaces),
+    ("Blend_tests", blend::tests),
+    ("Bump_env_lum", shader::bump_maps_with_luminance),
+    ("Bump_map", shader::bump_maps),
     ("Color_key", color_key::frames),
+    ("Color_mask_blend", blend::color_mask),
+    ("Combiner", combiner::frames),
     ("Depth_buffer", depth::formats),
+    ("Fog", fog::planar),
+    ("Fog_coord_vec4", fog::of_components),
+    ("Fog_exceptional_value", fog::exceptional),
+    ("Fog_gen", fog::generated),
+    ("Fog_inf_coord", fog::infinite),
+    ("Fog_param", fog::parameters_varied),
+    ("Fog_vsh", fog::of_program),
+    ("High_vertex_count", primitives::many_vertices),
+    ("Pixel_shader", shader::programs),
+    ("Shade_model", primitives::shade_model),
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),
     ("Surface_clip", clip::surface_clip),
+    ("Texgen", texgen::generation),
+    ("Texgen_with_texture_matrix", texgen::generation_and_matrices),
+    ("TextureWrapMode", sampling::wrap_modes),
+    ("Texture_DXT", texel_formats::compressed),
+    ("Texture_LOD_Bias", texel_formats::lod_bias),
+    ("Texture_Matrix", texgen::texture_matrices),
+    ("Texture_anisotropy", sampling::anisotropy),
+    ("Texture_border", texel_formats::borders),
+    ("Texture_border_color", texel_formats::border_color),
+    ("Texture_cubemap", shader::cube_maps),
+    ("Texture_format", texel_formats::formats),
+    ("Texture_palette", texel_formats::palettes),
+    ("Texture_perspective", primitives::perspective),
     ("Texture_shadow_comparator", shadow::given),
+    ("Texture_signed_component_tests", texel_formats::signed),
+    ("Vertex_shader_rounding_tests", rounding::frames),
+    ("Volume_texture", sampling::volumes),
     ("W_buffering", polygon_offset::z_buffers),
     ("Window_clip", clip::window_clip),
 ];
@@ -110,12 +190,12 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     let mut unmatched = Vec::new();
     let rows: Vec<_> = TABLE.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
     for (suite, make) in SUITES.iter().filter(|(suite, _)| wanted.is_empty() || wanted.contains(suite)) {
-        let mut drawn = make();
+        let Frames(mut drawn) = make();
         for Row { name, text, digest, open, .. } in rows.iter().filter(|row| row.suite == *suite) {
             match drawn.iter().position(|(other, _)| other == name) {
                 Some(at) => {
-                    let (name, drawn) = drawn.swap_remove(at);
-                    all.push(Frame { suite, name, drawn, text: text.clone(), digest, open: *open });
+                    let (name, make) = drawn.swap_remove(at);
+                    all.push(Frame { suite, name, make, text: text.clone(), digest, open: *open });
                 }
                 None => unmatched.push(format!("{suite}/{name} of the table is drawn by nothing")),
             }
@@ -123,6 +203,25 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
         unmatched.extend(drawn.iter().map(|(name, _)| format!("{suite}/{name} is not in the table")));
     }
     if unmatched.is_empty() { Ok(all) } else { Err(Unmatched(unmatched)) }
+}
+
+/// About so many of some frames: of each suite as large a part, and at least one, evenly spread over it.
+pub fn sample(frames: Vec<Frame>, count: usize) -> Vec<Frame> {
+    let total = frames.len().max(1);
+    let mut of_suites = BTreeMap::<&str, usize>::new();
+    for frame in &frames {
+        *of_suites.entry(frame.suite).or_default() += 1;
+    }
+    let mut numbers = BTreeMap::<&str, usize>::new();
+    let is_taken = |frame: &Frame| {
+        let (all, number) = (of_suites[frame.suite], numbers.entry(frame.suite).or_default());
+        *number += 1;
+        let taken = (all * count).div_ceil(total).min(all);
+        // One is taken wherever this grows, in the middle of each of so many parts.
+        let before = |number: usize| (2 * number * taken + all) / (2 * all);
+        before(*number) > before(*number - 1)
+    };
+    frames.into_iter().filter(is_taken).collect()
 }
 
 /// A row of the table.
@@ -176,20 +275,22 @@ impl Frame {
     /// # Errors
     /// The scene cannot be planned.
     pub fn render(&self, options: &RenderOptions) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
-        let plan = |scene: &Scene| Plan::compile_within(scene, &PlanOptions::default(), &Limits::default());
-        let mut frames = render(&plan(&self.drawn.scene)?, options);
+        let limits = Limits { textures: 4096, ..Limits::default() };
+        let plan = |scene: &Scene| Plan::compile_within(scene, &PlanOptions::default(), &limits);
+        let Drawn { scene, view, shown } = (self.make)();
+        let mut frames = render(&plan(&scene)?, options);
         let mut words = std::mem::take(&mut frames.surfaces[0].words);
-        if let Some(scene) = &self.drawn.view {
-            let view = plan(scene)?;
+        if let Some(view) = view {
+            let view = plan(&view)?;
             let format = view.targets[0].format;
             let (renderer, mut frames) = (Renderer::new(&view, options), ninebit::engine::cleared(&view));
             frames.surfaces[0].words = seen_as(&words, format);
             renderer.redraw(&mut frames);
             put_back(&frames.surfaces[0], &mut words);
         }
-        if self.drawn.shown == Shown::DepthStencil {
+        if shown == Shown::DepthStencil {
             let surface = &frames.surfaces[0];
-            if self.drawn.scene.targets[0].depth.is_some_and(|depth| depth.format.bits() == 16) {
+            if scene.targets[0].depth.is_some_and(|depth| depth.format.bits() == 16) {
                 return Ok(surface.depths().map(shown_as_565).collect());
             }
             words = surface.chip_depth_words().collect();

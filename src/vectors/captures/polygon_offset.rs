@@ -87,13 +87,13 @@ fn frame(format: DepthFormat, topology: Topology, positions: &[[f32; 3]], offset
 
 /// W_buffering: words of the z buffers.
 pub(super) fn z_buffers() -> Frames {
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for (format, prefix) in FORMATS {
         for (shape, topology, positions) in shapes() {
             for (biased, sloped) in [(0_u8, 0_u8), (0, 1), (1, 0), (1, 1)] {
                 let offset = PolygonOffset { bias: BIAS * f32::from(biased), factor: FACTOR * f32::from(sloped) };
                 let name = format!("{prefix}_{shape}_V1_ZB{biased}_ZS{sloped}_ZB");
-                frames.push((name, frame(format, topology, &positions, offset)));
+                frames.push(name, frame(format, topology, &positions, offset));
             }
         }
     }
@@ -105,7 +105,7 @@ pub(super) fn z_buffers() -> Frames {
             [53.1875, 487.3125, 500_000.0],
         ];
         let drawn = frame(DepthFormat::Z24S8, Topology::Quads, &positions, PolygonOffset::default());
-        frames.push((format!("ZBuf24D_{name}_V1_ZB0_ZS0_ZB"), drawn));
+        frames.push(format!("ZBuf24D_{name}_V1_ZB0_ZS0_ZB"), drawn);
     }
     frames
 }

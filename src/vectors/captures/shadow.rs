@@ -1,10 +1,10 @@
 //! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two.
 
-use super::draws::{frame_buffer, nearest, opaque_alpha, quads, rectangle_kind, scene};
-use super::{Drawn, Frames, SIZE, Shown};
+use super::draws::{Canvas, nearest, quads, with_primary_alpha};
+use super::{Frames, SIZE, images};
 use ninebit::state::{
     CompareFunction, Draw, FinalRegister, ShaderStage, ShadowComparison, ShadowReference, TEXTURE_UNITS, TextureFormat,
-    TextureUnit, Topology, Vertex, VertexColor,
+    TextureKind, TextureUnit, Topology, Vertex, VertexColor,
 };
 
 /// Functions by their names in frames.
@@ -90,11 +90,11 @@ fn markers() -> Vec<Draw> {
 
 /// Texture_shadow_comparator, the frames whose depths are given as they are.
 pub(super) fn given() -> Frames {
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for (format, bits, values) in RANGES {
         let memory = words(format, values);
         let texels = memory.iter().map(|word| if bits == 24 { word.rotate_right(8) } else { *word });
-        let texture = rectangle_kind(format, SIZE, texels.collect());
+        let texture = images::of_words(TextureKind::Rectangle, format, [SIZE.0, SIZE.1], 1, texels.collect());
         for (function, name) in FUNCTIONS {
             for (reference, stage) in [(ShadowReference::R, 3), (ShadowReference::Zero, 2)] {
                 let unit = TextureUnit { shadow: Some(ShadowComparison { function, reference }), ..nearest(0) };
@@ -103,18 +103,21 @@ pub(super) fn given() -> Frames {
                 let corners = [[0.0, 100.0], [width, 100.0], [width, height - 100.0], [0.0, height - 100.0]];
                 let texels = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
                 let mut draw = quads(&corners, color(0xff22_77ff), FinalRegister::Texture0);
-                draw.combiners = opaque_alpha(FinalRegister::Texture0);
+                draw.combiners = with_primary_alpha(FinalRegister::Texture0);
                 draw.vertices.update(|n, vertex: &mut Vertex| {
                     let [s, t] = texels[n];
                     vertex.texture_coordinates = [[s, t, r as f32, 1.0]; TEXTURE_UNITS];
                 });
                 draw.textures[0] = Some(unit);
                 draw.texture_shader[0] = ShaderStage::conventional(0, true);
-                let mut draws = vec![draw];
-                draws.extend(markers());
-                let scene = scene(vec![frame_buffer(0xfe11_2233)], vec![texture.clone()], draws);
-                let name = format!("{stage}R{bits}_{least:X}-{greatest:X}_{r:X}_{name}");
-                frames.push((name, Drawn { scene, view: None, shown: Shown::Colors }));
+                let (texture, name) = (texture.clone(), format!("{stage}R{bits}_{least:X}-{greatest:X}_{r:X}_{name}"));
+                frames.make(name, move || {
+                    let mut canvas = Canvas::new(0xfe11_2233);
+                    canvas.texture(&texture);
+                    canvas.draw(draw.clone());
+                    markers().into_iter().for_each(|marker| canvas.draw(marker));
+                    canvas.colors()
+                });
             }
         }
     }

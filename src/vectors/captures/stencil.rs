@@ -22,10 +22,11 @@ fn test(function: CompareFunction, reference: u8, pass: StencilOperation) -> Ste
 }
 
 /// A frame as colours, and as words of depth and stencil.
-fn both(name: &str, target: Target, draws: Vec<Draw>) -> [(String, Drawn); 2] {
+fn both(frames: &mut Frames, name: &str, target: Target, draws: Vec<Draw>) {
     let scene = scene(vec![target], vec![], draws);
     let drawn = |shown| Drawn { scene: scene.clone(), view: None, shown };
-    [(name.to_owned(), drawn(Shown::Colors)), (format!("{name}_ZB"), drawn(Shown::DepthStencil))]
+    frames.push(name, drawn(Shown::Colors));
+    frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
 }
 
 /// A square around the centre; the programs draw it as two triangles, which have no other pixels.
@@ -36,7 +37,7 @@ fn square(side: f32, color: VertexColor) -> Draw {
 
 /// Stencil.
 pub(super) fn operations() -> Frames {
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for (stencil_on, depth_on) in [(true, false), (false, true), (true, true), (false, false)] {
         for (operation, cleared, reference) in [(StencilOperation::Zero, 255, 0), (StencilOperation::Replace, 0, 1)] {
             let mut second = square(100.0, color(0.0, 0.0, 1.0));
@@ -52,7 +53,7 @@ pub(super) fn operations() -> Frames {
                 if depth_on { "_DT" } else { "" }
             );
             let draws = vec![square(200.0, color(1.0, 0.0, 0.0)), second, third];
-            frames.extend(both(&name, target(cleared), draws));
+            both(&mut frames, &name, target(cleared), draws);
         }
     }
     frames
@@ -91,7 +92,7 @@ pub(super) fn functions() -> Frames {
             left += 81.0;
         }
     }
-    let mut frames = Frames::new();
+    let mut frames = Frames::default();
     for (name, function) in [
         ("Never", CompareFunction::Never),
         ("Less", CompareFunction::Less),
@@ -106,7 +107,7 @@ pub(super) fn functions() -> Frames {
         last.color_mask = [true, true, true, false];
         last.stencil_test = Some(test(function, REFERENCE, Keep));
         let draws = stacks.iter().cloned().chain([last]).collect();
-        frames.extend(both(name, target(0), draws));
+        both(&mut frames, name, target(0), draws);
     }
     frames
 }

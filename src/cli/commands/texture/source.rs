@@ -6,8 +6,8 @@ use std::sync::Arc;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::shown;
 use ninebit::state::{CUBE_FACES, Named, Profile, Scene, Texels, TextureFormat, TextureImage, TextureKind};
+use ninebit_files::texels;
 use ninebit_scene::image::{self, Contents, ImageLimits};
-use ninebit_scene::texels;
 
 use super::Arguments;
 use crate::commands::Context;

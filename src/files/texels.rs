@@ -41,7 +41,8 @@ pub fn pack(pixels: &[[u8; 4]], format: TextureFormat) -> Vec<u32> {
     pixels.iter().map(|pixel| word(*pixel, format)).collect()
 }
 
-fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
+/// One pixel of R, G, B, A as a word of the format.
+pub fn word(pixel: [u8; 4], format: TextureFormat) -> u32 {
     let [r, g, b, a] = pixel.map(u32::from);
     match format {
         TextureFormat::A8R8G8B8 | TextureFormat::R16B16 => a << 24 | r << 16 | g << 8 | b,

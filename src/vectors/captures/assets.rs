@@ -1,0 +1,49 @@
+//! Images that the programs load (MIT): `vectors/captures/images`, where their licence stands.
+
+use super::images::Color;
+use ninebit::state::TextureFormat;
+use ninebit_files::texels;
+
+macro_rules! file {
+    ($name:literal) => {
+        include_bytes!(concat!("../../../vectors/captures/images/", $name))
+    };
+}
+
+/// Name, format, columns and rows, levels, and the file.
+pub(super) type Compressed = (&'static str, TextureFormat, [u32; 2], u32, &'static [u8]);
+
+/// Compressed images.
+pub(super) const COMPRESSED: [Compressed; 9] = [
+    ("plasma_dxt1", TextureFormat::Dxt1, [32, 32], 6, file!("plasma_dxt1.dds")),
+    ("plasma_alpha_dxt1", TextureFormat::Dxt1, [32, 32], 6, file!("plasma_alpha_dxt1.dds")),
+    ("plasma_dxt3", TextureFormat::Dxt3, [32, 32], 6, file!("plasma_dxt3.dds")),
+    ("plasma_alpha_dxt3", TextureFormat::Dxt3, [32, 32], 6, file!("plasma_alpha_dxt3.dds")),
+    ("plasma_dxt5", TextureFormat::Dxt5, [32, 32], 6, file!("plasma_dxt5.dds")),
+    ("plasma_alpha_dxt5", TextureFormat::Dxt5, [32, 32], 6, file!("plasma_alpha_dxt5.dds")),
+    ("64x256_bands_dxt1", TextureFormat::Dxt1, [64, 256], 9, file!("64x256_bands_dxt1.dds")),
+    ("64x256_bands_dxt3", TextureFormat::Dxt3, [64, 256], 9, file!("64x256_bands_dxt3.dds")),
+    ("64x256_bands_dxt5", TextureFormat::Dxt5, [64, 256], 9, file!("64x256_bands_dxt5.dds")),
+];
+
+/// Blocks begin behind this header.
+const DDS_HEADER: usize = 128;
+
+/// The blocks of all levels as words.
+pub(super) fn blocks(format: TextureFormat, file: &[u8]) -> Vec<u32> {
+    texels::from_bytes(file.get(DDS_HEADER..).unwrap_or_default(), format)
+}
+
+/// The normals of a cube, 256 x 256.
+pub(super) const NORMALS: &[u8] = file!("cube_normals_object_space.png");
+/// Waves, 128 x 128.
+pub(super) const WATER: &[u8] = file!("water_bump_map.png");
+/// What is seen through the waves, 128 x 128.
+pub(super) const SEEN: &[u8] = file!("bump_map_test_image.png");
+
+/// The pixels of a picture.
+pub(super) fn pixels(file: &[u8]) -> impl Fn(u32, u32) -> Color + use<> {
+    // It is one of those above.
+    let picture = image::load_from_memory(file).map(|picture| picture.into_rgba8()).unwrap_or_default();
+    move |x, y| picture.get_pixel_checked(x, y).map_or([0; 4], |pixel| pixel.0)
+}

@@ -1,0 +1,337 @@
+//! ROP-1 to ROP-6: blend equations with all factors, surface formats, the alpha test and the colour mask.
+
+use super::draws::{Canvas, WHOLE, abgr, draw, nearest, pasted, rectangle, sized, unprojected, vertex, without_alpha};
+use super::images::{self, checker, four_gradients, solid};
+use super::{Drawn, Frames};
+use ninebit::state::{
+    AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, Draw, FinalRegister, SurfaceFormat, Target, Texture,
+    TextureFormat, TextureKind, Topology, VertexColor,
+};
+use std::sync::Arc;
+
+const EQUATIONS: [(&str, BlendEquation); 7] = [
+    ("ADD", BlendEquation::Add),
+    ("SUB", BlendEquation::Subtract),
+    ("REVSUB", BlendEquation::ReverseSubtract),
+    ("MIN", BlendEquation::Min),
+    ("MAX", BlendEquation::Max),
+    ("SADD", BlendEquation::SignedAdd),
+    ("SREVSUB", BlendEquation::SignedReverseSubtract),
+];
+
+const FACTORS: [(&str, BlendFactor); 15] = [
+    ("0", BlendFactor::Zero),
+    ("1", BlendFactor::One),
+    ("srcRGB", BlendFactor::SourceColor),
+    ("1-srcRGB", BlendFactor::OneMinusSourceColor),
+    ("srcA", BlendFactor::SourceAlpha),
+    ("1-srcA", BlendFactor::OneMinusSourceAlpha),
+    ("dstA", BlendFactor::DestinationAlpha),
+    ("1-dstA", BlendFactor::OneMinusDestinationAlpha),
+    ("dstRGB", BlendFactor::DestinationColor),
+    ("1-dstRGB", BlendFactor::OneMinusDestinationColor),
+    ("srcAsat", BlendFactor::SourceAlphaSaturate),
+    ("cRGB", BlendFactor::ConstantColor),
+    ("1-cRGB", BlendFactor::OneMinusConstantColor),
+    ("cA", BlendFactor::ConstantAlpha),
+    ("1-cA", BlendFactor::OneMinusConstantAlpha),
+];
+
+/// What is drawn over each other, A8B8G8R8: squares in squares, whose alpha is blended, and a stack of squares.
+const NESTED: [u32; 4] = [0x7f00_cc00, 0xffcc_0000, 0x8000_00ff, 0x00ff_ffff];
+const STACKED: [u32; 4] = [0xdd00_dd00, 0xdddd_0000, 0xdd00_00dd, 0xddff_ffff];
+
+const COLORS: [bool; 4] = [true, true, true, false];
+const ALPHA: [bool; 4] = [false, false, false, true];
+/// Both.
+const ALL: [bool; 4] = [true; 4];
+
+/// A rectangle of a colour A8B8G8R8, blended or not, whose channels are written as a mask says.
+fn patch(edges: [f32; 4], color: u32, blend: Option<Blend>, color_mask: [bool; 4]) -> Draw {
+    Draw { blend, color_mask, blend_constant: [0x55; 4], ..rectangle(edges, VertexColor::Bytes(abgr(color))) }
+}
+
+/// Squares in each other, each smaller by `inset` on every side: colours as they are, alpha blended.
+fn nested(blend: Blend, [left, top]: [f32; 2], side: f32, inset: f32) -> Vec<Draw> {
+    let square = |(n, color): (u8, u32)| {
+        let by = inset * f32::from(n);
+        let edges = [left + by, top + by, left + side - by, top + side - by];
+        [patch(edges, color, None, COLORS), patch(edges, color, Some(blend), ALPHA)]
+    };
+    (0..).zip(NESTED).flat_map(square).collect()
+}
+
+/// Squares above each other.
+fn stacked(colors: impl Iterator<Item = u32>, corner: [f32; 2], side: f32) -> impl Iterator<Item = ([f32; 4], u32)> {
+    let at = move |n: u8| sized([corner[0], corner[1] + side * f32::from(n)], [side, side]);
+    (0..).map(at).zip(colors)
+}
+
+/// A stack whose colours are blended, and alpha as it is.
+fn colors_blended(blend: Blend, corner: [f32; 2], side: f32) -> Vec<Draw> {
+    let square = |(edges, color)| [patch(edges, color, Some(blend), COLORS), patch(edges, color, None, ALPHA)];
+    stacked(STACKED.into_iter(), corner, side).flat_map(square).collect()
+}
+
+/// The stack upside down, wholly blended.
+fn all_blended(blend: Blend, corner: [f32; 2], side: f32) -> Vec<Draw> {
+    let square = |(edges, color)| patch(edges, color, Some(blend), ALL);
+    stacked(STACKED.into_iter().rev(), corner, side).map(square).collect()
+}
+
+/// The frame buffer with a chequered field in it.
+fn over(background: &Texture) -> Canvas {
+    let mut canvas = Canvas::new(0xff31_2f31);
+    let texture = canvas.texture(background);
+    let draw = pasted([0.0, 0.0, 640.0, 480.0], 0, nearest(texture), WHOLE);
+    canvas.draw(Draw { blend: None, ..without_alpha(draw, FinalRegister::Texture0) });
+    canvas
+}
+
+/// Draws into a texture that begins as an image, and pastes it.
+fn through(canvas: &mut Canvas, first: &Texture, draws: Vec<Draw>, edges: [f32; 4]) {
+    let target = canvas.painted(first, SurfaceFormat::A8R8G8B8, draws);
+    let texture = canvas.shown(target, TextureKind::TwoDimensional, TextureFormat::A8B8G8R8);
+    canvas.draw(pasted(edges, 1, nearest(texture), WHOLE));
+}
+
+/// Blend_tests: one pair of factors large, and for each factor of the source all of the destination.
+pub(super) fn tests() -> Frames {
+    let grey = |dark: u32, size| checker([abgr(dark), abgr(0xff00_0000)], size);
+    let background = |size| images::texture(TextureFormat::A8B8G8R8, [256, 256], grey(0xff20_2020, size));
+    let first = |size, field| Arc::new(images::texture(TextureFormat::A8B8G8R8, size, grey(0x3333_3333, field)));
+    let (large, small) = (Arc::new(background(24)), Arc::new(background(16)));
+    let (square, strip, sheet) = (first([256, 256], 16), first([64, 256], 16), first([512, 512], 8));
+    let mut frames = Frames::default();
+    for (equation_name, equation) in EQUATIONS {
+        for (source_name, source) in FACTORS {
+            for (name, destination) in FACTORS {
+                if (source, destination) == (BlendFactor::Zero, BlendFactor::Zero) {
+                    continue;
+                }
+                let blend = Blend { equation, source, destination };
+                let [large, square, strip] = [&large, &square, &strip].map(Arc::clone);
+                frames.make(format!("{source_name}_{equation_name}_{name}"), move || {
+                    let mut canvas = over(&large);
+                    let origin = [0.0, 0.0];
+                    let tall = |left| sized([left, 112.0], [64.0, 256.0]);
+                    through(&mut canvas, &square, nested(blend, origin, 256.0, 24.0), [192.0, 112.0, 448.0, 368.0]);
+                    through(&mut canvas, &strip, colors_blended(blend, origin, 64.0), tall(16.0));
+                    through(&mut canvas, &strip, all_blended(blend, origin, 64.0), tall(560.0));
+                    canvas.colors()
+                });
+            }
+            let [small, sheet] = [&small, &sheet].map(Arc::clone);
+            frames.make(format!("#spot_{source_name}_{equation_name}"), move || {
+                let mut canvas = over(&small);
+                let mut draws = Vec::new();
+                // Five in a row, and the sixth below before the row begins anew.
+                let (mut corner, mut count) = ([0.0, 0.0], 0);
+                for (_, destination) in FACTORS {
+                    let blend = Blend { equation, source, destination };
+                    let [left, top] = corner;
+                    draws.extend(colors_blended(blend, corner, 24.0));
+                    draws.extend(all_blended(blend, [left + 24.0, top], 24.0));
+                    draws.extend(nested(blend, [left + 48.0, top], 51.0, 4.0));
+                    count += 1;
+                    corner = if count % 5 == 0 { [0.0, top + 136.0] } else { [left + 103.0, top] };
+                }
+                through(&mut canvas, &sheet, draws, [64.0, 64.0, 576.0, 576.0]);
+                canvas.colors()
+            });
+        }
+    }
+    frames
+}
+
+/// The formats that are blended, and how their words are read.
+const SURFACES: [(&str, SurfaceFormat, TextureFormat); 8] = [
+    ("X_Z1RGB5", SurfaceFormat::X1R5G5B5Z, TextureFormat::A1R5G5B5),
+    ("X_O1RGB5", SurfaceFormat::X1R5G5B5O, TextureFormat::A1R5G5B5),
+    ("R5G6B5", SurfaceFormat::R5G6B5, TextureFormat::R5G6B5),
+    ("X_ZRGB8", SurfaceFormat::X8R8G8B8Z, TextureFormat::A8R8G8B8),
+    ("X_ORGB8", SurfaceFormat::X8R8G8B8O, TextureFormat::A8R8G8B8),
+    ("XA_Z1A7RGB8", SurfaceFormat::X1A7R8G8B8Z, TextureFormat::A8R8G8B8),
+    ("XA_O1A7RGB8", SurfaceFormat::X1A7R8G8B8O, TextureFormat::A8R8G8B8),
+    ("ARGB8", SurfaceFormat::A8R8G8B8, TextureFormat::A8R8G8B8),
+];
+
+const TILE: f32 = 128.0;
+const WHOLE_TILE: [f32; 4] = [0.0, 0.0, TILE, TILE];
+
+/// Places of tiles: four in a row, so far from one row to the next.
+fn tiles(down: f32) -> impl Iterator<Item = [f32; 2]> {
+    (0..8_u8).map(move |n| [32.0 + 144.0 * f32::from(n % 4), 92.0 + down * f32::from(n / 4)])
+}
+
+fn tile(canvas: &mut Canvas, format: SurfaceFormat, draws: Vec<Draw>, read: TextureFormat) -> usize {
+    let target = canvas.target(Target::new(128, 128, format));
+    canvas.draw_into(target, draws);
+    canvas.shown(target, TextureKind::Rectangle, read)
+}
+
+/// A colour over which the destination's alpha is a factor, in eight tiles: once more blended into the frame buffer and once not.
+fn destination_alpha(format: SurfaceFormat, read: TextureFormat, factor: BlendFactor) -> Drawn {
+    let mut canvas = Canvas::new(0xff55_5555);
+    let colors = [0, 0x4000_0000, 0x8000_0000, 0xff00_0000, 0x00ff_0000, 0x40ff_0000, 0x80ff_0000, 0xffff_0000];
+    for (color, [x, y]) in colors.into_iter().zip(tiles(160.0)) {
+        let whole = unprojected(WHOLE_TILE);
+        let blend = Blend { equation: BlendEquation::Add, source: factor, destination: BlendFactor::Zero };
+        let draws = vec![patch(whole, color, None, ALL), patch(whole, 0x22ff_ffff, Some(blend), ALL)];
+        let texture = tile(&mut canvas, format, draws, read);
+        let half = |y| pasted(unprojected(sized([x, y], [TILE, TILE / 2.0])), 0, nearest(texture), WHOLE_TILE);
+        canvas.draw(half(y));
+        canvas.draw(without_alpha(half(y + TILE / 2.0), FinalRegister::Texture0));
+    }
+    canvas.colors()
+}
+
+/// Channels of four bits, in the high half: red grows downwards, blue falls to the right, green runs across, alpha is highest in the middle.
+fn four_bits(side: u32) -> impl images::Image {
+    let last = f32::from((side - 1) as u16);
+    let middle = last / 2.0;
+    move |x, y| {
+        let [x, y] = [x, y].map(|at| f32::from(at as u16));
+        let [dx, dy] = [x - middle, y - middle];
+        let alpha = 15.0 * (1.0 - (dx * dx + dy * dy) / (middle * middle + middle * middle));
+        let (right, down) = (x / last, y / last);
+        let green = (15.0 * right) * (1.0 - down) + (15.0 * (1.0 - right)) * down;
+        [15.0 * down, green, 15.0 * (1.0 - right), alpha].map(|value| (value as u8) << 4)
+    }
+}
+
+/// Formats of textures that are blended into each surface.
+const BLENDED: [TextureFormat; 7] = [
+    TextureFormat::A8B8G8R8,
+    TextureFormat::X8R8G8B8,
+    TextureFormat::R5G6B5,
+    TextureFormat::R6G5B5,
+    TextureFormat::X1R5G5B5,
+    TextureFormat::A1R5G5B5,
+    TextureFormat::A4R4G4B4,
+];
+
+/// Each texture four times over itself, and small squares in the corners, once or four times.
+fn textures_blended(format: SurfaceFormat, read: TextureFormat, destination: BlendFactor) -> Drawn {
+    let mut canvas = Canvas::new(0xff55_5555);
+    let blend = Some(Blend { equation: BlendEquation::Add, source: BlendFactor::SourceAlpha, destination });
+    for (number, (blended, place)) in BLENDED.into_iter().zip(tiles(144.0)).enumerate() {
+        let [picture, grey, hole] = if number < 2 {
+            let written = TextureFormat::A8B8G8R8;
+            [
+                images::texture(written, [64, 64], four_gradients([64, 64])),
+                images::texture(written, [8, 8], solid([0x44; 4])),
+                images::texture(written, [8, 8], solid(abgr(0x00ff_ff55))),
+            ]
+        } else {
+            let written = TextureFormat::A4R4G4B4;
+            [
+                images::texture(written, [64, 64], four_bits(64)),
+                images::texture(written, [8, 8], solid([0x40; 4])),
+                images::texture(written, [8, 8], solid([0xf0, 0xf0, 0x50, 0])),
+            ]
+        };
+        let [picture, grey, hole] = [picture, grey, hole].map(|image| canvas.texture(&images::read_as(image, blended)));
+        let first = rectangle(unprojected(WHOLE_TILE), VertexColor::Floats([0.1, 0.1, 0.1, 0.7]));
+        let mut draws = vec![Draw { blend: None, ..first }];
+        let mut put = |texture, unit, corner, side, times| {
+            let edges = unprojected(sized(corner, [side, side]));
+            let draw = Draw { blend, ..pasted(edges, unit, nearest(texture), WHOLE) };
+            draws.extend(std::iter::repeat_n(draw, times));
+        };
+        for n in [12.0, 24.0, 36.0, 48.0] {
+            put(picture, 1, [n, n], 64.0, 1);
+        }
+        put(grey, 2, [0.0, 0.0], 8.0, 1);
+        put(grey, 2, [120.0, 0.0], 8.0, 4);
+        put(hole, 3, [0.0, 120.0], 8.0, 1);
+        put(hole, 3, [120.0, 120.0], 8.0, 4);
+        let texture = tile(&mut canvas, format, draws, read);
+        let draw = pasted(unprojected(sized(place, [TILE, TILE])), 0, nearest(texture), WHOLE_TILE);
+        canvas.draw(Draw { blend: None, ..without_alpha(draw, FinalRegister::Texture0) });
+    }
+    canvas.colors()
+}
+
+/// Blend_surface.
+pub(super) fn surfaces() -> Frames {
+    let mut frames = Frames::default();
+    for (name, format, read) in SURFACES {
+        for (prefix, factor) in
+            [("DstAlpha", BlendFactor::DestinationAlpha), ("1-DstAlpha", BlendFactor::OneMinusDestinationAlpha)]
+        {
+            frames.make(format!("{prefix}_{name}"), move || destination_alpha(format, read, factor));
+        }
+        for (suffix, factor) in [("1-SrcA", BlendFactor::OneMinusSourceAlpha), ("DstA", BlendFactor::DestinationAlpha)]
+        {
+            frames.make(format!("{name}_Add_SrcA_{suffix}"), move || textures_blended(format, read, factor));
+        }
+    }
+    frames
+}
+
+/// Alpha_func: ramps of alpha, wide and steep, and one value.
+pub(super) fn alpha_function() -> Frames {
+    let mut frames = Frames::default();
+    for (name, function) in [
+        ("Never", CompareFunction::Never),
+        ("LessThan", CompareFunction::Less),
+        ("Equal", CompareFunction::Equal),
+        ("LessThanOrEqual", CompareFunction::LessOrEqual),
+        ("GreaterThan", CompareFunction::Greater),
+        ("NotEqual", CompareFunction::NotEqual),
+        ("GreaterThanOrEqual", CompareFunction::GreaterOrEqual),
+        ("Always", CompareFunction::Always),
+    ] {
+        for (state, enabled) in [("Enabled", true), ("Disabled", false)] {
+            let mut canvas = Canvas::new(0xff22_2322);
+            let mut top = (480.0 - 256.0) / 3.0 * 2.0;
+            for ([r, g, b], left, right) in
+                [([1.0, 0.0, 0.0], 0.0, 1.0), ([0.0, 0.0, 1.0], 1.0, 0.0), ([0.0, 1.0, 0.0], 0.495, 0.505)]
+            {
+                let corners =
+                    [(64.0, top, left), (576.0, top, right), (576.0, top + 64.0, right), (64.0, top + 64.0, left)];
+                let corner = |(x, y, a)| vertex([x, y], VertexColor::Floats([r, g, b, a]));
+                canvas.draw(draw(Topology::Quads, corners.map(corner).to_vec()));
+                top += 64.0;
+            }
+            canvas.draw(rectangle([0.0, top, 640.0, top + 32.0], VertexColor::Bytes(abgr(0x7fff_ffff))));
+            let Drawn { mut scene, .. } = canvas.colors();
+            for draw in &mut scene.draws {
+                draw.alpha_test = enabled.then_some(AlphaTest { function, reference: 127 });
+            }
+            frames.push(format!("AlphaFunc{name}_{state}"), Drawn::colors(scene));
+        }
+    }
+    frames
+}
+
+/// Color_mask_blend: the destination's alpha as a factor where alpha itself is not written.
+pub(super) fn color_mask() -> Frames {
+    let mut canvas = Canvas::new(0x3022_2222);
+    for (edges, color) in [
+        ([20.0, 120.0, 320.0, 360.0], 0xccff_ffff),
+        ([180.0, 130.0, 310.0, 350.0], 0xff00_0000),
+        ([330.0, 130.0, 470.0, 350.0], 0x2277_99ff),
+    ] {
+        canvas.draw(rectangle(edges, VertexColor::Bytes(abgr(color))));
+    }
+    let mut alphas = [0.5_f32, 1.0, 0.9, 0.75];
+    for left in [71.0, 213.0, 355.0, 497.0] {
+        let [x0, y0, x1, y1] = sized([left, 180.0], [71.0, 120.0]);
+        let colors = [[1.0, 0.0, 0.0], [0.5; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
+        let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+        let corner = |n: usize| {
+            let [r, g, b] = colors[n];
+            vertex(corners[n], VertexColor::Floats([r, g, b, alphas[n]]))
+        };
+        let source = BlendFactor::DestinationAlpha;
+        let blend = Some(Blend { equation: BlendEquation::Add, source, destination: BlendFactor::Zero });
+        let triangles = draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(corner).to_vec());
+        canvas.draw(Draw { blend, color_mask: COLORS, ..triangles });
+        alphas = alphas.map(|alpha| alpha * 0.75);
+    }
+    let mut frames = Frames::default();
+    frames.push("C00010101_O32774_S772_D0", canvas.colors());
+    frames
+}

@@ -1,0 +1,406 @@
+//! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
+
+use super::draws::{Canvas, draw, sized, unprojected};
+use super::primitives::FAR_DEPTHS;
+use super::{Drawn, Frames, space};
+use ninebit::state::{
+    Combiners, CompareFunction, Component, DepthRange, DepthTest, Draw, FinalCombiner, FinalInput, FinalRegister, Fog,
+    FogFunction, FogMode, Profile, Topology, Vertex, VertexColor, VertexDepths,
+};
+use ninebit::vertex::fog::passed;
+
+/// The modes by the names of frames.
+const MODES: [(&str, FogMode); 6] = [
+    ("linear", FogMode::Linear),
+    ("exp", FogMode::Exp),
+    ("exp2", FogMode::Exp2),
+    ("exp_abs", FogMode::ExpAbs),
+    ("exp2_abs", FogMode::Exp2Abs),
+    ("linear_abs", FogMode::LinearAbs),
+];
+
+/// The programs' parameters: fog that is whole at 200, or of a density of 0.025.
+fn parameters(mode: FogMode, start: f32) -> [f32; 2] {
+    let (end, density) = (200.0_f32, 0.025_f32);
+    match mode {
+        FogMode::Linear | FogMode::LinearAbs => {
+            let multiplier = -1.0 / (end - start);
+            [1.0 + -end * multiplier, multiplier]
+        }
+        FogMode::Exp | FogMode::ExpAbs => [1.5, -density / (2.0 * 5.5452)],
+        FogMode::Exp2 | FogMode::Exp2Abs => [1.5, -density / (2.0 * 2.3548)],
+    }
+}
+
+fn function(mode: FogMode, [p0, p1]: [f32; 2]) -> FogFunction {
+    FogFunction { mode, p0, p1, p2: 0.0, per_vertex: false }
+}
+
+/// A mixture of two registers by the fog's factor.
+fn mixed(full: FinalRegister, none: FinalRegister) -> Combiners {
+    let input = |register| FinalInput { register, component: Component::Rgb, invert: false };
+    let showing = Combiners::showing(FinalRegister::PrimaryColor);
+    let mut inputs = [FinalInput::zero(Component::Rgb); 6];
+    inputs[0] = FinalInput { component: Component::Alpha, ..input(FinalRegister::Fog) };
+    (inputs[1], inputs[2]) = (input(full), input(none));
+    Combiners { final_combiner: FinalCombiner { inputs, ..showing.final_combiner }, ..showing }
+}
+
+/// A draw in fog; each vertex with its fog coordinate.
+fn foggy(
+    topology: Topology,
+    vertices: impl Iterator<Item = (Vertex, f32)>,
+    function: FogFunction,
+    color: [u8; 3],
+) -> Draw {
+    let vertex = |(vertex, d): (Vertex, f32)| Vertex {
+        fog: passed(&function, Profile::Nv2a, d),
+        fog_coordinate: Some(d),
+        ..vertex
+    };
+    let fog = Fog { enabled: true, color, function: Some(function) };
+    let combiners = mixed(FinalRegister::PrimaryColor, FinalRegister::Fog);
+    Draw { fog, combiners, ..draw(topology, vertices.map(vertex).collect()) }
+}
+
+/// Four triangles, from near to far.
+const TRIANGLES: [[f32; 3]; 12] = [
+    [-1.5, -1.5, 0.0],
+    [-2.5, 0.6, 0.0],
+    [-0.5, 0.6, 0.0],
+    [0.0, -1.5, 5.0],
+    [-1.0, 0.75, 10.0],
+    [2.0, 0.75, 20.0],
+    [5.0, -2.0, 30.0],
+    [3.0, 2.0, 40.0],
+    [12.0, 2.0, 70.0],
+    [20.0, -10.0, 50.0],
+    [12.0, 10.0, 125.0],
+    [80.0, 10.0, 200.0],
+];
+
+/// The farthest depth that is drawn, in the steps of [`space::window`].
+const FARTHEST: DepthRange = DepthRange { lowest: 0.0, highest: 65535.0, clamps: false, drops_triangles: false };
+
+/// The triangles in white, through the fixed function or a vertex program, with a coordinate made of each one's distance. The tip of the last
+/// lies beyond the farthest depth.
+fn triangles(is_program: bool, coordinate: impl Fn(f32) -> f32, function: FogFunction, color: [u8; 3]) -> Draw {
+    let place = if is_program { space::programmed } else { space::fixed_function };
+    let vertices = TRIANGLES.into_iter().map(|[x, y, z]| {
+        let position = place([x, y, z, 1.0]);
+        (Vertex { position, ..Vertex::default() }, coordinate(position[3]))
+    });
+    let depth_test = DepthTest {
+        vertex_depths: VertexDepths::Steps,
+        range: Some(FARTHEST),
+        ..DepthTest::new(CompareFunction::Always, false)
+    };
+    // The programs' own depths end farther away.
+    let depth_test = (!is_program).then_some(depth_test);
+    Draw { depth_test, ..foggy(Topology::Triangles, vertices, function, color) }
+}
+
+fn one(clear: u32, draw: Draw) -> Drawn {
+    let mut canvas = Canvas::new(clear);
+    canvas.frame_buffer().depth = draw.depth_test.is_some().then_some(FAR_DEPTHS);
+    canvas.draw(draw);
+    canvas.colors()
+}
+
+fn all_modes(is_program: bool, coordinate: fn(f32) -> f32) -> Frames {
+    let mut frames = Frames::default();
+    for (name, mode) in MODES {
+        let function = function(mode, parameters(mode, 1.0));
+        let draw = triangles(is_program, coordinate, function, [0x30, 0x20, 0x7f]);
+        frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, draw));
+    }
+    frames
+}
+
+/// Fog: the depth before the eye.
+pub(super) fn planar() -> Frames {
+    all_modes(false, |w| w)
+}
+
+/// Fog_vsh: a vertex program passes w.
+pub(super) fn of_program() -> Frames {
+    all_modes(true, |w| w)
+}
+
+/// Fog_inf_coord: a vertex program passes the reciprocal of 0.
+pub(super) fn infinite() -> Frames {
+    all_modes(true, |_| f32::INFINITY)
+}
+
+/// Components that a vertex program writes, in its order, one instruction after the other, and the four values. An instruction that writes
+/// several counts as one: the first of them is the coordinate.
+const COMPONENTS: [(&str, [f32; 4]); 40] = [
+    ("W", [0.0, 0.25, 0.0, 0.0]),
+    ("W", [0.5, 0.5, 0.0, 0.0]),
+    ("W", [1.0, 0.0, 0.0, 0.5]),
+    ("W", [0.3, 0.3, 0.3, 1.0]),
+    ("W_X", [0.25, 0.0, 0.0, 0.5]),
+    ("W_X", [0.65, 0.0, 0.0, 0.0]),
+    ("W_Y", [1.0, 0.0, 1.0, 0.75]),
+    ("W_Y", [0.0, 0.75, 0.75, 0.25]),
+    ("W_Z_Y_X", [0.25, 0.5, 0.75, 1.0]),
+    ("W_Z_Y_X", [1.0, 0.75, 0.5, 0.25]),
+    ("X", [0.0, 0.0, 0.0, 0.0]),
+    ("X", [0.9, 0.0, 0.0, 0.0]),
+    ("X_Y_Z_W", [1.0, 0.25, 0.75, 0.5]),
+    ("X_Y_Z_W", [0.0, 0.33, 0.66, 0.9]),
+    ("Y", [0.0, 0.0, 0.0, 0.0]),
+    ("Y", [0.0, 0.1, 0.0, 0.0]),
+    ("Y", [0.0, 0.6, 0.0, 0.0]),
+    ("Z", [0.0, 0.0, 0.0, 0.0]),
+    ("Z", [0.0, 0.0, 0.2, 0.0]),
+    ("Z", [0.0, 0.0, 0.8, 0.0]),
+    ("XW", [0.25, 0.0, 0.0, 0.5]),
+    ("XW", [0.65, 0.0, 0.0, 0.0]),
+    ("XY", [0.25, 0.5, 0.0, 0.0]),
+    ("XY", [0.65, 0.75, 0.0, 0.0]),
+    ("XYZ", [0.25, 0.5, 0.75, 0.0]),
+    ("XYZ", [0.65, 0.75, 0.33, 0.0]),
+    ("XYZW", [0.25, 0.5, 0.75, 1.0]),
+    ("XYZW", [0.65, 0.75, 0.33, 0.0]),
+    ("XZ", [0.25, 0.0, 0.75, 0.0]),
+    ("XZ", [0.65, 0.0, 0.33, 0.0]),
+    ("XZW", [0.25, 0.0, 0.75, 1.0]),
+    ("XZW", [0.65, 0.0, 0.33, 0.0]),
+    ("YW", [0.0, 0.5, 0.0, 1.0]),
+    ("YW", [0.0, 0.75, 0.0, 0.0]),
+    ("YZ", [0.0, 0.5, 0.75, 0.0]),
+    ("YZ", [0.0, 0.75, 0.33, 0.0]),
+    ("YZW", [0.0, 0.5, 0.75, 1.0]),
+    ("YZW", [0.0, 0.75, 0.33, 0.0]),
+    ("ZW", [0.0, 0.0, 0.75, 1.0]),
+    ("ZW", [0.0, 0.0, 0.33, 0.0]),
+];
+
+/// The value that the chip takes: of the last instruction the first component.
+fn taken(written: &str, values: [f32; 4]) -> f32 {
+    let last = written.rsplit('_').next().and_then(|last| last.chars().next());
+    let component = last.and_then(|letter| "XYZW".find(letter)).unwrap_or_default();
+    values[component]
+}
+
+/// Fog_coord_vec4.
+pub(super) fn of_components() -> Frames {
+    let mut frames = Frames::default();
+    let function = function(FogMode::Linear, [1.0, 1.0]);
+    for (written, values) in COMPONENTS {
+        let draw = triangles(true, |_| taken(written, values), function, [0, 255, 0]);
+        let combiners = mixed(FinalRegister::Fog, FinalRegister::PrimaryColor);
+        let [x, y, z, w] = values;
+        let name = format!("{written}-{x:.2}_{y:.2}_{z:.2}_{w:.2}");
+        frames.push(name, one(0xff30_3030, Draw { combiners, ..draw }));
+    }
+    // Nothing is written: what the draws before have left.
+    let draw = triangles(true, |_| 0.25, function, [0, 255, 0]);
+    let mut combiners = mixed(FinalRegister::ConstantColor0, FinalRegister::PrimaryColor);
+    combiners.final_combiner.constants[0] = [127, 0, 191, 255];
+    frames.push("CoordNotSet", one(0xff34_1010, Draw { combiners, ..draw }));
+    frames
+}
+
+/// A rectangle of the screen whose right edge lies farther away: corners clockwise from the upper left, w on the left and on the right.
+fn panel(edges: [f32; 4], [left_w, right_w]: [f32; 2], colors: [[f32; 4]; 4], is_program: bool) -> [Vertex; 4] {
+    // The programs' inverse of their vertex program, and that, leave what lies before the centre before its pixel, a sixteenth after RAS-1.
+    let before = |edge: f32, centre: f32| if edge < centre { edge - 0.0625 } else { edge };
+    let [left, top, right, bottom] = edges;
+    let [left, top, right, bottom] = if is_program {
+        [before(left, 320.0), before(top, 240.0), before(right, 320.0), before(bottom, 240.0)]
+    } else {
+        unprojected(edges)
+    };
+    let corners =
+        [([left, top], left_w), ([right, top], right_w), ([right, bottom], right_w), ([left, bottom], left_w)];
+    let mut number = 0;
+    corners.map(|([x, y], w)| {
+        number += 1;
+        let diffuse = VertexColor::Floats(colors[number - 1]);
+        Vertex { position: [x, y, 0.0, w], diffuse, ..Vertex::default() }
+    })
+}
+
+/// Places of panels from the upper left corner on, row by row.
+fn grid(corner: [f32; 2], side: f32, gaps: [f32; 2]) -> impl Iterator<Item = [f32; 4]> {
+    let (right, bottom) = (640.0 - (corner[0] + side), 480.0 - side);
+    let [mut left, mut top] = corner;
+    std::iter::from_fn(move || {
+        let edges = (top < bottom).then(|| sized([left, top], [side, side]))?;
+        left += side + gaps[0];
+        if left >= right {
+            (left, top) = (corner[0], top + side + gaps[1]);
+        }
+        Some(edges)
+    })
+}
+
+/// Numbers that grow by a step, each rounded to single precision.
+fn steps(first: f32, step: f32) -> impl Iterator<Item = f32> {
+    std::iter::successors(Some(first), move |value| Some(value + step))
+}
+
+const RED: [u8; 3] = [255, 0, 0];
+
+/// Fog_param: 320 coordinates through eight multipliers, and 340 biases.
+pub(super) fn parameters_varied() -> Frames {
+    let mut frames = Frames::default();
+    for (name, mode) in MODES {
+        let name = name.replace("linear", "lin");
+        let bias = match mode {
+            FogMode::Linear | FogMode::LinearAbs => 2.0,
+            FogMode::Exp => 1.51,
+            FogMode::ExpAbs => 1.5075,
+            FogMode::Exp2 | FogMode::Exp2Abs => 1.5,
+        };
+        for multiplier in [1.0, 2.0, -1.0, -2.0, 0.5, -0.5, -0.25, 0.25] {
+            frames.make(format!("FogParam{multiplier:.2}-{name}"), move || {
+                let places = grid([60.0, 70.0], 24.0, [1.0, 1.0]).zip(steps(-1.4, 0.01));
+                let panels = places.flat_map(|(edges, d)| {
+                    panel(edges, [7.0, 8.0], [[0.0, 0.0, 1.0, 1.0]; 4], false).map(|vertex| (vertex, d))
+                });
+                one(0xff23_1f23, foggy(Topology::Quads, panels, function(mode, [bias, multiplier]), RED))
+            });
+        }
+        frames.make(format!("FogZeroBias-{name}"), move || {
+            let mut canvas = Canvas::new(0xff23_1f23);
+            for (edges, bias) in grid([48.0, 46.0], 24.0, [2.0, 1.0]).zip(steps(1.0, 0.005)) {
+                let panel = panel(edges, [8.0, 8.0], [[0.0, 0.5, 0.5, 1.0]; 4], false);
+                let panel = panel.into_iter().map(|vertex| (vertex, -1.0));
+                canvas.draw(foggy(Topology::Quads, panel, function(mode, [bias, 0.0]), RED));
+            }
+            canvas.colors()
+        });
+    }
+    frames
+}
+
+/// Where Fog_gen takes its coordinates from.
+const SOURCES: [&str; 5] = ["spec_alpha", "radial", "planar", "abs_planar", "fog_x"];
+
+/// The alphas of a panel's secondary colours.
+const SECONDARY_ALPHAS: [f32; 4] = [0.0, 1.0, 0.75, 0.25];
+
+/// The distance of a point from the eye.
+fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
+    let [left, top, right, bottom] = edges;
+    let [x, y] = [[left, top], [right, top], [right, bottom], [left, bottom]][corner];
+    let scale = space::window()[0][0];
+    let [x, y] = [f64::from(x) - 320.0, f64::from(y) - 240.0].map(|offset| offset * f64::from(w) / scale);
+    (x * x + y * y + f64::from(w) * f64::from(w)).sqrt() as f32
+}
+
+/// Fog_gen: panels farther and farther away, with coordinates of five sources; with a vertex program all but one take what it passes.
+pub(super) fn generated() -> Frames {
+    let mut frames = Frames::default();
+    for (name, mode) in MODES {
+        for source in SOURCES {
+            for is_program in [false, true] {
+                if is_program && source == "radial" {
+                    // What the chip makes of it differs from run to run.
+                    continue;
+                }
+                let path = if is_program { "VS" } else { "FF" };
+                frames.make(format!("FogGen_{path}-{name}-{source}"), move || {
+                    let [p0, p1] = match (source, mode) {
+                        ("spec_alpha", FogMode::Linear | FogMode::LinearAbs) if !is_program => [0.0, 2.0],
+                        ("spec_alpha", FogMode::Exp | FogMode::ExpAbs) if !is_program => [0.5, 1.0 / 16.0],
+                        ("spec_alpha", _) if !is_program => [0.5, (1.0_f64 / 32.0).sqrt() as f32],
+                        _ => parameters(mode, 0.0),
+                    };
+                    let places = grid([48.0, 70.0], 22.0, [2.0, 2.0]).zip(steps(-6.0, 0.5)).zip(steps(50.0, -0.2));
+                    let panels = places.flat_map(|((edges, z), fog_x)| {
+                        let w = [z + 7.0, z + 8.0];
+                        let mut corner = 0;
+                        panel(edges, w, [[0.0, 0.0, 1.0, 1.0]; 4], is_program).map(|vertex| {
+                            let [.., w] = vertex.position;
+                            let d = match source {
+                                _ if is_program => fog_x,
+                                "spec_alpha" => SECONDARY_ALPHAS[corner],
+                                "radial" => distance(edges, corner, w),
+                                "fog_x" => fog_x,
+                                // The plane is twice the depth.
+                                _ => 2.0 * w,
+                            };
+                            corner += 1;
+                            (vertex, d)
+                        })
+                    });
+                    one(0xff23_2623, foggy(Topology::Quads, panels, function(mode, [p0, p1]), RED))
+                });
+            }
+        }
+    }
+    frames
+}
+
+/// Coordinates of every kind, as words.
+const EXCEPTIONAL: [u32; 21] = [
+    0,
+    0x3f80_0000,
+    0x4120_0000,
+    0x42c8_0000,
+    0x447a_0000,
+    0xbf9e_b852,
+    0xc12c_0000,
+    0x7f80_0000,
+    0xff80_0000,
+    0x7fc0_0000,
+    0xffc0_0000,
+    0x7f80_0001,
+    0xff80_0001,
+    0x7f7f_ffff,
+    0xff7f_ffff,
+    0x0080_0000,
+    0x8080_0000,
+    0x007f_ffff,
+    0x807f_ffff,
+    0x0000_0001,
+    0x8000_0001,
+];
+
+/// The reciprocal as the vertex unit makes it: what is not normal is 0.
+fn reciprocal(value: f32) -> f32 {
+    let flushed = |value: f32| if value.is_subnormal() { 0.0_f32.copysign(value) } else { value };
+    flushed(1.0 / flushed(value))
+}
+
+fn exceptional_panel(edges: [f32; 4], d: f32) -> impl Iterator<Item = (Vertex, f32)> {
+    let colors = [[0.25, 0.5, 0.5, 1.0], [0.25, 0.25, 0.75, 1.0], [0.25, 0.0, 1.0, 1.0], [0.25, 0.75, 0.25, 1.0]];
+    panel(edges, [7.0, 9.0], colors, true).into_iter().map(move |vertex| (vertex, d))
+}
+
+/// Fog_exceptional_value: a vertex program passes coordinates of every kind, or their reciprocals; one of no number under 24 pairs of parameters.
+pub(super) fn exceptional() -> Frames {
+    let places = || grid([48.0, 70.0], 64.0, [24.0, 38.0]);
+    let mut frames = Frames::default();
+    for (name, mode) in MODES {
+        for source in SOURCES.into_iter().filter(|source| *source != "radial") {
+            for (prefix, is_reciprocal) in [("", false), ("RCP-", true)] {
+                frames.make(format!("{prefix}FogExc-{name}-{source}"), move || {
+                    let coordinates = EXCEPTIONAL.map(f32::from_bits);
+                    let coordinates = coordinates.map(|d| if is_reciprocal { reciprocal(d) } else { d });
+                    let panels = places().zip(coordinates).flat_map(|(edges, d)| exceptional_panel(edges, d));
+                    one(0xff23_2623, foggy(Topology::Quads, panels, function(mode, parameters(mode, 1.0)), RED))
+                });
+            }
+            for (prefix, d) in [("INF", f32::INFINITY), ("NaN", f32::NAN)] {
+                frames.make(format!("{prefix}-FogExc-{name}-{source}"), move || {
+                    let multipliers =
+                        [FogMode::Linear, FogMode::Exp, FogMode::Exp2].map(|mode| parameters(mode, 1.0)[1]);
+                    let [linear, exp, exp2] = multipliers;
+                    let biases = [-1.0, 1.0, 1.5, 1000.0].into_iter();
+                    let pairs = biases.flat_map(|p0| [linear, exp, exp2, 1.0, 0.0, -1000.0].map(|p1| [p0, p1]));
+                    let mut canvas = Canvas::new(0xff23_2623);
+                    for (edges, pair) in places().zip(pairs) {
+                        canvas.draw(foggy(Topology::Quads, exceptional_panel(edges, d), function(mode, pair), RED));
+                    }
+                    canvas.colors()
+                });
+            }
+        }
+    }
+    frames
+}

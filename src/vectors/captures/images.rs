@@ -1,0 +1,123 @@
+//! Images that the programs make for their textures.
+
+use ninebit::state::{Texels, Texture, TextureFormat, TextureImage, TextureKind};
+use ninebit_files::texels;
+
+/// R, G, B, A.
+pub(super) type Color = [u8; 4];
+
+/// What makes the texel of a column and row.
+pub(super) trait Image: Fn(u32, u32) -> Color {}
+
+impl<F: Fn(u32, u32) -> Color> Image for F {}
+
+/// A texture of words: faces, and in them levels.
+pub(super) fn of_words(
+    kind: TextureKind,
+    format: TextureFormat,
+    [width, height]: [u32; 2],
+    levels: u32,
+    words: Vec<u32>,
+) -> Texture {
+    let texels = Texels { width, height, levels, layers: 1, border: false, words: words.into() };
+    Texture { name: String::from("image"), kind, format, image: TextureImage::Texels(texels) }
+}
+
+/// The words of an image, row by row from the top.
+pub(super) fn words(format: TextureFormat, [width, height]: [u32; 2], image: impl Image) -> Vec<u32> {
+    let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+    rows.map(|(x, y)| texels::word(image(x, y), format)).collect()
+}
+
+/// An image as a texture whose size counts as 1.
+pub(super) fn texture(format: TextureFormat, size: [u32; 2], image: impl Image) -> Texture {
+    of_words(TextureKind::TwoDimensional, format, size, 1, words(format, size, image))
+}
+
+/// The same image, read by coordinates in texels.
+pub(super) fn in_texels(texture: Texture) -> Texture {
+    Texture { kind: TextureKind::Rectangle, ..texture }
+}
+
+/// The same words in another format of as many bytes.
+pub(super) fn read_as(texture: Texture, format: TextureFormat) -> Texture {
+    let TextureImage::Texels(image) = texture.image else { return Texture { format, ..texture } };
+    let words = image.words.iter().map(|word| word & texels::used_bits(format)).collect();
+    Texture { format, image: TextureImage::Texels(Texels { words, ..image }), ..texture }
+}
+
+/// A cube map of six images.
+pub(super) fn cube<I: Image>(format: TextureFormat, side: u32, faces: [I; 6]) -> Texture {
+    let words = faces.into_iter().flat_map(|face| words(format, [side, side], face)).collect();
+    of_words(TextureKind::Cube, format, [side, side], 1, words)
+}
+
+/// One colour.
+pub(super) fn solid(color: Color) -> impl Image {
+    move |_, _| color
+}
+
+/// A chequered field, the first colour in its upper left corner.
+pub(super) fn checker(colors: [Color; 2], size: u32) -> impl Image {
+    move |x, y| colors[((x / size + y / size) % 2) as usize]
+}
+
+/// 0 to below 255 over so many steps.
+fn ramp(at: u32, of: u32) -> u8 {
+    (f32::from(at as u16) * 255.0 / f32::from(of as u16)) as u8
+}
+
+/// Red grows downwards, where blue falls, and green to the right; alpha is the sum of red and green, its high bits cut off.
+pub(super) fn gradient([width, height]: [u32; 2]) -> impl Image {
+    move |x, y| {
+        let (down, right) = (ramp(y, height), ramp(x, width));
+        [down, right, 255 - down, down.wrapping_add(right)]
+    }
+}
+
+/// Red grows to the right, green downwards, blue is three quarters; all times a brightness of the distance from the middle, 0 to 1.
+pub(super) fn radial(side: u32, brightness: impl Fn(f32) -> f32) -> impl Fn(u32, u32) -> [u8; 3] {
+    let middle = f32::from((side - 1) as u16) / 2.0;
+    let farthest = (middle * middle + middle * middle).sqrt();
+    move |x, y| {
+        let [x, y] = [x, y].map(|at| f32::from(at as u16));
+        let distance = ((x - middle) * (x - middle) + (y - middle) * (y - middle)).sqrt() / farthest;
+        let brightness = brightness(distance);
+        let side = f32::from(side as u16);
+        [x / side, y / side, 0.75].map(|value| (value * brightness * 255.0) as u8)
+    }
+}
+
+/// The luminance of a colour, cut.
+pub(super) fn luminance([r, g, b, _]: Color) -> u8 {
+    (0.299 * f32::from(r) + 0.587 * f32::from(g) + 0.114 * f32::from(b)) as u8
+}
+
+/// The luminance of an image, with its alpha.
+pub(super) fn grey(image: impl Image) -> impl Image {
+    move |x, y| {
+        let color = image(x, y);
+        let l = luminance(color);
+        [l, l, l, color[3]]
+    }
+}
+
+/// 255 in the middle, falling with the square of the distance to 0 in the corners, cut.
+pub(super) fn bulge([width, height]: [u32; 2]) -> impl Fn(u32, u32) -> u8 {
+    let [right, down] = [width, height].map(|side| f32::from((side / 2) as u16));
+    let farthest = right * right + down * down;
+    move |x, y| {
+        let (dx, dy) = (f32::from(x as u16) - right, f32::from(y as u16) - down);
+        (255.0 * (1.0 - (dx * dx + dy * dy) / farthest)) as u8
+    }
+}
+
+/// Four gradients without alpha, and the bulge as the alpha of all.
+pub(super) fn four_gradients([width, height]: [u32; 2]) -> impl Image {
+    let (quarter, alpha) = ([width / 2, height / 2], bulge([width, height]));
+    let gradient = gradient(quarter);
+    move |x, y| {
+        let [r, g, b, _] = gradient(x % quarter[0], y % quarter[1]);
+        [r, g, b, alpha(x, y)]
+    }
+}

@@ -1,0 +1,176 @@
+//! RAS-1 to RAS-3: vertices on and beside sixteenths of a pixel, on the frame buffer and on textures; edges that meet pixels' centres.
+
+use super::draws::{Canvas, abgr, argb, draw, nearest, opaque, pasted, rectangle, sized, vertex, without_alpha};
+use super::images;
+use super::{Drawn, Frames};
+use ninebit::state::{Draw, FinalRegister, SurfaceFormat, Target, TextureFormat, TextureKind, Topology, VertexColor};
+
+/// What is added to the positions, as the names of frames have it.
+const BIASES: [(&str, f32); 9] = [
+    ("0.0000", 0.0),
+    ("0.0010", 0.001),
+    ("0.4999", 0.4999),
+    ("0.5000", 0.5),
+    ("0.5624", 0.5624),
+    ("0.5625", 0.5625),
+    ("0.5626", 0.5626),
+    ("0.9990", 0.999),
+    ("1.0000", 1.0),
+];
+
+const GREEN: u32 = 0xff00_9900;
+
+fn patch(edges: [f32; 4], color: u32) -> Draw {
+    without_alpha(rectangle(edges, VertexColor::Bytes(abgr(color))), FinalRegister::PrimaryColor)
+}
+
+/// A rectangle over a larger one that begins at the same place, without the bias.
+fn geometry(bias: f32) -> Drawn {
+    let mut canvas = Canvas::new(0xfe40_4040);
+    canvas.draw(patch([200.0, 120.0, 440.0, 360.0], 0xffff_00ff));
+    canvas.draw(patch([200.0 + bias, 120.0 + bias, 440.0, 360.0], GREEN));
+    canvas.colors()
+}
+
+/// Eight squares that meet.
+fn adjacent(bias: f32) -> Drawn {
+    let mut canvas = Canvas::new(0xfe40_4040);
+    canvas.draw(patch([120.0, 140.0, 520.0, 340.0], 0xffe0_e0e0));
+    for top in [140.0, 240.0] {
+        for left in [120.0, 220.0, 320.0, 420.0] {
+            canvas.draw(patch([left, top, left + 100.0, top + 100.0].map(|edge: f32| edge + bias), GREEN));
+        }
+    }
+    canvas.colors()
+}
+
+/// The sizes of four rectangles that are drawn on textures.
+const SIZES: [[u32; 2]; 4] = [[128, 128], [128, 32], [32, 128], [16, 64]];
+
+/// The textures are as large as the rectangles, or larger than the screen: then only their first rows hold what the last frame left.
+fn on_textures(bias: f32, is_large: bool) -> Drawn {
+    let mut canvas = Canvas::new(0xfe41_4041);
+    let first = |_, y| if y < 16 { argb(0xffff_00ff) } else { abgr(GREEN) };
+    let large = images::texture(TextureFormat::A8R8G8B8, [1024, 1024], first);
+    let mut corner = [248.0_f32, 168.0];
+    let mut shown = Vec::new();
+    for [width, height] in SIZES {
+        let size = [width, height].map(|side| f32::from(side as u16));
+        let draws = [patch([bias, bias, size[0] + bias, size[1] + bias], GREEN)];
+        let target = if is_large {
+            canvas.painted(&large, SurfaceFormat::A8R8G8B8, draws)
+        } else {
+            let clear_color = argb(0xffff_00ff);
+            let target = canvas.target(Target { clear_color, ..Target::new(width, height, SurfaceFormat::A8R8G8B8) });
+            canvas.draw_into(target, draws);
+            target
+        };
+        let texture = canvas.shown(target, TextureKind::Rectangle, TextureFormat::X8R8G8B8);
+        let draw = pasted(sized(corner, size), 0, nearest(texture), [0.0, 0.0, size[0], size[1]]);
+        shown.push(without_alpha(draw, FinalRegister::Texture0));
+        corner[0] += 144.0;
+        if corner[0] >= 496.0 {
+            corner = [248.0, corner[1] + 144.0];
+        }
+    }
+    for draw in shown {
+        canvas.draw(draw);
+    }
+    canvas.colors()
+}
+
+/// The next number below.
+fn before(value: f32) -> f32 {
+    f32::from_bits(value.to_bits() - 1)
+}
+
+/// A shape, with its columns along x or, mirrored, along y.
+type Corners = Vec<[f32; 2]>;
+
+/// Thin shapes along an axis, from 4 pixels on or, mirrored, from 45 on. `across`: four places on the other axis. `is_down`: the axis is y.
+fn combs(shapes: &mut Vec<Corners>, mut at: f32, across: [f32; 4], patches: [f32; 3], length: f32, is_down: bool) {
+    let [a0, a1, a2, a3] = across;
+    let mut put = |corners: &[[f32; 2]]| {
+        let corners = corners.iter().map(|[along, across]| if is_down { [*across, *along] } else { [*along, *across] });
+        shapes.push(corners.collect());
+    };
+    let step = 4.0_f32;
+    for n in 0..20_u8 {
+        let to = at + 0.5 + f32::from(n) * 0.0625;
+        if is_down {
+            put(&[[at + 1.9, a0], [before(at + 0.5), a0], [to, a2], [at + 1.9, a2]]);
+        } else {
+            put(&[[before(at + 0.5), a0], [at + 1.9, a0], [at + 1.9, a2], [to, a2]]);
+        }
+        at += step;
+    }
+    for n in 0..16_u8 {
+        let by = f32::from(n) * 0.0625;
+        let left = before((at + 0.5) - by);
+        if is_down {
+            put(&[[left, a0], [left, a3], [at + 0.5625 + by, a3]]);
+        } else {
+            put(&[[left, a0], [at + 0.5625 + by, a3], [left, a3]]);
+        }
+        at += step;
+    }
+    let mut bar = |from: f32, across: [f32; 2], to: f32| {
+        if is_down {
+            put(&[[from, across[0]], [from, across[1]], [to, across[1]], [to, across[0]]]);
+        } else {
+            put(&[[from, across[0]], [to, across[0]], [to, across[1]], [from, across[1]]]);
+        }
+    };
+    bar(at + 0.9, [a0, a3], at + 1.1);
+    at += step;
+    bar(at, [a0, a3], at + 0.5);
+    at += step;
+    bar(at + 0.4, [a0, a3], at + 0.6);
+    at += step;
+    bar(at + 0.5, [a0, a1], at + 2.4);
+    bar(before(at + 0.5625), [a1, a2], at + 2.4);
+    bar(at + 0.5625, [a2, a3], at + 2.4);
+    at += step;
+    bar(at + 0.5, [a0, a1], at + 1.0);
+    bar(at + 0.5, [a1, a2], before(at + 1.5625));
+    bar(at + 0.5, [a2, a3], at + 1.5625);
+    at += 5.0 * step;
+    let starts = [before(at + 0.5), at + 0.4375, at + 0.5];
+    for (start, place) in starts.into_iter().zip(patches) {
+        bar(start, [place, place + length], at + 0.5625);
+    }
+    for (start, place) in [-0.0625, -0.0624, 0.0].into_iter().zip(patches) {
+        bar(start, [place, place + length], 1.0);
+    }
+}
+
+/// TopLeftRaster.
+fn edges() -> Drawn {
+    let mut shapes = Vec::new();
+    combs(&mut shapes, 4.0, [45.0, 135.0, 315.0, 450.0], [50.0, 150.0, 250.0], 50.0, false);
+    combs(&mut shapes, 45.0, [320.0, 420.0, 520.0, 620.0], [320.0, 440.0, 560.0], 60.0, true);
+    for [top, bottom] in [[455.5, 456.6], [460.4, 461.5]] {
+        shapes.push(vec![[10.0, top], [630.0, top], [630.0, bottom], [10.0, bottom]]);
+    }
+    let mut canvas = Canvas::new(0xff20_2224);
+    for shape in shapes {
+        let vertices = shape.into_iter().map(|corner| vertex(corner, VertexColor::Bytes([51, 119, 136, 255])));
+        let draw = draw(Topology::Polygon, vertices.collect());
+        canvas.draw(Draw { combiners: opaque(FinalRegister::PrimaryColor), blend: None, ..draw });
+    }
+    canvas.colors()
+}
+
+/// Vertex_shader_rounding_tests.
+pub(super) fn frames() -> Frames {
+    let mut frames = Frames::default();
+    for (name, bias) in BIASES {
+        frames.push(format!("Geometry_{name}"), geometry(bias));
+        frames.push(format!("AdjacentGeometry_{name}"), adjacent(bias));
+        frames.make(format!("GeometrySubscreen_{name}"), move || on_textures(bias, false));
+        frames.make(format!("GeometrySuperscreen_{name}"), move || on_textures(bias, true));
+    }
+    frames.push("TopLeftRaster", edges());
+    frames.push("TopLeftRaster_Fixed", edges());
+    frames
+}

@@ -1,0 +1,586 @@
+//! TSH-1 to TSH-9, TEX-12: cube maps, dot products, reflections, bump maps and their luminance, dependent reads.
+
+use super::draws::{Canvas, FETCHED, WHOLE, abgr, draw, nearest, pasted, rectangle, sized, unprojected};
+use super::images::{self, Color, checker, four_gradients, gradient, luminance, solid};
+use super::primitives::FAR_DEPTHS;
+use super::space::{self, DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
+use super::texel_formats::{packed, texture, variants};
+use super::{Drawn, Frames, assets};
+use ninebit::state::{
+    Combiners, CompareFunction, DepthTest, DotMapping, Draw, Filter, ShaderOperation, ShaderStage, TEXTURE_UNITS,
+    Texture, TextureFormat, TextureKind, TextureUnit, Topology, Vertex, VertexColor,
+};
+use std::sync::Arc;
+
+/// The corners of a cube's six faces.
+const CUBE: [[f32; 3]; 24] = [
+    [-1.0, -1.0, 1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+    [1.0, -1.0, -1.0],
+    [-1.0, -1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, 1.0, -1.0],
+    [1.0, 1.0, 1.0],
+    [-1.0, -1.0, -1.0],
+    [-1.0, -1.0, 1.0],
+    [-1.0, 1.0, 1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, 1.0, 1.0],
+    [1.0, 1.0, 1.0],
+    [1.0, 1.0, -1.0],
+    [-1.0, 1.0, -1.0],
+    [-1.0, -1.0, -1.0],
+    [1.0, -1.0, -1.0],
+    [1.0, -1.0, 1.0],
+    [-1.0, -1.0, 1.0],
+];
+
+/// Left, top, right and bottom of the faces in the image of normals.
+const UNFOLDED: [[f32; 4]; 6] = [
+    [0.25, 0.375, 0.5, 0.625],
+    [0.75, 0.375, 1.0, 0.625],
+    [0.5, 0.375, 0.75, 0.625],
+    [0.0, 0.375, 0.25, 0.625],
+    [0.25, 0.625, 0.5, 0.875],
+    [0.25, 0.125, 0.5, 0.375],
+];
+
+/// Where the two cubes stand.
+fn models() -> [Matrix; 2] {
+    [([-1.5, 0.0, 2.0], DEGREES_45), ([1.5, 0.0, 2.0], DEGREES_225)]
+        .map(|(place, angle)| space::product(space::rotated([angle, DEGREES_45, STRAIGHT]), space::moved_by(place)))
+}
+
+fn homogeneous([x, y, z]: [f32; 3]) -> [f64; 4] {
+    [f64::from(x), f64::from(y), f64::from(z), 1.0]
+}
+
+/// A vector after a matrix, in single precision.
+fn through(vector: [f64; 4], matrix: &Matrix) -> [f64; 4] {
+    space::transform(vector, matrix).map(|value| f64::from(value as f32))
+}
+
+/// Both cubes, of which the faces are drawn that are turned to the viewer. `coordinates`: of a corner of a model, by number.
+fn cubes(
+    canvas: &mut Canvas,
+    coordinates: impl Fn(&Matrix, usize) -> [[f32; 4]; TEXTURE_UNITS],
+    state: impl Fn(Draw) -> Draw,
+) {
+    canvas.frame_buffer().depth = Some(FAR_DEPTHS);
+    for model in models() {
+        let position = |point| {
+            let seen = through(through(through(homogeneous(point), &model), &space::eye()), &space::window());
+            let [x, y, z, w] = seen.map(|value| value as f32);
+            [x / w, y / w, z / w, w]
+        };
+        let corners = CUBE.map(position);
+        let mut vertices = Vec::new();
+        for face in 0..6 {
+            let corner = |n: usize| corners[4 * face + n % 4].map(f64::from);
+            let area: f64 = (0..4).map(|n| corner(n)[0] * corner(n + 1)[1] - corner(n + 1)[0] * corner(n)[1]).sum();
+            if area <= 0.0 {
+                continue;
+            }
+            vertices.extend((4 * face..4 * face + 4).map(|n| {
+                let [x, y, z, w] = corners[n];
+                let (position, diffuse) = ([x, y, z / 65535.0, w], VertexColor::Bytes([255; 4]));
+                Vertex { position, diffuse, texture_coordinates: coordinates(&model, n), ..Vertex::default() }
+            }));
+        }
+        let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
+        canvas.draw(state(Draw { depth_test, ..draw(Topology::Quads, vertices) }));
+    }
+}
+
+/// A cube map of chequered faces.
+fn chequered() -> Texture {
+    let faces = [
+        [0xff77_77ff, 0xff22_2222],
+        [0xff55_3366, 0xffdd_dddd],
+        [0xff55_ff55, 0xff22_2222],
+        [0xff33_aaaa, 0xffdd_dddd],
+        [0xffff_5555, 0xff22_2222],
+        [0xffaa_aa33, 0xffdd_dddd],
+    ];
+    images::cube(TextureFormat::A8B8G8R8, 64, faces.map(|words| checker(words.map(abgr), 4)))
+}
+
+/// A cube map of faces that are black in the middle, each in channels of its own.
+fn radial() -> Texture {
+    let brightness = |distance: f32| {
+        if distance < 0.25 { distance / 0.25 * 0.5 } else { 0.5 + (distance - 0.25) / 0.75 * 0.5 }
+    };
+    let face = |channels: [bool; 3]| {
+        let image = images::radial(64, brightness);
+        move |x: u32, y: u32| {
+            let value = image(x, y).into_iter().max().unwrap_or_default();
+            let [r, g, b] = channels.map(|has| if has { value } else { 0 });
+            [r, g, b, 255]
+        }
+    };
+    let (yes, no) = (true, false);
+    let channels = [[yes, no, no], [yes, no, yes], [no, yes, no], [yes, yes, no], [no, no, yes], [no, yes, yes]];
+    images::cube(TextureFormat::A8B8G8R8, 64, channels.map(face))
+}
+
+/// The inverse, in double precision.
+fn inverse(matrix: Matrix) -> Matrix {
+    let (mut left, mut right) = (matrix, space::IDENTITY);
+    for column in 0..4 {
+        let pivot = (column..4).max_by(|a, b| left[*a][column].abs().total_cmp(&left[*b][column].abs()));
+        let pivot = pivot.unwrap_or(column);
+        left.swap(column, pivot);
+        right.swap(column, pivot);
+        let by = left[column][column];
+        left[column] = left[column].map(|value| value / by);
+        right[column] = right[column].map(|value| value / by);
+        for row in (0..4).filter(|row| *row != column) {
+            let by = left[row][column];
+            for n in 0..4 {
+                left[row][n] -= by * left[column][n];
+                right[row][n] -= by * right[column][n];
+            }
+        }
+    }
+    right
+}
+
+/// Toward where a surface is seen from, in the programs.
+#[derive(Clone, Copy)]
+enum Eye {
+    /// All ones: the operation does not read it.
+    Unread,
+    /// From the vertex, of length 1.
+    Vertex,
+    Along([f32; 3]),
+}
+
+/// The normals' place, and rows of a matrix for three dot products, with the eye behind them.
+fn surface(model: &Matrix, eye: Eye, corner: usize) -> [[f32; 4]; TEXTURE_UNITS] {
+    let rows = inverse(space::product(space::product(*model, space::eye()), space::window()));
+    let eye = match eye {
+        Eye::Unread => [1.0; 3],
+        Eye::Along(axis) => axis.map(f64::from),
+        Eye::Vertex => {
+            let [x, y, z, _] = space::transform(homogeneous(CUBE[corner]), model);
+            let vector = [x, y, z + 7.0];
+            let length = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
+            vector.map(|value| value / length)
+        }
+    };
+    let [left, top, right, bottom] = UNFOLDED[corner / 4];
+    let [s, t] = [[left, top], [right, top], [right, bottom], [left, bottom]][corner % 4];
+    let row = |n: usize| [rows[n][0], rows[n][1], rows[n][2], eye[n]].map(|value| value as f32);
+    [[s, t, 0.0, 1.0], row(0), row(1), row(2)]
+}
+
+/// The stage of a texture shader that reads the first unit.
+fn stage(number: usize, operation: ShaderOperation, mapping: DotMapping) -> ShaderStage {
+    ShaderStage { operation, mapping, previous: 0, ..ShaderStage::conventional(number, true) }
+}
+
+/// A frame of cubes by the texture shader's last operation.
+fn dotted(operation: ShaderOperation, mapping: DotMapping, eye: Eye, cube: &Texture, normals: &Texture) -> Drawn {
+    let mut canvas = Canvas::new(0xfe13_1313);
+    let normals = canvas.texture(normals);
+    let cube = nearest(canvas.texture(cube));
+    let state = |mut draw: Draw| {
+        let is_diffuse = operation == ShaderOperation::DotReflectDiffuse;
+        // A diffuse lookup needs the reflection after it (TSH-10).
+        let (second, third) = if is_diffuse {
+            (operation, ShaderOperation::DotReflectSpecular)
+        } else {
+            (ShaderOperation::DotProduct, operation)
+        };
+        draw.textures = [Some(nearest(normals)), None, is_diffuse.then_some(cube), Some(cube)];
+        draw.texture_shader = [
+            ShaderStage::conventional(0, true),
+            stage(1, ShaderOperation::DotProduct, mapping),
+            stage(2, second, mapping),
+            stage(3, third, mapping),
+        ];
+        draw.combiners = Combiners::showing(FETCHED[if is_diffuse { 2 } else { 3 }]);
+        draw
+    };
+    cubes(&mut canvas, |model, corner| surface(model, eye, corner), state);
+    canvas.colors()
+}
+
+/// Texture_cubemap.
+pub(super) fn cube_maps() -> Frames {
+    let [checks, radial] = [chequered(), radial()].map(Arc::new);
+    let normals = images::texture(TextureFormat::A8B8G8R8, [256, 256], assets::pixels(assets::NORMALS));
+    let normals = Arc::new(normals);
+    let mut frames = Frames::default();
+    for (name, q) in [("0.0", 0.0), ("-0.0", -0.0), ("1.0", 1.0), ("-1.0", -1.0)] {
+        let checks = Arc::clone(&checks);
+        frames.make(format!("Cubemap_q{name}"), move || {
+            let mut canvas = Canvas::new(0xfe12_1212);
+            canvas.texture(&checks);
+            let along = |_: &Matrix, corner: usize| {
+                let [x, y, z] = CUBE[corner];
+                [[x, y, z, q]; TEXTURE_UNITS]
+            };
+            cubes(&mut canvas, along, |mut draw| {
+                draw.textures[3] = Some(nearest(0));
+                draw.texture_shader[3] = ShaderStage::conventional(3, true);
+                Draw { combiners: Combiners::showing(FETCHED[3]), ..draw }
+            });
+            canvas.colors()
+        });
+    }
+    for (name, mapping) in [
+        ("0to1", DotMapping::ZeroToOne),
+        ("-1to1D3D", DotMapping::MinusOneToOneD3d),
+        ("-1to1GL", DotMapping::MinusOneToOneGl),
+        ("-1to1", DotMapping::MinusOneToOne),
+        ("HiLo_1", DotMapping::Hilo1),
+        ("HiLoHemi", DotMapping::HiloHemisphere),
+    ] {
+        let mut make = |prefix: String, operation, eye, cube: &Arc<Texture>| {
+            let [cube, normals] = [cube, &normals].map(Arc::clone);
+            frames.make(format!("{prefix}_{name}"), move || dotted(operation, mapping, eye, &cube, &normals));
+        };
+        let constant = |eye| ShaderOperation::DotReflectConstantEye { eye };
+        make("DotSTRCube".into(), ShaderOperation::DotProductCube, Eye::Vertex, &radial);
+        make("DotReflectDiffuse".into(), ShaderOperation::DotReflectDiffuse, Eye::Unread, &checks);
+        make("DotReflectSpec".into(), ShaderOperation::DotReflectSpecular, Eye::Unread, &radial);
+        make("DotReflectSpecConst".into(), constant([0.0, 0.0, -7.0]), Eye::Unread, &radial);
+        for (axis, eye) in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].into_iter().enumerate() {
+            make(format!("DotReflectSpec_{axis}"), ShaderOperation::DotReflectSpecular, Eye::Along(eye), &radial);
+            make(format!("DotReflectConst_{axis}"), constant(eye), Eye::Unread, &checks);
+        }
+    }
+    frames
+}
+
+/// Coordinates of a rectangle's four corners.
+fn corners([s0, t0, s1, t1]: [f32; 4]) -> [[f32; 4]; 4] {
+    [[s0, t0], [s1, t0], [s1, t1], [s0, t1]].map(|[s, t]| [s, t, 0.0, 1.0])
+}
+
+/// A rectangle with coordinate sets of its corners, whose fragment is what a unit fetched.
+fn with_sets(edges: [f32; 4], sets: [[[f32; 4]; 4]; 3], shows: usize) -> Draw {
+    let draw = rectangle(edges, VertexColor::Bytes([255; 4]));
+    let vertices = draw.vertices.iter().enumerate().map(|(n, vertex)| {
+        let [first, second, third] = sets.map(|set| set[n]);
+        Vertex { texture_coordinates: [first, second, third, [0.0, 0.0, 0.0, 1.0]], ..vertex }
+    });
+    Draw { vertices: vertices.collect(), combiners: Combiners::showing(FETCHED[shows]), ..draw }
+}
+
+const NO_SET: [[f32; 4]; 4] = [[0.0, 0.0, 0.0, 1.0]; 4];
+
+/// The draw with units and stages from the first on.
+fn shaded(mut draw: Draw, units: &[(Option<TextureUnit>, ShaderStage)]) -> Draw {
+    for (number, (unit, stage)) in units.iter().enumerate() {
+        (draw.textures[number], draw.texture_shader[number]) = (*unit, *stage);
+    }
+    draw
+}
+
+/// A vector of length 1.
+fn unit_vector(vector: [f32; 3]) -> [f32; 4] {
+    let [x, y, z] = vector;
+    let length = (x * x + y * y + z * z).sqrt();
+    [x / length, y / length, z / length, 1.0]
+}
+
+const LARGE: [f32; 4] = [192.0, 112.0, 448.0, 368.0];
+const TEXELS: [f32; 4] = [0.0, 0.0, 128.0, 128.0];
+
+/// Waves and what is seen through them, in coordinates of texels.
+fn water() -> [Texture; 2] {
+    [assets::WATER, assets::SEEN].map(|file| {
+        let image = assets::pixels(file);
+        images::in_texels(images::texture(TextureFormat::A8R8G8B8, [128, 128], image))
+    })
+}
+
+/// Two dot products: of the direction from the eye, and of that of a light.
+fn dot_2d() -> Drawn {
+    let mut canvas = Canvas::new(0xff22_2222);
+    let [waves, seen] = water();
+    let waves = canvas.texture(&waves);
+    let seen = canvas.texture(&Texture { kind: TextureKind::TwoDimensional, ..seen });
+    let points = [[-1.0, 1.0, 4.0], [1.0, 1.0, 7.0], [1.0, -2.0, 6.0], [-1.0, -2.0, 4.0]];
+    let from_eye = points.map(|[x, y, z]| unit_vector([x, y, z + 7.0]));
+    let to_light = points.map(|[x, y, z]| unit_vector([-1.5 - x, 5.0 - y, -z]));
+    let draw = with_sets(unprojected(LARGE), [corners(TEXELS), from_eye, to_light], 2);
+    let mapping = DotMapping::ZeroToOne;
+    canvas.draw(shaded(
+        draw,
+        &[
+            (Some(nearest(waves)), ShaderStage::conventional(0, true)),
+            (None, stage(1, ShaderOperation::DotProduct, mapping)),
+            (Some(nearest(seen)), stage(2, ShaderOperation::DotProduct2D, mapping)),
+        ],
+    ));
+    canvas.colors()
+}
+
+fn dependent(operation: ShaderOperation) -> Drawn {
+    let mut canvas = Canvas::new(0xff28_2828);
+    let size = [256, 256];
+    let read = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, size, four_gradients(size)));
+    let shown = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, size, gradient(size)));
+    let draw = with_sets(unprojected(LARGE), [corners(WHOLE), NO_SET, NO_SET], 1);
+    canvas.draw(shaded(
+        draw,
+        &[
+            (Some(nearest(read)), ShaderStage::conventional(0, true)),
+            (Some(nearest(shown)), stage(1, operation, DotMapping::ZeroToOne)),
+        ],
+    ));
+    canvas.colors()
+}
+
+fn pass_through() -> Drawn {
+    let mut canvas = Canvas::new(0xff22_2222);
+    let colors = [[0.0, 0.0, 1.0, 0.25], [0.0, 1.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.75], [1.0, 1.0, 0.4, 0.33]];
+    let draw = with_sets(unprojected(LARGE), [colors, NO_SET, NO_SET], 0);
+    canvas.draw(shaded(draw, &[(None, stage(0, ShaderOperation::PassThrough, DotMapping::ZeroToOne))]));
+    canvas.colors()
+}
+
+/// A picture in a white frame.
+fn framed(canvas: &mut Canvas, edges: [f32; 4], texture: usize) {
+    let [left, top, right, bottom] = edges;
+    let frame = unprojected([left - 2.0, top - 2.0, right + 2.0, bottom + 2.0]);
+    canvas.draw(rectangle(frame, VertexColor::Bytes([255; 4])));
+    canvas.draw(pasted(unprojected(edges), 0, nearest(texture), TEXELS));
+}
+
+/// The second texture, moved by the first.
+fn moved(edges: [f32; 4], [first, second]: [usize; 2], matrix: [f32; 4], luminance: Option<[f32; 2]>) -> Draw {
+    let draw = with_sets(unprojected(edges), [corners(TEXELS), corners(TEXELS), NO_SET], 1);
+    let operation = ShaderOperation::BumpEnvironment { matrix, luminance };
+    shaded(
+        draw,
+        &[
+            (Some(nearest(first)), ShaderStage::conventional(0, true)),
+            (Some(nearest(second)), stage(1, operation, DotMapping::ZeroToOne)),
+        ],
+    )
+}
+
+fn bump_environment() -> Drawn {
+    let mut canvas = Canvas::new(0xff22_2222);
+    let [waves, seen] = water().map(|texture| canvas.texture(&texture));
+    framed(&mut canvas, sized([8.0, 64.0], [128.0; 2]), seen);
+    framed(&mut canvas, sized([8.0, 208.0], [128.0; 2]), waves);
+    let mut corner = [152.0, 64.0];
+    for matrix in [
+        [-1.0, 0.0, 1.0, 0.0],
+        [1.0, 1.0, 1.0, 1.0],
+        [0.0, 0.2, 0.0, 0.75],
+        [0.5, -0.5, 0.5, -0.5],
+        [0.3, 0.5, 0.7, 1.0],
+        [0.0, 1.0, -1.0, 0.0],
+        [0.0, 0.0, 1.0, 1.0],
+        [0.5, 0.8, 0.0, 0.0],
+    ] {
+        canvas.draw(moved(sized(corner, [128.0; 2]), [waves, seen], matrix, None));
+        corner[0] += 144.0;
+        if corner[0] + 128.0 > 640.0 {
+            corner = [152.0, corner[1] + 144.0];
+        }
+    }
+    canvas.colors()
+}
+
+fn bump_luminance() -> Drawn {
+    let mut canvas = Canvas::new(0xff22_2222);
+    let [waves, seen] = water().map(|texture| canvas.texture(&texture));
+    framed(&mut canvas, sized([8.0, 64.0], [64.0; 2]), seen);
+    framed(&mut canvas, sized([8.0, 144.0], [64.0; 2]), waves);
+    let mut left = 88.0;
+    for value in [0.0, 0.5] {
+        for scale in [0.0, 1.0, 2.0] {
+            let mut top = 96.0;
+            for offset in [0.0, 0.25, 0.75, 1.0] {
+                let edges = sized([left, top], [64.0; 2]);
+                canvas.draw(moved(edges, [waves, seen], [value; 4], Some([scale, offset])));
+                top += 80.0;
+            }
+            left += 80.0;
+        }
+        left += 40.0;
+    }
+    canvas.colors()
+}
+
+/// Pixel_shader.
+pub(super) fn programs() -> Frames {
+    let mut frames = Frames::default();
+    frames.make("DotST", dot_2d);
+    frames.make("StageDependentGreenBlue", || dependent(ShaderOperation::DependentGreenBlue));
+    frames.make("StageDependentAlphaRed", || dependent(ShaderOperation::DependentAlphaRed));
+    frames.make("Passthru", pass_through);
+    frames.make("BumpEnvMap", bump_environment);
+    frames.make("BumpEnvMapLuminance", bump_luminance);
+    frames
+}
+
+/// Squares in which the second column and the second row read more channels as signed.
+const SQUARES: [[usize; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+fn square_at([column, row]: [usize; 2]) -> [f32; 4] {
+    let place = |n: usize, first: f32| first + 180.0 * n as f32;
+    sized([place(column, 146.0), place(row, 66.0)], [168.0; 2])
+}
+
+/// A texture of two by two texels of a colour each; what lies beyond is like the last of them.
+fn quarters(colors: [Color; 4]) -> impl images::Image {
+    move |x, y| colors[usize::from(y >= 2) * 2 + usize::from(x >= 2)]
+}
+
+const SIZE: [u32; 2] = [256, 256];
+
+/// A bump map of four colours that moves a chequered field.
+struct Bumped {
+    format: TextureFormat,
+    is_grey: bool,
+    in_texels: bool,
+    /// R, G, B, A.
+    words: [u32; 4],
+    matrix: [f32; 4],
+    luminance: Option<[f32; 2]>,
+    fields: [Color; 2],
+}
+
+fn bumped(of: &Bumped) -> Drawn {
+    let Bumped { format, is_grey, in_texels, words, matrix, luminance: with_luminance, fields } = *of;
+    let colors = words.map(u32::to_be_bytes).map(|color| {
+        let l = luminance(color);
+        if is_grey { [l, l, l, color[3]] } else { color }
+    });
+    let words = match format {
+        // Its colour is white whatever is stored.
+        TextureFormat::A8 => packed(format, SIZE, solid([0; 4])),
+        _ => packed(format, SIZE, quarters(colors)),
+    };
+    let mut canvas = Canvas::new(0xfe20_2020);
+    let bumps = canvas.texture(&texture(format, in_texels, SIZE, words));
+    let field = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, SIZE, checker(fields, 8)));
+    for place in SQUARES {
+        let texel = if in_texels { 1.0 } else { 1.0 / 256.0 };
+        let sets = [corners([texel, texel, 3.0 * texel, 3.0 * texel]), corners(WHOLE), NO_SET];
+        let [blue, green] = place.map(|n| n == 1);
+        let signed = [with_luminance.is_some() && blue, green, blue, false];
+        let unit = TextureUnit { signed, ..bilinear(bumps) };
+        let operation = ShaderOperation::BumpEnvironment { matrix, luminance: with_luminance };
+        canvas.draw(shaded(
+            with_sets(square_at(place), sets, 1),
+            &[
+                (Some(unit), ShaderStage::conventional(0, true)),
+                (Some(nearest(field)), stage(1, operation, DotMapping::ZeroToOne)),
+            ],
+        ));
+    }
+    canvas.colors()
+}
+
+fn bilinear(texture: usize) -> TextureUnit {
+    TextureUnit { min_filter: Filter::Linear, mag_filter: Filter::Linear, ..nearest(texture) }
+}
+
+const STRAIGHT_MATRIX: [f32; 4] = [0.3, 0.0, 0.0, 0.5];
+const TURNED_MATRIX: [f32; 4] = [0.0, -0.1, 0.3, 0.0];
+
+/// Halves of 16 bits in two dot products.
+fn hilo(words: [u32; 4], fields: [Color; 2]) -> Drawn {
+    let mut canvas = Canvas::new(0xfe20_2020);
+    let colors = words.map(u32::to_be_bytes);
+    let format = TextureFormat::R16B16;
+    let bumps = canvas.texture(&texture(format, false, SIZE, packed(format, SIZE, quarters(colors))));
+    let field = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, SIZE, checker(fields, 8)));
+    for place in SQUARES {
+        let texel = 1.0 / 256.0;
+        let across = [0.0, 1.0, 1.0, 0.0].map(|third| [10.0, 0.0, third, 1.0]);
+        let down = [0.0, 0.0, 1.0, 1.0].map(|third| [0.0, 15.0, third, 1.0]);
+        let sets = [corners([texel, texel, 3.0 * texel, 3.0 * texel]), across, down];
+        // The sign of the low half is G's flag, and that of the high half A's.
+        let [low, high] = place.map(|n| n == 1);
+        let unit = TextureUnit { signed: [false, low, false, high], ..bilinear(bumps) };
+        canvas.draw(shaded(
+            with_sets(square_at(place), sets, 2),
+            &[
+                (Some(unit), ShaderStage::conventional(0, true)),
+                (None, stage(1, ShaderOperation::DotProduct, DotMapping::Hilo1)),
+                (Some(nearest(field)), stage(2, ShaderOperation::DotProduct2D, DotMapping::Hilo1)),
+            ],
+        ));
+    }
+    canvas.colors()
+}
+
+/// A variant's name behind the format's: which of two maps, and which of two matrices.
+type Maps = [(&'static str, bool, bool); 4];
+
+const MAPS: Maps = [("", false, false), ("_R90", false, true), ("_B", true, false), ("_B_R90", true, true)];
+
+/// Bump_map.
+pub(super) fn bump_maps() -> Frames {
+    let fields = [[0xfe, 0, 0, 255], [0x22, 0x21, 0x20, 0x7f]];
+    let maps =
+        [[0x007f_4500, 0x0080_4500, 0x007f_4500, 0x0080_4500], [0x0045_7f00, 0x0045_7f00, 0x0045_8000, 0x0045_8000]];
+    let mut frames = Frames::default();
+    for variant in variants() {
+        let name = variant.name();
+        let count = match name.as_str() {
+            "R16B16" => 0,
+            "G8B8" => 4,
+            _ => 1,
+        };
+        for (suffix, is_other, is_turned) in MAPS.into_iter().take(count) {
+            let bumps = Bumped {
+                format: variant.format,
+                is_grey: variant.is_grey,
+                in_texels: variant.in_texels,
+                words: maps[usize::from(is_other)],
+                matrix: if is_turned { TURNED_MATRIX } else { STRAIGHT_MATRIX },
+                luminance: None,
+                fields,
+            };
+            frames.make(format!("BumpMap_{name}{suffix}"), move || bumped(&bumps));
+        }
+    }
+    for (suffix, words) in [
+        ("", [0x0200_0100, 0x0200_0300, 0xff00_0100, 0xff00_0300]),
+        ("_B", [0x0200_0300, 0x0200_ff00, 0x0000_0300, 0x0000_ff00]),
+    ] {
+        frames.make(format!("BumpMap_R16B16{suffix}"), move || hilo(words, fields));
+    }
+    frames
+}
+
+/// Bump_env_lum.
+pub(super) fn bump_maps_with_luminance() -> Frames {
+    let fields = [[0xfe, 0, 0, 0x7f], [0x22, 0x21, 0x20, 0x7f]];
+    let maps =
+        [[0x7f01_4500, 0x8003_4500, 0x7f01_4500, 0x8003_4500], [0x0001_7f00, 0x0001_7f00, 0xff03_8000, 0xff03_8000]];
+    let mut frames = Frames::default();
+    for variant in variants() {
+        let name = variant.name();
+        let count = if matches!(name.as_str(), "R6G5B5" | "X8R8G8B8") { 4 } else { 1 };
+        for (suffix, is_other, is_turned) in MAPS.into_iter().take(count) {
+            let bumps = Bumped {
+                format: variant.format,
+                is_grey: variant.is_grey,
+                in_texels: variant.in_texels,
+                words: maps[usize::from(is_other)],
+                matrix: if is_turned { TURNED_MATRIX } else { [0.3, 0.0, 0.0, 5.0] },
+                luminance: Some([0.7, 0.3]),
+                fields,
+            };
+            frames.make(format!("BumpEnvLum_{name}{suffix}"), move || bumped(&bumps));
+        }
+    }
+    frames
+}

@@ -1,0 +1,102 @@
+//! Where the programs' points come to lie: their transforms, as matrices of single precision over which they multiply row vectors.
+
+use std::f32::consts::FRAC_1_SQRT_2;
+
+/// Rows by columns.
+pub(super) type Matrix = [[f64; 4]; 4];
+
+pub(super) const IDENTITY: Matrix =
+    [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, 0.0, 0.0, 1.0]];
+
+/// 1 / tan(22.5 degrees), as the programs have it: half of 45 degrees in single precision.
+const COTANGENT: f32 = 2.414_213_4;
+/// How far the viewer stands back from the origin.
+const DISTANCE: f64 = 7.0;
+
+fn cut(matrix: Matrix) -> Matrix {
+    matrix.map(|row| row.map(|value| f64::from(value as f32)))
+}
+
+fn times(a: Matrix, b: Matrix) -> Matrix {
+    a.map(|row| transform(row, &b))
+}
+
+/// A product of matrices of single precision.
+pub(super) fn product(a: Matrix, b: Matrix) -> Matrix {
+    cut(times(a, b))
+}
+
+/// A row vector times a matrix.
+pub(super) fn transform(vector: [f64; 4], matrix: &Matrix) -> [f64; 4] {
+    std::array::from_fn(|column| (0..4).map(|row| vector[row] * matrix[row][column]).sum())
+}
+
+/// A translation.
+pub(super) fn moved_by([x, y, z]: [f32; 3]) -> Matrix {
+    let mut matrix = IDENTITY;
+    matrix[3] = [f64::from(x), f64::from(y), f64::from(z), 1.0];
+    matrix
+}
+
+/// From the eye to the window: depths of 0 to 65,535 between the distances 1 and 200.
+pub(super) fn window() -> Matrix {
+    let (near, far) = (1.0_f32, 200.0_f32);
+    let depth = far / (far - near);
+    let mut projection = [[0.0; 4]; 4];
+    projection[0][0] = f64::from(COTANGENT / (640.0_f32 / 480.0));
+    projection[1][1] = f64::from(COTANGENT);
+    projection[2][2] = f64::from(depth);
+    projection[2][3] = 1.0;
+    projection[3][2] = f64::from(-near * depth);
+    let mut viewport = IDENTITY;
+    (viewport[0][0], viewport[1][1], viewport[2][2]) = (320.0, -240.0, 65535.0);
+    (viewport[3][0], viewport[3][1]) = (320.0, 240.0);
+    product(projection, viewport)
+}
+
+/// From the world to the eye.
+pub(super) fn eye() -> Matrix {
+    moved_by([0.0, 0.0, DISTANCE as f32])
+}
+
+/// A point of the world through the fixed function, whose pixels lie off by [`UNPROJECTED`](super::draws::UNPROJECTED).
+pub(super) fn fixed_function(point: [f32; 4]) -> [f32; 4] {
+    let matrix = product(eye(), window());
+    let [x, y, z, w] = transform(point.map(f64::from), &matrix);
+    let off = f64::from(super::draws::UNPROJECTED);
+    [x / w + off, y / w + off, z / w, w].map(|value| value as f32)
+}
+
+/// A point of the world through the programs' vertex program, which multiplies by the reciprocal of w, cut to single precision.
+pub(super) fn programmed(point: [f32; 4]) -> [f32; 4] {
+    let matrix = product(eye(), window());
+    let [x, y, z, w] = transform(point.map(f64::from), &matrix).map(|value| value as f32);
+    let exact = 1.0 / f64::from(w);
+    let nearest = exact as f32;
+    let reciprocal = if f64::from(nearest) > exact { f32::from_bits(nearest.to_bits() - 1) } else { nearest };
+    [x * reciprocal, y * reciprocal, z * reciprocal, w]
+}
+
+/// A point of the plane z = 0.1 as the programs' vertex program shows it, whose viewer stands 2.25 before the origin.
+pub(super) fn vertex_program([x, y]: [f32; 2]) -> [f32; 4] {
+    let w = 0.1_f32 + 2.25;
+    let across = x * (COTANGENT / (640.0_f32 / 480.0)) * 320.0 + w * 320.0;
+    let down = y * COTANGENT * -240.0 + w * 240.0;
+    [across / w, down / w, 0.0, w]
+}
+
+/// Rotations about x, y and z by angles of which sine and cosine are given, z first.
+pub(super) fn rotated(angles: [[f32; 2]; 3]) -> Matrix {
+    let [x, y, z] = angles.map(|angle| angle.map(f64::from));
+    let (mut about_x, mut about_y, mut about_z) = (IDENTITY, IDENTITY, IDENTITY);
+    (about_z[0][0], about_z[0][1], about_z[1][0], about_z[1][1]) = (z[1], z[0], -z[0], z[1]);
+    (about_y[0][0], about_y[0][2], about_y[2][0], about_y[2][2]) = (y[1], -y[0], y[0], y[1]);
+    (about_x[1][1], about_x[1][2], about_x[2][1], about_x[2][2]) = (x[1], x[0], -x[0], x[1]);
+    product(product(about_z, about_y), about_x)
+}
+
+/// Sine and cosine of no angle and of 45, 90 and 225 degrees in single precision.
+pub(super) const STRAIGHT: [f32; 2] = [0.0, 1.0];
+pub(super) const DEGREES_45: [f32; 2] = [FRAC_1_SQRT_2; 2];
+pub(super) const DEGREES_90: [f32; 2] = [1.0, -4.371_139e-8];
+pub(super) const DEGREES_225: [f32; 2] = [f32::from_bits(0xbf35_04f2), f32::from_bits(0xbf35_04f4)];

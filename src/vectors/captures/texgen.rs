@@ -1,0 +1,119 @@
+//! TEX-15 and INT-4: coordinates that the fixed function makes, and matrices over them.
+
+use super::draws::{Canvas, FETCHED, draw, nearest, opaque};
+use super::images::{self, gradient};
+use super::space::{self, DEGREES_90, IDENTITY, Matrix, STRAIGHT};
+use super::{Drawn, Frames};
+use ninebit::state::{Draw, ShaderStage, TEXTURE_UNITS, Texture, TextureFormat, Topology, Vertex, VertexColor};
+
+/// What coordinates are made of.
+const MODES: [&str; 6] = ["Disabled", "EyeLinear", "ObjectLinear", "SphereMap", "NormalMap", "ReflectionMap"];
+
+/// The matrices by name.
+fn matrices() -> [(&'static str, Matrix); 11] {
+    let scaled = |by: f64| {
+        let mut matrix = IDENTITY;
+        for n in 0..3 {
+            matrix[n][n] = by;
+        }
+        matrix
+    };
+    let shifted = |x, y| space::moved_by([x, y, 0.0]);
+    let about = |axis: usize| {
+        let mut angles = [STRAIGHT; 3];
+        angles[axis] = DEGREES_90;
+        space::rotated(angles)
+    };
+    let arbitrary =
+        [[0.708_939_2, 0.0, 0.515, 0.0], [0.0, 1.260_336_4, 0.49, 0.0], [0.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
+    [
+        ("Identity", IDENTITY),
+        ("Double", scaled(2.0)),
+        ("Half", scaled(0.5)),
+        ("ShiftHPlus", shifted(0.5, 0.0)),
+        ("ShiftHMinus", shifted(-0.5, 0.0)),
+        ("ShiftVPlus", shifted(0.0, 0.5)),
+        ("ShiftVMinus", shifted(0.0, -0.5)),
+        ("RotateX", about(0)),
+        ("RotateY", about(1)),
+        ("RotateZ", about(2)),
+        ("Arbitrary", arbitrary),
+    ]
+}
+
+/// Coordinates of a corner at x, y of the world, before the matrix. The draws give no normals: those are zero.
+fn generated(mode: &str, [x, y]: [f64; 2], given: [f64; 2]) -> [f64; 4] {
+    match mode {
+        "Disabled" => [given[0], given[1], 0.0, 1.0],
+        "EyeLinear" => [x, y, 7.0, 1.0],
+        "ObjectLinear" => [x, y, 0.0, 1.0],
+        "NormalMap" => [0.0, 0.0, 0.0, 1.0],
+        // Nothing is reflected: toward the eye, a unit vector.
+        _ => {
+            let length = (x * x + y * y + 49.0).sqrt();
+            let [x, y, z] = [x, y, 7.0].map(|value| value / length);
+            if mode == "ReflectionMap" {
+                return [x, y, z, 1.0];
+            }
+            let m = 2.0 * (x * x + y * y + (z + 1.0) * (z + 1.0)).sqrt();
+            [x / m + 0.5, y / m + 0.5, z, 1.0]
+        }
+    }
+}
+
+fn image() -> Texture {
+    images::texture(TextureFormat::R8G8B8A8, [256, 128], gradient([256, 128]))
+}
+
+/// Two triangles over a rectangle of the world. A matrix stands to the left of its column.
+fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> Drawn {
+    let corners = [[-2.75, top], [2.75, top], [2.75, bottom], [-2.75, bottom]];
+    let given = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
+    let vertex = |n: usize| {
+        let [x, y] = corners[n];
+        let made = generated(mode, [f64::from(x), f64::from(y)], given[n]);
+        let made = matrix.map(|row| row.iter().zip(made).map(|(a, b)| a * b).sum::<f64>() as f32);
+        let [x, y, _, w] = space::fixed_function([x, y, 0.0, 1.0]);
+        let diffuse = VertexColor::Bytes([255; 4]);
+        Vertex { position: [x, y, 0.0, w], diffuse, texture_coordinates: [made; TEXTURE_UNITS], ..Vertex::default() }
+    };
+    let mut draw = draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(vertex).to_vec());
+    draw.textures[0] = Some(nearest(0));
+    draw.texture_shader[0] = ShaderStage::conventional(0, true);
+    let mut canvas = Canvas::new(0xfe20_2020);
+    canvas.texture(texture);
+    canvas.draw(Draw { combiners: opaque(FETCHED[0]), ..draw });
+    canvas.colors()
+}
+
+/// Texgen. The frame of SphereMap is not drawn: normals of no length have no rule there.
+pub(super) fn generation() -> Frames {
+    let texture = image();
+    let mut frames = Frames::default();
+    for mode in MODES.into_iter().filter(|mode| *mode != "SphereMap") {
+        frames.push(mode, shown(&texture, [1.75, -1.75], mode, &IDENTITY));
+    }
+    frames
+}
+
+/// Texgen_with_texture_matrix.
+pub(super) fn generation_and_matrices() -> Frames {
+    let texture = image();
+    let mut frames = Frames::default();
+    for mode in MODES {
+        for (name, matrix) in matrices() {
+            frames.push(format!("{mode}_{name}"), shown(&texture, [1.0, -2.5], mode, &matrix));
+        }
+    }
+    frames
+}
+
+/// Texture_Matrix: matrices over coordinates that are given.
+pub(super) fn texture_matrices() -> Frames {
+    let texture = image();
+    let mut frames = Frames::default();
+    for (name, matrix) in matrices() {
+        frames.push(name, shown(&texture, [1.0, -2.5], "Disabled", &matrix));
+    }
+    frames
+}
