@@ -219,6 +219,22 @@ fn texels_are_packed_by_cutting_off() {
     assert_eq!(words("L8", "Checker(width: 4, height: 2, cell: 2)"), [255, 255, 0, 0, 255, 255, 0, 0]);
 }
 
+/// Words as they are, unused bits too, until a draw writes them.
+#[test]
+fn targets_begin_as_textures() {
+    let loaded = parse(
+        "(version: 1, profile: Nv2a, targets: [(name: \"a\", width: 2, height: 1, format: X1R5G5B5O, contents: \"t\")], \
+         textures: { \"t\": (format: A1R5G5B5, kind: Rectangle, source: Texels(width: 2, height: 1, rows: [\"0421 7fff\"])) }, draws: [\
+         (vertices: Window([(position: (1, 0)), (position: (2, 0)), (position: (2, 1)), (position: (1, 1))]), topology: Quads, \
+         program: Combiners(stages: [()], final_combiner: (d: Invert(Zero), g: Zero)))])",
+    );
+    for engine in [engine::Engine::Scalar, engine::Engine::Fast] {
+        let frames = engine::render(&loaded.plan, &RenderOptions { engine, ..RenderOptions::default() });
+        assert_eq!(frames.surfaces[0].words, [0x0421, 0xffff], "{engine:?}");
+    }
+    assert!(loaded.warnings.is_empty(), "{:?}", loaded.warnings);
+}
+
 #[test]
 fn units_targets_as_textures_and_combiners() {
     let loaded = parse(

@@ -70,7 +70,7 @@ fn too_many_of_anything() {
     let square = |count: usize| "(name: \"a\"),".repeat(count);
     assert_eq!(refuse(&format!("{head} targets: [{}])", square(17))).diagnostics[0].code, "NB0608");
     assert_eq!(refuse(&format!("{head} draws: [{}])", "(),".repeat(4097))).diagnostics[0].code, "NB0604");
-    let textures: String = (0..17).map(|i| format!("\"{i}\": (),")).collect();
+    let textures: String = (0..4097).map(|i| format!("\"{i}\": (),")).collect();
     assert_eq!(refuse(&format!("{head} textures: {{ {textures} }})")).diagnostics[0].code, "NB0605");
     let list = "(position: (0, 0)),".repeat(3000);
     let draws = "(vertices: Window(\"v\")),".repeat(400);
@@ -177,15 +177,15 @@ fn thousands_of_misspelt_names_are_refused() {
 fn too_many_of_something_says_so_once_and_by_how_much() {
     let triangle = "vertices: Window([(position: (0, 0)), (position: (1, 0)), (position: (0, 1))])";
     let list = |count: usize, line: &dyn Fn(usize) -> String| (0..count).map(line).collect::<String>();
-    let textures = list(17, &|n| format!("\"t{n}\": (source: Solid(width: 1, height: 1, color: (0, 0, 0))),"));
-    let uses = list(17, &|n| format!("({triangle}, textures: [\"t{n}\"]),"));
+    let textures = list(4097, &|n| format!("\"t{n}\": (source: Solid(width: 1, height: 1, color: (0, 0, 0))),"));
+    let uses = list(4096, &|n| format!("({triangle}, textures: [\"t{n}\"]),"));
     let targets = list(20, &|n| format!("(name: \"g{n}\", width: 1, height: 1),"));
     let aimed = list(20, &|n| format!("(target: \"g{n}\", {triangle}),"));
     for (text, code, message) in [
         (
             format!("(version: 1, profile: Nv2a, textures: {{{textures}}}, draws: [{uses}])"),
             "NB0605",
-            "17 textures are 1 more than the limit `textures` of 16 allows",
+            "4097 textures are 1 more than the limit `textures` of 4096 allows",
         ),
         (
             format!("(version: 1, profile: Nv2a, targets: [{targets}], draws: [{aimed}])"),

@@ -108,7 +108,7 @@ const CASES: &[Case] = &[
     }),
     ("17 render targets are more than 16", |s| s.targets = vec![s.targets[0].clone(); 17]),
     ("4097 draws are more than 4096", |s| s.draws = vec![s.draws[0].clone(); 4097]),
-    ("17 textures are more than 16", |s| s.textures = vec![s.textures[0].clone(); 17]),
+    ("4097 textures are more than 4096", |s| s.textures = vec![s.textures[0].clone(); 4097]),
     ("the width of target `frame` is 0", |s| s.targets[0].width = 0),
     ("the height of target `frame` is 0", |s| s.targets[0].height = 0),
     ("the width of target `frame` is 1073741824", |s| (s.targets[0].width, s.targets[0].height) = (1 << 30, 1 << 30)),
@@ -128,6 +128,14 @@ const CASES: &[Case] = &[
     ("the window clip has 9 rectangles", |s| {
         let rectangle = Rectangle { x: 0, y: 0, width: 1, height: 1 };
         s.draws[0].window_clip = Some(WindowClip { rectangles: vec![rectangle; 9], exclusive: true });
+    }),
+    ("target `frame` begins with 3 words", |s| s.targets[0].contents = Some(vec![0; 3].into())),
+    ("word 1 that target `other` begins with is 0x100", |s| {
+        let pixels = (s.targets[1].width * s.targets[1].height) as usize;
+        let mut words = vec![0xff; pixels];
+        words[1] = 0x100;
+        (s.targets[1].format, s.targets[1].contents) = (SurfaceFormat::B8, Some(words.into()));
+        s.textures[1].format = TextureFormat::L8;
     }),
     ("target `frame` clears its depth to 0x1000000", |s| s.targets[0].depth.as_mut().unwrap().clear = 1 << 24),
     ("palette `colours` has 3 entries", |s| s.palettes[0].entries = vec![0; 3].into()),

@@ -96,7 +96,7 @@ impl Default for Limits {
             targets: 16,
             target_side: 4096,
             surface_bytes: 256 << 20,
-            textures: 16,
+            textures: 4096,
             texture_side: 4096,
             texture_bytes: 256 << 20,
             image_file_bytes: 64 << 20,

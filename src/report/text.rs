@@ -58,7 +58,8 @@ fn write_head(
     let [r, g, b, a] = cleared;
     writeln!(out, "pixel {x},{y} of target `{}`, profile {}", shown::name(target), plan.profile.name())?;
     write!(out, "{}", policies_text(&plan.policies))?;
-    writeln!(out, "cleared to R {r} G {g} B {b} A {a}")?;
+    let is_given = plan.targets.iter().any(|other| other.name == *target && other.contents.is_some());
+    writeln!(out, "{} R {r} G {g} B {b} A {a}", if is_given { "begins as" } else { "cleared to" })?;
     match left_out {
         0 => Ok(()),
         1 => writeln!(out, "\nthe first fragment is left out: `--fragments N` shows the last N"),

@@ -35,6 +35,7 @@ pub const CODES: &[(&str, &str)] = &[
     ("NB0223", "fog fields that do not go together"),
     ("NB0224", "a generated texture coordinate where there is none of its kind"),
     ("NB0225", "a clear that is a draw as well"),
+    ("NB0226", "a target that begins as a texture of another form"),
     ("NB0230", "levels that a texture cannot have"),
     ("NB0231", "a level or face of another size than its place asks for"),
     ("NB0232", "a texture source that does not go with the kind or the format"),

@@ -249,6 +249,7 @@ source! {
         height: u32,
         format: Name<state::SurfaceFormat>,
         clear: Clear<'a>,
+        contents: String,
         depth: Name<state::DepthFormat>,
         clip: Rectangle<'a>,
     }

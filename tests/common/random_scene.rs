@@ -203,7 +203,12 @@ fn target(c: &mut Choices<'_>, profile: Profile, n: u32, large: bool) -> Target 
         let clear = if c.once_in(3) { c.word() & full } else { full };
         DepthBuffer { format, clear, clear_stencil: 0 }
     });
-    Target { name: format!("target{n}"), width, height, format, clear_color: c.bytes(), depth, clip: None }
+    let clear_color = c.bytes();
+    // Words that follow from the colour, in one of four: scenes without them stay as they are.
+    let seed = u32::from_le_bytes(clear_color);
+    let word = |n: u32| seed.wrapping_add(n).wrapping_mul(0x9e37_79b1) >> (32 - 8 * format.bytes());
+    let contents = clear_color[3].is_multiple_of(4).then(|| (0..width * height).map(word).collect());
+    Target { name: format!("target{n}"), width, height, format, clear_color, contents, depth, clip: None }
 }
 
 fn draw(c: &mut Choices<'_>, given: &Given<'_>, n: u32) -> Draw {

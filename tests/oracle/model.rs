@@ -34,7 +34,10 @@ pub fn render(scene: &Scene, policies: &Policies) -> Vec<Surface> {
                 width: t.width,
                 height: t.height,
                 format: t.format,
-                words: vec![rop::store(t.format, t.clear_color.map(i128::from)); pixels],
+                words: t.contents.as_ref().map_or_else(
+                    || vec![rop::store(t.format, t.clear_color.map(i128::from)); pixels],
+                    |words| words.to_vec(),
+                ),
                 depth: t.depth.map_or(Vec::new(), |d| vec![d.clear + (u32::from(d.clear_stencil) << 24); pixels]),
             }
         })

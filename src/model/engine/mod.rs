@@ -246,7 +246,7 @@ impl<'a> Renderer<'a> {
     }
 }
 
-/// The surfaces as the clears leave them.
+/// The surfaces as the clears leave them, or with their contents.
 pub fn cleared(plan: &Plan) -> Frames {
     let clear = |target: &Target| {
         let pixels = target.width as usize * target.height as usize;
@@ -254,16 +254,22 @@ pub fn cleared(plan: &Plan) -> Frames {
             width: target.width,
             height: target.height,
             format: target.format,
-            words: vec![surface::pack(target.format, target.clear_color); pixels],
+            words: match &target.contents {
+                Some(words) => words.to_vec(),
+                None => vec![surface::pack(target.format, target.clear_color); pixels],
+            },
             depth: target.depth.map_or(Vec::new(), |depth| vec![depth.cleared(); pixels]),
         }
     };
     Frames { surfaces: plan.targets.iter().map(clear).collect() }
 }
 
-/// What the ideal's surface holds after the clear, R, G, B, A in 255ths: the colour as it was given, and what blending reads of
-/// channels that the format does not keep.
-pub fn cleared_colors(target: &Target) -> [u8; 4] {
+/// What the ideal's surface holds of pixel `at`, counted row by row, before the first draw, R, G, B, A in 255ths: what blending reads of the
+/// contents; or after the clear the colour as it was given, and what blending reads of channels that the format does not keep.
+pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
+    if let Some(words) = &target.contents {
+        return surface::read(target.format, words[at]);
+    }
     let read = surface::read(target.format, surface::pack(target.format, target.clear_color));
     let kept = surface::kept_channels(target.format);
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })

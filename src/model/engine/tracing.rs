@@ -204,10 +204,19 @@ impl<'a> Tracer<'a> {
         self.pixel
     }
 
-    /// R, G, B, A as a picture shows them, after the clear.
+    /// R, G, B, A as a picture shows them, before the first draw.
     pub fn cleared(&self) -> [u8; 4] {
         let target = self.target();
-        surface::show(target.format, surface::pack(target.format, target.clear_color))
+        let word = match &target.contents {
+            Some(words) => words[self.at()],
+            None => surface::pack(target.format, target.clear_color),
+        };
+        surface::show(target.format, word)
+    }
+
+    /// The pixel's number, row by row from the top.
+    fn at(&self) -> usize {
+        self.pixel.1 as usize * self.target().width as usize + self.pixel.0 as usize
     }
 
     /// How many fragments come before the first that is handed over.
@@ -239,11 +248,11 @@ impl<'a> Tracer<'a> {
         let mut frames = cleared(plan);
         // Whole frames are needed only where a later draw reads one.
         let rendered = plan.textures.iter().any(|t| t.image.target().is_some());
-        let at = self.pixel.1 as usize * description.width as usize + self.pixel.0 as usize;
+        let at = self.at();
         let word = frames.surfaces[self.target].words[at];
         let depth = frames.surfaces[self.target].depth.get(at).copied().unwrap_or(0);
         let depth = DepthStencil::new(depth);
-        let mut pixel = Pixel { word, depth, ideal: cleared_colors(description).map(f64::from) };
+        let mut pixel = Pixel { word, depth, ideal: cleared_colors(description, at).map(f64::from) };
         let mut passed_over = self.left_out;
         let mut finished = 0;
         for (index, planned) in self.draws() {

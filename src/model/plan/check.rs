@@ -98,12 +98,15 @@ impl Check<'_> {
     fn targets(&mut self) {
         let most = self.limits.target_side.min((GUARD / 16) as u32);
         for target in &self.scene.targets {
-            let Target { name, width, height, format, depth, .. } = target;
+            let Target { name, width, height, format, depth, contents, .. } = target;
             for (side, what) in [(*width, "width"), (*height, "height")] {
                 if !(1..=most).contains(&side) {
                     let message = format!("the {what} of target `{name}` is {side}");
                     self.refuse("RAS-0", message, format!("take 1 to {most}"));
                 }
+            }
+            if let Some(words) = contents {
+                self.contents(target, words);
             }
             self.only_nv2a("ROP-5", format.is_nv2a_only(), &format!("surface format {}", format.name()));
             if let Some(depth) = depth
@@ -127,6 +130,23 @@ impl Check<'_> {
                 let message = format!("target `{name}` clears a stencil that {} does not have", depth.format.name());
                 self.refuse("STN-1", message, "take Z24S8, or clear the stencil to 0");
             }
+        }
+    }
+
+    /// One word a pixel, of the pixel's bits.
+    fn contents(&mut self, target: &Target, words: &[u32]) {
+        let Target { name, width, height, format, .. } = target;
+        let pixels = u64::from(*width) * u64::from(*height);
+        if words.len() as u64 != pixels {
+            let message = format!("target `{name}` begins with {} words", words.len());
+            self.refuse(None, message, format!("its pixels take {pixels}"));
+        }
+        let bits = 8 * format.bytes();
+        if bits < 32
+            && let Some(at) = words.iter().position(|word| word >> bits != 0)
+        {
+            let message = format!("word {at} that target `{name}` begins with is {:#x}", words[at]);
+            self.refuse("ROP-5", message, format!("a pixel of {} has {bits} bits", format.name()));
         }
     }
 

@@ -17,7 +17,16 @@ impl Default for Scene {
 impl Target {
     /// A target of so many columns and rows, cleared to zero, without a depth buffer.
     pub fn new(width: u32, height: u32, format: SurfaceFormat) -> Self {
-        Target { name: "frame".into(), width, height, format, clear_color: [0; 4], depth: None, clip: None }
+        Target {
+            name: "frame".into(),
+            width,
+            height,
+            format,
+            clear_color: [0; 4],
+            contents: None,
+            depth: None,
+            clip: None,
+        }
     }
 }
 

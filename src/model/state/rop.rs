@@ -1,6 +1,7 @@
 //! Raster operations and the surfaces they write.
 
 use super::{Rectangle, TextureFormat, named};
+use std::sync::Arc;
 
 named! {
     /// A comparison of two unsigned integers, incoming value on the left.
@@ -394,6 +395,9 @@ pub struct Target {
     pub format: SurfaceFormat,
     /// R, G, B, A bytes; the clear stores them by the format's own rule.
     pub clear_color: [u8; 4],
+    /// What the target holds before the first draw, in place of the cleared colour: a word a pixel, row by row from the top, with no bit above
+    /// the format's. Bits that the format does not use are kept until a draw writes them.
+    pub contents: Option<Arc<[u32]>>,
     /// Depth buffer, if there is one.
     pub depth: Option<DepthBuffer>,
     /// Surface clip (CLP-2): nothing is drawn outside. `None`: the whole target.

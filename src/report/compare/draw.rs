@@ -109,9 +109,15 @@ impl<L: Lane> Surface<L> {
         Surface {
             first_row: first,
             width,
-            words: vec![surface::pack(target.format, target.clear_color); pixels],
+            words: match &target.contents {
+                Some(words) => words[first * width..end * width].to_vec(),
+                None => vec![surface::pack(target.format, target.clear_color); pixels],
+            },
             depth: target.depth.map_or(Vec::new(), |_| vec![word; pixels]),
-            held: vec![cleared_colors(target).map(L::byte); pixels],
+            held: match &target.contents {
+                Some(_) => (first * width..end * width).map(|at| cleared_colors(target, at).map(L::byte)).collect(),
+                None => vec![cleared_colors(target, 0).map(L::byte); pixels],
+            },
             states: vec![State { depth: memory, ..State::default() }; pixels],
         }
     }

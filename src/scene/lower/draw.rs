@@ -47,7 +47,7 @@ pub(super) fn draws<'a>(
     }
     let mut draws: Vec<Drawn> = Vec::with_capacity(list.len());
     let mut seen: HashMap<String, Range<usize>> = HashMap::new();
-    let mut written = vec![false; targets.list.len()];
+    let mut written: Vec<bool> = targets.list.iter().map(|target| target.contents.is_some()).collect();
     let mut budget = Budget { vertices: reader.limits.vertices, indices: reader.limits.indices, spent: false };
     for (index, raw) in list.iter().enumerate() {
         let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));

@@ -131,8 +131,9 @@ pub(super) fn scene<'a>(
     };
 
     let mut names = Names::read(reader, &file.names, &shared_names, folder);
-    let targets = target::targets(reader, &names, &file.targets.or(shared_targets));
+    let mut targets = target::targets(reader, &names, &file.targets.or(shared_targets));
     let mut textures = texture::textures(reader, &names, &targets, &file, folder);
+    target::contents(reader, &mut targets, &mut textures);
     let described = file.truth.is_some() || shared_truth.is_some();
     let draws = draw::draws(reader, &mut names, &targets, &mut textures, &file.draws, described);
     let truth = truth::truth(reader, &names, &file.truth, &shared_truth, &draws);

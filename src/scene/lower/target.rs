@@ -2,24 +2,28 @@
 #![allow(clippy::float_arithmetic, reason = "DEP-2: the depth that a clear stores is given as a float")]
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::names::Names;
+use super::texture::Textures;
 use super::*;
 pub(super) use ninebit::diagnostic::only_nv2a;
 use ninebit::number::convert;
 use ninebit::raster::depth;
-use ninebit::state::{DepthBuffer, SurfaceFormat, Target};
+use ninebit::state::{DepthBuffer, Named, SurfaceFormat, Target, TextureImage, TextureKind};
 
 /// The targets, and where they were named.
-pub(super) struct Targets {
+pub(super) struct Targets<'s> {
     pub(super) list: Vec<Target>,
     by_name: HashMap<String, usize>,
     places: Vec<Range<usize>>,
     /// There are too many: none is known.
     unread: bool,
+    /// Targets that begin as a texture, which are read later.
+    begins: Vec<(usize, Raw<'s, String>)>,
 }
 
-impl Targets {
+impl<'s> Targets<'s> {
     /// The target of that name; `None` once the reason has been recorded.
     pub(super) fn find<'a>(&self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
         let name = reader.read(raw)?;
@@ -49,8 +53,9 @@ pub(super) fn targets<'a>(
     reader: &mut Reader<'a>,
     names: &Names<'a>,
     raw: &Option<Raw<'a, source::List<'a, source::Target<'a>>>>,
-) -> Targets {
-    let mut targets = Targets { list: Vec::new(), by_name: HashMap::new(), places: Vec::new(), unread: false };
+) -> Targets<'a> {
+    let mut targets =
+        Targets { list: Vec::new(), by_name: HashMap::new(), places: Vec::new(), unread: false, begins: Vec::new() };
     let list = match raw {
         Some(raw) => {
             let list = reader.read(raw).unwrap_or_default();
@@ -95,6 +100,9 @@ pub(super) fn targets<'a>(
         }
         let target = target(reader, names, &fields, name.clone());
         bytes += u64::from(target.width) * u64::from(target.height) * if target.depth.is_some() { 8 } else { 4 };
+        if let Some(raw) = fields.contents {
+            targets.begins.push((targets.list.len(), raw));
+        }
         targets.add(name, place, target);
     }
     if let Some(raw) = raw
@@ -111,7 +119,7 @@ pub(super) fn targets<'a>(
     targets
 }
 
-impl Targets {
+impl Targets<'_> {
     fn add(&mut self, name: String, place: Range<usize>, target: Target) {
         self.by_name.insert(name, self.list.len());
         self.list.push(target);
@@ -126,6 +134,7 @@ fn default_target(name: String) -> Target {
         height: 480,
         format: SurfaceFormat::A8R8G8B8,
         clear_color: [0, 0, 0, 255],
+        contents: None,
         depth: None,
         clip: None,
     }
@@ -196,6 +205,49 @@ fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Targe
     }
     target.clip = fields.clip.as_ref().and_then(|raw| raster::clip(reader, &target, "clip of a target", raw));
     target
+}
+
+/// Gives targets the textures that they begin as.
+pub(super) fn contents<'a>(reader: &mut Reader<'a>, targets: &mut Targets<'a>, textures: &mut Textures) {
+    for (index, raw) in std::mem::take(&mut targets.begins) {
+        let Some(texture) = textures.find(reader, &raw) else { continue };
+        let (target, texture) = (&mut targets.list[index], &textures.list[texture]);
+        let Target { name, width, height, format, .. } = target;
+        let refused = match &texture.image {
+            TextureImage::Target { .. } | TextureImage::Depth { .. } => Some("is a render target".to_owned()),
+            TextureImage::Texels(texels) => {
+                let size = (texels.width, texels.height);
+                if size != (*width, *height) {
+                    Some(format!("has {} x {} texels, the target {width} x {height} pixels", size.0, size.1))
+                } else if texture.format.is_compressed()
+                    || texture.format.depth().is_some()
+                    || texture.format.bytes() != format.bytes()
+                {
+                    Some(format!(
+                        "is of format {}, whose texels are no pixels of {}",
+                        texture.format.name(),
+                        format.name()
+                    ))
+                } else if matches!(texture.kind, TextureKind::Cube | TextureKind::ThreeDimensional)
+                    || texels.levels > 1
+                    || texels.border
+                {
+                    Some("has faces, layers, levels or border texels".to_owned())
+                } else {
+                    target.contents = Some(Arc::clone(&texels.words));
+                    None
+                }
+            }
+        };
+        if let Some(why) = refused {
+            let message = format!("target \"{}\" cannot begin as this texture: it {why}", shorten(name));
+            reader.push(
+                Diagnostic::error("NB0226", reader.span(&raw), message)
+                    .label("does not fit")
+                    .help("take one picture of as many columns and rows, in a format whose texels have as many bytes"),
+            );
+        }
+    }
 }
 
 /// The depth that a clear stores, 0 to 1, of a float buffer any that is not negative, into a target that has a depth buffer.

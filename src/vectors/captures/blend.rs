@@ -1,8 +1,11 @@
 //! ROP-1 to ROP-6: blend equations with all factors, surface formats, the alpha test and the colour mask.
 
-use super::draws::{Canvas, WHOLE, abgr, draw, nearest, pasted, rectangle, sized, unprojected, vertex, without_alpha};
+use super::draws::{
+    Canvas, OVER, WHOLE, abgr, draw, nearest, pasted, rectangle, sized, unprojected, vertex, without_alpha,
+};
 use super::images::{self, checker, four_gradients, solid};
 use super::{Drawn, Frames};
+use ninebit::rop::surface;
 use ninebit::state::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, Draw, FinalRegister, SurfaceFormat, Target, Texture,
     TextureFormat, TextureKind, Topology, VertexColor,
@@ -266,6 +269,55 @@ pub(super) fn surfaces() -> Frames {
         {
             frames.make(format!("{name}_Add_SrcA_{suffix}"), move || textures_blended(format, read, factor));
         }
+    }
+    frames
+}
+
+/// A picture blended and opaque into memory of zeros, which is then read as 32 bits a pixel, whatever they were.
+fn surface_format(format: SurfaceFormat) -> Drawn {
+    let blend = if surface::blends(format) && format != SurfaceFormat::R5G6B5 { OVER } else { None };
+    let mut before = Canvas::new(0);
+    let size = [128, 128];
+    let picture = images::texture(TextureFormat::A8B8G8R8, size, four_gradients(size));
+    let picture = images::in_texels(images::read_as(picture, TextureFormat::A8R8G8B8));
+    let unit = nearest(before.texture(&picture));
+    // Behind the screen the memory goes on.
+    let (width, height) = (640, 480 * 4 / format.bytes());
+    let contents = Some(vec![0; (width * height) as usize].into());
+    *before.frame_buffer() = Target { contents, ..Target::new(width, height, format) };
+    let draw = |left: f32| pasted(sized([left, 96.0], [TILE, TILE]), 3, unit, WHOLE_TILE);
+    before.draw(Draw { blend, ..without_alpha(draw(184.0), FinalRegister::Texture3) });
+    before.draw(Draw { blend, ..draw(328.0) });
+    let mut canvas = Canvas::new(0);
+    // The memory takes the place of this.
+    let whole = images::in_texels(images::texture(TextureFormat::A8R8G8B8, [1, 1], solid([0; 4])));
+    let shown = nearest(canvas.texture(&whole));
+    let fields = checker([abgr(0xff20_2020), abgr(0xff00_0000)], 8);
+    let words = images::words(TextureFormat::A8B8G8R8, [640, 480], fields);
+    canvas.frame_buffer().contents = Some(words.into());
+    let half = |top: f32| pasted(sized([0.0, top], [640.0, 240.0]), 0, shown, [0.0, 0.0, 640.0, 240.0]);
+    canvas.draw(half(0.0));
+    canvas.draw(without_alpha(half(240.0), FinalRegister::Texture0));
+    let before = Some(before.colors().scene);
+    Drawn { before, ..canvas.colors() }
+}
+
+/// Surface_format.
+pub(super) fn surface_formats() -> Frames {
+    let mut frames = Frames::default();
+    for (name, format) in [
+        ("X1R5G5B5_Z1R5G5B5", SurfaceFormat::X1R5G5B5Z),
+        ("X1R5G5B5_O1R5G5B5", SurfaceFormat::X1R5G5B5O),
+        ("R5G6B5", SurfaceFormat::R5G6B5),
+        ("X8R8G8B8_Z8R8G8B8", SurfaceFormat::X8R8G8B8Z),
+        ("X8R8G8B8_O8R8G8B8", SurfaceFormat::X8R8G8B8O),
+        ("X1A7R8G8B8_Z1A7R8G8B8", SurfaceFormat::X1A7R8G8B8Z),
+        ("X1A7R8G8B8_O1A7R8G8B8", SurfaceFormat::X1A7R8G8B8O),
+        ("A8R8G8B8", SurfaceFormat::A8R8G8B8),
+        ("B8", SurfaceFormat::B8),
+        ("G8B8", SurfaceFormat::G8B8),
+    ] {
+        frames.make(format!("Fmt_{name}"), move || surface_format(format));
     }
     frames
 }

@@ -117,7 +117,7 @@ pub(super) fn surface_clip() -> Frames {
             [("", SurfaceFormat::R5G6B5), ("_B8", SurfaceFormat::B8), ("_G8B8", SurfaceFormat::G8B8)]
         {
             let view = scene(vec![Target::new(SIZE.0, SIZE.1, format)], vec![], image(area, area));
-            let drawn = Drawn { scene: of(vec![]), view: Some(view), shown: Shown::Colors };
+            let drawn = Drawn { scene: of(vec![]), before: None, view: Some(view), shown: Shown::Colors };
             frames.push(format!("{name}{suffix}"), drawn);
         }
         // A texture of no columns or rows is drawn whole.

@@ -104,7 +104,7 @@ pub(super) fn formats() -> Frames {
             for compressed in ["n", "y"] {
                 let float = if format.is_float() { "y" } else { "n" };
                 let name = format!("DepthFmt_{bits}_C{compressed}_FZ{float}_M{clear:06x}");
-                let drawn = |shown| Drawn { scene: scene.clone(), view: None, shown };
+                let drawn = |shown| Drawn { scene: scene.clone(), before: None, view: None, shown };
                 frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
                 frames.push(name, drawn(Shown::Colors));
             }

@@ -94,6 +94,15 @@ pub(super) fn pasted(edges: [f32; 4], unit: usize, state: TextureUnit, [s0, t0, 
     Draw { combiners: Combiners::showing(FETCHED[unit]), ..draw }
 }
 
+/// The draw so far away.
+pub(super) fn far(draw: Draw, w: f32) -> Draw {
+    let vertices = draw.vertices.iter().map(|vertex| {
+        let [x, y, z, _] = vertex.position;
+        Vertex { position: [x, y, z, w], ..vertex }
+    });
+    Draw { vertices: vertices.collect(), ..draw }
+}
+
 /// Coordinates of a whole texture whose size counts as 1.
 pub(super) const WHOLE: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
 
@@ -154,13 +163,9 @@ impl Canvas {
         format: SurfaceFormat,
         draws: impl IntoIterator<Item = Draw>,
     ) -> usize {
-        let TextureImage::Texels(Texels { width, height, .. }) = first.image else { return 0 };
-        let target = self.target(Target::new(width, height, format));
-        let texture = Texture { kind: TextureKind::Rectangle, ..first.clone() };
-        let contents = self.texture(&texture);
-        let [width, height] = [width, height].map(|side| f32::from(side as u16));
-        let copy = pasted([0.0, 0.0, width, height], 0, nearest(contents), [0.0, 0.0, width, height]);
-        self.draw_into(target, [Draw { blend: None, ..copy }]);
+        let TextureImage::Texels(Texels { width, height, words, .. }) = &first.image else { return 0 };
+        let contents = Some(Arc::clone(words));
+        let target = self.target(Target { contents, ..Target::new(*width, *height, format) });
         self.draw_into(target, draws);
         target
     }

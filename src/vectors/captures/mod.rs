@@ -7,10 +7,12 @@
 
 mod assets;
 mod blend;
+mod borders;
 mod clip;
 mod color_key;
 mod combiner;
 mod depth;
+mod depth_range;
 mod draws;
 mod fog;
 mod images;
@@ -30,7 +32,7 @@ use ninebit::frame::Surface;
 use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanError, PlanOptions};
 use ninebit::rop::surface;
-use ninebit::state::{Rectangle, Scene, SurfaceFormat};
+use ninebit::state::{Rectangle, Scene, SurfaceFormat, Texture, TextureFormat, TextureKind};
 use ninebit_files::picture::hexadecimal;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -57,6 +59,8 @@ enum Shown {
 #[derive(Clone, Debug)]
 struct Drawn {
     scene: Scene,
+    /// Drawn before: the memory of its first target is the first texture of the scene, of as many rows and columns as the frame buffer, A8R8G8B8.
+    before: Option<Scene>,
     /// Draws on the same memory in another format, whose rows begin where they did.
     view: Option<Scene>,
     shown: Shown,
@@ -65,7 +69,7 @@ struct Drawn {
 impl Drawn {
     /// The colours of a scene's first target.
     fn colors(scene: Scene) -> Drawn {
-        Drawn { scene, view: None, shown: Shown::Colors }
+        Drawn { scene, before: None, view: None, shown: Shown::Colors }
     }
 }
 
@@ -146,6 +150,7 @@ const SUITES: &[Suite] = &[
     ("Color_key", color_key::frames),
     ("Color_mask_blend", blend::color_mask),
     ("Combiner", combiner::frames),
+    ("Depth_Clamp", depth_range::clamped),
     ("Depth_buffer", depth::formats),
     ("Fog", fog::planar),
     ("Fog_coord_vec4", fog::of_components),
@@ -160,6 +165,7 @@ const SUITES: &[Suite] = &[
     ("Stencil", stencil::operations),
     ("Stencil_func", stencil::functions),
     ("Surface_clip", clip::surface_clip),
+    ("Surface_format", blend::surface_formats),
     ("Texgen", texgen::generation),
     ("Texgen_with_texture_matrix", texgen::generation_and_matrices),
     ("TextureWrapMode", sampling::wrap_modes),
@@ -167,18 +173,20 @@ const SUITES: &[Suite] = &[
     ("Texture_LOD_Bias", texel_formats::lod_bias),
     ("Texture_Matrix", texgen::texture_matrices),
     ("Texture_anisotropy", sampling::anisotropy),
-    ("Texture_border", texel_formats::borders),
-    ("Texture_border_color", texel_formats::border_color),
+    ("Texture_border", borders::borders),
+    ("Texture_border_color", borders::border_color),
     ("Texture_cubemap", shader::cube_maps),
     ("Texture_format", texel_formats::formats),
     ("Texture_palette", texel_formats::palettes),
     ("Texture_perspective", primitives::perspective),
+    ("Texture_render_target", texel_formats::render_targets),
     ("Texture_shadow_comparator", shadow::given),
     ("Texture_signed_component_tests", texel_formats::signed),
     ("Vertex_shader_rounding_tests", rounding::frames),
     ("Volume_texture", sampling::volumes),
     ("W_buffering", polygon_offset::z_buffers),
     ("Window_clip", clip::window_clip),
+    ("ZMinMaxControl", depth_range::controls),
 ];
 
 /// The frames of some suites, in the order of the table; of all, where none is named.
@@ -275,9 +283,12 @@ impl Frame {
     /// # Errors
     /// The scene cannot be planned.
     pub fn render(&self, options: &RenderOptions) -> Result<Vec<[u8; 4]>, Vec<PlanError>> {
-        let limits = Limits { textures: 4096, ..Limits::default() };
-        let plan = |scene: &Scene| Plan::compile_within(scene, &PlanOptions::default(), &limits);
-        let Drawn { scene, view, shown } = (self.make)();
+        let plan = |scene: &Scene| Plan::compile_within(scene, &PlanOptions::default(), &Limits::default());
+        let Drawn { mut scene, before, view, shown } = (self.make)();
+        if let Some(before) = before {
+            let frames = render(&plan(&before)?, options);
+            scene.textures[0] = memory(&frames.surfaces[0]);
+        }
         let mut frames = render(&plan(&scene)?, options);
         let mut words = std::mem::take(&mut frames.surfaces[0].words);
         if let Some(view) = view {
@@ -336,6 +347,15 @@ fn digest(pixels: &[[u8; 4]], text: &[Rectangle]) -> String {
     let outside = pixels.iter().enumerate().filter(|(at, _)| !holds(text, place(*at)));
     let bytes: Vec<u8> = outside.flat_map(|(_, pixel)| *pixel).collect();
     hexadecimal(&Sha256::digest(bytes)[..8])
+}
+
+/// The beginning of a surface's memory as a texture of 32 bits.
+fn memory(surface: &Surface) -> Texture {
+    let bytes = surface.format.bytes() as usize;
+    let memory: Vec<u8> = surface.words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(bytes)).collect();
+    let words: Vec<u32> = memory.as_chunks().0.iter().map(|four| u32::from_le_bytes(*four)).collect();
+    let words = words[..(SIZE.0 * SIZE.1) as usize].to_vec();
+    images::of_words(TextureKind::Rectangle, TextureFormat::A8R8G8B8, [SIZE.0, SIZE.1], 1, words)
 }
 
 /// Words of 32 bits as a surface of narrower ones sees the beginning of each row.

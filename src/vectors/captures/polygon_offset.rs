@@ -82,7 +82,7 @@ fn frame(format: DepthFormat, topology: Topology, positions: &[[f32; 3]], offset
         }),
         ..Draw::default()
     };
-    Drawn { scene: scene(vec![target], vec![], vec![draw]), view: None, shown: Shown::DepthStencil }
+    Drawn { scene: scene(vec![target], vec![], vec![draw]), before: None, view: None, shown: Shown::DepthStencil }
 }
 
 /// W_buffering: words of the z buffers.

@@ -40,6 +40,11 @@ pub(super) fn moved_by([x, y, z]: [f32; 3]) -> Matrix {
 
 /// From the eye to the window: depths of 0 to 65,535 between the distances 1 and 200.
 pub(super) fn window() -> Matrix {
+    window_to(65535.0)
+}
+
+/// The same with a deepest depth.
+pub(super) fn window_to(deepest: f64) -> Matrix {
     let (near, far) = (1.0_f32, 200.0_f32);
     let depth = far / (far - near);
     let mut projection = [[0.0; 4]; 4];
@@ -49,7 +54,7 @@ pub(super) fn window() -> Matrix {
     projection[2][3] = 1.0;
     projection[3][2] = f64::from(-near * depth);
     let mut viewport = IDENTITY;
-    (viewport[0][0], viewport[1][1], viewport[2][2]) = (320.0, -240.0, 65535.0);
+    (viewport[0][0], viewport[1][1], viewport[2][2]) = (320.0, -240.0, deepest);
     (viewport[3][0], viewport[3][1]) = (320.0, 240.0);
     product(projection, viewport)
 }

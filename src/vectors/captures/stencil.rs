@@ -24,7 +24,7 @@ fn test(function: CompareFunction, reference: u8, pass: StencilOperation) -> Ste
 /// A frame as colours, and as words of depth and stencil.
 fn both(frames: &mut Frames, name: &str, target: Target, draws: Vec<Draw>) {
     let scene = scene(vec![target], vec![], draws);
-    let drawn = |shown| Drawn { scene: scene.clone(), view: None, shown };
+    let drawn = |shown| Drawn { scene: scene.clone(), before: None, view: None, shown };
     frames.push(name, drawn(Shown::Colors));
     frames.push(format!("{name}_ZB"), drawn(Shown::DepthStencil));
 }

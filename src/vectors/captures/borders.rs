@@ -1,0 +1,159 @@
+//! TEX-7: addressing, border colours and border texels.
+
+use super::draws::{Canvas, FETCHED, WHOLE, abgr, argb, far, nearest, pasted, sized, unprojected, without_alpha};
+use super::images::{self, Color, Image, checker};
+use super::texel_formats::texture;
+use super::{Drawn, Frames, space};
+use ninebit::state::{
+    AddressMode, BORDER_TEXELS, Draw, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit,
+};
+
+/// Eight colours that go on from row to row, in fields of so many texels.
+fn blocks(colors: [Color; 8], size: u32) -> impl Image {
+    move |x, y| colors[((x / size + y / size) % 8) as usize]
+}
+
+fn pale(color: Color) -> [Color; 2] {
+    [color, [color[0], color[1], color[2], 0x66]]
+}
+
+/// Red, green, blue and white, each once opaque and once not.
+fn colors(first: Color, third: Color) -> [Color; 8] {
+    let [a, b] = pale(first);
+    let [c, d] = pale([0, 255, 0, 255]);
+    let [e, f] = pale(third);
+    let [g, h] = pale([255; 4]);
+    [a, b, c, d, e, f, g, h]
+}
+
+/// An image with border texels: a chequered field of grey around coloured ones. Of the programs' image of twice the size only four texels on each side are read.
+fn bordered([width, height]: [u32; 2]) -> Texture {
+    let field = checker([abgr(0xffcc_cccc), abgr(0xff44_4444)], 2);
+    let inner = blocks(colors([0, 0, 255, 255], [255, 0x44, 0x44, 255]), 2);
+    let image = move |x: u32, y: u32| {
+        let (column, row) = (x.wrapping_sub(BORDER_TEXELS), y.wrapping_sub(BORDER_TEXELS));
+        if column < width && row < height { inner(column, row) } else { field(x, y) }
+    };
+    let stored = [width, height].map(|side| side + 2 * BORDER_TEXELS);
+    let words = images::words(TextureFormat::A8B8G8R8, stored, image).into();
+    let texels = Texels { width, height, levels: 1, layers: 1, border: true, words };
+    let (name, format) = (String::from("bordered"), TextureFormat::A8B8G8R8);
+    Texture { name, kind: TextureKind::TwoDimensional, format, image: TextureImage::Texels(texels) }
+}
+
+fn addressed(mode: AddressMode, border_color: Color, unit: TextureUnit) -> TextureUnit {
+    TextureUnit { address_s: mode, address_t: mode, border_color, ..unit }
+}
+
+/// Nine squares of a group, with the coordinates of their upper left corners.
+fn nine(group: u8) -> Vec<([f32; 4], [f32; 2])> {
+    let (unit_width, unit_height) = ((5.5_f32 - 0.2) / 3.0, (3.5_f32 - 0.1) / 2.0);
+    let (width, height) = (unit_width / 3.0, unit_height / 3.0);
+    let left = -2.75 + f32::from(group % 3) * (unit_width + 0.1);
+    let top = if group < 3 { 1.75 + (unit_height * 0.25 + 0.1) } else { -0.2 };
+    let cell = |row: u8, column: u8| {
+        let (x, y) = (left + f32::from(column) * width, top - f32::from(row) * height);
+        let coordinates = [f32::from(column) - 1.0, f32::from(row) - 1.0];
+        let right = left + f32::from(column + 1) * width;
+        ([x, y, right, top - f32::from(row + 1) * height], coordinates)
+    };
+    (0..3).flat_map(|row| (0..3).map(move |column| (row, column))).map(|(row, column)| cell(row, column)).collect()
+}
+
+/// A rectangle of the world at z = 1, whose w its corners have.
+fn in_world([left, top, right, bottom]: [f32; 4], unit: TextureUnit, coordinates: [f32; 4]) -> Draw {
+    let [x0, y0, _, w] = space::fixed_function([left, top, 1.0, 1.0]);
+    let [x1, y1, ..] = space::fixed_function([right, bottom, 1.0, 1.0]);
+    far(pasted([x0, y0, x1, y1], 0, unit, coordinates), w)
+}
+
+/// One texture through every address mode; in `with_border` one of border texels too.
+fn modes(border_color: Color, other_color: Option<Color>) -> Drawn {
+    let mut canvas = Canvas::new(0xfe20_2020);
+    let image = blocks(colors([255, 0, 0, 255], [0x44, 0x44, 255, 255]), 2);
+    let plain = canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [32, 32], image));
+    let border = canvas.texture(&bordered([32, 32]));
+    for group in 0..6 {
+        for (edges, [s, t]) in nine(group) {
+            let mode = match group {
+                0 => AddressMode::Wrap,
+                1 => AddressMode::Mirror,
+                3 | 4 => AddressMode::ClampToBorder,
+                _ => AddressMode::ClampToEdge,
+            };
+            let draw = match (group, other_color) {
+                (4, None) => {
+                    // As far as the border texels go.
+                    let coordinates = [s, t, s + 1.0, t + 1.0].map(|at| at.clamp(-0.125, 1.125));
+                    in_world(edges, addressed(mode, [0; 4], nearest(border)), coordinates)
+                }
+                _ => {
+                    let color = if group == 4 { other_color.unwrap_or_default() } else { border_color };
+                    in_world(edges, addressed(mode, color, nearest(plain)), [s, t, s + 1.0, t + 1.0])
+                }
+            };
+            canvas.draw(draw);
+        }
+    }
+    canvas.colors()
+}
+
+/// Textures with border texels in nine sizes, without the border and with it.
+fn border_sizes() -> Drawn {
+    let sizes = [[1, 1], [2, 2], [4, 4], [8, 8], [16, 16], [32, 32], [16, 1], [8, 2], [4, 8]];
+    let mut canvas = Canvas::new(0xfe18_1818);
+    let textures = sizes.map(|size| canvas.texture(&bordered(size)));
+    for (top, shows_border) in [(80.0, false), (272.0, true)] {
+        let mut corner = [32.0, top];
+        for ([width, height], texture) in sizes.into_iter().zip(textures) {
+            let [s, t] = [width, height].map(|side| if shows_border { 4.0 / side as f32 } else { 0.0 });
+            let unit = addressed(AddressMode::ClampToBorder, [0; 4], nearest(texture));
+            canvas.draw(pasted(sized(corner, [64.0; 2]), 0, unit, [-s, -t, 1.0 + s, 1.0 + t]));
+            corner[0] += 96.0;
+            if corner[0] >= 32.0 + 96.0 * 6.0 {
+                corner = [32.0, corner[1] + 96.0];
+            }
+        }
+    }
+    canvas.colors()
+}
+
+/// Texture_border, without its cube maps.
+pub(super) fn borders() -> Frames {
+    let mut frames = Frames::default();
+    frames.make("2D", || modes([255, 0, 255, 0xf0], None));
+    frames.make("xemu#1034", || modes([0x55, 0x9f, 0xff, 0xf0], Some([0xff, 0x55, 0x33, 0xf0])));
+    frames.make("2D_BorderTex_SZ", border_sizes);
+    frames
+}
+
+/// Texture_border_color: the border colour beside texels of every format.
+pub(super) fn border_color() -> Frames {
+    use TextureFormat::*;
+    let formats = [A8, R5G6B5, R8B8, G8B8, R6G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
+    let in_texels = [A8, R5G6B5, G8B8, X1R5G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
+    let mut frames = Frames::default();
+    frames.make("TextureBorderColor", move || {
+        let mut canvas = Canvas::new(0xff10_1010);
+        let fields = checker([abgr(0xff00_0000), abgr(0xff44_4444)], 8);
+        let background = canvas.texture(&images::texture(A8B8G8R8, [256, 256], fields));
+        let behind = pasted(unprojected([0.0, 0.0, 640.0, 480.0]), 0, nearest(background), WHOLE);
+        canvas.draw(without_alpha(behind, FETCHED[0]));
+        let mut corner = [64.0, 96.0];
+        let all = formats.map(|format| (format, false)).into_iter().chain(in_texels.map(|format| (format, true)));
+        for (format, in_texels) in all {
+            // Every byte is 0x80.
+            let word = 0x8080_8080 & ninebit_files::texels::used_bits(format);
+            let number = canvas.texture(&texture(format, in_texels, [8, 8], vec![word; 64]));
+            let unit = addressed(AddressMode::ClampToBorder, argb(0x33ff_22cc), nearest(number));
+            let (low, high) = if in_texels { (-4.0, 12.0) } else { (-0.5, 1.5) };
+            canvas.draw(pasted(unprojected(sized(corner, [64.0; 2])), 0, unit, [low, low, high, high]));
+            corner[0] += 99.0;
+            if corner[0] > 640.0 - 99.0 {
+                corner = [64.0, corner[1] + 99.0];
+            }
+        }
+        canvas.colors()
+    });
+    frames
+}

@@ -1,0 +1,175 @@
+//! DEP-4, DEP-5: depths beyond a range that are dropped or limited, triangles that are dropped whole.
+
+use super::draws::{Canvas, FETCHED, UNPROJECTED, argb, draw, nearest};
+use super::images::{self, checker};
+use super::primitives::FAR_DEPTHS;
+use super::{Drawn, Frames, space};
+use ninebit::state::{
+    Combiners, CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, ShaderStage, TEXTURE_UNITS, TextureFormat,
+    Topology, Vertex, VertexColor, VertexDepths,
+};
+
+/// The deepest depth of 24 bits.
+const DEEPEST: f32 = 16_777_215.0;
+
+const WHOLE_RANGE: DepthRange = DepthRange { lowest: 0.0, highest: DEEPEST, clamps: false, drops_triangles: false };
+
+/// A quad of the world with a texture of 256 texels.
+fn textured(corners: [[f32; 3]; 4], depth_test: DepthTest) -> Draw {
+    let matrix = space::product(space::eye(), space::window_to(f64::from(DEEPEST)));
+    let texels = [[0.0, 0.0], [256.0, 0.0], [256.0, 256.0], [0.0, 256.0]];
+    let vertex = |n: usize| {
+        let [x, y, z] = corners[n].map(f64::from);
+        let [x, y, z, w] = space::transform([x, y, z, 1.0], &matrix);
+        let [x, y, z, w] = [x / w, y / w, z / w, w].map(|value| value as f32);
+        let [s, t] = texels[n];
+        Vertex {
+            position: [x + UNPROJECTED, y + UNPROJECTED, z, w],
+            diffuse: VertexColor::Bytes([255; 4]),
+            texture_coordinates: [[s, t, 0.0, 1.0]; TEXTURE_UNITS],
+            ..Vertex::default()
+        }
+    };
+    let mut draw = draw(Topology::Quads, [0, 1, 2, 3].map(vertex).to_vec());
+    draw.textures[0] = Some(nearest(0));
+    draw.texture_shader[0] = ShaderStage::conventional(0, true);
+    Draw { combiners: Combiners::showing(FETCHED[0]), depth_test: Some(depth_test), ..draw }
+}
+
+/// Two upright quads and a floor through both, whose depths have the range.
+fn floor(range: DepthRange, bias: f32) -> Drawn {
+    let mut canvas = Canvas::new(0xfe25_1135);
+    canvas.frame_buffer().depth = Some(FAR_DEPTHS);
+    let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
+    canvas.texture(&images::in_texels(images::texture(TextureFormat::A8R8G8B8, [256, 256], fields)));
+    let test = |range| DepthTest {
+        vertex_depths: VertexDepths::Steps,
+        range: Some(range),
+        ..DepthTest::new(CompareFunction::Less, true)
+    };
+    for (left, z) in [(-2.0, 2.0), (1.0, 10.0)] {
+        let right = left + 1.0;
+        let corners = [[left, 2.0, z], [right, 2.0, z], [right, -6.5, z], [left, -6.5, z]];
+        canvas.draw(textured(corners, test(WHOLE_RANGE)));
+    }
+    let corners = [[-10.0, -2.5, 20.0], [10.0, -2.5, 20.0], [10.0, -2.5, 0.0], [-10.0, -2.5, 0.0]];
+    let offset = PolygonOffset { bias, factor: 0.0 };
+    canvas.draw(textured(corners, DepthTest { offset, ..test(range) }));
+    canvas.colors()
+}
+
+/// Depth_Clamp: the frames of z buffers whose vertices lie before the eye.
+pub(super) fn clamped() -> Frames {
+    let mut frames = Frames::default();
+    for clamps in [false, true] {
+        for biased in [false, true] {
+            for whole in [false, true] {
+                let (lowest, highest) = if whole { (0.0, DEEPEST) } else { (14_988_020.0, 15_869_663.0) };
+                let range = DepthRange { lowest, highest, clamps, drops_triangles: false };
+                let drawn = floor(range, if biased { -500_000.0 } else { 0.0 });
+                let [clamps, biased, whole] = [clamps, biased, whole].map(u8::from);
+                // A vertex program puts the vertices where the fixed function does.
+                for program in [0, 1] {
+                    let name = format!("depth_clamp_W0_C{clamps}_ZB{biased}_FR{whole}_VSH{program}");
+                    frames.push(name, drawn.clone());
+                }
+            }
+        }
+    }
+    frames
+}
+
+/// What z and w of a block's quads are.
+#[derive(Clone, Copy)]
+enum Block {
+    GrowingZ,
+    GrowingW,
+    SmallW,
+    Ramps,
+    Growing,
+    WOfTen,
+}
+
+/// 40 quads of 16 pixels. Their depths, or w, grow from quad to quad.
+fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
+    let step = 150.0_f32 / 41.0;
+    let (mut z, mut w) = (0.0_f32, 0.0_f32);
+    for row in 0..8_u8 {
+        for column in 0..5_u8 {
+            let (x, y) = (left + 20.0 * f32::from(column), top + 20.0 * f32::from(row));
+            let shade = |value: f32| 0.25 + value / 150.0 * 0.75;
+            let [mut zs, mut ws] = [[z, z + step * 0.75], [w, w + step * 0.75]];
+            let (z_shades, w_shades) = (zs.map(shade), ws.map(shade));
+            let by_side = |color: fn(f32, f32) -> [f32; 3]| [0, 1].map(|n: usize| color(z_shades[n], w_shades[n]));
+            let colors = match block {
+                Block::GrowingZ => {
+                    ws = [1.0; 2];
+                    by_side(|z, _| [z; 3])
+                }
+                Block::Growing => by_side(|z, w| [z, 0.25, w]),
+                Block::GrowingW => {
+                    zs = [8.0, 120.0];
+                    by_side(|_, w| [0.33, 0.25, w])
+                }
+                Block::Ramps => {
+                    (zs, ws) = ([8.0, 120.0], [8.0, 120.0]);
+                    [[0.33, 0.75, 0.25], [0.33, 0.75, 0.8]]
+                }
+                Block::WOfTen => {
+                    ws = [10.0; 2];
+                    let [left, right] = z_shades;
+                    [[left, left, 0.25], [right, right, 0.8]]
+                }
+                Block::SmallW => {
+                    ws = [0.01, 0.0001];
+                    let [left, right] = z_shades;
+                    [[0.75, left, left], [right, right, 0.8]]
+                }
+            };
+            for (side, dx, dy) in [(0, 0.0, 0.0), (1, 16.0, 0.0), (1, 16.0, 16.0), (0, 0.0, 16.0)] {
+                let [r, g, b] = colors[side];
+                // The chip takes a w of 0 as a small one.
+                let position = [x + dx, y + dy, zs[side], ws[side].max(f32::EPSILON * 8.0)];
+                let diffuse = VertexColor::Floats([r, g, b, 1.0]);
+                vertices.push(Vertex { position, diffuse, ..Vertex::default() });
+            }
+            // Where a block has values of its own, they go on from there.
+            (z, w) = (zs[0] + step, ws[0] + step);
+        }
+    }
+}
+
+/// ZMinMaxControl: the frames of z buffers whose vertices go straight to the window.
+pub(super) fn controls() -> Frames {
+    let mut vertices = Vec::new();
+    let columns = [90.0_f32, 90.0 + 126.72 + 90.0, 90.0 + 126.72 + 90.0 + 126.72 + 90.0];
+    for (column, [upper, lower]) in columns.into_iter().zip([
+        [Block::GrowingZ, Block::GrowingW],
+        [Block::SmallW, Block::Ramps],
+        [Block::Growing, Block::WOfTen],
+    ]) {
+        block([column, 60.0], upper, &mut vertices);
+        block([column, 252.0], lower, &mut vertices);
+    }
+    let quads = draw(Topology::Quads, vertices);
+    let mut frames = Frames::default();
+    for (prefix, drops_triangles) in [("", false), ("NEARFAR_", true)] {
+        for (mode, clamps) in [("ZCULL", false), ("ZCLAMP", true)] {
+            let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
+            let depth_test = DepthTest {
+                vertex_depths: VertexDepths::Steps,
+                range: Some(range),
+                ..DepthTest::new(CompareFunction::Always, false)
+            };
+            let mut canvas = Canvas::new(0xff22_2228);
+            canvas.frame_buffer().depth = Some(FAR_DEPTHS);
+            canvas.draw(Draw { depth_test: Some(depth_test), ..quads.clone() });
+            let drawn = canvas.colors();
+            // A bit about w changes nothing here.
+            for suffix in ["", "_IgnW"] {
+                frames.push(format!("Ctrl_{prefix}{mode}{suffix}"), drawn.clone());
+            }
+        }
+    }
+    frames
+}
