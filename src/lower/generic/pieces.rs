@@ -459,7 +459,7 @@ fn raster(maker: &Maker) -> Vec<Piece> {
         ..byte(name, about, chooses, parameters, cases)
     };
     vec![
-        byte("nb_passes", "The alpha test.", "function", "@int alpha, @int reference", passes),
+        byte("nb_passes", "The alpha test.", "compare", "@int alpha, @int reference", passes),
         byte("nb_blends", "Whether a surface can be blended with.", "format", "", blends),
         four(
             "nb_truncated",
