@@ -438,8 +438,9 @@ fn errors_are_noticed() -> std::result::Result<(), Failed> {
 }
 
 /// Whole frames through shaders: each fragment's bytes, fetched texels, weights and destination word go in, as the model's trace has them, and the word that it stores has to
-/// come out; the last of each pixel are the frame that the engine draws.
+/// come out; the last of each pixel are the frame that the engine draws. Of every `NINEBIT_LOWER_FRAMES`-th row.
 fn frames() -> std::result::Result<(), Failed> {
+    let step = setting("NINEBIT_LOWER_FRAMES").map_or(1, |step| step as usize);
     for scene in ["w1", "w2", "w4"] {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../vectors/scenes/bench/{scene}.ron"));
         let loaded =
@@ -450,7 +451,7 @@ fn frames() -> std::result::Result<(), Failed> {
         let function = |(draw, planned)| Function::of_draw(&loaded.scene, draw, planned, &options);
         let functions: Vec<Function> = draws.iter().zip(&plan.draws).map(function).collect();
         let surface = &render(&plan, &RenderOptions::default()).surfaces[0];
-        let rows: Vec<u32> = (0..surface.height).collect();
+        let rows: Vec<u32> = (0..surface.height).step_by(step).collect();
         let parts: Vec<Vec<Given>> = std::thread::scope(|scope| {
             let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
             let (scene, plan, functions) = (&loaded.scene, &plan, &functions);
