@@ -16,7 +16,7 @@ use ninebit::state::{Policies, Profile, Register};
 use ninebit_files::guard::{Panic, caught};
 use ninebit_program::registers::{RegisterWords, Word, decode};
 use ninebit_report::trace_json;
-use ninebit_scene::{Loaded, SceneError};
+use ninebit_scene::{ErrorKind, Loaded, SceneError};
 
 /// How a call ended. The numbers are the exit statuses of the program.
 #[repr(i32)]
@@ -90,10 +90,10 @@ impl Failure {
 
 impl From<SceneError> for Failure {
     fn from(error: SceneError) -> Failure {
-        let status = match error.exit_code() {
-            4 => NinebitStatus::Missing,
-            5 => NinebitStatus::Limit,
-            _ => NinebitStatus::Invalid,
+        let status = match error.kind() {
+            ErrorKind::Invalid => NinebitStatus::Invalid,
+            ErrorKind::Missing => NinebitStatus::Missing,
+            ErrorKind::Limit => NinebitStatus::Limit,
         };
         Failure { status, text: error.render(false) }
     }

@@ -30,9 +30,13 @@ pub(super) fn items(text: &str, open: u8, close: u8) -> Option<Vec<&str>> {
                 at = after;
                 continue;
             }
-            // Characters and raw texts: left to the parser.
+            // Characters: left to the parser.
             b'\'' => return None,
-            b'r' if matches!(bytes.get(at + 1), Some(b'"' | b'#')) => return None,
+            b'r' if matches!(bytes.get(at + 1), Some(b'"' | b'#')) => {
+                at = raw_end(text, at)?;
+                end = at;
+                continue;
+            }
             b'(' | b'[' | b'{' => depth += 1,
             b')' | b']' | b'}' => {
                 depth = depth.checked_sub(1)?;
@@ -84,6 +88,21 @@ fn string_end(bytes: &[u8], mut at: usize) -> Option<usize> {
     }
 }
 
+/// The place behind the raw text, `r#"..."#` with any number of signs, whose `r` is at `at`.
+fn raw_end(text: &str, at: usize) -> Option<usize> {
+    let before = at.checked_sub(1).and_then(|before| text.as_bytes().get(before));
+    if before.is_some_and(|byte| byte.is_ascii_alphanumeric() || *byte == b'_') {
+        return None;
+    }
+    let signs = text[at + 1..].bytes().take_while(|byte| *byte == b'#').count();
+    let inside = at + 1 + signs + 1;
+    if text.as_bytes().get(inside - 1) != Some(&b'"') {
+        return None;
+    }
+    let close = format!("\"{}", "#".repeat(signs));
+    Some(inside + text.get(inside..)?.find(&close)? + close.len())
+}
+
 /// Names and values of fields in parentheses.
 pub(super) fn fields(text: &str) -> Option<Vec<(&str, &str)>> {
     items(text, b'(', b')')?
@@ -128,7 +147,11 @@ mod tests {
         assert_eq!(list("[a)"), None);
         assert_eq!(list("[a"), None);
         assert_eq!(list("['a']"), None);
-        assert_eq!(list("[r\"a\"]"), None);
+        assert_eq!(list("[r\"a\\\", b, r#\"c], \"#, for]"), Some(vec!["r\"a\\\"", "b", "r#\"c], \"#", "for"]));
+        assert_eq!(list("[r##\"a\"#, b]\"##]"), Some(vec!["r##\"a\"#, b]\"##"]));
+        for broken in ["[r\"a]", "[r#\"a\"]", "[r#a]", "[xr\"a\"]", "[r#"] {
+            assert_eq!(list(broken), None, "{broken}");
+        }
     }
 
     #[test]

@@ -14,22 +14,33 @@ use crate::session::Refused;
 /// An answer and its picture.
 type Shown = (Value, Vec<[u8; 4]>);
 
-/// A target after all draws, or after that one.
-pub(crate) fn draw((scene, plan): &(Scene, Plan), target: usize, until: Option<usize>) -> Result<Shown, Refused> {
-    let picture = match until.filter(|until| until + 1 < scene.draws.len()) {
-        None => picture(plan, target),
-        // Planned afresh: what later draws would paint over is not left out.
-        Some(until) => {
-            let mut part = scene.clone();
-            part.draws.truncate(until + 1);
-            let planned = Plan::compile(&part, &PlanOptions::default());
-            let planned =
-                planned.map_err(|errors| errors.into_iter().map(|error| error.message).collect::<String>())?;
-            picture(&Plan { policies: plan.policies, ..planned }, target)
-        }
-    };
-    let Rgba { width, height, pixels } = picture;
-    Ok((json!({ "width": width, "height": height, "digest": digest(width, height, &pixels) }), pixels))
+/// The plan of the first draws. Planned afresh: what later draws would paint over is not left out.
+pub(crate) fn stepped(scene: &Scene, until: usize, policies: Policies) -> Result<Plan, Refused> {
+    let mut part = scene.clone();
+    part.draws.truncate(until + 1);
+    let planned = Plan::compile(&part, &PlanOptions::default());
+    let planned = planned.map_err(|errors| errors.into_iter().map(|error| error.message).collect::<String>())?;
+    Ok(Plan { policies, ..planned })
+}
+
+/// A target after all draws: its colours, or with `depth` the words of its depth buffer, the lowest byte first and the stencil last.
+pub(crate) fn draw(plan: &Plan, target: usize, depth: bool) -> Result<Shown, Refused> {
+    let frames = render(plan, &RenderOptions::default());
+    let surface = &frames.surfaces[target];
+    let (width, height) = (surface.width, surface.height);
+    if !depth {
+        let pixels = surface.rgba8();
+        return Ok((json!({ "width": width, "height": height, "digest": digest(width, height, &pixels) }), pixels));
+    }
+    if surface.depth.is_empty() {
+        return Err("this target has no depth buffer".to_owned());
+    }
+    let (low, high) = surface.depths().fold((u32::MAX, 0), |(low, high), depth| (low.min(depth), high.max(depth)));
+    let pixels = surface.depths().zip(surface.stencils()).map(|(depth, stencil)| {
+        let [low, middle, high, _] = depth.to_le_bytes();
+        [low, middle, high, stencil]
+    });
+    Ok((json!({ "width": width, "height": height, "low": low, "high": high }), pixels.collect()))
 }
 
 fn picture(plan: &Plan, target: usize) -> Rgba {

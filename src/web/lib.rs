@@ -7,6 +7,7 @@ mod boundary;
 mod frame;
 mod program;
 mod session;
+mod shader;
 mod tree;
 
 pub use session::Session;

@@ -8,7 +8,7 @@ use ninebit::state::{
 };
 use ninebit_program::registers::{describe, encode};
 use ninebit_program::text::print;
-use ninebit_scene::outline::outline;
+use ninebit_scene::outline::{Content, Node, outline};
 use serde_json::{Value, json};
 
 use crate::session::Refused;
@@ -66,15 +66,16 @@ fn final_input(input: &FinalInput) -> Value {
 
 /// The draw's program, in the combiner language, with one part changed: `path` as in [`value`].
 pub(crate) fn changed(draw: &Draw, path: &Value, value: &Value) -> Result<String, Refused> {
-    if !draw.program_origin.is_empty() {
-        return Err("this program was written for an API: its text says what the combiners do".to_owned());
-    }
     let mut combiners = draw.combiners.clone();
     let path: Vec<String> = path.as_array().into_iter().flatten().map(word).collect();
     let path: Vec<&str> = path.iter().map(String::as_str).collect();
     set(&mut combiners, &path, value)?;
-    // The state of the first constants is shared with stages that have none of their own: those are told apart by the text.
-    Ok(format!("CombinerText({})", quoted(&print(&combiners))))
+    Ok(written(&combiners))
+}
+
+/// Combiners as scenes write them. The state of the first constants is shared with stages that have none of their own: those are told apart by the text.
+pub(crate) fn written(combiners: &Combiners) -> String {
+    format!("CombinerText({})", quoted(&print(combiners)))
 }
 
 fn word(part: &Value) -> String {
@@ -201,13 +202,20 @@ fn quoted(text: &str) -> String {
     format!("r{signs}\"\n{}\"{signs}", text.trim_end().to_owned() + "\n")
 }
 
-/// The scene's text with another program in a draw.
-pub(crate) fn replaced(text: &str, draw: usize, program: &str) -> Result<String, Refused> {
+/// The scene's text with another value in a field of a draw; a field that is not written is added.
+pub(crate) fn replaced(text: &str, draw: usize, field: &str, value: &str) -> Result<String, Refused> {
     let tree = outline(text);
     let number = draw.to_string();
-    let node = tree.at(&["draws", &number, "program"]);
-    let node = node.ok_or("this draw's text has no `program` that could be replaced")?;
+    let (node, value) = match tree.at(&["draws", &number, field]) {
+        Some(node) => (node, value.to_owned()),
+        None => match tree.at(&["draws", &number]) {
+            Some(node @ Node { content: Content::Group { around: [before, after], .. }, .. }) => {
+                (node, format!("{before}{field}: {value}{after}"))
+            }
+            _ => return Err(format!("this draw's text has no place for `{field}`")),
+        },
+    };
     let mut changed = text.to_owned();
-    changed.replace_range(node.span.clone(), program);
+    changed.replace_range(node.span.clone(), &value);
     Ok(changed)
 }

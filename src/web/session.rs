@@ -13,7 +13,7 @@ use ninebit_scene::image::{ImageLimits, Rgba, decode};
 use ninebit_scene::{Loaded, SceneError, parse_with, render};
 use serde_json::{Value, json};
 
-use crate::{frame, program, tree};
+use crate::{frame, program, shader, tree};
 
 /// A scene, the files that it names, and the latest picture.
 ///
@@ -24,21 +24,26 @@ use crate::{frame, program, tree};
 /// | `file` | `name`; the file's bytes | nothing; scenes may name the file from now on |
 /// | `open` | `text`, `name` | `scene`: its targets, draws and textures; `findings`. A scene with errors leaves the one before in place |
 /// | `policies` | `values`: rule to value | nothing; they hold from now on |
-/// | `draw` | `target`, `until` (a draw, or null) | `width`, `height`, `digest`, and the picture |
+/// | `draw` | `target` | `width`, `height`, `digest`, and the picture |
+/// | `depth` | `target` | `width`, `height`, the `low`est and `high`est depth, and as picture the words: 24 bits of depth, the lowest byte first, and the stencil |
 /// | `heat` | `target`, `against`: `ideal`, `picture`, or an object as `values` | `differing`, `regions`, and the picture |
 /// | `picture` | `name`; the file's bytes, PNG or TGA | `width`, `height`; `heat` compares with it |
 /// | `trace` | `target`, `pixel` | `trace`: the document of docs/trace-format.md |
 /// | `alternatives` | `target`, `pixel` | `rules`: what the pixel would be under each value of each rule |
 /// | `outline` | | `tree`: the values of the scene's text with their places |
 /// | `program` | `draw` | `program`: its state, its words, its text |
-/// | `edit` | `draw`, `path`, `value` | `text`: the scene's text with that part of the program changed |
+/// | `edit` | `draw`, `path`, `value` | `text`: the scene's text with that part of the program changed; `rewritten` if the program was in another language before |
 /// | `paste` | `draw`, `language`, `program` | `text`: the scene's text with that program |
+///
+/// `draw`, `depth`, `heat`, `trace` and `alternatives` take `until`, a draw: what they say is so after it, not after the last.
 #[derive(Debug, Default)]
 pub struct Session {
     files: Bundle,
     text: String,
     loaded: Option<(Scene, Plan)>,
     policies: Policies,
+    /// The plan up to a draw, as long as it is looked at.
+    stepped: Option<(usize, Plan)>,
     second: Option<Rgba>,
     picture: Vec<[u8; 4]>,
 }
@@ -77,6 +82,9 @@ impl Session {
                 if let Some((_, plan)) = &mut self.loaded {
                     plan.policies = self.policies;
                 }
+                if let Some((_, plan)) = &mut self.stepped {
+                    plan.policies = self.policies;
+                }
                 Ok(json!({}))
             }
             "picture" => {
@@ -87,32 +95,33 @@ impl Session {
                 Ok(size)
             }
             "outline" => Ok(json!({ "tree": tree::value(&self.text) })),
-            "draw" => {
+            what @ ("draw" | "depth") => {
                 let target = self.target(number("target")?)?;
-                let (answer, picture) = frame::draw(self.loaded()?, target, number("until").ok())?;
+                let (answer, picture) = frame::draw(self.plan(number("until").ok())?, target, what == "depth")?;
                 self.picture = picture;
                 Ok(answer)
             }
             "heat" => {
-                let target = self.target(number("target")?)?;
-                let (loaded, against) = (self.loaded()?, &request["against"]);
+                let (target, against) = (self.target(number("target")?)?, &request["against"]);
+                self.step(number("until").ok())?;
+                let plan = self.shown(number("until").ok())?;
                 let (answer, picture) = match against.as_str() {
-                    Some("ideal") => frame::against_ideal(&loaded.1, target),
-                    Some(_) => frame::against_picture(&loaded.1, target, self.second.as_ref())?,
-                    None => frame::against_policies(&loaded.1, target, policies(against)?)?,
+                    Some("ideal") => frame::against_ideal(plan, target),
+                    Some(_) => frame::against_picture(plan, target, self.second.as_ref())?,
+                    None => frame::against_policies(plan, target, policies(against)?)?,
                 };
                 self.picture = picture;
                 Ok(answer)
             }
             "trace" => {
                 let (target, pixel) = (self.target(number("target")?)?, pixel(request)?);
-                let plan = &self.loaded()?.1;
+                let plan = self.plan(number("until").ok())?;
                 let trace = trace(plan, target, pixel, None).map_err(|error| error.to_string())?;
                 Ok(json!({ "trace": trace_value(plan, &trace) }))
             }
             "alternatives" => {
                 let (target, pixel) = (self.target(number("target")?)?, pixel(request)?);
-                alternatives(&self.loaded()?.1, target, pixel)
+                alternatives(self.plan(number("until").ok())?, target, pixel)
             }
             "program" => {
                 let (scene, _) = self.loaded()?;
@@ -121,12 +130,16 @@ impl Session {
             "edit" => {
                 let (scene, _) = self.loaded()?;
                 let number = number("draw")?;
-                let changed = program::changed(drawn(scene, number)?, &request["path"], &request["value"])?;
-                Ok(json!({ "text": program::replaced(&self.text, number, &changed)? }))
+                let draw = drawn(scene, number)?;
+                let start =
+                    if draw.program_origin.is_empty() { self.text.clone() } else { self.rewritten(scene, number)? };
+                let changed = program::changed(draw, &request["path"], &request["value"])?;
+                let text = program::replaced(&start, number, "program", &changed)?;
+                Ok(json!({ "text": text, "rewritten": !draw.program_origin.is_empty() }))
             }
             "paste" => {
                 let written = program::pasted(text("language")?, text("program")?)?;
-                Ok(json!({ "text": program::replaced(&self.text, number("draw")?, &written)? }))
+                Ok(json!({ "text": program::replaced(&self.text, number("draw")?, "program", &written)? }))
             }
             other => Err(format!("`{other}` is nothing that can be asked for")),
         }
@@ -134,6 +147,49 @@ impl Session {
 
     fn loaded(&self) -> Result<&(Scene, Plan), Refused> {
         self.loaded.as_ref().ok_or_else(|| "there is no scene".to_owned())
+    }
+
+    /// The scene's text with a draw's program, which was written for an API, in the combiner language, and its texture shader beside it. It must be the
+    /// same draw: what else such a program sets, coordinates that it makes, say, has no other place.
+    fn rewritten(&self, scene: &Scene, number: usize) -> Result<String, Refused> {
+        let draw = drawn(scene, number)?;
+        let mut text = program::replaced(&self.text, number, "program", &program::written(&draw.combiners))?;
+        let mut same = self.reads_as(&text, scene, number);
+        if !same {
+            text = program::replaced(&text, number, "texture_shader", &shader::written(&draw.texture_shader))?;
+            same = self.reads_as(&text, scene, number);
+        }
+        let refused = "this program sets more than combiners and texture shader: change it in the scene's text";
+        if same { Ok(text) } else { Err(refused.to_owned()) }
+    }
+
+    fn reads_as(&self, text: &str, scene: &Scene, number: usize) -> bool {
+        let Ok(loaded) = parse_with(text, Path::new("scene.ron"), &Limits::default(), &self.files) else {
+            return false;
+        };
+        let mut expected = scene.draws.clone();
+        expected[number].program_origin.clear();
+        loaded.scene.draws == expected
+    }
+
+    /// The plan of what is looked at: of all draws, or of those up to one.
+    fn plan(&mut self, until: Option<usize>) -> Result<&Plan, Refused> {
+        self.step(until)?;
+        self.shown(until)
+    }
+
+    fn step(&mut self, until: Option<usize>) -> Result<(), Refused> {
+        let (scene, _) = self.loaded()?;
+        let Some(until) = until.filter(|until| until + 1 < scene.draws.len()) else { return Ok(()) };
+        if self.stepped.as_ref().is_none_or(|(at, _)| *at != until) {
+            self.stepped = Some((until, frame::stepped(scene, until, self.policies)?));
+        }
+        Ok(())
+    }
+
+    fn shown(&self, until: Option<usize>) -> Result<&Plan, Refused> {
+        let (_, whole) = self.loaded()?;
+        Ok(self.stepped.as_ref().filter(|(at, _)| Some(*at) == until).map_or(whole, |(_, plan)| plan))
     }
 
     fn target(&self, number: usize) -> Result<usize, Refused> {
@@ -149,6 +205,7 @@ impl Session {
                 let answer = json!({ "scene": described(&scene), "findings": findings(&warnings, &source) });
                 self.text = source.text;
                 self.loaded = Some((scene, Plan { policies: self.policies, ..plan }));
+                self.stepped = None;
                 answer
             }
             Err(error) => {

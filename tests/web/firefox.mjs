@@ -1,13 +1,14 @@
-// A page of `ninebit inspect` in Firefox, by its Marionette protocol. Arguments: the page, the digest of its picture, the word of pixel 200,300.
+// A page of `ninebit inspect` in Firefox, by its Marionette protocol. Arguments: the page, the digest of its picture, the word of pixel 200,300, its difference from
+// float64 in words, and a file with a picture that differs from its own in four pixels.
 import { strict as assert } from "node:assert";
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { connect, createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 
-const [, , page, digest, word] = process.argv;
+const [, , page, digest, word, ideal, other] = process.argv;
 const pause = (time) => new Promise((resolve) => setTimeout(resolve, time));
 const port = await new Promise((resolve) => {
   const server = createServer().listen(0, "127.0.0.1", () => {
@@ -74,8 +75,29 @@ try {
   await value(`(() => { const select = document.querySelector('[aria-label="Scale of stage 0 rgb"]'); select.dispatchEvent(new Event("focus")); select.value = "Two"; select.dispatchEvent(new Event("change")); })()`);
   const edited = await value("inspector.times.digest");
   assert.notEqual(edited, digest);
-  await value('document.getElementById("undo").click()');
+  // The link opens the same pixel and the same change.
+  const link = await value("page.location.href");
+  await send("WebDriver:Navigate", { url: "about:blank" });
+  await send("WebDriver:Navigate", { url: link });
+  await until("inspector?.times.first !== undefined");
+  assert.deepEqual([await value("inspector.times.digest"), await value("inspector.at.join()")], [edited, "200,300"]);
+  await value('document.getElementById("reset").click()');
   assert.equal(await value("inspector.times.digest"), digest);
+  await value('document.getElementById("undo").click()');
+  assert.equal(await value("inspector.times.digest"), edited);
+  await value('document.getElementById("redo").click()');
+  assert.equal(await value("inspector.times.digest"), digest);
+  const set = (id, to) => value(`(() => { const select = document.getElementById("${id}"); select.value = "${to}"; select.dispatchEvent(new Event("change")); })()`);
+  // Float64 in a second thread.
+  await set("against", "ideal");
+  await until("inspector.times.heat !== undefined");
+  assert.equal(await value('document.getElementById("regions-sum").textContent'), ideal);
+  console.log(`float64 beside 640 x 480 ${Math.round(await value("inspector.times.heat"))} ms in Firefox`);
+  // A picture that is dropped.
+  await value(`(() => { const bytes = new page.Uint8Array(page.JSON.parse("[${[...readFileSync(other)]}]")), data = new page.DataTransfer();
+    data.items.add(new page.File(page.Array.of(bytes), "other.png"));
+    page.document.body.dispatchEvent(new page.DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true })); })()`);
+  await until('document.getElementById("regions-sum").textContent === "4 pixels differ"');
 } finally {
   await send("Marionette:Quit", { flags: ["eForceQuit"] }).catch(() => {});
   socket.destroy();

@@ -7,9 +7,10 @@ use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use libtest_mimic::{Arguments, Failed, Trial};
 use ninebit::engine::{RenderOptions, render, trace};
+use ninebit::frame::Surface;
 use ninebit::limits::Limits;
 use ninebit::plan::Plan;
-use ninebit::state::Policies;
+use ninebit::state::{Named, Policies};
 use ninebit_files::output::{Compression, encode_png};
 use ninebit_files::picture::surface_digest;
 use ninebit_scene::assets::Gathered;
@@ -35,6 +36,7 @@ fn main() {
         Trial::test("requests_that_make_no_sense_are_refused", refused),
         Trial::test("places_count_as_scripts_do", places),
         Trial::test("every_part_of_a_program_can_be_changed", edits),
+        Trial::test("programs_of_every_language_can_be_changed", languages),
     ];
     libtest_mimic::run(&arguments, trials).exit();
 }
@@ -96,31 +98,80 @@ fn frames() -> Result<(), Failed> {
     let step = if wanted == 0 { 1 } else { all.len().div_ceil(wanted) };
     let scenes: Vec<(PathBuf, Vec<String>)> =
         all.into_iter().step_by(step).map(|path| (path.clone(), load(&path).unwrap().1)).collect();
-    let answers = node("frames", &scenes);
+    // Both draw at once.
+    let (answers, drawn) = std::thread::scope(|scope| {
+        let answers = scope.spawn(|| node("frames", &scenes));
+        let drawn: Vec<_> = scenes.iter().map(|(path, _)| digests(&load(path).unwrap().0.plan)).collect();
+        (answers.join().unwrap(), drawn)
+    });
     assert_eq!(answers.len(), scenes.len());
-    for ((path, _), answer) in scenes.iter().zip(answers) {
-        assert_eq!(
-            answer["digests"],
-            json!(digests(&load(path).unwrap().0.plan)),
-            "{}: {answer}",
-            path.to_str().unwrap()
-        );
+    for (((path, _), answer), digests) in scenes.iter().zip(answers).zip(drawn) {
+        assert_eq!(answer["digests"], json!(digests), "{}: {answer}", path.to_str().unwrap());
     }
     println!("{} scenes", scenes.len());
     Ok(())
 }
 
+/// The library behind the module.
+#[derive(Default)]
+struct Native(Session);
+
+impl Native {
+    /// With files that lie beside that path.
+    fn with(beside: &Path, files: &[String]) -> Native {
+        let mut native = Native::default();
+        for name in files {
+            let file = std::fs::read(beside.with_file_name(name)).unwrap();
+            native.0.answer(json!({ "do": "file", "name": name }).to_string().as_bytes(), file);
+        }
+        native
+    }
+
+    /// With that scene open.
+    fn of(path: &Path) -> Native {
+        let mut native = Native::with(path, &load(path).unwrap().1);
+        native.open(&std::fs::read_to_string(path).unwrap());
+        native
+    }
+
+    fn ask(&mut self, request: Value) -> Value {
+        serde_json::from_str(&self.0.answer(request.to_string().as_bytes(), Vec::new())).unwrap()
+    }
+
+    fn open(&mut self, text: &str) -> Value {
+        self.ask(json!({ "do": "open", "text": text, "name": "a.ron" }))
+    }
+
+    /// The text after an edit, and the digest of its picture.
+    fn edited(&mut self, path: Value, value: &str) -> (String, String) {
+        let edited = self.ask(json!({ "do": "edit", "draw": 0, "path": path, "value": value }));
+        let text = edited["text"].as_str().unwrap_or_else(|| panic!("{edited}")).to_owned();
+        let opened = self.open(&text);
+        assert!(opened["scene"].is_object(), "{opened}\n{text}");
+        (text, self.digest(None))
+    }
+
+    fn digest(&mut self, until: Option<usize>) -> String {
+        let answer = self.ask(json!({ "do": "draw", "target": 0, "until": until }));
+        answer["digest"].as_str().unwrap_or_else(|| panic!("{answer}")).to_owned()
+    }
+
+    /// What the page says of a comparison.
+    fn differing(&mut self, against: Value, until: Option<usize>) -> String {
+        let heat = self.ask(json!({ "do": "heat", "target": 0, "against": against, "until": until }));
+        let left = heat["diverged"].as_u64().filter(|n| *n > 0).map(|n| format!("; {n} more went another way"));
+        let named = heat["regions"].as_array().unwrap().len() as u64;
+        let regions = heat["region_count"].as_u64().filter(|all| *all > named);
+        let regions = regions.map(|all| format!("; the {named} largest of {all} regions"));
+        format!("{} pixels differ{}{}", heat["differing"], regions.unwrap_or_default(), left.unwrap_or_default())
+    }
+}
+
 /// What the library answers to a scene whose folder is that bundle.
 fn native(path: &Path, files: &[String]) -> Value {
-    let mut session = Session::default();
-    let mut ask = |request: Value, file: Vec<u8>| -> Value {
-        serde_json::from_str(&session.answer(request.to_string().as_bytes(), file)).unwrap()
-    };
-    for name in files {
-        ask(json!({ "do": "file", "name": name }), std::fs::read(path.with_file_name(name)).unwrap());
-    }
     let text = String::from_utf8_lossy(&std::fs::read(path).unwrap()).into_owned();
-    ask(json!({ "do": "open", "text": text, "name": path.file_name().unwrap().to_str().unwrap() }), Vec::new())
+    let name = path.file_name().unwrap().to_str().unwrap();
+    Native::with(path, files).ask(json!({ "do": "open", "text": text, "name": name }))
 }
 
 fn rendered(answer: &Value) -> Value {
@@ -160,9 +211,9 @@ fn findings() -> Result<(), Failed> {
 }
 
 fn refused() -> Result<(), Failed> {
-    let mut session = Session::default();
+    let mut native = Native::default();
     let mut ask =
-        |request: &str| -> Value { serde_json::from_str(&session.answer(request.as_bytes(), Vec::new())).unwrap() };
+        |request: &str| -> Value { serde_json::from_str(&native.0.answer(request.as_bytes(), Vec::new())).unwrap() };
     for request in
         ["", "[", "{}", r#"{"do":"fly"}"#, r#"{"do":"draw","target":0}"#, r#"{"do":"trace","target":0,"pixel":[0,0]}"#]
     {
@@ -175,6 +226,7 @@ fn refused() -> Result<(), Failed> {
         r#"{"do":"trace","target":0,"pixel":[99999,0]}"#,
         r#"{"do":"trace","target":0,"pixel":[-1,"a"]}"#,
         r#"{"do":"heat","target":0,"against":"picture"}"#,
+        r#"{"do":"depth","target":0}"#,
         r#"{"do":"heat","target":0,"against":{"CMB-3":"neither"}}"#,
         r#"{"do":"policies","values":{"NUM":"x"}}"#,
         r#"{"do":"program","draw":99}"#,
@@ -201,16 +253,13 @@ fn places() -> Result<(), Failed> {
         1 + node["parts"].as_array().into_iter().flatten().map(|part| check(part, units)).sum::<usize>()
     }
     let text = "// \u{e9} \u{20ac} \u{1f600}\n(version: 1, profile: Nv10, /* \u{1f600} */ targets: [(name: \"\u{e9}\u{1f600}\", width: 2, height: 2)], draws: [])";
-    let mut session = Session::default();
-    let mut ask = |request: Value| -> Value {
-        serde_json::from_str(&session.answer(request.to_string().as_bytes(), Vec::new())).unwrap()
-    };
-    assert!(ask(json!({ "do": "open", "text": text, "name": "a.ron" }))["scene"].is_object());
+    let mut native = Native::default();
+    assert!(native.open(text)["scene"].is_object());
     let units: Vec<u16> = text.encode_utf16().collect();
-    assert!(check(&ask(json!({ "do": "outline" }))["tree"], &units) >= 8);
+    assert!(check(&native.ask(json!({ "do": "outline" }))["tree"], &units) >= 8);
     // So are places of findings.
     let broken = text.replace("Nv10", "Nv30");
-    let finding = &ask(json!({ "do": "open", "text": broken, "name": "a.ron" }))["findings"][0];
+    let finding = &native.open(&broken)["findings"][0];
     let at = |n: usize| usize::try_from(finding["span"][n].as_u64().unwrap()).unwrap();
     let units: Vec<u16> = broken.encode_utf16().collect();
     assert_eq!(String::from_utf16(&units[at(0)..at(1)]).unwrap(), "Nv30");
@@ -220,17 +269,9 @@ fn places() -> Result<(), Failed> {
 /// Every part that a program names is changed to every choice: the text reads back as a program that has it, or says why it is not one.
 fn edits() -> Result<(), Failed> {
     let text = std::fs::read_to_string("vectors/scenes/programs/lit-combiners.ron").unwrap();
-    let mut session = Session::default();
-    let folder = Path::new("vectors/scenes/programs/lit-combiners.ron");
-    for name in load(folder).unwrap().1 {
-        let file = std::fs::read(folder.with_file_name(&name)).unwrap();
-        session.answer(json!({ "do": "file", "name": name }).to_string().as_bytes(), file);
-    }
-    let mut ask = |request: Value| -> Value {
-        serde_json::from_str(&session.answer(request.to_string().as_bytes(), Vec::new())).unwrap()
-    };
+    let mut native = Native::of(Path::new("vectors/scenes/programs/lit-combiners.ron"));
+    let mut ask = |request: Value| native.ask(request);
     let open = json!({ "do": "open", "text": text, "name": "a.ron" });
-    assert!(ask(open.clone())["scene"].is_object());
     let program = ask(json!({ "do": "program", "draw": 0 }))["program"].clone();
     let words = |kind: &str| program["choices"][kind].as_array().unwrap().clone();
     let mut changes: Vec<(Value, Value)> =
@@ -272,13 +313,50 @@ fn edits() -> Result<(), Failed> {
     Ok(())
 }
 
+/// A program in any language can be changed by its boxes: a scale written as it is leaves the picture, whatever the program was written in.
+fn languages() -> Result<(), Failed> {
+    let all = files(Path::new("vectors/scenes"), ".ron");
+    let (mut rewritten, mut refused) = (0, Vec::new());
+    for path in all.iter().filter(|path| !path.to_str().unwrap().ends_with(".expect.ron")) {
+        let Some((loaded, _)) = load(path) else { continue };
+        let Some(number) = loaded.scene.draws.iter().position(|draw| !draw.program_origin.is_empty()) else { continue };
+        let scale = loaded.scene.draws[number].combiners.stages[0].rgb.scale.name();
+        let mut native = Native::of(path);
+        let edit = json!({ "do": "edit", "draw": number, "path": ["stages", 0, "rgb", "scale"], "value": scale });
+        let edited = native.ask(edit);
+        let Some(text) = edited["text"].as_str() else {
+            let error = edited["error"].as_str().unwrap();
+            assert!(error.contains("change it in the scene's text"), "{}: {error}", path.to_str().unwrap());
+            refused.push(path.to_str().unwrap().to_owned());
+            continue;
+        };
+        assert_eq!(edited["rewritten"], true);
+        let before = native.digest(None);
+        assert!(native.open(text)["scene"].is_object(), "{}", path.to_str().unwrap());
+        assert_eq!(native.digest(None), before, "{}", path.to_str().unwrap());
+        rewritten += 1;
+    }
+    println!("{rewritten} programs rewritten; {} refused: {}", refused.len(), refused.join(" "));
+    assert!(rewritten > 60 && refused.is_empty());
+    Ok(())
+}
+
 fn inspect(scene: &Path, page: &Path) {
     let Output { status, stderr, .. } =
         Command::new(env!("CARGO_BIN_EXE_ninebit")).arg("inspect").arg(scene).arg("-o").arg(page).output().unwrap();
     assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
 }
 
-/// Opens, clicks, edits and undoes.
+/// A PNG of a surface with four pixels changed.
+fn four_off(surface: &Surface) -> Vec<u8> {
+    let mut pixels = surface.rgba8();
+    for at in [0, 1, 640, 5000] {
+        pixels[at][1] ^= 16;
+    }
+    encode_png(surface.width, surface.height, &pixels, Compression::Fast).unwrap()
+}
+
+/// Opens, clicks, edits, undoes, follows a link, compares with float64 and with a picture.
 fn firefox() -> Result<(), Failed> {
     let folder = tempfile::tempdir().unwrap();
     let page = folder.path().join("stone.html");
@@ -286,11 +364,25 @@ fn firefox() -> Result<(), Failed> {
     inspect(path, &page);
     let plan = load(path).unwrap().0.plan;
     let word = trace(&plan, 0, (200, 300), None).unwrap().word;
-    let arguments = [page.to_str().unwrap(), &digests(&plan)[0], &word.to_string()];
+    let other = folder.path().join("other.png");
+    std::fs::write(&other, four_off(&render(&plan, &RenderOptions::default()).surfaces[0])).unwrap();
+    let ideal = Native::of(path).differing(json!("ideal"), None);
+    let arguments = [page.to_str().unwrap(), &digests(&plan)[0], &word.to_string(), &ideal, other.to_str().unwrap()];
     let run = Command::new("node").arg("tests/web/firefox.mjs").args(arguments).output().unwrap();
     print!("{}", String::from_utf8_lossy(&run.stdout));
     if run.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&run.stderr).into_owned().into()) }
 }
+
+/// Two draws of which the second lies behind the first in a corner, and counts in the stencils.
+const STEPS: &str = r#"(version: 1, profile: Nv2a, targets: [(name: "frame", width: 64, height: 64, format: A8R8G8B8, depth: Z24S8)],
+draws: [
+    (name: "near", vertices: Window([(position: (0, 0, 0.25), diffuse: (255, 0, 0)), (position: (50, 0, 0.5), diffuse: (0, 255, 0)), (position: (0, 50, 0.5), diffuse: (0, 0, 255))]),
+        program: Combiners(stages: [(rgb: (a: PrimaryColor, b: UnsignedInvert(Zero), c: ConstantColor0, d: UnsignedInvert(Zero), sum: Spare0))], final_combiner: (d: Spare0)),
+        depth_test: (function: LessOrEqual), stencil_test: (function: Always, reference: 7, pass: Replace)),
+    (name: "over", vertices: Window([(position: (0, 0, 0.125), diffuse: (9, 99, 200)), (position: (45, 0, 0.125), diffuse: (77, 7, 70)), (position: (0, 45, 0.125), diffuse: (5, 6, 250))]),
+        program: Combiners(stages: [(rgb: (a: PrimaryColor, b: UnsignedInvert(Zero), c: ConstantColor0, d: UnsignedInvert(Zero), sum: Spare0))], final_combiner: (d: Spare0)),
+        depth_test: (function: LessOrEqual), stencil_test: (function: Always, pass: IncrementSaturate)),
+])"#;
 
 fn page() -> Result<(), Failed> {
     let folder = tempfile::tempdir().unwrap();
@@ -306,7 +398,7 @@ fn page() -> Result<(), Failed> {
     // Names with markup in them, and a picture of 256 x 256.
     let triangle = |name: &str, side: u32| {
         format!(
-            "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: {side}, height: {side}, format: A8R8G8B8)],\n draws: [(name: \"{name}\", vertices: Window([\n (position: (0, 0), diffuse: (255, 0, 0)), (position: ({}, 0), diffuse: (0, 255, 0)), (position: (0, {}), diffuse: (0, 0, 255))]),\n program: Combiners(stages: [(rgb: (a: PrimaryColor, b: UnsignedInvert(Zero), ab: Spare0))], final_combiner: (a: Spare0)))])",
+            "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: {side}, height: {side}, format: A8R8G8B8)],\n draws: [(name: \"{name}\", vertices: Window([\n (position: (0, 0), diffuse: (255, 0, 0)), (position: ({}, 0), diffuse: (0, 255, 0)), (position: (0, {}), diffuse: (0, 0, 255))]),\n program: Combiners(stages: [(rgb: (a: PrimaryColor, b: UnsignedInvert(Zero), c: ConstantColor0, d: UnsignedInvert(Zero), sum: Spare0))], final_combiner: (d: Spare0)))])",
             2 * side,
             2 * side
         )
@@ -322,21 +414,12 @@ fn page() -> Result<(), Failed> {
     // What the page has to show, by the library.
     let pixel = (200, 300);
     let traced = trace(&loaded.plan, 0, pixel, None).unwrap();
-    let mut session = Session::default();
-    for name in &images {
-        session.answer(
-            json!({ "do": "file", "name": name }).to_string().as_bytes(),
-            std::fs::read(path.with_file_name(name)).unwrap(),
-        );
-    }
-    session.answer(
-        json!({ "do": "open", "text": loaded.source.text, "name": "lit-stone.ron" }).to_string().as_bytes(),
-        Vec::new(),
-    );
-    let change = json!({ "do": "edit", "draw": 0, "path": ["stages", 0, "rgb", "inputs", 0, "mapping"], "value": "UnsignedIdentity" });
-    let edited: Value = serde_json::from_str(&session.answer(change.to_string().as_bytes(), Vec::new())).unwrap();
-    let text = edited["text"].as_str().unwrap();
-    let changed = parse(text, path, &Limits::default()).unwrap();
+    let mut native = Native::of(path);
+    let ideal = native.differing(json!("ideal"), None);
+    let against_literal = native.differing(json!({ "CMB-3": "literal" }), None);
+    let (text, edited) = native.edited(json!(["stages", 0, "rgb", "inputs", 0, "mapping"]), "UnsignedIdentity");
+    let changed = parse(&text, path, &Limits::default()).unwrap();
+    assert_eq!(digests(&changed.plan)[0], edited);
     let mut policies = Policies::default();
     policies.set("CMB-3=literal").unwrap();
     let literal = Plan { policies, ..loaded.plan.clone() };
@@ -344,37 +427,71 @@ fn page() -> Result<(), Failed> {
     let png =
         |pixels: &[[u8; 4]]| STANDARD.encode(encode_png(frame.width, frame.height, pixels, Compression::Fast).unwrap());
     let pixels = frame.rgba8();
-    let mut other = pixels.clone();
-    for at in [0, 1, 640, 5000] {
-        other[at][1] ^= 16;
-    }
     let bad: Vec<Value> = bad_scenes()
         .into_iter()
         .filter(|(path, _)| std::fs::metadata(path).unwrap().len() < 20_000)
         .filter_map(|(path, _)| Some((path.clone(), std::fs::read_to_string(path).ok()?)))
-        .step_by(9)
         .filter_map(|(path, text)| {
             // An area of text has no carriage returns.
             let text = text.replace('\r', "");
-            let mut session = Session::default();
-            for name in &images {
-                let file = std::fs::read(Path::new("vectors/scenes/dot3").join(name)).unwrap();
-                session.answer(json!({ "do": "file", "name": name }).to_string().as_bytes(), file);
-            }
             let open = json!({ "do": "open", "text": text, "name": "lit-stone.ron" });
-            let answer: Value = serde_json::from_str(&session.answer(open.to_string().as_bytes(), Vec::new())).unwrap();
+            let answer = Native::with(Path::new("vectors/scenes/dot3/lit-stone.ron"), &images).ask(open);
             let each: Vec<&str> =
                 answer["findings"].as_array()?.iter().map(|f| f["rendered"].as_str().unwrap().trim_end()).collect();
             let name = path.to_str()?.to_owned();
             answer.get("scene").is_none().then(|| json!({ "name": name, "text": text, "rendered": each.join("\n\n") }))
         })
         .collect();
-    assert!(bad.len() > 10, "{}", bad.len());
+    assert!(bad.len() > 100, "{}", bad.len());
+
+    // Draws one over the other, with depths and stencils.
+    std::fs::write(at("steps.ron"), STEPS).unwrap();
+    inspect(&at("steps.ron"), &at("steps.html"));
+    let mut native = Native::of(&at("steps.ron"));
+    let steps: Vec<Value> = (0..2)
+        .map(|until| {
+            let mut after = |what: &str| native.ask(json!({ "do": what, "target": 0, "pixel": [20, 20], "until": until }));
+            let (word, deep) = (after("trace")["trace"]["word"].clone(), after("depth"));
+            let [low, middle, high, stencil] = native.0.picture()[20 * 64 + 20];
+            assert!(deep["low"].as_u64() < deep["high"].as_u64(), "{deep}");
+            json!({
+                "until": until, "digest": native.digest(Some(until)), "word": word, "stencil": stencil,
+                "depth": u32::from_le_bytes([low, middle, high, 0]), "ideal": native.differing(json!("ideal"), Some(until)),
+            })
+        })
+        .collect();
+    assert!(
+        ["digest", "word", "stencil", "depth"].iter().all(|field| steps[0][*field] != steps[1][*field]),
+        "{steps:?}"
+    );
+    assert_eq!(steps[1]["digest"], digests(&load(&at("steps.ron")).unwrap().0.plan)[0]);
+
+    // Programs in other languages.
+    let rewritten: Vec<Value> = ["dot3-pixel-shader", "dot3-texture-stages"]
+        .map(|name| {
+            let path = PathBuf::from(format!("vectors/scenes/programs/{name}.ron"));
+            let page = format!("{name}.html");
+            inspect(&path, &at(&page));
+            let (text, digest) = Native::of(&path).edited(json!(["stages", 1, "rgb", "scale"]), "Two");
+            json!({ "page": page, "part": "Scale of stage 1 rgb", "value": "Two", "text": text, "digest": digest })
+        })
+        .to_vec();
+    // One change upon another.
+    let mut twice = Native::of(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
+    let (_, once) = twice.edited(json!(["stages", 0, "rgb", "scale"]), "Two");
+    assert_ne!(twice.edited(json!(["stages", 1, "rgb", "scale"]), "Two").1, once);
+    let words = std::fs::read_to_string("vectors/scenes/programs/lit.words").unwrap();
+    let mut native = Native::of(Path::new("vectors/scenes/programs/dot3-texture-stages.ron"));
+    let pasted = native.ask(json!({ "do": "paste", "draw": 0, "language": "RegisterWords", "program": words }));
+    let opened = native.open(pasted["text"].as_str().unwrap());
+    assert!(opened["scene"].is_object(), "{opened}");
+    let texture = format!("scene/textures/{}", loaded.plan.textures[0].name);
     let shown = traced.shown.map(|byte| byte.to_string()).join(", ");
     let expected = json!({
         "digest": digests(&loaded.plan)[0], "pixel": pixel, "word": traced.word, "shown": shown,
-        "edited": digests(&changed.plan)[0], "text": text, "literal": digests(&literal)[0],
-        "same": png(&pixels), "other": png(&other), "differing": "4 pixels differ", "bad": bad,
+        "ideal": ideal, "against_literal": against_literal, "steps": steps, "rewritten": rewritten, "words": words,
+        "pasted": native.digest(None), "texture": texture, "edited": edited, "text": text, "literal": digests(&literal)[0],
+        "same": png(&pixels), "other": STANDARD.encode(four_off(frame)), "differing": "4 pixels differ", "bad": bad,
     });
     std::fs::write(at("expected.json"), expected.to_string()).unwrap();
     let pictures = std::env::var("NINEBIT_WEB_PICTURES").ok().filter(|folder| !["", "0"].contains(&folder.as_str()));

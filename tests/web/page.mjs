@@ -1,8 +1,9 @@
 // Pages of `ninebit inspect` in Chromium. Arguments: the folder of pages, what they must show as JSON, and perhaps a folder for pictures of them.
-import { readFileSync, writeFileSync } from "node:fs";
+import { existsSync, readFileSync, writeFileSync } from "node:fs";
 import { strict as assert } from "node:assert";
 import { pathToFileURL } from "node:url";
 import { join } from "node:path";
+import { faint, overlapping, unnamed } from "./audit.mjs";
 import { Browser } from "./browser.mjs";
 
 const [, , folder, wanted, pictures] = process.argv;
@@ -10,6 +11,7 @@ const expected = JSON.parse(readFileSync(wanted, "utf8"));
 const address = (name) => pathToFileURL(join(folder, name)).href;
 const ready = 'window.inspector?.times.first !== undefined || document.getElementById("message").textContent !== ""';
 const browser = await Browser.start();
+const pause = (time) => new Promise((resolve) => setTimeout(resolve, time));
 const median = (list) => list.sort((a, b) => a - b)[list.length >> 1];
 
 async function opened(name, options = {}) {
@@ -19,6 +21,9 @@ async function opened(name, options = {}) {
 
 const sound = (name) => assert.deepEqual(browser.complaints(address(name)), [], name);
 const digest = () => browser.value("inspector.times.digest");
+// A choice in a field; a value of it that still moves.
+const field = (label) => `[...document.querySelectorAll("select, input")].find((each) => each.getAttribute("aria-label") === ${JSON.stringify(label)})`;
+const set = (label, value, event = "change") => browser.value(`(() => { inspector.chain.fill(); const field = ${field(label)}; field.dispatchEvent(new Event("focus")); field.value = ${JSON.stringify(value)}; field.dispatchEvent(new Event("${event}")); })()`);
 const text = (id) => browser.value(`document.getElementById("${id}").textContent`);
 
 async function tests() {
@@ -52,8 +57,7 @@ async function tests() {
   await browser.value('document.getElementById("rule").close()');
 
   // Edit, undo, redo.
-  const mapping = `document.querySelector('[aria-label="Mapping of stage 0 rgb"]')`;
-  await browser.value(`(() => { const select = ${mapping}; select.dispatchEvent(new Event("focus")); select.value = "UnsignedIdentity"; select.dispatchEvent(new Event("change")); })()`);
+  await set("Mapping of stage 0 rgb", "UnsignedIdentity");
   assert.equal(await digest(), expected.edited, "the edited scene is not what the program draws of it");
   const saved = await browser.value("inspector.text");
   assert.equal(saved, expected.text);
@@ -61,6 +65,13 @@ async function tests() {
   assert.deepEqual([await digest(), await browser.value("inspector.text === inspector.data.text")], [expected.digest, true]);
   await browser.value('document.getElementById("redo").click()');
   assert.equal(await digest(), expected.edited);
+
+  // The changed scene is saved as it stands.
+  await browser.send("Browser.setDownloadBehavior", { behavior: "allow", downloadPath: folder }, undefined);
+  await browser.value('document.getElementById("save").click()');
+  const file = join(folder, "lit-stone.ron");
+  for (let tries = 0; tries < 200 && !(existsSync(file) && readFileSync(file, "utf8") === saved); tries++) await pause(20);
+  assert.equal(readFileSync(file, "utf8"), saved);
 
   // A link: this pixel, this change.
   const link = await browser.value("location.href");
@@ -81,6 +92,24 @@ async function tests() {
   assert.equal(await digest(), expected.literal);
   await browser.value('document.getElementById("undo").click()');
 
+  // Float64 is another thread's work: the page answers meanwhile, and what is asked for in its place is shown.
+  const compare = (value) => browser.value(`(() => { const select = document.getElementById("against"); select.value = "${value}"; select.dispatchEvent(new Event("change")); })()`);
+  await browser.value(`(() => { inspector.gaps = []; let last = performance.now(); const tick = () => { const now = performance.now(); inspector.gaps.push(now - last); last = now; requestAnimationFrame(tick); }; requestAnimationFrame(tick); })()`);
+  await browser.value('document.getElementById("tab-chain").click()');
+  await compare("ideal");
+  await browser.value("inspector.gaps.length = 0");
+  assert.equal(await text("regions-sum"), "Comparing with float64 …");
+  await browser.value("inspector.choose([10, 10])");
+  assert.deepEqual(await browser.value("inspector.chain.trace.pixel"), [10, 10]);
+  await browser.until("inspector.times.heat !== undefined");
+  assert.equal(await text("regions-sum"), expected.ideal);
+  console.log(`float64 beside 640 x 480 ${Math.round(await browser.value("inspector.times.heat"))} ms; the page never stood for longer than ${Math.round(await browser.value("Math.max(...inspector.gaps)"))} ms`);
+  await compare("ideal");
+  await compare("CMB-3=literal");
+  await pause(300);
+  assert.equal(await text("regions-sum"), expected.against_literal);
+  await compare("");
+
   // A picture dropped: it differs in one region, or nowhere.
   const drop = (bytes) => `(async () => { const bytes = Uint8Array.from(atob("${bytes}"), (c) => c.charCodeAt(0)); const data = new DataTransfer();
     data.items.add(new File([bytes], "capture.png")); document.body.dispatchEvent(new DragEvent("drop", { dataTransfer: data, bubbles: true, cancelable: true })); })()`;
@@ -95,12 +124,16 @@ async function tests() {
 
   // Scenes with errors: caret and help; the picture before stays.
   await browser.value('inspector.against = ""; inspector.refresh(); document.getElementById("tab-text").click()');
-  for (const { name, text: broken, rendered } of expected.bad) {
+  // A few as somebody would type them in, all as the page reads them.
+  const findings = '[...document.querySelectorAll("#findings .finding")].map((each) => each.textContent).join("\\n\\n").trim()';
+  for (const { name, text: broken, rendered } of expected.bad.filter((_, n) => n % 20 === 0)) {
     await browser.value(`(() => { const area = document.querySelector("#text textarea"); area.value = ${JSON.stringify(broken)}; area.dispatchEvent(new Event("change")); })()`);
-    const found = await browser.value('[...document.querySelectorAll("#findings .finding")].map((each) => each.textContent).join("\\n\\n")');
-    assert.equal(found.trim(), rendered.trim(), name);
+    assert.equal(await browser.value(findings), rendered.trim(), name);
     assert.equal(await browser.value("inspector.view.picture !== null"), true);
   }
+  const all = await browser.value(`${JSON.stringify(expected.bad.map((each) => each.text))}.map((text) => [inspector.open(text), ${findings}])`);
+  expected.bad.forEach(({ name, rendered }, n) => assert.deepEqual(all[n], [false, rendered.trim()], name));
+  console.log(`${all.length} broken scenes with their findings`);
   sound("stone.html");
 
   // A fault of the module ends its instance; the next one goes on with the scene.
@@ -120,16 +153,87 @@ async function tests() {
   assert.ok((await text("draws")).includes("<img src=x onerror=alert(1)>") && (await browser.value('document.querySelectorAll("img").length')) === 0);
   sound("markup.html");
 
-  // Nothing is wider than the window; nothing has no name for those who cannot see it.
+  // Draws to step through: picture, pixel, depth buffer, stencils and comparison are those after the draw.
+  await opened("steps.html");
+  for (const { until, digest: after, word, depth, stencil, ideal } of expected.steps) {
+    await browser.value(`document.querySelectorAll("#draws button")[${until}].click()`);
+    assert.equal(await digest(), after, `after draw ${until}`);
+    await browser.value("inspector.choose([20, 20])");
+    assert.equal(await browser.value("inspector.chain.trace.word"), word);
+    await browser.value(`(() => { const select = document.getElementById("channels"); select.value = "depth"; select.dispatchEvent(new Event("change")); inspector.choose([20, 20]); })()`);
+    assert.ok((await text("here")).endsWith(` depth ${depth} stencil ${stencil}`), await text("here"));
+    const shades = await browser.value(`[[20, 20], [60, 60]].map(([x, y]) => inspector.view.sheet.getContext("2d").getImageData(x, y, 1, 1).data[0])`);
+    assert.ok(shades[0] < 255 && shades[1] === 255, `depths ${shades}`);
+    await browser.value(`(() => { const select = document.getElementById("channels"); select.value = "stencil"; select.dispatchEvent(new Event("change")); })()`);
+    assert.equal(await browser.value('inspector.view.sheet.getContext("2d").getImageData(20, 20, 1, 1).data[0]'), stencil);
+    await browser.value(`(() => { const select = document.getElementById("channels"); select.value = "colour"; select.dispatchEvent(new Event("change")); delete inspector.times.heat; })()`);
+    await compare("ideal");
+    await browser.until("inspector.times.heat !== undefined");
+    assert.equal(await text("regions-sum"), ideal);
+    await compare("");
+  }
+  await browser.value("inspector.view.canvas.focus()");
+  await browser.press(",");
+  assert.equal(await browser.value("inspector.until"), expected.steps.length - 2);
+  sound("steps.html");
+
+  // A program in another language: its boxes can be changed, the page says what that does, and undo brings the language back.
+  for (const { page, part, value, digest: changed, text: rewritten } of expected.rewritten) {
+    await opened(page);
+    const [before, was] = [await digest(), await browser.value("inspector.text")];
+    await set(part, value);
+    assert.deepEqual([await digest(), await browser.value("inspector.text")], [changed, rewritten], page);
+    assert.ok((await text("message")).includes("combiner language"), page);
+    await browser.value('document.getElementById("undo").click()');
+    assert.deepEqual([await digest(), await browser.value("inspector.text")], [before, was], page);
+    sound(page);
+  }
+
+  // Words pasted in become the program.
+  await browser.value('document.getElementById("tab-program").click()');
+  await browser.value(`(() => { const area = document.querySelector("#program textarea"); area.value = ${JSON.stringify(expected.words)}; [...document.querySelectorAll("#program button")].at(-1).click(); })()`);
+  assert.equal(await digest(), expected.pasted);
+
+  // While a colour is dragged the picture follows; one step of undo takes back the whole of it.
+  await opened("small.html");
+  await browser.value('document.getElementById("tab-program").click()');
+  const first = await digest();
+  const seenDigests = new Set([first]);
+  for (const value of ["#400000", "#800000", "#c00000"]) {
+    await set("constant 0, colour", value, "input");
+    await browser.value("new Promise((done) => requestAnimationFrame(() => setTimeout(done)))");
+    seenDigests.add(await digest());
+  }
+  assert.deepEqual([seenDigests.size, await browser.value("inspector.past.length")], [4, 0]);
+  await set("constant 0, colour", "#c00000");
+  assert.equal(await browser.value("inspector.past.length"), 1);
+  await browser.value('document.getElementById("undo").click()');
+  assert.equal(await digest(), first);
+
+  // From a unit to its fields in the scene's text.
+  await opened("stone.html");
+  await browser.value(`(() => { inspector.chain.fill(); [...document.querySelectorAll("#chain .way")].find((each) => each.textContent === "texture").click(); })()`);
+  assert.equal(await browser.value("document.activeElement.parentElement.dataset.path"), expected.texture);
+  assert.ok(await browser.value("document.activeElement.parentElement.open"));
+
+  // Nothing is wider than the window or lies on another thing; all text stands out of its ground; all has a name for those who cannot see it.
+  const counts = { texts: 0, boxes: 0, controls: 0 };
   for (const width of [1280, 1920]) {
     for (const dark of [false, true]) {
       await opened("stone.html", { width, height: 1000, dark });
+      await browser.value("inspector.choose([200, 300])");
       for (const tab of ["chain", "rules", "change", "program", "text"]) {
-        await browser.value(`document.getElementById("tab-${tab}").click()`);
-        assert.ok((await browser.value("document.documentElement.scrollWidth - innerWidth")) <= 0, `${tab} is wider than ${width}`);
-        const nameless = await browser.value(`[...document.querySelectorAll("button, select, input, textarea")].filter((each) => each.offsetParent &&
-          !(each.textContent.trim() || each.getAttribute("aria-label") || each.closest("label"))).map((each) => each.outerHTML)`);
-        assert.deepEqual(nameless, []);
+        await browser.value(`document.getElementById("tab-${tab}").click(); ${tab === "chain" ? "inspector.chain.fill()" : ""}`);
+        const where = `${tab} at ${width}, ${dark ? "dark" : "light"}`;
+        assert.ok((await browser.value("document.documentElement.scrollWidth - innerWidth")) <= 0, `${where} is wider`);
+        const contrast = await browser.value(`(${faint})()`);
+        const overlaps = await browser.value(`(${overlapping})()`);
+        const told = unnamed((await browser.send("Accessibility.getFullAXTree")).nodes);
+        assert.deepEqual({ where, faint: contrast.found, overlaps: overlaps.found, unnamed: told.found }, { where, faint: [], overlaps: [], unnamed: [] });
+        for (const landmark of ["banner ", "main Picture", "region Pixel"]) assert.ok(told.landmarks.includes(landmark), `${where}: ${told.landmarks}`);
+        counts.texts += contrast.count;
+        counts.boxes += overlaps.count;
+        counts.controls += told.count;
       }
       if (pictures) {
         await browser.value('document.getElementById("tab-chain").click()');
@@ -137,6 +241,12 @@ async function tests() {
       }
     }
   }
+  console.log(`${counts.texts} texts of enough contrast, ${counts.boxes} boxes apart, ${counts.controls} controls with names`);
+  // These find what they are for.
+  await browser.value(`document.body.append(...["#888", "#000"].map((color) => { const label = document.createElement("b"); label.textContent = "planted"; label.setAttribute("style", ""); Object.assign(label.style, { position: "fixed", left: "9px", top: "9px", background: "#777", color }); return label; }), document.createElement("select"))`);
+  assert.ok((await browser.value(`(${faint})()`)).found.some((each) => each.includes("planted")));
+  assert.ok((await browser.value(`(${overlapping})()`)).found.some((each) => each.includes("planted")));
+  assert.ok(unnamed((await browser.send("Accessibility.getFullAXTree")).nodes).found.some((each) => each.includes("combobox")));
 
   // What it takes, in milliseconds: printed, not judged, for machines differ.
   for (let n = 0; n < 4; n++) {
@@ -148,7 +258,11 @@ async function tests() {
   console.log(`first picture ${Math.round(median(seen))} ms, the module's ${Math.round(median(times))} ms`);
   console.log(`click to chain ${Math.round(median(await again("inspector.choose([100 + n, 90])", "chain")))} ms, of which the trace ${Math.round(median(await again("inspector.choose([100 + n, 80])", "trace")))} ms`);
   console.log(`redraw of 640 x 480 ${Math.round(median(await again("inspector.redraw()", "redraw")))} ms`);
+  const dragged = (count) => browser.value(`(async () => { const times = []; document.getElementById("tab-program").click(); for (let n = 0; n < ${count}; n++) { const field = ${field("constant 0, colour")}; field.value = "#0000" + (16 + n).toString(16);
+    field.dispatchEvent(new Event("input")); await new Promise((done) => requestAnimationFrame(() => setTimeout(done))); times.push(inspector.times.drag); } return times; })()`);
+  console.log(`a step of dragging, 640 x 480, ${Math.round(median(await dragged(15)))} ms`);
   await opened("small.html");
+  console.log(`a step of dragging, 256 x 256, ${Math.round(median(await dragged(15)))} ms`);
   console.log(`redraw of 256 x 256 ${Math.round(median(await again("inspector.redraw()", "redraw")))} ms`);
 }
 

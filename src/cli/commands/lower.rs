@@ -21,7 +21,7 @@ pub(crate) struct Arguments {
     /// The scene file, or a pixel program in a file of its own
     #[arg(value_name = "SCENE|PROGRAM", required_unless_present = "generic")]
     source: Option<PathBuf>,
-    /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs
+    /// C99, GLSL: one text for every program, which reads the words of the registers of `--profile` while it runs; Verilog: a module for each step of a pixel
     #[arg(long, conflicts_with_all = ["source", "language", "draw", "uniform", "textures", "fragment"])]
     generic: bool,
     /// With `--generic --to c99`: write ninebit_combiners.h and ninebit_combiners.c to this folder; without it, one text of both goes to stdout
@@ -115,13 +115,14 @@ fn generic(arguments: &Arguments) -> Result<(), Failure> {
         }
         (Form::C99, None) => Ok(write_text(&text.c99().whole())?),
         (Form::Glsl, None) => Ok(write_text(&text.glsl())?),
-        (Form::Glsl, Some(_)) => Err(Failure::usage(
+        (Form::Verilog, None) => Ok(write_text(&text.verilog())?),
+        (Form::Glsl | Form::Verilog, Some(_)) => Err(Failure::usage(
             "`--output` is for the two files of C99".to_string(),
-            "a shader is one text: leave `--output` out and take it from stdout",
+            "a shader or modules are one text: leave `--output` out and take it from stdout",
         )),
         _ => Err(Failure::usage(
             "there is no generic text of this form".to_string(),
-            "take `--to c99` or `--to glsl`; every other form needs a scene or a program",
+            "take `--to c99`, `--to glsl` or `--to verilog`; every other form needs a scene or a program",
         )),
     }
 }

@@ -3,6 +3,7 @@
 //! Its rules are printed like those of a single draw, by reading the order: a function for each step, with a case for each value of the field that chooses
 //! ([`pieces`]). What stands here as text ([`text`]) is what brings values from one function to the next: where a field is, which register it names, what is called.
 
+mod modules;
 mod pieces;
 mod text;
 
@@ -42,6 +43,11 @@ impl Generic {
     /// C99 without dependencies, allocation or undefined behaviour.
     pub fn c99(&self) -> Sources {
         text::c99(self)
+    }
+
+    /// The steps of a pixel as combinational modules of Verilog-2001; what joins them is the reader's.
+    pub fn verilog(&self) -> String {
+        modules::verilog(self)
     }
 
     /// GLSL 3.30 and GLSL ES 3.00; the line with the version is the caller's.

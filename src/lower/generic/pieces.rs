@@ -86,6 +86,13 @@ impl<'a> Reader<'a> {
         Factor { value, halves: self.halvings > 0 }
     }
 
+    /// A register by its mapping, in halves where factors come in halves.
+    fn mapped(&mut self, mapping: InputMapping, x: Number<'a>) -> Number<'a> {
+        let factor = self.listing.map(mapping, x);
+        let whole = self.halvings > 0 && !factor.halves;
+        if whole { factor.value.multiplied(Number::Constant(2)) } else { factor.value }
+    }
+
     /// A sum in the steps that all of them have.
     fn sum(&self, sum: Sum<'a>) -> Number<'a> {
         let none = Sum { value: Number::Constant(0), halvings: self.halvings };
@@ -142,21 +149,28 @@ pub(super) fn pieces(policies: Policies) -> Vec<Piece> {
     pieces
 }
 
+/// What each mapping makes of each value of a register, from -256 to 255: the rule, read with that value.
+pub(super) fn mapped(policies: Policies) -> Vec<Vec<i64>> {
+    let maker = Maker { policies, block: Block::Piece };
+    let one = |mapping: InputMapping, x: i64| {
+        let case = maker.case(0, "", |reader| vec![reader.mapped(mapping, Number::Constant(x))]);
+        // Of a constant comes a constant.
+        case.range.0
+    };
+    InputMapping::ALL.iter().map(|mapping| (REGISTER.0..=REGISTER.1).map(|x| one(*mapping, x)).collect()).collect()
+}
+
 fn combiners(maker: &Maker) -> Vec<Piece> {
     let color = maker.case(0, "", |reader| {
         reader.code.by("NUM-5");
         surface::channels(SurfaceFormat::A8R8G8B8, reader.word("word")).map(Word::number).to_vec()
     });
     let mapped = |x: &'static str| {
-        maker.cases(
-            |mapping: InputMapping| mapping as u32,
-            |reader, mapping| {
-                let x = reader.given(x, REGISTER);
-                let factor = reader.listing.map(mapping, x);
-                let whole = reader.halvings > 0 && !factor.halves;
-                vec![if whole { factor.value.multiplied(Number::Constant(2)) } else { factor.value }]
-            },
-        )
+        let number = |mapping: InputMapping| mapping as u32;
+        maker.cases(number, |reader, mapping| {
+            let x = reader.given(x, REGISTER);
+            vec![reader.mapped(mapping, x)]
+        })
     };
     let factor = range(&mapped("x"));
     let flags = |no: &'static str, yes: &'static str| [(0, no), (1, yes)];
@@ -427,6 +441,9 @@ fn raster(maker: &Maker) -> Vec<Piece> {
         vec![(r | g | b | a).0]
     });
     let blends = maker.cases(format, |_, format: SurfaceFormat| vec![Number::Constant(surface::blends(format).into())]);
+    let whole = maker.cases(format, |_, format: SurfaceFormat| {
+        vec![Number::Constant((surface::write_mask(format, [true; 4]) == u32::MAX).into())]
+    });
     let byte = |name, about, chooses, parameters, cases| Piece {
         about,
         name,
@@ -442,7 +459,7 @@ fn raster(maker: &Maker) -> Vec<Piece> {
         ..byte(name, about, chooses, parameters, cases)
     };
     vec![
-        byte("nb_passes", "The alpha test.", "function", "@int alpha, @int reference", passes),
+        byte("nb_passes", "The alpha test.", "compare", "@int alpha, @int reference", passes),
         byte("nb_blends", "Whether a surface can be blended with.", "format", "", blends),
         four(
             "nb_truncated",
@@ -462,6 +479,7 @@ fn raster(maker: &Maker) -> Vec<Piece> {
             factors,
         ),
         byte("nb_blended", "A blended channel.", "equation", "@int s, @int d, @int fs, @int fd", blended),
+        byte("nb_whole", "Whether the four channels are all bits of a surface's words.", "format", "", whole),
         Piece {
             kind: Kind::Word,
             ..byte("nb_packed", "A fragment as a stored word.", "format", "@in @int fragment[4]", packed)

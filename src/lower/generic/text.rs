@@ -8,13 +8,14 @@ use ninebit::state::{FinalRegister, Named, Profile};
 use ninebit_program::registers::layout::{self, Field};
 use ninebit_program::registers::{Word, component, raster, register_code};
 
-use super::pieces::{Case, Piece, Write, initial_spare0, pieces, writes};
+use super::pieces::{Case, Piece, Write, initial_spare0, mapped, pieces, writes};
 use super::{Generic, Sources};
 use crate::code::Kind;
 use crate::language::{Body, Language, ROUNDING, Syntax};
 
 /// What of the text differs between the two languages. The text is written with these on the left.
-const C99: [(&str, &str); 15] = [
+const C99: [(&str, &str); 16] = [
+    ("@flatten", "NB_FLATTEN "),
     ("@fn ", "static inline "),
     ("@uint(", "(uint32_t)("),
     ("@int(", "(int32_t)("),
@@ -31,7 +32,8 @@ const C99: [(&str, &str); 15] = [
     ("@i.", "inputs->"),
     ("@public ", ""),
 ];
-const GLSL: [(&str, &str); 15] = [
+const GLSL: [(&str, &str); 16] = [
+    ("@flatten", ""),
     ("@fn ", ""),
     ("@uint(", "uint("),
     ("@int(", "int("),
@@ -54,6 +56,13 @@ pub(super) fn words(chip: Profile) -> impl Iterator<Item = (&'static str, usize,
     let words = Word::ALL.iter().map(move |word| (word.name(), word.count(chip), word.method(chip)));
     let raster = raster::Method::ALL.iter().map(|method| (method.name(), 1, method.number()));
     words.chain(raster).filter(|(_, count, _)| *count > 0)
+}
+
+/// How inputs are mapped: shaders compute, a processor is faster with a table.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mapped {
+    Computed,
+    Looked,
 }
 
 struct Printer<'g> {
@@ -90,8 +99,12 @@ pub(super) fn c99(generic: &Generic) -> Sources {
     let _ = write!(source, "/* {first}\n   {second}\n   {third} */\n#include \"ninebit_combiners.h\"\n\n");
     source.push_str("static inline int32_t ninebit_least(int32_t a, int32_t b) { return a < b ? a : b; }\n");
     source.push_str("static inline int32_t ninebit_greatest(int32_t a, int32_t b) { return a > b ? a : b; }\n\n");
+    source.push_str(
+        "/* All of a pixel in one function: calls would take half of its time. */\n\
+         #if defined(__GNUC__)\n#define NB_FLATTEN __attribute__((flatten))\n#else\n#define NB_FLATTEN\n#endif\n\n",
+    );
     source.push_str(&printer.method());
-    source.push_str(&translated(&printer.body(), &C99));
+    source.push_str(&translated(&printer.body(Mapped::Looked), &C99));
     Sources { header, source }
 }
 
@@ -111,7 +124,7 @@ pub(super) fn glsl(generic: &Generic) -> String {
         "/* Words as a driver writes them, with the methods that write them. What is not written is 0. */\nstruct NinebitState {{\n{members}}};\n\n\
          /* What one pixel brings. Colours are R, G, B, A. */\nstruct NinebitInputs {{\n{GLSL_INPUTS}}};\n\n"
     );
-    out + &translated(&printer.body(), &GLSL)
+    out + &translated(&printer.body(Mapped::Computed), &GLSL)
 }
 
 const C99_INPUTS: &str = "    int32_t primary[4];    /* interpolated diffuse, 0 to 255 */
@@ -200,12 +213,16 @@ impl Printer<'_> {
     }
 
     /// All functions.
-    fn body(&self) -> String {
+    fn body(&self, inputs: Mapped) -> String {
         let mut out = String::new();
         for piece in pieces(self.generic.policies) {
-            out.push_str(&self.piece(&piece));
+            match (inputs, piece.name) {
+                (Mapped::Looked, "nb_mapped") => out.push_str(&self.table(&piece)),
+                (Mapped::Looked, "nb_mapped_rgb") => {}
+                _ => out.push_str(&self.piece(&piece)),
+            }
         }
-        for part in [operands(), self.stage(), self.fragment(), store()] {
+        for part in [operands(inputs), self.stage(), self.fragment(), store()] {
             out.push_str(&part);
             out.push('\n');
         }
@@ -272,6 +289,27 @@ impl Printer<'_> {
         out + "}\n\n"
     }
 
+    /// Inputs by their mapping as a table.
+    fn table(&self, piece: &Piece) -> String {
+        let rows = mapped(self.generic.policies);
+        let mut out = format!(
+            "/* {} Of each mapping its register's values -256 to 255. */\nstatic const int16_t nb_mapping[{}][512] = {{\n",
+            piece.about,
+            rows.len()
+        );
+        for (case, row) in piece.cases.iter().zip(rows) {
+            let body = Body::of(self.syntax, &case.lines, &case.results, &[]);
+            let (_, rules) = body.result(self.syntax, case.results[0], piece.kind);
+            let _ = writeln!(out, "    {{ /* {}{}{rules} */", case.name, if rules.is_empty() { "" } else { ": " });
+            for line in row.chunks(32) {
+                let numbers: Vec<String> = line.iter().map(i64::to_string).collect();
+                let _ = writeln!(out, "        {},", numbers.join(", "));
+            }
+            out.push_str("    },\n");
+        }
+        out + "};\n\n"
+    }
+
     /// What a case does.
     fn statements(&self, piece: &Piece, case: &Case, place: &impl Fn(usize) -> String) -> Vec<String> {
         let body = Body::of(self.syntax, &case.lines, &case.results, &[]);
@@ -327,7 +365,7 @@ impl Printer<'_> {
             let _ = writeln!(out, "    @in @uint {name} = @s.{}[stage];", word.name());
         }
         out.push_str("    @int a[3], b[3], ab[3], cd[3], third[3], takes_cd = 0, alpha_ab = 0, alpha_cd = 0;\n");
-        out.push_str("    for (@int c = 0; c < 3; c++) cd[c] = 0;\n");
+        out.push_str("    for (@int c = 0; c < 3; c++) cd[c] = 0;\n    for (@int c = 0; c < 3; c++) third[c] = 0;\n");
         for (n, result) in ["ab", "cd"].into_iter().enumerate() {
             let [x, y] = [2 * n, 2 * n + 1].map(|n| field("in_rgb", layout::BYTES[n]));
             let dot = field(rgb, layout::DOT_PRODUCTS[n]);
@@ -366,8 +404,18 @@ impl Printer<'_> {
             if open != Some((output, is_alpha)) {
                 out.push_str(if open.is_some() { "    }\n" } else { "" });
                 let _ = writeln!(out, "    if (({destination}) != 0u) {{");
-                if !is_alpha {
-                    let _ = writeln!(out, "        nb_output_rgb({operation}, {raw});");
+                // A dot product is the same in each channel.
+                match layout::DOT_PRODUCTS.get(output).filter(|_| !is_alpha) {
+                    Some(dot) => {
+                        let _ = write!(
+                            out,
+                            "        if ({}) {{\n            {raw}[0] = nb_output({operation}, {raw}[0]);\n            {raw}[1] = {raw}[0];\n            {raw}[2] = {raw}[0];\n\
+                             \x20       }} else {{\n            nb_output_rgb({operation}, {raw});\n        }}\n",
+                            is_set(word, *dot)
+                        );
+                    }
+                    None if is_alpha => {}
+                    None => _ = writeln!(out, "        nb_output_rgb({operation}, {raw});"),
                 }
                 open = Some((output, is_alpha));
             }
@@ -475,7 +523,7 @@ impl Printer<'_> {
 }
 
 /// What inputs read.
-fn operands() -> String {
+fn operands(inputs: Mapped) -> String {
     let channel = |is_alpha: bool, portion_alpha: bool, own: usize| {
         component_channel(component(layout::ALPHA.put(is_alpha.into()), portion_alpha), own)
     };
@@ -483,18 +531,30 @@ fn operands() -> String {
     let register = field("byte", layout::REGISTER);
     let is_alpha = is_set("byte", layout::ALPHA);
     let (mapping, invert) = (field("byte", layout::MAPPING), field("byte", layout::INVERT));
-    let read = |own: &str| format!("r[{register}][{is_alpha} ? {alpha} : {own}]");
-    let one = read(&blue.to_string());
-    let all = format!(
-        "    if ({is_alpha}) {{\n        for (@int c = 0; c < 3; c++) x[c] = r[{register}][{alpha}];\n    }} else {{\n        for (@int c = 0; c < 3; c++) x[c] = r[{register}][c];\n    }}\n"
-    );
+    let one = format!("r[{register}][{is_alpha} ? {alpha} : {blue}]");
+    // Of an RGB portion's input, each channel by `of`.
+    let all = |of: &dyn Fn(&str) -> String| {
+        let each = |channel: &str| {
+            format!("for (@int c = 0; c < 3; c++) x[c] = {};", of(&format!("r[{register}][{channel}]")))
+        };
+        let (same, own) = (each(&alpha.to_string()), each("c"));
+        format!("    if ({is_alpha}) {{\n        {same}\n    }} else {{\n        {own}\n    }}\n")
+    };
+    let plain = all(&str::to_owned);
+    let looked = |x: &str| format!("nb_mapping[{mapping}][{x} + 256]");
+    let (mapped_rgb, mapped) = match inputs {
+        Mapped::Computed => {
+            (format!("{plain}    nb_mapped_rgb({mapping}, x);\n"), format!("nb_mapped({mapping}, {one})"))
+        }
+        Mapped::Looked => (all(&looked), looked(&one)),
+    };
     format!(
         "/* An input of an RGB portion: register, component, mapping. */\n\
-         @fn void nb_operands(@uint byte, @registers, @out @int x[3])\n{{\n{all}    nb_mapped_rgb({mapping}, x);\n}}\n\n\
+         @fn void nb_operands(@uint byte, @registers, @out @int x[3])\n{{\n{mapped_rgb}}}\n\n\
          /* An input of an alpha portion: {} unless it is {}. */\n\
-         @fn @int nb_operand(@uint byte, @registers)\n{{\n    return nb_mapped({mapping}, {one});\n}}\n\n\
+         @fn @int nb_operand(@uint byte, @registers)\n{{\n    return {mapped};\n}}\n\n\
          /* An input of the final combiner. */\n\
-         @fn void nb_final_operands(@uint byte, @registers, @out @int x[3])\n{{\n{all}    nb_final_input_rgb({invert}, x);\n}}\n\n\
+         @fn void nb_final_operands(@uint byte, @registers, @out @int x[3])\n{{\n{plain}    nb_final_input_rgb({invert}, x);\n}}\n\n\
          /* The alpha of the fragment. */\n\
          @fn @int nb_final_alpha(@uint byte, @registers)\n{{\n    return nb_final_input({invert}, {one});\n}}\n",
         channel_name(blue),
@@ -506,19 +566,24 @@ fn operands() -> String {
 fn store() -> String {
     let name = |method: raster::Method| format!("@s.{}", method.name());
     let format = field(&name(raster::Method::SurfaceFormat), raster::SURFACE_COLOR);
+    let all = raster::COLOR_MASK.iter().fold(0, |all, field| all | field.put(1));
     format!(
         "@public int nb_kept(@state, @in @int fragment[4])\n{{\n    if ({} == 0u) return 1;\n    return nb_passes({}, fragment[3], @int({} & 255u));\n}}\n\n\
-         @public @uint nb_stored(@state, @in @int fragment[4], @uint destination)\n{{\n    @uint format = {format}, mask = nb_write_mask(format, {});\n\
-         \x20   @int channels[4], source[4], held[4], constant[4], factors[4], other[4];\n    for (@int c = 0; c < 4; c++) channels[c] = fragment[c];\n\
+         @public @uint nb_stored(@state, @in @int fragment[4], @uint destination)\n{{\n    @uint format = {format}, mask;\n\
+         \x20   @int channels[4], source[4], held[4], constant[4], factors[4], other[4];\n\
+         \x20   if ({} == 0u && ({} & {all:#x}u) == {all:#x}u && nb_whole(format) != 0) return nb_packed(format, fragment); /* ROP-6 */\n\
+         \x20   mask = nb_write_mask(format, {});\n    for (@int c = 0; c < 4; c++) channels[c] = fragment[c];\n\
          \x20   if ({} != 0u && nb_blends(format) != 0) {{\n        nb_truncated(format, fragment, source);\n        nb_channels(format, destination, held);\n\
          \x20       nb_color({}, constant);\n        nb_blend_factors({}, source, held, constant, factors);\n        nb_blend_factors({}, source, held, constant, other);\n\
          \x20       for (@int c = 0; c < 4; c++) channels[c] = nb_blended({}, source[c], held[c], factors[c], other[c]);\n    }}\n\
          \x20   return (destination & ~mask) | (nb_packed(format, channels) & mask); /* ROP-6 */\n}}\n\n\
-         @public @uint nb_pixel(@state, @inputs)\n{{\n    @int fragment[4];\n    nb_fragment(state, inputs, fragment);\n\
+         @flatten@public @uint nb_pixel(@state, @inputs)\n{{\n    @int fragment[4];\n    nb_fragment(state, inputs, fragment);\n\
          \x20   return nb_kept(state, fragment) != 0 ? nb_stored(state, fragment, @i.destination) : @i.destination;\n}}\n",
         name(raster::Method::AlphaTestEnable),
         name(raster::Method::AlphaFunc),
         name(raster::Method::AlphaRef),
+        name(raster::Method::BlendEnable),
+        name(raster::Method::ColorMask),
         name(raster::Method::ColorMask),
         name(raster::Method::BlendEnable),
         name(raster::Method::BlendColor),

@@ -6,6 +6,8 @@ mod glsl;
 mod verilog;
 mod wgsl;
 
+pub(crate) use verilog::port;
+
 use std::collections::BTreeSet;
 
 use ninebit::state::{CompareFunction, named};

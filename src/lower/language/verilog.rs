@@ -13,6 +13,14 @@ fn width((low, high): Range) -> u32 {
     bits(low).max(bits(high))
 }
 
+/// The type of a port or wire.
+pub(crate) fn port(kind: Kind, range: Range) -> String {
+    match kind {
+        Kind::Number => format!("signed [{}:0]", width(range) - 1),
+        Kind::Word => "[31:0]".to_string(),
+    }
+}
+
 impl Syntax for Verilog {
     fn head(&self, _functions: &[Named<'_>]) -> String {
         let lines = ROUNDING.map(|line| format!("// {line}\n")).concat();
@@ -28,10 +36,7 @@ impl Syntax for Verilog {
             .function
             .inputs()
             .into_iter()
-            .map(|input| match input.kind() {
-                Kind::Word => format!("input [31:0] {}", self.input(input)),
-                Kind::Number => format!("input signed [{}:0] {}", width(input.range()) - 1, self.input(input)),
-            })
+            .map(|input| format!("input {} {}", port(input.kind(), input.range()), self.input(input)))
             .collect();
         let mut ends = Vec::new();
         match named.function.result {
@@ -75,7 +80,8 @@ impl Syntax for Verilog {
             Input::BlendConstant(c) => format!("blend_constant_{}", letter(c)),
             Input::AlphaReference => "alpha_reference".to_string(),
             Input::BorderColor(n, c) => format!("border{n}_{}", letter(c)),
-            Input::Local(local) => local.name.to_string(),
+            // A port is no part of an array.
+            Input::Local(local) => local.name.replace(['[', ']'], ""),
         }
     }
 
@@ -98,10 +104,7 @@ impl Syntax for Verilog {
     }
 
     fn declare(&self, name: &str, line: &Line, value: &str, comment: &str) -> String {
-        match line.operation.kind() {
-            Kind::Number => format!("wire signed [{}:0] {name} = {value}; // {comment}", width(line.range) - 1),
-            Kind::Word => format!("wire [31:0] {name} = {value}; // {comment}"),
-        }
+        format!("wire {} {name} = {value}; // {comment}", port(line.operation.kind(), line.range))
     }
 
     fn compares_names(&self) -> bool {

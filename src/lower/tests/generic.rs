@@ -4,9 +4,13 @@
 #![allow(
     missing_docs,
     unreachable_pub,
+    dead_code,
     clippy::unwrap_used,
-    reason = "tests fail by panicking, and the harness needs no documents"
+    reason = "tests fail by panicking, and modules share files of which each uses its part"
 )]
+
+#[path = "common/setting.rs"]
+mod setting;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -18,8 +22,8 @@ use ninebit::combiner::registers::Registers;
 use ninebit::random::Random;
 use ninebit::rop::{blend, surface};
 use ninebit::state::{
-    Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, FinalRegister, Named, POLICIES, Policies, Profile,
-    Register, SurfaceFormat,
+    Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, FinalRegister, InputMapping, Named, Policies,
+    Profile, Register, SurfaceFormat,
 };
 use ninebit::trace::Silent;
 use ninebit_lower::Generic;
@@ -29,15 +33,12 @@ use ninebit_vectors::cases::Level;
 use ninebit_vectors::gpu::{self, Case, recipes};
 use ninebit_vectors::table::{Contents, Writer};
 use ninebit_vectors::units;
+use setting::{any_policies, compiler, python, setting, works};
 
 /// Words of a pixel: state, inputs, what is expected.
 const COLUMNS: usize = 128;
 /// Primary, secondary, fog, four textures, destination.
 const INPUTS: usize = 29;
-
-fn setting(name: &str) -> Option<u64> {
-    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name} is no number: {text}")))
-}
 
 /// Words that the chip takes. What is 0 is often so: the text leaves out what is.
 fn words(chip: Profile, random: &mut Random) -> RegisterWords {
@@ -115,7 +116,8 @@ fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) 
                 let channel = |_: usize| match random.below(8) {
                     0 => 255,
                     1 => low,
-                    2 => 128,
+                    // On both sides of where muxes decide.
+                    2 => 127 + random.below(2) as i32,
                     _ => low + random.below((256 - low) as u128) as i32,
                 };
                 let value = [0, 1, 2, 3].map(channel);
@@ -147,13 +149,7 @@ fn pixels(generic: &Generic, programs: usize, rows: usize, random: &mut Random) 
 /// Generic texts: both chips as they are, and now and then under other policies.
 fn generic(n: usize, random: &mut Random) -> Generic {
     let chip = if n % 3 == 2 { Profile::Nv10 } else { Profile::Nv2a };
-    let mut policies = Policies::DEFAULT;
-    if n % 4 == 3 {
-        for policy in POLICIES {
-            let (value, _) = random.pick(policy.values).unwrap();
-            policies.set(&format!("{}={value}", policy.rule)).unwrap();
-        }
-    }
+    let policies = if n % 4 == 3 { any_policies(random) } else { Policies::DEFAULT };
     Generic { chip, policies }
 }
 
@@ -206,9 +202,8 @@ fn compile(text: &Generic, change: impl Fn(String) -> String, folder: &Path) -> 
     ] {
         std::fs::write(folder.join(name), text)?;
     }
-    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
     let flags = std::env::var("NINEBIT_LOWER_CFLAGS").unwrap_or_default();
-    let mut build = Command::new(compiler);
+    let mut build = Command::new(compiler());
     build.args(["-std=c99", "-Wall", "-Wextra", "-Werror", "-pedantic", "-O1"]).args(flags.split_whitespace());
     run(build.args(["-o", "pixels", "main.c", "ninebit_combiners.c"]), folder)
 }
@@ -256,7 +251,9 @@ fn errors_are_noticed() -> Result<(), Failed> {
     ];
     let (mut planted, mut missed) = (0, Vec::new());
     for (from, to) in swaps {
-        let all: Vec<usize> = (first..lines.len()).filter(|n| lines[*n].contains(from)).collect();
+        // Numbers of the table have a test of their own.
+        let is_code = |line: &str| !line.trim_start().starts_with(|c: char| c == '-' || c.is_ascii_digit());
+        let all: Vec<usize> = (first..lines.len()).filter(|n| lines[*n].contains(from) && is_code(lines[*n])).collect();
         for at in all.iter().step_by(all.len().div_ceil(2)) {
             let mut changed = lines.clone();
             let line = changed[*at].replacen(from, to, 1);
@@ -272,6 +269,33 @@ fn errors_are_noticed() -> Result<(), Failed> {
     }
     println!("{} of {planted} planted errors noticed", planted - missed.len());
     if missed.is_empty() { Ok(()) } else { Err(missed.join("\n").into()) }
+}
+
+/// The table of mappings, number by number, against the formulas of the handbook.
+fn table() -> Result<(), Failed> {
+    let source = Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT }.c99().source;
+    let (_, table) = source.split_once("nb_mapping[8][512] = {").unwrap();
+    let (table, _) = table.split_once("};").unwrap();
+    let code = table.lines().map(|line| line.split_once("/*").map_or(line, |(code, _)| code));
+    let numbers: Vec<i32> =
+        code.flat_map(|line| line.split([',', '{', '}'])).filter_map(|n| n.trim().parse().ok()).collect();
+    assert_eq!(numbers.len(), 8 * 512);
+    for (at, number) in numbers.into_iter().enumerate() {
+        let (x, mapping) = (at as i32 % 512 - 256, InputMapping::ALL[at / 512]);
+        let positive = x.max(0);
+        let expected = match mapping {
+            InputMapping::UnsignedIdentity => positive,
+            InputMapping::UnsignedInvert => 255 - positive,
+            InputMapping::ExpandNormal => 2 * (positive - 128),
+            InputMapping::ExpandNegate => (2 * (128 - positive)).min(255),
+            InputMapping::HalfBiasNormal => positive - 128,
+            InputMapping::HalfBiasNegate => 128 - positive,
+            InputMapping::SignedIdentity => x,
+            InputMapping::SignedNegate => (-x).min(255),
+        };
+        assert_eq!(number, expected, "{} of {x}", mapping.name());
+    }
+    Ok(())
 }
 
 /// One shader for all programs: each pixel has the words of its own.
@@ -479,20 +503,12 @@ fn bytes(words: &[u32]) -> Vec<u8> {
     words.iter().flat_map(|word| word.to_le_bytes()).collect()
 }
 
-fn python() -> String {
-    std::env::var("NINEBIT_LOWER_PYTHON").unwrap_or_else(|_| "python3".to_string())
-}
-
-fn works(program: &str, arguments: &[&str]) -> bool {
-    Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
-}
-
 fn main() {
     let arguments = Arguments::from_args();
-    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
-    let compiles = works(&compiler, &["--version"]);
+    let compiles = works(&compiler(), &["--version"]);
     let draws = works(&python(), &["-c", "import moderngl, numpy"]);
     let trials = vec![
+        Trial::test("table of mappings", table),
         Trial::test("c99", c99).with_ignored_flag(!compiles),
         Trial::test("rows of tables", rows).with_ignored_flag(!compiles),
         Trial::test("planted errors are noticed", errors_are_noticed).with_ignored_flag(!compiles),

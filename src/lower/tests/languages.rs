@@ -15,42 +15,35 @@
 mod random_program;
 #[path = "../../../tests/common/random_scene.rs"]
 mod random_scene;
+#[path = "common/setting.rs"]
+mod setting;
+#[path = "common/traced.rs"]
+mod traced;
 
 use std::fmt::Write;
 use std::path::Path;
 use std::process::Command;
 
 use libtest_mimic::{Arguments, Failed, Trial};
+use ninebit::engine::{RenderOptions, render, trace};
+use ninebit::frame::Surface;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
-use ninebit::state::{POLICIES, Policies};
+use ninebit::state::{Policies, Scene};
 use ninebit_lower::code::{Kind, Test, run_changed, value_of};
 use ninebit_lower::{Function, Input, Language, Named, Options, Result, Textures};
 use proptest::strategy::{Strategy, ValueTree};
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use setting::{any_policies, compiler, python, runner, setting, works};
+use traced::Traced;
 
 /// Columns of the pool of given numbers: bytes, registers, words.
 const BYTES: usize = 32;
 const REGISTERS: usize = 16;
 const COLUMNS: usize = 64;
 
-fn setting(name: &str) -> Option<u64> {
-    std::env::var(name).ok().map(|text| text.parse().unwrap_or_else(|_| panic!("{name} is no number: {text}")))
-}
-
-fn any_policies(random: &mut Random) -> Policies {
-    let mut policies = Policies::DEFAULT;
-    for policy in POLICIES {
-        let (value, _) = random.pick(policy.values).unwrap();
-        policies.set(&format!("{}={value}", policy.rule)).unwrap();
-    }
-    policies
-}
-
 /// Random functions: programs and draws in turn.
 fn functions(count: usize, seed: u64) -> Vec<Function> {
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[seed as u8; 32]);
-    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    let mut runner = runner(seed);
     let (programs, scenes) = (random_program::combiners(), random_scene::scene());
     let mut random = Random::seeded(seed);
     let mut functions: Vec<Function> = Vec::new();
@@ -248,9 +241,8 @@ impl Batch<'_> {
 
     /// Compiles the C.
     fn compile(&self) -> std::result::Result<(), Failed> {
-        let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
         let more = std::env::var("NINEBIT_LOWER_CFLAGS").unwrap_or_else(|_| "-O1".to_string());
-        let mut command = Command::new(compiler);
+        let mut command = Command::new(compiler());
         command.args(["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-o", "cases", "cases.c"]);
         self.run(command.args(more.split_whitespace()))
     }
@@ -346,7 +338,7 @@ impl Batch<'_> {
                 };
                 format!(
                     "#version 330\n{printed}\nuniform isampler2D pool;\nout uvec4 result;\nint given(int row, int column) {{ return texelFetch(pool, \
-                     ivec2(column, row), 0).r; }}\nvoid main()\n{{\n    int row = int(gl_FragCoord.y) * 64 + int(gl_FragCoord.x);\n    NinebitPixel pixel;\n\
+                     ivec2(column + {COLUMNS} * (row >> 14), row & 16383), 0).r; }}\nvoid main()\n{{\n    int row = int(gl_FragCoord.y) * 64 + int(gl_FragCoord.x);\n    NinebitPixel pixel;\n\
                      {uniform}{body}{call}}}\n"
                 )
             } else {
@@ -445,13 +437,89 @@ fn errors_are_noticed() -> std::result::Result<(), Failed> {
     }
 }
 
-fn python() -> String {
-    std::env::var("NINEBIT_LOWER_PYTHON").unwrap_or_else(|_| "python3".to_string())
+/// Whole frames through shaders: each fragment's bytes, fetched texels, weights and destination word go in, as the model's trace has them, and the word that it stores has to
+/// come out; the last of each pixel are the frame that the engine draws. Of every `NINEBIT_LOWER_FRAMES`-th row.
+fn frames() -> std::result::Result<(), Failed> {
+    let step = setting("NINEBIT_LOWER_FRAMES").map_or(1, |step| step as usize);
+    for scene in ["w1", "w2", "w4"] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../../vectors/scenes/bench/{scene}.ron"));
+        let loaded =
+            ninebit_scene::load(&path, &ninebit::limits::Limits::default()).map_err(|error| error.to_string())?;
+        let plan = Plan::compile(&loaded.scene, &PlanOptions { prune: false, ..PlanOptions::default() }).unwrap();
+        let draws = &loaded.scene.draws;
+        let options = Options { textures: Textures::Words, ..Options::default() };
+        let function = |(draw, planned)| Function::of_draw(&loaded.scene, draw, planned, &options);
+        let functions: Vec<Function> = draws.iter().zip(&plan.draws).map(function).collect();
+        let surface = &render(&plan, &RenderOptions::default()).surfaces[0];
+        let rows: Vec<u32> = (0..surface.height).step_by(step).collect();
+        let parts: Vec<Vec<Given>> = std::thread::scope(|scope| {
+            let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+            let (scene, plan, functions) = (&loaded.scene, &plan, &functions);
+            let parts: Vec<_> = rows
+                .chunks(rows.len().div_ceil(threads))
+                .map(|rows| scope.spawn(move || rows_given(scene, plan, functions, surface, rows)))
+                .collect();
+            parts.into_iter().map(|part| part.join().unwrap()).collect()
+        });
+        for (draw, function) in functions.iter().enumerate() {
+            let joined = |of: fn(&Given) -> &Vec<u32>, most: usize| -> Vec<u32> {
+                let mut all: Vec<u32> = parts.iter().flat_map(|part| of(&part[draw])).copied().collect();
+                // Shaders take 64 pixels at a time: the last one is given again.
+                while !all.len().is_multiple_of(64 * most) {
+                    all.extend_from_within(all.len() - most..);
+                }
+                all
+            };
+            let (pool, expected) = (joined(|given| &given.pool, COLUMNS), joined(|given| &given.expected, 4));
+            let fragments: usize = parts.iter().map(|part| part[draw].expected.len() / 4).sum();
+            let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+            let batch =
+                Batch { folder: folder.path(), functions: std::slice::from_ref(function), rows: pool.len() / COLUMNS };
+            batch.write("pool.bin", bytes(&pool));
+            batch.write("expected.bin", bytes(&expected));
+            for language in [Language::Glsl, Language::Wgsl] {
+                batch.shaders(language)?;
+            }
+            println!("{scene}, draw {draw}: {fragments} fragments, all equal in GLSL and WGSL");
+        }
+    }
+    Ok(())
 }
 
-/// Whether a command succeeds.
-fn works(program: &str, arguments: &[&str]) -> bool {
-    Command::new(program).args(arguments).output().is_ok_and(|output| output.status.success())
+/// Rows of a pool, and what is expected of each.
+#[derive(Clone, Default)]
+struct Given {
+    pool: Vec<u32>,
+    expected: Vec<u32>,
+}
+
+/// What the fragments of some rows of a frame are given, by draw.
+fn rows_given(scene: &Scene, plan: &Plan, functions: &[Function], surface: &Surface, rows: &[u32]) -> Vec<Given> {
+    let columns: Vec<Vec<(Input, usize)>> = functions.iter().map(columns).collect();
+    for columns in &columns {
+        assert!(
+            columns.iter().enumerate().all(|(n, (_, column))| columns[..n].iter().all(|(_, other)| other != column))
+        );
+    }
+    let mut given = vec![Given::default(); functions.len()];
+    for (x, y) in rows.iter().flat_map(|y| (0..surface.width).map(move |x| (x, *y))) {
+        let traced = trace(plan, 0, (x, y), None).unwrap();
+        assert_eq!(traced.word, surface.words[(y * surface.width + x) as usize], "{x}, {y}");
+        assert_eq!(traced.left_out, 0);
+        for fragment in &traced.draws {
+            let of = Traced::of(fragment);
+            assert!(fragment.stored || of.dropped(), "{x}, {y}: another test dropped it");
+            let mut row = [0; COLUMNS];
+            for (input, column) in &columns[fragment.draw] {
+                row[*column] = of.given(&scene.draws[fragment.draw], *input) as u32;
+            }
+            let destination = of.given(&scene.draws[fragment.draw], Input::Destination) as u32;
+            let word = of.said("stored.word").map_or(destination, |word| word as u32);
+            given[fragment.draw].pool.extend(row);
+            given[fragment.draw].expected.extend([word, u32::from(fragment.stored), 0, 0]);
+        }
+    }
+    given
 }
 
 /// All functions of a language, in batches.
@@ -480,9 +548,9 @@ fn all(language: Language, count: usize, rows: usize) -> std::result::Result<(),
 
 fn main() {
     let arguments = Arguments::from_args();
-    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".to_string());
+    let compiles = works(&compiler(), &["--version"]);
     let tests = [
-        (Language::C99, 200, 64, works(&compiler, &["--version"])),
+        (Language::C99, 200, 64, compiles),
         (Language::Verilog, 60, 32, works("iverilog", &["-V"])),
         (Language::Glsl, 60, 256, works(&python(), &["-c", "import moderngl, numpy"])),
         (Language::Wgsl, 60, 256, works(&python(), &["-c", "import wgpu, numpy"])),
@@ -491,7 +559,8 @@ fn main() {
         let name = format!("{language:?}").to_lowercase();
         Trial::test(name, move || all(language, count, rows)).with_ignored_flag(!runs)
     });
-    let works = works(&compiler, &["--version"]);
-    let planted = Trial::test("planted errors are noticed", errors_are_noticed).with_ignored_flag(!works);
-    libtest_mimic::run(&arguments, trials.into_iter().chain([planted]).collect()).exit();
+    let planted = Trial::test("planted errors are noticed", errors_are_noticed).with_ignored_flag(!compiles);
+    let draws = setting("NINEBIT_LOWER_FRAMES").is_some_and(|frames| frames > 0);
+    let frames = Trial::test("frames", frames).with_ignored_flag(!draws);
+    libtest_mimic::run(&arguments, trials.into_iter().chain([planted, frames]).collect()).exit();
 }

@@ -10,14 +10,16 @@
 
 #[path = "../../../tests/common/random_program.rs"]
 mod random_program;
+#[path = "common/setting.rs"]
+mod setting;
 
 use ninebit::combiner::registers::Registers;
 use ninebit::random::Random;
-use ninebit::state::{Combiners, POLICIES, Policies, Register};
+use ninebit::state::{Combiners, Policies, Register};
 use ninebit_lower::code::{run, value_of};
 use ninebit_lower::{Function, Input, Options, Result};
 use proptest::strategy::{Strategy, ValueTree};
-use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
+use setting::{any_policies, runner};
 
 /// The registers that a pixel brings.
 const GIVEN: [Register; 7] = [
@@ -32,8 +34,7 @@ const GIVEN: [Register; 7] = [
 
 /// Random programs; the same ones every time.
 fn programs() -> impl Iterator<Item = Combiners> {
-    let rng = TestRng::from_seed(RngAlgorithm::ChaCha, &[23; 32]);
-    let mut runner = TestRunner::new_with_rng(Config::default(), rng);
+    let mut runner = runner(23);
     std::iter::repeat_with(move || random_program::combiners().new_tree(&mut runner).unwrap().current())
 }
 
@@ -66,21 +67,11 @@ fn given(registers: &Registers<i32>, input: Input, program: &Combiners) -> i64 {
     }
 }
 
-/// Any policies: each of its alternatives as often as the others.
-fn policies(random: &mut Random) -> Policies {
-    let mut policies = Policies::DEFAULT;
-    for policy in POLICIES {
-        let (value, _) = random.pick(policy.values).unwrap();
-        policies.set(&format!("{}={}", policy.rule, value)).unwrap();
-    }
-    policies
-}
-
 #[test]
 fn lines_yield_what_the_model_does() {
     let mut random = Random::seeded(23);
     for (n, program) in programs().take(3000).enumerate() {
-        let policies = if n % 2 == 0 { Policies::DEFAULT } else { policies(&mut random) };
+        let policies = if n % 2 == 0 { Policies::DEFAULT } else { any_policies(&mut random) };
         let options = Options { policies, uniform: n % 3 == 0, ..Options::default() };
         let function = Function::of_program(&program, &options);
         let Result::Fragment(fragment) = function.result else { panic!("a program yields a fragment") };

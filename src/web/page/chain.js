@@ -1,5 +1,5 @@
 // The chain of integers of one pixel: a card for each unit, from the raster to the store.
-import { $, choice, el, hexadecimal, swatch } from "./elements.js";
+import { $, choice, colorField, el, hexadecimal, swatch } from "./elements.js";
 
 const CHANNELS = ["r", "g", "b", "a"];
 
@@ -77,20 +77,33 @@ export class Chain {
   }
 
   unit({ name, steps }, fragment, number) {
-    const rules = [...new Set(steps.map((step) => step.rule).filter(Boolean))];
     const stage = /^general stage (\d+) (rgb|alpha)$/.exec(name);
     const origin = stage && fragment.program_origin[stage[1]]?.[stage[2]];
+    const title = el("h3", {}, name);
     const card = el("section", { className: "unit", "aria-label": name },
-      el("div", { className: "title" }, el("h3", {}, name), rules.map((rule) => this.badge(rule)), origin ? el("span", { className: "origin" }, origin) : null));
+      el("div", { className: "title" }, title, this.formOf(name, steps, fragment.draw), origin ? el("span", { className: "origin" }, origin) : null));
     this.empty.set(card, () => {
       if (name.startsWith("texture unit")) card.append(...this.footprints(steps));
       const rows = this.rows(steps);
       card.append(stage ? this.stage(rows, number, fragment.draw, +stage[1], stage[2]) : this.flow(name, rows, number, fragment.draw), this.table(steps, number));
+      // Rules of what no box shows stand beside the name.
+      const boxed = new Set([...card.querySelectorAll(".box .badge")].map((badge) => badge.dataset.rule));
+      title.after(...[...new Set(steps.map((step) => step.rule))].filter((rule) => rule && !boxed.has(rule)).map((rule) => this.badge(rule)));
       card.classList.add("filled");
       this.mark(card);
     });
     this.sight.observe(card);
     return card;
+  }
+
+  // The way to the fields of the scene's text that a unit works by.
+  formOf(name, steps, draw) {
+    const unit = /^texture unit (\d)/.exec(name)?.[1];
+    const texture = steps.find((step) => step.texel)?.texel.name;
+    const field = { blend: "blend", fog: "fog", "alpha test": "alpha_test", "depth test": "depth_test", "stencil test": "stencil_test", rasteriser: "vertices" }[name];
+    const way = (label, path) => el("button", { className: "way", "aria-label": `${label} of ${name}: change`, onclick: () => this.page.form(path) }, label);
+    if (unit) return [way("unit", ["draws", String(draw), "textures", unit]), texture ? way("texture", ["textures", texture]) : null];
+    return field ? way(field.replaceAll("_", " "), ["draws", String(draw), field]) : null;
   }
 
   // What a unit holds is made when it comes near the window; of these units, or of all.
@@ -106,7 +119,7 @@ export class Chain {
   badge(rule) {
     const grade = this.page.rules[rule]?.grade ?? "";
     const label = `${rule}${grade ? ` · ${grade}` : ""}`;
-    return el("button", { className: `badge ${grade}`, title: this.page.rules[rule]?.title ?? rule, onclick: () => this.page.rule(rule) }, label);
+    return el("button", { className: `badge ${grade}`, "data-rule": rule, title: this.page.rules[rule]?.title ?? rule, onclick: () => this.page.rule(rule) }, label);
   }
 
   // Steps by what they are of, one entry a channel.
@@ -122,11 +135,13 @@ export class Chain {
   }
 
   wire(step, fragment, channel) {
-    const plain = step.per_one === 1;
+    // Of a count, a flag or a weight the real number is the integer.
+    const counted = step.per_one === 1;
+    const second = [step.per_one === 0 ? "" : hex(step), counted || step.per_one === 0 ? "" : real(step.real, 4)].filter(Boolean).join(" ");
     return el("button", { className: "wire", title: `${step.name}: ${written(step)}`, "data-fragment": fragment, "data-step": step.id },
       channel ? el("i", {}, channel) : null, el("b", {}, integer(step)),
-      plain ? null : el("small", {}, `${hex(step)} ${real(step.real, 4)}`),
-      plain || step.ideal === null ? null : el("small", { title: "ideal" }, `≈ ${real(step.ideal, 4)}`));
+      second ? el("small", {}, second) : null,
+      step.ideal === null || step.ideal === undefined ? null : el("small", { title: "ideal" }, `≈ ${real(step.ideal, 4)}`));
   }
 
   box(row, cells, fragment, extra) {
@@ -134,8 +149,9 @@ export class Chain {
     const inputs = [...new Set(step.inputs.map((input) => short(place(input.name).row)))];
     const from = inputs.length > 4 ? `${inputs.slice(0, 3).join(", ")}, …` : inputs.join(", ");
     const how = step.operation === "given" ? "" : `${step.operation.replaceAll("_", " ")}${from ? ` of ${from}` : ""}`;
+    const rules = [...new Set(cells.map(({ step: each }) => each.rule).filter(Boolean))];
     // A single value stands beside its name.
-    return el("div", { className: cells.length === 1 && !extra ? "box single" : "box" }, el("span", { className: "name" }, short(row)), el("span", { className: "how" }, how), extra ?? null,
+    return el("div", { className: cells.length === 1 && !extra ? "box single" : "box" }, el("span", { className: "name" }, short(row)), el("span", { className: "how" }, how), rules.map((rule) => this.badge(rule)), extra ?? null,
       el("div", { className: "wires" }, cells.map(({ channel, step: each }) => this.wire(each, fragment, channel))));
   }
 
@@ -144,7 +160,7 @@ export class Chain {
     const program = this.programs(draw);
     const state = program?.stages[number]?.[portion];
     const path = ["stages", number, portion];
-    const editable = state && program.origin.length === 0;
+    const editable = Boolean(state);
     const pick = (name, kind, at) => editable
       ? choice(program.choices[kind], at.reduce((value, key) => value[key], state), `${name} of stage ${number} ${portion}`,
         (value) => this.page.edit(draw, [...path, ...at], value))
@@ -159,11 +175,14 @@ export class Chain {
     }
     const boxes = (column, test = () => true) => columns[column].filter(([name]) => test(name)).map(([, box]) => box);
     const pairs = [["A", "B"], ["C", "D"]].map((pair) => boxes("inputs", (name) => pair.includes(name))).filter((pair) => pair.length);
+    const flag = (label, field) => el("label", {}, el("input", { type: "checkbox", "aria-label": `${label} of stage ${number} ${portion}`, checked: state[field],
+      onchange: (event) => this.page.edit(draw, [...path, field], event.target.checked) }), ` ${label}`);
+    const output = (label, field) => [el("span", { className: "quiet" }, `${label} → `), pick(`Output of ${label}`, "register", [field])];
     const settings = el("div", { className: "field" },
       editable ? [el("span", { className: "quiet" }, "scale "), pick("Scale", "scale", ["scale"]), el("span", { className: "quiet" }, " bias "), pick("Bias", "bias", ["bias"]),
-        portion === "rgb" ? ["ab", "cd"].map((pair) => el("label", {}, el("input", { type: "checkbox", checked: state[`${pair}_dot_product`],
-          onchange: (event) => this.page.edit(draw, [...path, `${pair}_dot_product`], event.target.checked) }), ` ${pair.toUpperCase()} dot`)) : null,
-        el("label", {}, el("input", { type: "checkbox", checked: state.mux, onchange: (event) => this.page.edit(draw, [...path, "mux"], event.target.checked) }), " mux")] : null);
+        output("AB", "ab_output"), output("CD", "cd_output"), output(state.mux ? "mux" : "sum", "sum_output"),
+        portion === "rgb" ? ["ab", "cd"].map((pair) => [flag(`${pair.toUpperCase()} dot`, `${pair}_dot_product`), flag(`${pair.toUpperCase()} blue to alpha`, `${pair}_blue_to_alpha`)]) : null,
+        flag("mux", "mux"), this.constants(program.stages[number].constants, draw, ["stages", number, "constants"], `stage ${number} ${portion}`)] : null);
     return el("div", {}, settings, el("div", { className: "flow" },
       el("div", { className: "stack" }, pairs.map((pair) => el("div", { className: "pair" }, pair))),
       el("div", { className: "stack" }, boxes("products")), el("div", { className: "stack" }, boxes("outputs"))));
@@ -190,13 +209,29 @@ export class Chain {
     const sorted = [...columns].sort(([a], [b]) => a - b).map(([, boxes]) => el("div", { className: "stack" }, boxes));
     const flow = el("div", { className: "flow" }, sorted);
     flow.style.gridTemplateColumns = `repeat(${Math.max(sorted.length, 2)}, minmax(0, 1fr))`;
-    return flow;
+    return name.startsWith("final") ? el("div", {}, this.finalSettings(draw), flow) : flow;
+  }
+
+  // Constant colours that this unit reads. Of NV10 all units read the same.
+  constants(colors, draw, own, of) {
+    const path = this.page.scene.profile === "Nv10" ? ["constants"] : own;
+    return el("details", { className: "constants" }, el("summary", {}, "constants"), colors.map((color, n) => el("div", { className: "field" }, el("span", { className: "quiet" }, String(n)),
+      colorField(color, `Constant ${n} of ${of}`, (value, dragging) => this.page.edit(draw, [...path, n], value, dragging)))));
+  }
+
+  // The final combiner's switches.
+  finalSettings(draw) {
+    const program = this.programs(draw);
+    if (!program) return null;
+    const flag = (label, field) => el("label", {}, el("input", { type: "checkbox", checked: program.final[field], onchange: (event) => this.page.edit(draw, ["final", field], event.target.checked) }), ` ${label}`);
+    return el("div", { className: "field" }, flag("clamp the colour sum", "color_sum_clamp"), flag("1 − SPARE0", "invert_spare0"), flag("1 − SECONDARY", "invert_secondary"),
+      this.constants(program.final.constants, draw, ["final", "constants"], "the final combiner"));
   }
 
   finalPick(row, draw) {
     const at = ["A", "B", "C", "D", "E", "F", "G"].indexOf(short(row));
     const program = this.programs(draw);
-    if (at < 0 || !program || program.origin.length) return null;
+    if (at < 0 || !program) return null;
     const input = program.final.inputs[at];
     return el("span", {}, choice(program.choices.final_register, input.register, `Register ${short(row)} of the final combiner`, (value) => this.page.edit(draw, ["final", "inputs", at, "register"], value)),
       choice(program.choices.component, input.component, `Component ${short(row)}`, (value) => this.page.edit(draw, ["final", "inputs", at, "component"], value)),

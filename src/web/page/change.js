@@ -1,12 +1,10 @@
 // Forms for the values of a scene's text: each changes its place in the text and nothing else.
-import { $, choice, el } from "./elements.js";
+import { $, choice, colorField, el } from "./elements.js";
 
 const bytes = (text) => {
   const match = /^\(\s*(\d+)\s*,\s*(\d+)\s*,\s*(\d+)\s*(?:,\s*(\d+)\s*)?,?\s*\)$/.exec(text);
   return match && match.slice(1).filter((part) => part !== undefined).map(Number);
 };
-
-const toHex = (rgb) => `#${rgb.slice(0, 3).map((byte) => Math.min(255, byte).toString(16).padStart(2, "0")).join("")}`;
 
 const FIRST = { color: "(255, 255, 255)", whole: "0", number: "0" };
 
@@ -20,6 +18,18 @@ export class Change {
     $("change").replaceChildren(el("p", { className: "quiet" }, "Each field changes its place in the scene's text. The picture follows while you drag."), this.policies(), this.node(tree, "scene"));
   }
 
+  // Opens the groups on the way to a part of the scene, and goes to the last of them that is there.
+  reveal(path) {
+    path.forEach((_, n) => this.open.add(["scene", ...path.slice(0, n + 1)].join("/")));
+  }
+
+  seek(path) {
+    const found = path.map((_, n) => ["scene", ...path.slice(0, n + 1)].join("/")).map((place) => [...document.querySelectorAll("#change details")].find((each) => each.dataset.path === place)).filter(Boolean);
+    const summary = found.at(-1)?.firstElementChild;
+    summary?.scrollIntoView({ block: "center" });
+    summary?.focus();
+  }
+
   policies() {
     const { alternatives, policies } = this.page;
     const fields = alternatives.map(({ rule, question, values }) => el("div", { className: "field" }, el("span", { className: "label" }, rule),
@@ -28,7 +38,7 @@ export class Change {
   }
 
   group(label, path, children) {
-    const details = el("details", { className: "tree", open: this.open.has(path) }, el("summary", {}, label));
+    const details = el("details", { className: "tree", "data-path": path, open: this.open.has(path) }, el("summary", {}, label));
     const build = () => {
       if (details.childElementCount === 1) details.append(...(typeof children === "function" ? children() : children));
     };
@@ -66,11 +76,7 @@ export class Change {
       case "color": {
         const color = bytes(text);
         if (!color) return this.plain(text, set, label);
-        const write = (parts, act) => act(`(${parts.join(", ")})`);
-        const parsed = (value) => [1, 3, 5].map((at) => parseInt(value.slice(at, at + 2), 16));
-        const picker = el("input", { type: "color", value: toHex(color), "aria-label": `${label}, colour`,
-          oninput: (event) => write([...parsed(event.target.value), ...color.slice(3)], drag), onchange: (event) => write([...parsed(event.target.value), ...color.slice(3)], set) });
-        return el("span", {}, picker, " ", color.map((byte, n) => number(byte, 255, (value, act) => write(color.map((other, m) => (m === n ? value : other)), act))));
+        return colorField(color, label, (parts, dragging) => (dragging ? drag : set)(`(${parts.join(", ")})`));
       }
       case "whole":
         return number(text, kind.most, (value, act) => act(value));

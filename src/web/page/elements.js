@@ -34,6 +34,16 @@ export function choice(words, chosen, label, change) {
   return select;
 }
 
+const toHex = (rgb) => `#${rgb.slice(0, 3).map((byte) => Math.min(255, byte).toString(16).padStart(2, "0")).join("")}`;
+
+// A colour of three or four bytes: `change` takes it, and whether it still moves.
+export function colorField(color, label, change) {
+  const parsed = (value) => [1, 3, 5].map((at) => parseInt(value.slice(at, at + 2), 16));
+  const on = (read) => ({ oninput: (event) => event.target.value !== "" && change(read(event.target.value), true), onchange: (event) => event.target.value !== "" && change(read(event.target.value), false) });
+  return el("span", {}, el("input", { type: "color", value: toHex(color), "aria-label": `${label}, colour`, ...on((value) => [...parsed(value), ...color.slice(3)]) }), " ",
+    color.map((byte, n) => el("input", { type: "number", value: byte, min: 0, max: 255, step: 1, "aria-label": `${label} ${"RGBA"[n]}`, ...on((value) => color.map((other, m) => (m === n ? +value : other))) })));
+}
+
 export function bytesOf(base64) {
   const text = atob(base64);
   const bytes = new Uint8Array(text.length);

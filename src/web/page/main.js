@@ -1,17 +1,17 @@
 // The page: one scene, its changes, and what is looked at.
 import { Chain } from "./chain.js";
 import { Change } from "./change.js";
-import { $, bytesOf, choice, el, swatch } from "./elements.js";
-import { Model } from "./model.js";
+import { $, bytesOf, choice, colorField, el, swatch } from "./elements.js";
+import { Background, Model, serve } from "./model.js";
 import { View } from "./view.js";
 
 const encoded = (value) => btoa(String.fromCharCode(...new TextEncoder().encode(JSON.stringify(value)))).replaceAll("+", "-").replaceAll("/", "_").replaceAll("=", "");
 const decoded = (text) => JSON.parse(new TextDecoder().decode(Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0))));
 
 class Page {
-  constructor(data, model, view) {
-    Object.assign(this, { data, model, rules: data.rules, alternatives: data.policies, policies: { ...data.chosen }, text: data.text, past: [], future: [], target: 0, until: null, against: "", at: null, times: {} });
-    Object.assign(view, { choose: (pixel) => this.choose(pixel), hover: (pixel) => this.hovered(pixel) });
+  constructor(data, model, background, view) {
+    Object.assign(this, { data, model, background, rules: data.rules, alternatives: data.policies, policies: { ...data.chosen }, text: data.text, past: [], future: [], target: 0, until: null, against: "", at: null, times: {} });
+    Object.assign(view, { choose: (pixel) => this.choose(pixel), hover: (pixel) => this.hovered(pixel), step: (by) => this.stepDraw(by) });
     this.view = view;
     this.chain = new Chain(this);
     this.change = new Change(this);
@@ -134,20 +134,46 @@ class Page {
   }
 
   splice(span, value) {
+    cancelAnimationFrame(this.pending);
     this.commit(this.spliced(span, value));
   }
 
   // While a slider moves: the picture alone follows.
   drag(span, value) {
-    const text = this.spliced(span, value);
-    cancelAnimationFrame(this.pending);
-    this.pending = requestAnimationFrame(() => { if (this.open(text)) this.redraw(); });
+    this.follow(() => this.spliced(span, value));
   }
 
-  edit(draw, path, value) {
-    const answer = this.tried(() => this.model.ask({ do: "edit", draw, path, value }));
-    if (answer) this.commit(answer.text);
-    else this.panels();
+  follow(text) {
+    cancelAnimationFrame(this.pending);
+    this.pending = requestAnimationFrame(() => {
+      const started = performance.now();
+      const changed = text();
+      if (changed !== null && this.open(changed)) this.redraw(true);
+      this.times.drag = performance.now() - started;
+    });
+  }
+
+  // A part of a draw's program; while a slider moves the picture alone follows.
+  edit(draw, path, value, dragging) {
+    const edited = () => {
+      const answer = this.tried(() => this.model.ask({ do: "edit", draw, path, value }));
+      this.rewritten ||= answer?.rewritten;
+      return answer && answer.text;
+    };
+    if (dragging) return this.follow(edited);
+    cancelAnimationFrame(this.pending);
+    const text = edited();
+    if (text === null) return this.panels();
+    this.commit(text);
+    if (this.rewritten) this.say(`The program of draw ${draw} was written for an API: from this change on it stands in the combiner language. Undo brings it back.`);
+    this.rewritten = false;
+  }
+
+  // The form of a part of the scene.
+  form(path) {
+    this.change.reveal(path);
+    this.tab("change");
+    this.change.seek(path);
   }
 
   policy(rule, value) {
@@ -211,6 +237,9 @@ class Page {
     const { targets, draws } = this.scene;
     $("target").replaceChildren(...targets.map((target, n) => el("option", { value: n, selected: n === this.target }, `${target.name} ${target.width} × ${target.height} ${target.format}`)));
     const alternatives = this.alternatives.flatMap(({ rule, values }) => values.filter(({ value }) => value !== (this.policies[rule] ?? values[0].value)).map(({ value }) => [`${rule}=${value}`, `policy ${rule}=${value}`]));
+    const shown = ["colour", "R", "G", "B", "A", ...(targets[this.target].depth ? ["depth", "stencil"] : [])];
+    if (!shown.includes(this.view.channels)) this.view.channels = "colour";
+    $("channels").replaceChildren(...shown.map((name) => el("option", { selected: name === this.view.channels }, name)));
     const options = [["", "nothing"], ["ideal", "float64"], ...(this.second ? [["picture", this.second]] : []), ...alternatives];
     if (!options.some(([value]) => value === this.against)) this.against = "";
     $("against").replaceChildren(...options.map(([value, name]) => el("option", { value, selected: value === this.against }, name)));
@@ -225,18 +254,41 @@ class Page {
     this.choose(this.at ?? [Math.floor(width / 2), Math.floor(height / 2)], true);
   }
 
-  redraw() {
+  redraw(dragging = false) {
     const started = performance.now();
-    const target = this.target;
-    const picture = this.tried(() => this.model.picture({ do: "draw", target, until: this.until }));
+    const { target, until, against } = this;
+    const picture = this.tried(() => this.model.picture({ do: "draw", target, until }));
     if (!picture) return;
     this.picture = picture;
-    const against = this.against;
-    const heat = against && this.tried(() => this.model.picture({ do: "heat", target, against: against.includes("=") ? { ...this.policies, [against.split("=")[0]]: against.split("=")[1] } : against }));
-    this.differences(heat || null);
-    this.view.show(heat ? { ...heat, pixels: heat.pixels } : picture);
+    this.background.drop();
+    const memory = ["depth", "stencil"].includes(this.view.channels);
+    this.depth = memory ? this.tried(() => this.model.picture({ do: "depth", target, until })) : null;
+    $("against").disabled = memory;
+    const request = { do: "heat", target, until, against: against.includes("=") ? { ...this.policies, [against.split("=")[0]]: against.split("=")[1] } : against };
+    const heat = against && against !== "ideal" && !memory ? this.tried(() => this.model.picture(request)) : null;
+    this.differences(heat);
+    this.view.show(heat ?? this.depth ?? picture);
+    if (against === "ideal" && !memory && !dragging) this.later(request);
+    if (this.depth) $("legend").replaceChildren(this.view.channels === "depth" ? `depths ${this.depth.low} (black) to ${this.depth.high} (white)` : "stencils 0 (black) to 255 (white)");
     this.times.redraw = performance.now() - started;
     this.times.digest = picture.digest;
+  }
+
+  // A comparison that takes seconds. Until it is there the picture stands for itself.
+  async later(request) {
+    const started = performance.now();
+    $("regions-part").hidden = false;
+    $("regions-sum").textContent = "Comparing with float64 …";
+    $("regions").replaceChildren();
+    try {
+      const heat = await this.background.picture(this.model, request);
+      this.differences(heat);
+      this.view.show(heat);
+      this.times.heat = performance.now() - started;
+    } catch (error) {
+      this.differences(null);
+      this.say(error.message);
+    }
   }
 
   differences(heat) {
@@ -260,12 +312,25 @@ class Page {
   }
 
   hovered(pixel) {
-    $("hover").textContent = pixel && this.picture ? `${pixel.join(", ")}: ${this.bytesAt(pixel).join(" ")}` : "";
+    $("hover").textContent = pixel && this.picture ? `${pixel.join(", ")}: ${this.bytesAt(pixel).join(" ")}${this.depthAt(pixel)}` : "";
   }
 
-  bytesAt([x, y]) {
-    const at = (y * this.picture.width + x) * 4;
-    return [...this.picture.pixels.slice(at, at + 4)];
+  bytesAt([x, y], picture = this.picture) {
+    const at = (y * picture.width + x) * 4;
+    return [...picture.pixels.slice(at, at + 4)];
+  }
+
+  depthAt(pixel) {
+    if (!this.depth) return "";
+    const [low, middle, high, stencil] = this.bytesAt(pixel, this.depth);
+    return ` depth ${low + middle * 256 + high * 65536} stencil ${stencil}`;
+  }
+
+  stepDraw(by) {
+    const last = this.scene.draws.length - 1;
+    const to = Math.max(0, Math.min(last, (this.until ?? last) + by));
+    this.until = to === last ? null : to;
+    this.refresh();
   }
 
   choose(pixel) {
@@ -273,7 +338,7 @@ class Page {
     this.view.at = pixel;
     this.view.paint();
     const bytes = this.bytesAt(pixel);
-    $("here").replaceChildren(swatch(bytes), `${pixel.join(", ")}: R ${bytes[0]} G ${bytes[1]} B ${bytes[2]} A ${bytes[3]}`);
+    $("here").replaceChildren(swatch(bytes), `${pixel.join(", ")}: R ${bytes[0]} G ${bytes[1]} B ${bytes[2]} A ${bytes[3]}${this.depthAt(pixel)}`);
     this.panels();
     this.toAddress();
   }
@@ -286,16 +351,16 @@ class Page {
   // Only what is open is brought up to date.
   panels() {
     if (!this.scene && this.shown !== "text") return;
-    const { target, at: pixel } = this;
+    const { target, until, at: pixel } = this;
     const show = {
       chain: () => {
         const started = performance.now();
-        const { trace } = this.model.ask({ do: "trace", target, pixel });
+        const { trace } = this.model.ask({ do: "trace", target, until, pixel });
         this.times.trace = performance.now() - started;
         this.chain.show(trace, (draw) => this.program(draw));
         this.times.chain = performance.now() - started;
       },
-      rules: () => this.sides(this.model.ask({ do: "alternatives", target, pixel }).rules),
+      rules: () => this.sides(this.model.ask({ do: "alternatives", target, until, pixel }).rules),
       change: () => this.sound ? this.change.show(this.model.ask({ do: "outline" }).tree) : $("change").replaceChildren(el("p", {}, "The text has errors: mend it under Text, or undo.")),
       program: () => this.programPanel(),
       text: () => this.textPanel(),
@@ -326,20 +391,17 @@ class Page {
     if (draws.length === 0) return $("program").replaceChildren(el("p", {}, "The scene draws nothing."));
     const draw = this.programOf;
     const program = this.program(draw);
-    const constants = program.origin.length ? [] : [0, 1].map((n) => {
-      const color = program.final.constants[n];
-      return el("div", { className: "field" }, el("span", { className: "label" }, `constant ${n}`),
-        color.map((byte, m) => el("input", { type: "number", min: 0, max: 255, value: byte, "aria-label": `constant ${n} ${"RGBA"[m]}`,
-          onchange: (event) => this.edit(draw, ["constants", n], color.map((other, k) => (k === m ? +event.target.value : other))) })), swatch(color));
-    });
+    const constants = [0, 1].map((n) => el("div", { className: "field" }, el("span", { className: "label" }, `constant ${n}`),
+      colorField(program.final.constants[n], `constant ${n}`, (color, dragging) => this.edit(draw, ["constants", n], color, dragging))));
     const area = el("textarea", { rows: 8, "aria-label": "Program to paste", placeholder: "rc_in_rgb0 = 0x..., or !!RC1.0 ..., or glCombinerInputNV(...)" });
     let language = "RegisterWords";
     const languages = { RegisterWords: "register words", CombinerText: "combiner language", CombinerCalls: "calls of OpenGL", scene: "as a scene writes it" };
     const paste = () => { const answer = this.tried(() => this.model.ask({ do: "paste", draw, language, program: area.value })); if (answer) this.commit(answer.text); };
     const words = program.words.map((word) => el("tr", {}, el("td", {}, word.method), el("td", {}, word.name), el("td", {}, word.value), el("td", {}, word.meaning)));
+    const origin = program.origin.length ? [el("p", { className: "quiet" }, "The program was written for an API. A change of its combiners writes it anew in the combiner language; Text has it as it was written.")] : [];
     $("program").replaceChildren(
       el("div", { className: "bar" }, el("label", {}, "Draw ", choice(draws.map((each) => `${each.number} ${each.name}`), `${draw} ${draws[draw].name}`, "Draw", (value) => { this.programOf = parseInt(value, 10); this.programPanel(); }))),
-      el("h2", {}, "In the combiner language"), el("pre", { tabindex: 0 }, program.text), ...constants,
+      ...origin, el("h2", {}, "In the combiner language"), el("pre", { tabindex: 0 }, program.text), ...constants,
       el("h2", {}, "As register words"), el("div", { className: "steps", tabindex: 0, role: "region", "aria-label": "register words" }, el("table", {}, el("thead", {}, el("tr", {}, ["method", "register", "value", "meaning"].map((title) => el("th", { scope: "col" }, title)))), el("tbody", {}, words))),
       el("h2", {}, "Paste a program"), area,
       el("div", { className: "bar" }, el("select", { "aria-label": "Language", onchange: (event) => (language = event.target.value) }, Object.entries(languages).map(([value, name]) => el("option", { value }, name))), el("button", { onclick: paste }, "Use it")));
@@ -367,18 +429,22 @@ class Page {
   }
 }
 
-(async () => {
+async function openPage(script) {
   const started = performance.now();
   try {
     const data = JSON.parse($("data").textContent);
     const view = new View(() => {}, () => {});
     const preview = view.preview(data.picture);
     const model = await Model.load($("module").textContent.trim());
-    window.inspector = new Page(data, model, view);
+    window.inspector = new Page(data, model, new Background(script), view);
     window.inspector.times.preview = await preview;
     window.inspector.times.first = performance.now() - started;
     window.inspector.times.opened = performance.now();
   } catch (error) {
     $("message").textContent = `This page cannot be shown: ${error.message}`;
   }
-})();
+}
+
+// The same script is that of the page's second thread, which has no document.
+if (typeof document === "undefined") serve();
+else openPage(document.currentScript.textContent);

@@ -8,12 +8,13 @@ const compiled = (bytes) =>
 
 export class Model {
   static async load(base64) {
-    const model = new Model();
-    model.module = await compiled(bytesOf(base64));
-    model.files = new Map();
-    model.standing = {};
-    model.start();
-    return model;
+    return new Model({ module: await compiled(bytesOf(base64)), files: new Map(), standing: {} });
+  }
+
+  // What another model needs to stand where this one does can be sent to another thread.
+  constructor({ module, files, standing }) {
+    Object.assign(this, { module, files, standing });
+    this.start();
   }
 
   start() {
@@ -64,4 +65,52 @@ export class Model {
     const view = new Uint8ClampedArray(this.exports.memory.buffer, this.exports.ninebit_picture(), answer.width * answer.height * 4);
     return { ...answer, pixels: new Uint8ClampedArray(view) };
   }
+}
+
+// Requests that take long, one at a time, in a thread of their own: the page goes on meanwhile, and what is no longer wanted is dropped.
+export class Background {
+  // The text of the page's script: a page that was opened from a file has no other to give a thread.
+  constructor(script) {
+    this.script = script;
+  }
+
+  picture(model, request) {
+    this.drop();
+    const { module, files, standing } = model;
+    return new Promise((resolve, reject) => {
+      const url = URL.createObjectURL(new Blob([this.script], { type: "text/javascript" }));
+      const worker = new Worker(url);
+      this.end = () => {
+        worker.terminate();
+        URL.revokeObjectURL(url);
+        this.end = null;
+      };
+      worker.onmessage = ({ data: { answer, refused } }) => {
+        this.drop();
+        if (answer) resolve(answer);
+        else reject(new Error(refused));
+      };
+      worker.onerror = (event) => {
+        this.drop();
+        reject(new Error(event.message || "this browser gives a page that was opened from a file no second thread"));
+      };
+      worker.postMessage({ module, files, standing, request });
+    });
+  }
+
+  drop() {
+    this.end?.();
+  }
+}
+
+// The thread's side.
+export function serve() {
+  self.onmessage = ({ data: { request, ...state } }) => {
+    try {
+      const answer = new Model(state).picture(request);
+      self.postMessage({ answer }, [answer.pixels.buffer]);
+    } catch (error) {
+      self.postMessage({ refused: error.message });
+    }
+  };
 }

@@ -49,6 +49,7 @@ export class View {
     } else if (event.key === "+" || event.key === "=") this.scale(1.25, ...middle);
     else if (event.key === "-") this.scale(0.8, ...middle);
     else if (event.key === "0") this.fit();
+    else if (event.key === "," || event.key === ".") this.step(event.key === "." ? 1 : -1);
     else return;
     event.preventDefault();
   }
@@ -82,9 +83,13 @@ export class View {
     const { width, height, pixels } = picture;
     if (this.sheet.width !== width || this.sheet.height !== height) [this.sheet.width, this.sheet.height] = [width, height];
     const image = new ImageData(width, height);
-    const only = ["R", "G", "B", "A"].indexOf(this.channels);
+    // Of words of depth and stencil: the depth, spread over the greys; the stencil as it is.
+    const only = { R: 0, G: 1, B: 2, A: 3, stencil: 3 }[this.channels] ?? -1;
+    const spread = picture.low === undefined || this.channels !== "depth" ? null : 255 / (picture.high - picture.low);
     for (let at = 0; at < pixels.length; at += 4) {
-      for (let n = 0; n < 3; n++) image.data[at + n] = pixels[at + (only < 0 ? n : only)];
+      const grey = spread === null ? null : (pixels[at] + pixels[at + 1] * 256 + pixels[at + 2] * 65536 - picture.low) * spread;
+      // Of equal depths all are as far as any.
+      for (let n = 0; n < 3; n++) image.data[at + n] = Number.isNaN(grey) ? 255 : grey ?? pixels[at + (only < 0 ? n : only)];
       image.data[at + 3] = 255;
     }
     this.sheet.getContext("2d").putImageData(image, 0, 0);

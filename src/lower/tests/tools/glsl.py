@@ -10,7 +10,12 @@ pool = numpy.fromfile("pool.bin", "<i4").reshape(-1, COLUMNS)
 rows = len(pool)
 expected = numpy.fromfile("expected.bin", "<u4").reshape(count, rows, 4)
 context = moderngl.create_context(standalone=True, require=330, backend="egl", libgl="libGL.so.1", libegl="libEGL.so.1")
-given = context.texture((COLUMNS, rows), 1, pool.tobytes(), dtype="i4", alignment=4)
+# Textures are not as high as frames have pixels: what does not fit stands to the right.
+HIGH = 16384
+blocks = numpy.zeros((-(-rows // HIGH) * HIGH, COLUMNS), "<i4")
+blocks[:rows] = pool
+blocks = blocks.reshape(-1, HIGH, COLUMNS).transpose(1, 0, 2).reshape(HIGH, -1)[: min(rows, HIGH)]
+given = context.texture(blocks.shape[::-1], 1, numpy.ascontiguousarray(blocks).tobytes(), dtype="i4", alignment=4)
 given.filter = (moderngl.NEAREST, moderngl.NEAREST)
 given.use(0)
 target = context.framebuffer([context.texture((64, rows // 64), 4, dtype="u4", alignment=4)])
