@@ -2,9 +2,9 @@
 
 use crate::algebra::{Algebra, Trail};
 use crate::combiner::registers::{bit, bits, initially_undefined};
-use crate::rop::blend;
+use crate::rop::{blend, surface};
 use crate::state::{
-    AddressMode, Blend, Draw, Register, ShaderOperation, Texture, TextureFormat, TextureImage, TextureUnit,
+    AddressMode, Blend, Draw, Register, ShaderOperation, Target, Texture, TextureFormat, TextureImage, TextureUnit,
     VertexColor, Vertices,
 };
 use crate::texture::format::expand;
@@ -19,6 +19,12 @@ pub(super) fn blend(blend: &Blend, blend_constant: [u8; 4], written: u8, zero: u
     let stored = blend::blend(blend, written, &constant, &source, &destination, &mut trail);
     let all = |of: [_; 4]| (0..4).filter(|c| written >> c & 1 != 0).all(|c| stored[c] == of[c]);
     (all(source), all(destination))
+}
+
+/// Whether a target begins with unused bits that a store would change: a draw that keeps every channel still writes those.
+pub(super) fn begins_with_stray_bits(target: &Target) -> bool {
+    let stored = |word: u32| surface::pack(target.format, surface::read(target.format, word));
+    target.contents.as_ref().is_some_and(|words| words.iter().any(|word| stored(*word) != *word))
 }
 
 /// Channels of a texture that are 0 in every texel, bits R, G, B, A. None of blocks, indices and halves of sixteen bits is looked into.

@@ -227,10 +227,11 @@ impl Plan {
         }
         let mut draws = Vec::with_capacity(scene.draws.len());
         let black: Vec<u8> = scene.textures.iter().map(fold::black_channels).collect();
+        let stray: Vec<bool> = scene.targets.iter().map(fold::begins_with_stray_bits).collect();
         for (index, draw) in scene.draws.iter().enumerate() {
             check_coordinates(scene, index, draw, &mut errors);
             match assemble(draw) {
-                Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, &black, options)),
+                Ok(assembly) => draws.push(plan_draw(scene, draw, assembly, (&black, &stray), options)),
                 Err(positions) => errors.extend(positions.into_iter().map(|p| {
                     PlanError {
                         draw: Some(index),
@@ -349,8 +350,14 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
     }
 }
 
-fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], options: &PlanOptions) -> PlannedDraw {
-    let target = &scene.targets[draw.target];
+fn plan_draw(
+    scene: &Scene,
+    draw: &Draw,
+    assembly: Assembly,
+    (black, stray): (&[u8], &[bool]),
+    options: &PlanOptions,
+) -> PlannedDraw {
+    let (target, has_stray) = (&scene.targets[draw.target], stray[draw.target]);
     let windows = windows::windows(draw, target);
     let state_mask = surface::write_mask(target.format, draw.color_mask);
     let state_blend = draw.blend.filter(|_| surface::blends(target.format));
@@ -367,7 +374,8 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
         if let Some(blend) = &state_blend {
             (folded.replaces, keeps_always) = fold::blend(blend, draw.blend_constant, written, 0);
             let zero = if written & !folded.zero == 0 { folded.zero } else { 0 };
-            folded.keeps = fold::blend(blend, draw.blend_constant, written, zero).1;
+            folded.keeps = !has_stray && fold::blend(blend, draw.blend_constant, written, zero).1;
+            keeps_always &= !has_stray;
         }
         folded.invisible = if assembly.triangles.is_empty() {
             Some(Invisible::NoTriangles)
@@ -375,7 +383,7 @@ fn plan_draw(scene: &Scene, draw: &Draw, assembly: Assembly, black: &[u8], optio
             Some(Invisible::NoPixels)
         } else if depth_test.is_some_and(|test| test.write) || stencil_test.is_some_and(|test| stencil::writes(&test)) {
             None
-        } else if written == 0 {
+        } else if written == 0 && (state_mask == 0 || !has_stray) {
             Some(Invisible::NothingWritten)
         } else if keeps_always {
             Some(Invisible::KeepsDestination)

@@ -184,7 +184,7 @@ const SUITES: &[Suite] = &[
     ("Texture_signed_component_tests", texel_formats::signed),
     ("Vertex_shader_rounding_tests", rounding::frames),
     ("Volume_texture", sampling::volumes),
-    ("W_buffering", polygon_offset::z_buffers),
+    ("W_buffering", polygon_offset::buffers),
     ("Window_clip", clip::window_clip),
     ("ZMinMaxControl", depth_range::controls),
 ];

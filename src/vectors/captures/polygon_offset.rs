@@ -1,4 +1,4 @@
-//! DEP-1 and DEP-5 on triangles of up to 3,000 pixels and depths beyond the buffer: the z buffers of W_buffering.
+//! DEP-1, DEP-5 and DEP-6 on triangles of up to 3,000 pixels and depths beyond the buffer: the buffers of W_buffering.
 
 use super::draws::{frame_buffer, scene};
 use super::{Drawn, Frames, SIZE, Shown};
@@ -62,9 +62,16 @@ fn shapes() -> [(&'static str, Topology, Vec<[f32; 3]>); 6] {
     ]
 }
 
-fn frame(format: DepthFormat, topology: Topology, positions: &[[f32; 3]], offset: PolygonOffset) -> Drawn {
-    // w plays no part in z; some of the programs' are beyond what other draws may have.
-    let vertex = |[x, y, z]: &[f32; 3]| Vertex { position: [*x, *y, *z, 1.0], ..Vertex::default() };
+fn frame(
+    format: DepthFormat,
+    topology: Topology,
+    positions: &[[f32; 3]],
+    offset: PolygonOffset,
+    w_buffer: bool,
+) -> Drawn {
+    // w is z. It plays no part in z buffers, and some of the programs' are beyond what draws may have.
+    let vertex =
+        |[x, y, z]: &[f32; 3]| Vertex { position: [*x, *y, *z, if w_buffer { *z } else { 1.0 }], ..Vertex::default() };
     let mut target = frame_buffer(0xff25_1135);
     target.depth = Some(DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
     let range = DepthRange { lowest: 0.0, highest: 16_777_215.0 * 16.0, clamps: true, drops_triangles: false };
@@ -78,6 +85,7 @@ fn frame(format: DepthFormat, topology: Topology, positions: &[[f32; 3]], offset
             vertex_depths: VertexDepths::Steps,
             range: Some(range),
             offset,
+            w_buffer,
             ..DepthTest::new(CompareFunction::LessOrEqual, true)
         }),
         ..Draw::default()
@@ -85,15 +93,19 @@ fn frame(format: DepthFormat, topology: Topology, positions: &[[f32; 3]], offset
     Drawn { scene: scene(vec![target], vec![], vec![draw]), before: None, view: None, shown: Shown::DepthStencil }
 }
 
-/// W_buffering: words of the z buffers.
-pub(super) fn z_buffers() -> Frames {
+/// W_buffering: words of the z buffers, and of w buffers where no w is beyond what draws may have.
+pub(super) fn buffers() -> Frames {
     let mut frames = Frames::default();
     for (format, prefix) in FORMATS {
         for (shape, topology, positions) in shapes() {
             for (biased, sloped) in [(0_u8, 0_u8), (0, 1), (1, 0), (1, 1)] {
                 let offset = PolygonOffset { bias: BIAS * f32::from(biased), factor: FACTOR * f32::from(sloped) };
                 let name = format!("{prefix}_{shape}_V1_ZB{biased}_ZS{sloped}_ZB");
-                frames.push(name, frame(format, topology, &positions, offset));
+                frames.push(name, frame(format, topology, &positions, offset, false));
+                if sloped == 0 && shape.starts_with("Tri") {
+                    let name = format!("W{}_{shape}_V1_ZB{biased}_ZS0_ZB", &prefix[1..]);
+                    frames.push(name, frame(format, topology, &positions, offset, true));
+                }
             }
         }
     }
@@ -104,7 +116,7 @@ pub(super) fn z_buffers() -> Frames {
             [586.75, 487.3125, 500_000.0],
             [53.1875, 487.3125, 500_000.0],
         ];
-        let drawn = frame(DepthFormat::Z24S8, Topology::Quads, &positions, PolygonOffset::default());
+        let drawn = frame(DepthFormat::Z24S8, Topology::Quads, &positions, PolygonOffset::default(), false);
         frames.push(format!("ZBuf24D_{name}_V1_ZB0_ZS0_ZB"), drawn);
     }
     frames

@@ -1,7 +1,7 @@
 //! VOL-1, TEX-17, CYL-1: volumes in all formats, anisotropy, and a coordinate that goes around a cylinder.
 
 use super::draws::{Canvas, FETCHED, argb, draw, nearest, pasted, sized, unprojected, without_alpha};
-use super::images::{checker, gradient, grey};
+use super::images::{checker, gradient};
 use super::{Frames, images, space, texel_formats};
 use ninebit::state::{
     AddressMode, Combiners, Draw, ShaderStage, TEXTURE_UNITS, Texels, Texture, TextureFormat, TextureImage,
@@ -55,11 +55,14 @@ fn pairs(unit: TextureUnit) -> Draw {
     draw
 }
 
-/// Volume_texture, but for DXT1.
+/// Formats whose layers the programs store as they convert them, in another order than the chip reads them: they are left out, as is DXT1.
+const CONVERTED: [&str; 9] = ["A8", "A8Y8", "AY8", "G8B8", "R16B16", "R6G5B5", "R8B8", "Y16", "Y8"];
+
+/// Volume_texture, ten formats.
 pub(super) fn volumes() -> Frames {
     let mut frames = Frames::default();
     let unit = TextureUnit { address_r: AddressMode::ClampToEdge, ..nearest(0) };
-    for variant in texel_formats::variants().filter(|variant| !variant.in_texels) {
+    for variant in texel_formats::variants().filter(|v| !v.in_texels && !CONVERTED.contains(&v.base)) {
         frames.make(variant.base, move || {
             let masks = [[255; 3], [0, 0, 255], [255, 0, 0], [0, 255, 0]];
             let layer = |[red, green, blue]: [u8; 3]| {
@@ -67,10 +70,7 @@ pub(super) fn volumes() -> Frames {
                     let [r, g, b, a] = gradient([SIDE; 2])(x, y);
                     [r & red, g & green, b & blue, a]
                 };
-                match variant.is_grey {
-                    true => texel_formats::packed(variant.format, [SIDE; 2], grey(image)),
-                    false => texel_formats::packed(variant.format, [SIDE; 2], image),
-                }
+                texel_formats::packed(variant.format, [SIDE; 2], image)
             };
             let mut canvas = Canvas::new(0xfe20_2020);
             canvas.texture(&volume(variant.format, masks.into_iter().map(layer)));
