@@ -247,9 +247,11 @@ mod tests {
             prop_assume!(n > 0);
             // mantissa d <= n 2^-exponent < (mantissa + 1) d
             let (low, high) = (i128::from(mantissa) * i128::from(d), (i128::from(mantissa) + 1) * i128::from(d));
-            prop_assert!(mantissa >= 1 << 38 && (-60..=24).contains(&exponent));
-            let n = if exponent > 0 { i128::from(n) >> exponent } else { i128::from(n) << -exponent };
-            prop_assert!(low <= n && n < high);
+            prop_assert!(mantissa >= 1 << 38 && (-104..=24).contains(&exponent));
+            // What a positive exponent drops is below the last bit that was kept.
+            let n = if exponent > 0 { (i128::from(n) / i128::from(d)) >> exponent } else { i128::from(n) << -exponent };
+            let cut = if exponent > 0 { n == i128::from(mantissa) } else { low <= n && n < high };
+            prop_assert!(cut);
             prop_assert_eq!(of(-n as i64 | -1).binary_ratio(&of(d)), Binary::default());
         }
 

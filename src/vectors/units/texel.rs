@@ -12,8 +12,11 @@ fn channels() -> Vec<Column> {
 
 /// The formats for which `wanted` holds, as a column.
 fn formats(wanted: fn(TextureFormat) -> bool) -> Column {
-    let numbers: Vec<i64> = (0..).zip(TextureFormat::ALL).filter(|(_, f)| wanted(**f)).map(|(n, _)| n).collect();
-    Column::listed("cfg.format", Kind::Name(TextureFormat::NAMES), &numbers)
+    // Depths, which come last, are compared and not expanded.
+    let count = TextureFormat::ALL.iter().take_while(|format| format.depth().is_none()).count();
+    let all = &TextureFormat::ALL[..count];
+    let numbers: Vec<i64> = (0..).zip(all).filter(|(_, f)| wanted(**f)).map(|(n, _)| n).collect();
+    Column::listed("cfg.format", Kind::Name(&TextureFormat::NAMES[..count]), &numbers)
 }
 
 fn is_compressed(format: TextureFormat) -> bool {
