@@ -246,7 +246,7 @@ fn compares(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize), f
         let bits = if format.bytes() == 2 { 16 } else { 32 };
         let count = texels.width as usize * texels.height as usize;
         // Few words, so that many are met.
-        let words = texels.words.iter().cycle().take(count).map(|word| word % 8 * 0x1111 << (bits - 16)).collect();
+        let words = texels.words.iter().cycle().take(count).map(|word| (word % 8 * 0x1111) << (bits - 16)).collect();
         let texels = Texels { levels: 1, layers: 1, border: false, words, ..*texels };
         (texture.format, texture.image) = (format, TextureImage::Texels(texels));
         if texture.kind == TextureKind::Cube {

@@ -241,7 +241,7 @@ mod tests {
 
         #[test]
         fn ratios_are_cut(n in 1_i64..1 << 60, d in 1_i64..1 << 60, e in -90..90, less in 0..50_u32) {
-            let (n, d) = (n >> less, (d >> (50 - less) as u32).max(1_i64));
+            let (n, d) = (n >> less, (d >> (50 - less)).max(1_i64));
             let of = |numerator: i64| quotient(i128::from(numerator), 5, e);
             let Binary { mantissa, exponent } = of(n).binary_ratio(&of(d));
             prop_assume!(n > 0);

@@ -85,6 +85,7 @@ pub fn real_taps(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2], limit: u32) -> Ta
 }
 
 #[cfg(test)]
+#[allow(clippy::float_arithmetic, reason = "choosing footprints, and comparing real ones")]
 mod tests {
     use super::*;
     use proptest::prelude::*;

@@ -187,7 +187,7 @@ fn color_key<'a>(
 /// TEX-17, CYL-1, SHD-1, VOL-1: what is known of them, and where they may stand, the plan says.
 fn sampling<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
     if let Some(raw) = &fields.anisotropy {
-        unit.anisotropy = reader.whole(raw, "anisotropy", 1..=8).unwrap_or(1) as u32;
+        unit.anisotropy = reader.whole(raw, "anisotropy", 1..=8).unwrap_or(1);
     }
     if let Some(raw) = &fields.cylindrical_wrap
         && let Some(parts) = reader.read(raw)
