@@ -320,7 +320,7 @@ fn charts_keep_what_is_under_version_control() {
 fn the_picture_of_the_readme_is_what_its_command_writes() {
     let bench = Bench::new();
     let readme = fs::read_to_string("README.md").unwrap();
-    let command = readme.split("$ cargo run --release -- ").nth(1).unwrap().lines().next().unwrap();
+    let command = readme.split("$ cargo run -- ").nth(1).unwrap().lines().next().unwrap();
     let shown = readme.split("](docs/images/").nth(1).unwrap().split(')').next().unwrap();
     let scene = Path::new(env!("CARGO_MANIFEST_DIR")).join("vectors/scenes");
     let command = command.replace("vectors/scenes", scene.to_str().unwrap());

@@ -35,11 +35,12 @@ pub(super) fn find(
         return Ok(None);
     }
     let mut reader = Reader::new(text, limits, assets);
-    let named = reader.attempt::<source::Scene<'_>>(text).and_then(|scene| scene.family).filter(Raw::is_text);
+    let scene = reader.check::<source::Scene<'_>>(text).and_then(|raw| reader.read(&raw));
+    let named = scene.and_then(|scene| scene.family).filter(Raw::is_text);
     let Some(named) = named else { return Ok(None) };
     let Some(file) = shared_text(&mut reader, folder, &named) else { return Err(reader.diagnostics) };
     let mut inside = Reader::new(&file.source.text, limits, assets);
-    if inside.parse(&Raw::<source::Family<'_>>::new(&file.source.text)).is_none() {
+    if inside.check::<source::Family<'_>>(&file.source.text).and_then(|raw| inside.read(&raw)).is_none() {
         return Err(inside.diagnostics.into_iter().map(|finding| finding.inside(&file)).collect());
     }
     Ok(Some(Family { file }))

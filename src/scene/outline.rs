@@ -5,9 +5,10 @@
 
 use std::ops::Range;
 
-use super::raw::{Entries, Few, Raw, Reserved, Tuple, trim};
+use super::notation::Notation;
+use super::raw::{Entries, Few, Raw, Reserved, Tuple};
 use super::reader::Name;
-use super::{source, split};
+use super::source;
 use ninebit::state::Named;
 
 /// Values beyond so many are left out: of a mesh of ten thousand vertices nobody wants a form.
@@ -92,9 +93,10 @@ pub enum Content {
 
 /// The values of a scene. Of a text that is no scene, what can be made out.
 pub fn outline(text: &str) -> Node {
-    let mut walker = Walker { text, left: MOST };
-    let raw = Raw::<source::Scene<'_>>::new(text);
-    walker.node("scene".to_owned(), raw.text, source::Scene::form())
+    let mut notation = Notation::new(text);
+    // What is not well formed is one value.
+    let scene = notation.check(0..text.len(), usize::MAX).unwrap_or(text);
+    Walker { notation, left: MOST }.node("scene".to_owned(), scene, source::Scene::form())
 }
 
 impl Node {
@@ -107,20 +109,15 @@ impl Node {
 }
 
 struct Walker<'a> {
-    text: &'a str,
+    notation: Notation<'a>,
     left: usize,
 }
 
 impl<'a> Walker<'a> {
-    fn span(&self, part: &str) -> Range<usize> {
-        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len());
-        start..(start + part.len()).min(self.text.len())
-    }
-
     fn node(&mut self, label: String, text: &'a str, form: Form) -> Node {
         self.left = self.left.saturating_sub(1);
         let content = self.content(text, form);
-        Node { label, span: self.span(text), content }
+        Node { label, span: self.notation.range(text), content }
     }
 
     fn content(&mut self, text: &'a str, form: Form) -> Content {
@@ -128,14 +125,12 @@ impl<'a> Walker<'a> {
         let numbered = |items: Vec<&'a str>| items.into_iter().enumerate().map(|(n, item)| (n.to_string(), item));
         match form {
             Form::Value(kind) => Content::Value(kind),
-            Form::List(of) => {
-                split::items(text, b'[', b']').map_or(other, |items| self.group(numbered(items), |_| Some(of)))
-            }
-            Form::Tuple(of) => {
-                split::items(text, b'(', b')').map_or(other, |items| self.group(numbered(items), |_| Some(of)))
+            Form::List(of) | Form::Tuple(of) => {
+                let open = if matches!(form, Form::List(_)) { b'[' } else { b'(' };
+                self.notation.items(text, open).map_or(other, |items| self.group(numbered(items), |_| Some(of)))
             }
             Form::Table(of) => {
-                let Some(entries) = split::entries(text) else { return other };
+                let Some(entries) = self.notation.entries(text, b'{') else { return other };
                 let named = entries.into_iter().map(|(key, value)| (key.trim_matches('"').to_owned(), value));
                 self.group(named, |_| Some(of))
             }
@@ -146,7 +141,7 @@ impl<'a> Walker<'a> {
                 // `Window([...])`: the parentheses hold one value; `Matrix(...)`: they are those of the fields.
                 let inside = match of() {
                     Form::Fields(_) => Some(rest),
-                    _ => split::items(rest, b'(', b')').and_then(|items| items.first().copied()),
+                    _ => self.notation.items(rest, b'(').and_then(|items| items.first().copied()),
                 };
                 let Some(inside) = inside else { return other };
                 let part = self.node((*name).to_owned(), inside, of());
@@ -164,7 +159,7 @@ impl<'a> Walker<'a> {
     }
 
     fn fields(&mut self, text: &'a str, fields: &[Entry]) -> Option<Content> {
-        let written = split::fields(text)?;
+        let written = self.notation.entries(text, b'(')?;
         let missing = fields.iter().filter(|(name, _)| !written.iter().any(|(written, _)| written == name));
         let absent = values(missing.copied());
         let (open, rest) = text.split_at(1);
@@ -186,7 +181,7 @@ impl<'a> Walker<'a> {
                 break;
             }
             let form = form(&label).map_or(Form::Value(Kind::Other), |form| form());
-            parts.push(self.node(label, trim(item), form));
+            parts.push(self.node(label, item, form));
         }
         Content::Group { parts, absent: Vec::new(), around: Default::default() }
     }

@@ -3,15 +3,12 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use ron::Options;
-use ron::error::{Error, SpannedError};
-use ron::extensions::Extensions;
-
 use super::assets::Assets;
 use super::diagnostic::Diagnostic;
-use super::raw::{Entries, Numbers, Raw, Reserved, Tuple, trim};
-use super::source::Expected;
-use super::wording::{closest, describe, offset, shorten, twice, unclosed, words};
+use super::notation::{Fault, FaultKind, Notation};
+use super::raw::{Entries, Numbers, Raw, Reserved, Tuple};
+use super::source::{Expected, Mismatch};
+use super::wording::{closest, describe, shorten, twice, words};
 use ninebit::limits::Limits;
 use ninebit::state::{Named, Profile};
 
@@ -20,13 +17,12 @@ const MOST_DIAGNOSTICS: usize = 64;
 
 /// The text under examination and the findings so far.
 pub(super) struct Reader<'a> {
-    pub(super) text: &'a str,
+    pub(super) notation: Notation<'a>,
     pub(super) limits: &'a Limits,
     /// Where files come from.
     pub(super) assets: &'a dyn Assets,
     /// Set as soon as it is known; nv2a before, which allows more.
     pub(super) profile: Profile,
-    options: Options,
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) errors: usize,
     pub(super) suppressed: usize,
@@ -36,18 +32,12 @@ pub(super) struct Reader<'a> {
 
 impl<'a> Reader<'a> {
     pub(super) fn new(text: &'a str, limits: &'a Limits, assets: &'a dyn Assets) -> Self {
-        // The parser counts two levels for a bracket inside an optional field.
-        let options = Options::default()
-            .with_default_extension(Extensions::IMPLICIT_SOME)
-            .with_recursion_limit(limits.nesting.saturating_mul(2));
-        let diagnostics = Vec::new();
         Reader {
-            text,
+            notation: Notation::new(text),
             limits,
             assets,
             profile: Profile::Nv2a,
-            options,
-            diagnostics,
+            diagnostics: Vec::new(),
             errors: 0,
             suppressed: 0,
             vectors: Vectors::default(),
@@ -79,34 +69,29 @@ impl<'a> Reader<'a> {
 
     /// Where in the file a part of its text lies.
     pub(super) fn range(&self, part: &str) -> Range<usize> {
-        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len());
-        start..(start + part.len()).min(self.text.len())
+        self.notation.range(part)
     }
 
     pub(super) fn span<T>(&self, raw: &Raw<'a, T>) -> Range<usize> {
         self.range(raw.text)
     }
 
-    /// Reads the value, which is known to be well formed; `None` once the reason has been recorded.
-    pub(super) fn read<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
-        T::split(raw.text).or_else(|| self.parse(raw))
+    /// Checks a part of the text. `None` once the reason has been recorded why it is not well formed.
+    pub(super) fn check<T>(&mut self, text: &'a str) -> Option<Raw<'a, T>> {
+        let checked = self.notation.check(self.range(text), self.limits.nesting);
+        checked.map(Raw::new).map_err(|fault| self.push(self.syntax(fault))).ok()
     }
 
-    /// Reads the value with the parser, down to its innermost bracket.
-    pub(super) fn parse<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
-        match T::parse(&self.options, raw.text) {
-            Ok(value) => Some(value),
-            Err(error) => {
-                let diagnostic = self.translate(raw.text, &error, T::EXPECTED);
-                self.push(diagnostic);
-                None
-            }
-        }
+    /// Reads the value, which is known to be well formed; `None` once the reason has been recorded.
+    pub(super) fn read<T: Expected<'a>>(&mut self, raw: &Raw<'a, T>) -> Option<T> {
+        T::read(&self.notation, raw.text)
+            .map_err(|mismatch| self.push(self.mismatch(raw.text, &mismatch, T::EXPECTED)))
+            .ok()
     }
 
     /// Reads the value if it can be read; says nothing otherwise.
     pub(super) fn attempt<T: Expected<'a>>(&self, text: &'a str) -> Option<T> {
-        T::parse(&self.options, text).ok()
+        T::read(&self.notation, text).ok()
     }
 
     /// The value of an optional field; `default` if it is absent or wrong.
@@ -210,7 +195,7 @@ impl<'a> Reader<'a> {
         if raw.is_text() {
             return self.named_vector(raw, what, least, most, defaults);
         }
-        if let Some(numbers) = Numbers::split(raw.text).or_else(|| self.attempt(raw.text))
+        if let Some(numbers) = self.attempt::<Numbers>(raw.text)
             && (least..=most).contains(&numbers.count)
             && numbers.values.iter().all(|value| value.is_finite())
         {
@@ -358,136 +343,82 @@ impl<'a> Reader<'a> {
         table
     }
 
-    /// Puts a parser's error in the words of the format.
-    fn translate(&self, text: &'a str, error: &SpannedError, expected: &str) -> Diagnostic {
-        let base = self.range(text).start;
-        let start = base + offset(text, error.span.start.line, error.span.start.col);
-        let end = base + offset(text, error.span.end.line, error.span.end.col);
-        let whole = self.range(text);
-        match &error.code {
-            Error::NoSuchStructField { expected, found, .. } => {
-                let list = expected.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
-                let help = match closest(found, expected.iter().copied()) {
+    /// Why a value is not what is expected, in the words of the format.
+    fn mismatch(&self, text: &'a str, mismatch: &Mismatch<'a>, expected: &str) -> Diagnostic {
+        let found = || format!("expected {expected}, found {}", describe(text));
+        match mismatch {
+            Mismatch::Kind => Diagnostic::error("NB0205", self.range(text), found()).label("wrong kind of value"),
+            Mismatch::Range => Diagnostic::error("NB0206", self.range(text), found()).label("out of range"),
+            Mismatch::Unknown(field, known) => {
+                let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+                let help = match closest(field, known.iter().copied()) {
                     Some(name) => format!("did you mean `{name}`? Fields here: {list}"),
                     None => format!("fields here: {list}"),
                 };
-                let place = self.word_before(found, start, end);
-                Diagnostic::error("NB0201", place, format!("there is no field `{}` here", shorten(found)))
+                Diagnostic::error("NB0201", self.range(field), format!("there is no field `{}` here", shorten(field)))
                     .label("unknown field")
                     .help(help)
             }
-            Error::DuplicateStructField { field, .. } => {
-                let place = self.word_before(field, start, end);
-                Diagnostic::error("NB0203", place, format!("`{field}` is given twice"))
+            Mismatch::Twice(field) => {
+                Diagnostic::error("NB0203", self.range(field), format!("`{}` is given twice", shorten(field)))
                     .label("again here")
                     .help("keep one of them")
             }
-            Error::ExceededRecursionLimit => Diagnostic::error(
-                "NB0602",
-                start..end.max(start + 1),
-                format!("more than {} levels of brackets inside each other", self.limits.nesting),
-            )
-            .label("one level too many")
-            .help("no part of a scene needs more than a dozen levels: look for brackets that were not closed"),
-            Error::IntegerOutOfBounds => {
-                Diagnostic::error("NB0206", whole, format!("expected {expected}, found {}", describe(text)))
-                    .label("out of range")
-            }
-            Error::ExpectedInteger
-            | Error::ExpectedFloat
-            | Error::ExpectedBoolean
-            | Error::ExpectedString
-            | Error::ExpectedStringEnd
-            | Error::ExpectedArray
-            | Error::ExpectedMap
-            | Error::ExpectedStructLike
-            | Error::ExpectedNamedStructLike(_)
-            | Error::ExpectedDifferentStructName { .. }
-            | Error::ExpectedIdentifier
-            | Error::InvalidValueForType { .. }
-            | Error::ExpectedDifferentLength { .. }
-            | Error::InvalidIntegerDigit { .. }
-            | Error::TrailingCharacters
-            | Error::UnderscoreAtBeginning
-                if text.len() < trim(self.text).len() =>
-            {
-                Diagnostic::error("NB0205", whole, format!("expected {expected}, found {}", describe(text)))
-                    .label("wrong kind of value")
-            }
-            code => self.syntax(code, start, end),
         }
     }
 
     /// An error of the notation itself.
-    fn syntax(&self, code: &Error, start: usize, end: usize) -> Diagnostic {
-        let ended = self.text.trim_end().len();
-        let early = matches!(code, Error::Eof);
-        let (start, end) = if early { (ended, ended) } else { (start, end) };
-        let at_end = trim(&self.text[super::diagnostic::floor_boundary(self.text, start)..]).is_empty();
-        let (message, help) = match code {
-            Error::Eof => ("the scene ends too early".to_owned(), "close the brackets that are still open"),
-            _ if at_end && !matches!(code, Error::UnclosedBlockComment) => {
-                ("the scene ends too early".to_owned(), "close the brackets that are still open")
+    fn syntax(&self, Fault { kind, place }: Fault) -> Diagnostic {
+        let at = shorten(&self.notation.text[place.clone()]);
+        let examples = "see docs/scene-format.md for examples";
+        let (message, help) = match &kind {
+            FaultKind::Nesting => {
+                let levels = self.limits.nesting;
+                return Diagnostic::error(
+                    "NB0602",
+                    place,
+                    format!("more than {levels} levels of brackets inside each other"),
+                )
+                .label("one level too many")
+                .help("no part of a scene needs more than a dozen levels: look for brackets that were not closed");
             }
-            Error::ExpectedComma => {
-                ("a comma or a closing bracket is missing".to_owned(), "put a comma between the values")
-            }
-            Error::ExpectedMapColon => {
-                ("a colon is missing".to_owned(), "write `field: value` in parentheses, `\"name\": value` in braces")
-            }
-            Error::ExpectedStructLikeEnd | Error::ExpectedOptionEnd => {
-                ("a closing `)` is missing".to_owned(), "close the parenthesis, or put a comma before another value")
-            }
-            Error::ExpectedArrayEnd => {
-                ("a closing `]` is missing".to_owned(), "close the list, or put a comma before another value")
-            }
-            Error::ExpectedMapEnd => {
-                ("a closing `}` is missing".to_owned(), "close the table, or put a comma before another entry")
-            }
-            Error::ExpectedStringEnd => ("a closing quote is missing".to_owned(), "end the text with `\"`"),
-            Error::UnclosedBlockComment => ("a comment is not closed".to_owned(), "end it with `*/`"),
-            Error::TrailingCharacters => (
-                "something follows the end of the scene".to_owned(),
-                "a scene is one value in parentheses: look for a bracket that was closed too early",
-            ),
-            Error::ExpectedStructLike
-            | Error::ExpectedNamedStructLike(_)
-            | Error::ExpectedDifferentStructName { .. } => (
-                "a scene starts with an opening parenthesis".to_owned(),
+            FaultKind::Start => (
+                "a scene starts with an opening parenthesis".into(),
                 "write `(version: 1, profile: Nv2a, draws: [...])`",
             ),
-            Error::UnexpectedChar(c) => {
-                (format!("`{}` is not expected here", c.escape_debug()), "see docs/scene-format.md for examples")
+            FaultKind::End(_) => ("the scene ends too early".into(), "close the brackets that are still open"),
+            FaultKind::Comma => ("a comma or a closing bracket is missing".into(), "put a comma between the values"),
+            FaultKind::Colon => {
+                ("a colon is missing".into(), "write `field: value` in parentheses, `\"name\": value` in braces")
             }
-            Error::NoSuchExtension(name) => {
-                (format!("there is no RON extension `{}`", shorten(name)), "leave the `#![enable(...)]` line out")
+            FaultKind::Close(b')') => {
+                ("a closing `)` is missing".into(), "close the parenthesis, or put a comma before another value")
             }
-            other => {
-                let mut text = shorten(&other.to_string());
-                if let Some(first) = text.get(..1).map(str::to_lowercase) {
-                    text.replace_range(..1, &first);
-                }
-                (text, "see docs/scene-format.md for examples")
+            FaultKind::Close(b']') => {
+                ("a closing `]` is missing".into(), "close the list, or put a comma before another value")
+            }
+            FaultKind::Close(_) => {
+                ("a closing `}` is missing".into(), "close the table, or put a comma before another entry")
+            }
+            FaultKind::Quote => ("a closing quote is missing".into(), "end the text with `\"`"),
+            FaultKind::Escape => {
+                (format!("a text has no `{at}`"), "write `\\\\` for a backslash, or the text as `r\"...\"`")
+            }
+            FaultKind::Comment => ("a comment is not closed".into(), "end it with `*/`"),
+            FaultKind::Trailing => (
+                "something follows the end of the scene".into(),
+                "a scene is one value in parentheses: look for a bracket that was closed too early",
+            ),
+            FaultKind::Character(c) => (format!("`{}` is not expected here", c.escape_debug()), examples),
+            FaultKind::Extension => {
+                (format!("there is no RON extension `{at}`"), "leave the `#![enable(...)]` line out")
             }
         };
-        let label = match code {
-            Error::ExpectedComma if !at_end => "a comma before this?",
-            _ => "here",
-        };
-        let finding = Diagnostic::error("NB0101", start..end.max(start), message).label(label).help(help);
-        match unclosed(self.text) {
-            Some(open) if at_end => finding.related(open..open + 1, "this bracket is still open"),
+        let label = if kind == FaultKind::Comma { "a comma before this?" } else { "here" };
+        let finding = Diagnostic::error("NB0101", place, message).label(label).help(help);
+        match kind {
+            FaultKind::End(Some(open)) => finding.related(open..open + 1, "this bracket is still open"),
             _ => finding,
-        }
-    }
-
-    /// The place of `word` at or shortly before `start..end`: the parser stops behind the field that it objects to.
-    fn word_before(&self, word: &str, start: usize, end: usize) -> Range<usize> {
-        let from = super::diagnostic::floor_boundary(self.text, start.saturating_sub(word.len() + 8));
-        let to = super::diagnostic::floor_boundary(self.text, end.max(start) + word.len());
-        match self.text[from..to].rfind(word) {
-            Some(at) => from + at..from + at + word.len(),
-            None => start..end.max(start),
         }
     }
 }

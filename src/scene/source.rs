@@ -3,99 +3,128 @@
 //! Every field is the unread text of a value ([`Raw`]). Fields are optional here; what happens to an absent one stands where it is
 //! used, and in `docs/scene-format.md`. Variants (`Window(...)`, `File(...)`) are taken apart by their readers.
 
-use ron::Options;
-use ron::error::SpannedResult;
-
+use super::literal::{Literal, Number};
+use super::notation::{Notation, trim};
 use super::outline::{Described, Form};
-use super::raw::{Entries, Few, Fields, Numbers, Plain, Raw, Reserved, Tuple};
+use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
 use super::reader::Name;
-use super::split;
 use crate::truth;
 use ninebit::state;
 use ninebit::vertex::fog::{FogEvaluation, FogSource};
 use ninebit_program::texture_environment;
 use ninebit_program::texture_stages::{Operation, ResultArgument};
 
-/// What a value of a type looks like, for "expected ...".
+/// Why a value is not what is expected.
+pub(super) enum Mismatch<'a> {
+    /// It is of another kind.
+    Kind,
+    /// It is a whole number, and too large or too small.
+    Range,
+    /// It has a field of this name, and may have these.
+    Unknown(&'a str, &'static [&'static str]),
+    /// It has a field of this name twice.
+    Twice(&'a str),
+}
+
+/// What is read of a well-formed text.
 pub(super) trait Expected<'a>: Sized {
-    /// In the singular, with its article.
+    /// What it looks like, in the singular, with its article, for "expected ...".
     const EXPECTED: &'static str;
 
-    /// Takes well-formed text apart without the parser; `None` leaves it to the parser, errors included.
-    fn split(_text: &'a str) -> Option<Self> {
-        None
-    }
-
-    /// Takes any text apart with the parser.
+    /// Reads the text of a value, down to the next brackets inside it.
     ///
-    /// Structures and lists are taken apart as texts, whatever they are to be read as: one parser is compiled and not one for each.
-    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self>;
+    /// # Errors
+    /// The first reason why it is not what is expected.
+    fn read(notation: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>>;
 }
 
 macro_rules! expected {
-    ($($type:ty: $text:literal),+ $(,)?) => { $(impl<'a> Expected<'a> for $type {
-        const EXPECTED: &'static str = $text;
-        fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
-            options.from_str(text)
-        }
-    })+ };
+    ($(<$life:lifetime $(, $of:ident)*> $type:ty: $expected:literal, |$notation:pat_param, $text:ident| $read:expr;)+) => {
+        $(impl<$life $(, $of)*> Expected<$life> for $type {
+            const EXPECTED: &'static str = $expected;
+            fn read($notation: &Notation<$life>, $text: &$life str) -> Result<Self, Mismatch<$life>> {
+                $read
+            }
+        })+
+    };
 }
 expected! {
-    String: "a text in double quotes",
-    u8: "a whole number from 0 to 255",
-    u32: "a whole number from 0 to 4294967295",
-    f32: "a number",
-    Few<u8>: "one to four bytes in parentheses",
-    Numbers: "one to four numbers in parentheses",
-    bool: "`true` or `false`",
+    <'a> String: "a text in double quotes", |_, text| {
+        let literal = Literal::of(text).ok_or(Mismatch::Kind)?;
+        Ok(literal.characters().map(|(character, _)| character).collect())
+    };
+    <'a> u8: "a whole number from 0 to 255", |_, text| number(text);
+    <'a> u32: "a whole number from 0 to 4294967295", |_, text| number(text);
+    <'a> f32: "a number", |_, text| number(text);
+    <'a> Few<u8>: "one to four bytes in parentheses", |notation, text| few(notation, text);
+    <'a> Numbers: "one to four numbers in parentheses", |notation, text| few(notation, text);
+    <'a> bool: "`true` or `false`", |_, text| match text {
+        "true" => Ok(true),
+        "false" => Ok(false),
+        _ => Err(Mismatch::Kind),
+    };
+    <'a> Vec<u32>: "a list of whole numbers, such as `[0, 1, 2]`", |notation, text| {
+        items(notation, text, b'[')?.into_iter().map(number).collect()
+    };
+    <'a, T> Vec<Raw<'a, T>>: "a list in square brackets", |notation, text| {
+        Ok(items(notation, text, b'[')?.into_iter().map(Raw::new).collect())
+    };
+    <'a, T> Tuple<'a, T>: "values in parentheses, such as `(1, 2, 3)`", |notation, text| {
+        Ok(Tuple(items(notation, text, b'(')?.into_iter().map(Raw::new).collect()))
+    };
+    <'a, T> Entries<'a, T>: "a table in braces, such as `{ \"name\": ... }`", |notation, text| {
+        let entries = notation.entries(text, b'{').ok_or(Mismatch::Kind)?;
+        Ok(Entries(entries.into_iter().map(|(key, value)| (Raw::new(key), Raw::new(value))).collect()))
+    };
 }
-impl Expected<'_> for Vec<u32> {
-    const EXPECTED: &'static str = "a list of whole numbers, such as `[0, 1, 2]`";
-    fn split(text: &str) -> Option<Self> {
-        split::items(text, b'[', b']')?.into_iter().map(u32::plain).collect()
-    }
-    fn parse(options: &Options, text: &str) -> SpannedResult<Self> {
-        options.from_str(text)
-    }
+
+fn items<'a>(notation: &Notation<'a>, text: &'a str, open: u8) -> Result<Vec<&'a str>, Mismatch<'a>> {
+    notation.items(text, open).ok_or(Mismatch::Kind)
 }
-impl<'a, T> Expected<'a> for Vec<Raw<'a, T>> {
-    const EXPECTED: &'static str = "a list in square brackets";
-    fn split(text: &'a str) -> Option<Self> {
-        Some(split::items(text, b'[', b']')?.into_iter().map(Raw::new).collect())
-    }
-    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
-        let items: Vec<Raw<'a, ()>> = options.from_str(text)?;
-        Ok(items.iter().map(Raw::as_other).collect())
-    }
+
+fn number<'a, N: Number>(text: &'a str) -> Result<N, Mismatch<'a>> {
+    N::number(text).map_err(|()| Mismatch::Kind)?.ok_or(Mismatch::Range)
 }
-impl<'a, T> Expected<'a> for Entries<'a, T> {
-    const EXPECTED: &'static str = "a table in braces, such as `{ \"name\": ... }`";
-    fn split(text: &'a str) -> Option<Self> {
-        let entries = split::entries(text)?;
-        Some(Entries(entries.into_iter().map(|(key, value)| (Raw::new(key), Raw::new(value))).collect()))
+
+fn few<'a, N: Number>(notation: &Notation<'a>, text: &'a str) -> Result<Few<N>, Mismatch<'a>> {
+    let items = items(notation, text, b'(')?;
+    let mut values = [N::default(); 4];
+    for (n, item) in items.iter().enumerate() {
+        *values.get_mut(n).ok_or(Mismatch::Kind)? = number(item)?;
     }
-    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
-        let entries: Entries<'a, ()> = options.from_str(text)?;
-        Ok(Entries(entries.0.into_iter().map(|(key, value)| (key, value.as_other())).collect()))
-    }
+    Ok(Few { values, count: items.len() })
 }
-impl<'a, T> Expected<'a> for Tuple<'a, T> {
-    const EXPECTED: &'static str = "values in parentheses, such as `(1, 2, 3)`";
-    fn split(text: &'a str) -> Option<Self> {
-        let items = split::items(text, b'(', b')')?;
-        // Named fields are not what is wanted: the parser says so.
-        let named = |item: &&str| Raw::<()>::new(item).split().1.starts_with(':');
-        (!items.iter().any(named)).then(|| Tuple(items.into_iter().map(Raw::new).collect()))
+
+/// The fields of a structure that are written, by their place in `names`. Before the parentheses may stand what it is called here.
+fn fields<'a>(
+    notation: &Notation<'a>,
+    text: &'a str,
+    called: &str,
+    names: &'static [&'static str],
+    mut field: impl FnMut(usize, &'a str),
+) -> Result<(), Mismatch<'a>> {
+    let inside = text.strip_prefix(called).map_or(text, trim);
+    let mut written = vec![false; names.len()];
+    for (name, value) in notation.entries(inside, b'(').ok_or(Mismatch::Kind)? {
+        let index = names.iter().position(|known| *known == name).ok_or(Mismatch::Unknown(name, names))?;
+        if std::mem::replace(&mut written[index], true) {
+            return Err(Mismatch::Twice(name));
+        }
+        // As the notation has it, a field may say that it is not there, or that it is.
+        let some = value.strip_prefix("Some").and_then(|rest| notation.items(trim(rest), b'('));
+        match some.as_deref() {
+            _ if value == "None" => {}
+            Some([value]) => field(index, value),
+            _ => field(index, value),
+        }
     }
-    fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
-        let items: Tuple<'a, ()> = options.from_str(text)?;
-        Ok(Tuple(items.0.iter().map(Raw::as_other).collect()))
-    }
+    Ok(())
 }
 
 macro_rules! source {
     ($($(#[$meta:meta])* struct $name:ident { $($field:ident : $type:ty),* $(,)? })+) => { $(
         $(#[$meta])*
+        #[derive(Default)]
         pub(super) struct $name<'a> { $(pub(super) $field: Option<Raw<'a, $type>>),* }
         impl<'a> $name<'a> {
             /// The fields that are written, with their texts.
@@ -113,21 +142,12 @@ macro_rules! source {
         }
         impl<'a> Expected<'a> for $name<'a> {
             const EXPECTED: &'static str = "fields in parentheses, `(field: value, ...)`";
-            fn split(text: &'a str) -> Option<Self> {
-                let mut fields = $name { $($field: None),* };
-                for (name, value) in split::fields(text)? {
-                    match name {
-                        $(stringify!($field) if fields.$field.is_none() => fields.$field = Some(Raw::new(value)),)*
-                        _ => return None,
-                    }
-                }
-                Some(fields)
-            }
-            fn parse(options: &Options, text: &'a str) -> SpannedResult<Self> {
+            fn read(notation: &Notation<'a>, text: &'a str) -> Result<Self, Mismatch<'a>> {
                 const NAMES: &[&str] = &[$(stringify!($field)),*];
-                #[allow(unused_mut, unused_variables, reason = "a structure may have no field")]
-                let mut fields = options.from_str_seed(text, Fields(stringify!($name), NAMES))?.into_iter();
-                Ok($name { $($field: fields.next().flatten().map(|raw| raw.as_other())),* })
+                let mut values = [None; NAMES.len()];
+                fields(notation, text, stringify!($name), NAMES, |index, value| values[index] = Some(value))?;
+                let [$($field),*] = values;
+                Ok($name { $($field: $field.map(Raw::new)),* })
             }
         }
     )+ };

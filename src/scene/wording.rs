@@ -1,10 +1,9 @@
-//! Words and places of messages: what a value looks like, what was probably meant, where the parser stopped.
+//! Words and places of messages: what a value looks like, and what was probably meant.
 
 use std::ops::Range;
 
 use super::diagnostic::Diagnostic;
 pub(super) use super::diagnostic::shorten;
-use super::raw::trim;
 pub(super) use ninebit_program::spelling::closest;
 
 /// The finding that a name is taken.
@@ -13,18 +12,6 @@ pub(super) fn twice(what: &str, name: &str, place: Range<usize>, first: Range<us
         .label("again here")
         .related(first, "first defined here")
         .help("give one of them another name")
-}
-
-/// Byte offset of a line and column (both from 1, columns in characters).
-pub(super) fn offset(text: &str, line: usize, column: usize) -> usize {
-    let mut start = 0;
-    for _ in 1..line {
-        match text[start..].find('\n') {
-            Some(newline) => start += newline + 1,
-            None => return text.len(),
-        }
-    }
-    text[start..].char_indices().nth(column.saturating_sub(1)).map_or(text.len(), |(at, _)| start + at)
 }
 
 /// "ShadeModel" as "shade model".
@@ -37,33 +24,6 @@ pub(super) fn words(name: &str) -> String {
         words.extend(letter.to_lowercase());
     }
     words
-}
-
-/// The bracket that is still open at the end of the text, and the place where the text ends for it.
-pub(super) fn unclosed(text: &str) -> Option<usize> {
-    let bytes = text.as_bytes();
-    let (mut open, mut at) = (Vec::new(), 0);
-    while at < bytes.len() {
-        match bytes[at] {
-            b'/' if bytes.get(at + 1).is_some_and(|next| matches!(next, b'/' | b'*')) => {
-                at = text.len() - trim(&text[at..]).len();
-                continue;
-            }
-            b'"' => {
-                at += 1;
-                while at < bytes.len() && bytes[at] != b'"' {
-                    at += 1 + usize::from(bytes[at] == b'\\');
-                }
-            }
-            b'(' | b'[' | b'{' => open.push(at),
-            b')' | b']' | b'}' => {
-                open.pop();
-            }
-            _ => {}
-        }
-        at += 1;
-    }
-    open.last().copied()
 }
 
 /// What a value looks like, for messages.

@@ -106,7 +106,7 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
 
 /// Three or four bytes.
 fn bytes<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
-    match Few::<u8>::split(raw.text).or_else(|| reader.attempt(raw.text)) {
+    match reader.attempt::<Few<u8>>(raw.text) {
         Some(Few { values: [r, g, b, _], count: 3 }) => return Some(VertexColor::Bytes([r, g, b, 255])),
         Some(Few { values, count: 4 }) => return Some(VertexColor::Bytes(values)),
         _ => {}

@@ -37,6 +37,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
+use super::notation::trim;
 use super::raw::Raw;
 use super::reader::{Reader, too_many, unknown_name};
 use super::source;
@@ -104,17 +105,17 @@ pub(super) fn scene<'a>(
     family: Option<&'a str>,
     folder: &Path,
 ) -> Option<Found> {
-    let raw = Raw::<source::Scene<'a>>::new(text);
-    if raw.text.is_empty() {
+    if trim(text).is_empty() {
         reader.push(
             Diagnostic::error("NB0101", 0..0, "the scene is empty")
                 .help("a scene starts with `(version: 1, profile: Nv2a, draws: [...])`"),
         );
         return None;
     }
-    // The parser goes through all of the text here: below, brackets are known to match.
-    let file = reader.parse(&raw)?;
-    let opening = opening(text, reader.span(&raw).start);
+    let raw = reader.check::<source::Scene<'a>>(text)?;
+    let file = reader.read(&raw)?;
+    let opening = reader.span(&raw).start;
+    let opening = opening..opening + 1;
     if !version(reader, &file, opening.clone()) {
         return None;
     }
@@ -124,7 +125,7 @@ pub(super) fn scene<'a>(
         // What it names has been read; this finds what is no name.
         reader.read(raw);
     }
-    let shared = family.and_then(|text| reader.parse(&Raw::<source::Family<'a>>::new(text)));
+    let shared = family.and_then(|text| reader.check::<source::Family<'a>>(text)).and_then(|raw| reader.read(&raw));
     let (shared_names, shared_targets, shared_truth) = match shared {
         Some(source::Family { names, targets, truth }) => (names, targets, truth),
         None => (None, None, None),
@@ -153,16 +154,6 @@ pub(super) fn scene<'a>(
         draws,
     };
     plan(reader, &scene, &spans).map(|plan| Found { scene, plan, truth, spans })
-}
-
-/// The parenthesis that opens the scene: before it may stand attributes and the scene's type.
-fn opening(text: &str, start: usize) -> Range<usize> {
-    let mut rest = &text[start..];
-    while rest.starts_with("#!") {
-        rest = rest.find(']').map_or("", |end| crate::raw::trim(&rest[end + 1..]));
-    }
-    let start = text.len() - rest.len();
-    rest.find('(').map_or(start..start, |at| start + at..start + at + 1)
 }
 
 /// Whether this program reads that version of the format.

@@ -21,7 +21,7 @@ pub(super) struct ShaderProgram {
 /// Reads the text, or the fields, in the parentheses.
 pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ApiProgram> {
     let (mut constants, mut bumps) = ([None; CONSTANTS], [Bump::default(); TEXTURE_UNITS]);
-    let inside = crate::raw::trim(text.strip_prefix('(').unwrap_or(text));
+    let inside = crate::notation::trim(text.strip_prefix('(').unwrap_or(text));
     let errors = reader.errors;
     let text = if Raw::<String>::new(inside).is_text() {
         ProgramText::read(reader, names, text)?

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::names::Names;
 use super::*;
+use crate::literal::Literal;
 use crate::raw::Tuple;
 use ninebit::diagnostic::{self, Source};
 use ninebit::limits::FileLimit;
@@ -21,15 +22,13 @@ pub(super) struct ProgramText {
 enum Origin {
     /// Bytes of the scene, one place for each byte of the text and one for its end.
     Scene(Vec<usize>),
-    /// The text stands in the scene, but which byte is where is not known.
-    Somewhere(Range<usize>),
     File(Arc<diagnostic::File>),
 }
 
 impl ProgramText {
     /// Reads `("...")` or `(file: "...")`. `None` once the reason has been recorded.
     pub(super) fn read<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Self> {
-        let inside = crate::raw::trim(text.strip_prefix('(').unwrap_or(text));
+        let inside = crate::notation::trim(text.strip_prefix('(').unwrap_or(text));
         let program =
             if Raw::<String>::new(inside).is_text() { inline(reader, text)? } else { from_file(reader, names, text)? };
         program.within_limit(reader)
@@ -95,7 +94,6 @@ impl ProgramText {
                 let place = |at: usize| places.get(at).or(places.last()).copied().unwrap_or_default();
                 place(part.start)..place(part.end)
             }
-            Origin::Somewhere(span) => span.clone(),
             Origin::File(file) => file.named.clone(),
         }
     }
@@ -138,59 +136,19 @@ fn inline<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
 }
 
 fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<ProgramText> {
-    let text = reader.read(raw)?;
-    let span = reader.span(raw);
-    let origin = match places(raw.text, &text) {
-        Some(places) => Origin::Scene(places.into_iter().map(|place| span.start + place).collect()),
-        None => Origin::Somewhere(span),
+    let Some(literal) = Literal::of(raw.text) else {
+        // This says what is wrong.
+        reader.read(raw)?;
+        return None;
     };
-    Some(ProgramText { text, origin, before: None })
-}
-
-/// Where each byte of a text stands in its literal, and where its end does; `None` if the literal is of an unknown kind.
-fn places(literal: &str, text: &str) -> Option<Vec<usize>> {
-    let body = match literal.strip_prefix('r') {
-        Some(raw) => literal.len() - raw.trim_start_matches('#').len() + 1,
-        None => 1,
-    };
-    let rest = literal.get(body..)?;
-    if literal.starts_with('r') || rest.starts_with(text) && !text.contains('\\') {
-        return rest.starts_with(text).then(|| (body..=body + text.len()).collect());
+    let start = reader.span(raw).start;
+    let (mut text, mut places) = (String::new(), Vec::new());
+    for (character, place) in literal.characters() {
+        text.push(character);
+        places.extend(std::iter::repeat_n(start + place, character.len_utf8()));
     }
-    let mut places = Vec::with_capacity(text.len() + 1);
-    let mut decoded = String::with_capacity(text.len());
-    let mut at = 0;
-    while decoded.len() < text.len() {
-        let (character, length) = character(rest.get(at..)?)?;
-        decoded.push(character);
-        places.extend(std::iter::repeat_n(body + at, character.len_utf8()));
-        at += length;
-    }
-    places.push(body + at);
-    (decoded == text).then_some(places)
-}
-
-/// The character that a literal goes on with, and its length there.
-fn character(literal: &str) -> Option<(char, usize)> {
-    let first = literal.chars().next()?;
-    if first != '\\' {
-        return Some((first, first.len_utf8()));
-    }
-    let kind = literal[1..].chars().next()?;
-    let hexadecimal = |digits: &str| u32::from_str_radix(digits, 16).ok().and_then(char::from_u32);
-    Some(match kind {
-        'n' => ('\n', 2),
-        'r' => ('\r', 2),
-        't' => ('\t', 2),
-        '0' => ('\0', 2),
-        '\\' | '"' | '\'' => (kind, 2),
-        'x' => (hexadecimal(literal.get(2..4)?)?, 4),
-        'u' => {
-            let end = literal.find('}')?;
-            (hexadecimal(literal.get(3..end)?)?, end + 1)
-        }
-        _ => return None,
-    })
+    places.push(start + literal.end());
+    Some(ProgramText { text, origin: Origin::Scene(places), before: None })
 }
 
 fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ProgramText> {
@@ -249,18 +207,4 @@ pub(super) fn text_file<'a>(
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
     let source = Source { name: ninebit::shown::lossless(&folder.join(&name)), text };
     Some(Arc::new(diagnostic::File { source, named }))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bytes_of_a_text_stand_in_its_literal() {
-        assert_eq!(places("\"ab\"", "ab"), Some(vec![1, 2, 3]));
-        assert_eq!(places("r#\"a\"b\"#", "a\"b"), Some(vec![3, 4, 5, 6]));
-        assert_eq!(places(r#""a\nb\u{e4}c""#, "a\nb\u{e4}c"), Some(vec![1, 2, 4, 5, 5, 11, 12]));
-        assert_eq!(places(r#""\x41\\""#, "A\\"), Some(vec![1, 5, 7]));
-        assert_eq!(places(r#""\q""#, "q"), None);
-    }
 }

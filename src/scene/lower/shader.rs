@@ -150,8 +150,8 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
 }
 
 /// What stands in parentheses behind an operation; without them, no field.
-fn fields<'a, T: source::Expected<'a>>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
-    reader.read(&Raw::new(if rest.is_empty() { "()" } else { rest }))
+fn fields<'a, T: source::Expected<'a> + Default>(reader: &mut Reader<'a>, rest: &'a str) -> Option<T> {
+    if rest.is_empty() { Some(T::default()) } else { reader.read(&Raw::new(rest)) }
 }
 
 fn cull<'a>(reader: &mut Reader<'a>, rest: &'a str) -> Option<ShaderOperation> {

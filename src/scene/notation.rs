@@ -1,0 +1,483 @@
+//! RON, the notation of scene files: checks a text once, and takes its brackets apart.
+//!
+//! [`Notation::check`] goes through a text once, says where it is not well formed, and notes where each bracket closes. Afterwards
+//! [`Notation::parts`] takes one bracket apart at its commas and passes over the brackets inside it, so that every level of a scene is read
+//! once. What the parts have to be is the matter of [`source`](super::source).
+
+use std::ops::Range;
+
+use super::literal::character;
+
+/// A text, and where the brackets of what has been checked of it open and close.
+#[derive(Debug)]
+pub(super) struct Notation<'a> {
+    pub(super) text: &'a str,
+    /// In the order in which they open.
+    brackets: Vec<(usize, usize)>,
+}
+
+/// What stands between two commas of a bracket.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Part<'a> {
+    /// What stands before the colon.
+    pub(super) name: Option<&'a str>,
+    /// Without white space and comments around it.
+    pub(super) value: &'a str,
+}
+
+/// The parts of a bracket.
+#[derive(Debug, PartialEq)]
+pub(super) struct Bracket<'a> {
+    /// `(`, `[` or `{`.
+    pub(super) open: u8,
+    /// All of them with names, or none.
+    pub(super) parts: Vec<Part<'a>>,
+}
+
+/// Why a text is not well formed, and where.
+#[derive(Debug, PartialEq)]
+pub(super) struct Fault {
+    pub(super) kind: FaultKind,
+    pub(super) place: Range<usize>,
+}
+
+/// What is wrong with a text.
+#[derive(Debug, PartialEq)]
+pub(super) enum FaultKind {
+    /// It does not start with an opening parenthesis.
+    Start,
+    /// It ends too early; the innermost bracket that is open.
+    End(Option<usize>),
+    /// A comma is missing, or the closing bracket.
+    Comma,
+    /// A colon is missing.
+    Colon,
+    /// This closing bracket is missing.
+    Close(u8),
+    /// A text in quotes does not end.
+    Quote,
+    /// A text in quotes has a backslash with nothing known behind it.
+    Escape,
+    /// A comment does not end.
+    Comment,
+    /// Something follows the value.
+    Trailing,
+    /// No value starts with this.
+    Character(char),
+    /// There is no extension of the notation that is called so.
+    Extension,
+    /// Too many brackets inside each other.
+    Nesting,
+}
+
+impl FaultKind {
+    fn at(self, place: Range<usize>) -> Fault {
+        Fault { kind: self, place }
+    }
+}
+
+/// Extensions of the notation that a text may ask for; those that change what is read hold anyway.
+const EXTENSIONS: [&str; 4] = ["implicit_some", "unwrap_newtypes", "unwrap_variant_newtypes", "explicit_struct_names"];
+
+/// A bracket that has not been closed yet.
+struct Open {
+    /// Its number.
+    index: usize,
+    close: u8,
+    /// Whether its parts have names, once that is known.
+    named: Option<bool>,
+    /// Whether it is the value of a part with a name.
+    behind_colon: bool,
+}
+
+impl<'a> Notation<'a> {
+    pub(super) fn new(text: &'a str) -> Self {
+        Notation { text, brackets: Vec::new() }
+    }
+
+    /// Checks a part of the text, which holds one value in parentheses, and gives that value. Parts are checked in their order.
+    ///
+    /// # Errors
+    /// The first place where it is not well formed.
+    pub(super) fn check(&mut self, part: Range<usize>, nesting: usize) -> Result<&'a str, Fault> {
+        let before = self.brackets.len();
+        // Of a text that is not well formed nothing is taken apart.
+        self.walk(part, nesting).inspect_err(|_| self.brackets.truncate(before))
+    }
+
+    fn walk(&mut self, part: Range<usize>, nesting: usize) -> Result<&'a str, Fault> {
+        let text = &self.text[..part.end];
+        let mut at = attributes(text, blank(text, part.start)?)?;
+        let whole = text[at..].trim_end();
+        let (called, inside) = word(whole);
+        if !inside.starts_with('(') {
+            return Err(FaultKind::Start.at(at..at + called.len()));
+        }
+        let mut open: Vec<Open> = Vec::new();
+        // Of the current part of the innermost bracket: whether a colon, and whether a value has come; a word may be followed by parentheses.
+        let (mut colon, mut value, mut callable) = (false, false, false);
+        loop {
+            at = blank(text, at)?;
+            let Some(next) = text[at..].chars().next() else { break };
+            let here = at..at;
+            let character = FaultKind::Character(next).at(at..at + next.len_utf8());
+            match next {
+                '(' | '[' | '{' if !value || callable && next == '(' => {
+                    if open.len() >= nesting {
+                        return Err(FaultKind::Nesting.at(at..at + 1));
+                    }
+                    let close = match next {
+                        '(' => b')',
+                        '[' => b']',
+                        _ => b'}',
+                    };
+                    open.push(Open { index: self.brackets.len(), close, named: None, behind_colon: colon });
+                    self.brackets.push((at, text.len()));
+                    (colon, value, callable) = (false, false, false);
+                    at += 1;
+                }
+                ')' | ']' | '}' => {
+                    let Some(inner) = open.last() else {
+                        return Err(if value { FaultKind::Trailing.at(here) } else { character });
+                    };
+                    if u32::from(inner.close) != next.into() {
+                        return Err(FaultKind::Close(inner.close).at(here));
+                    }
+                    if colon && !value {
+                        return Err(character);
+                    }
+                    if value && !colon && (inner.close == b'}' || inner.named == Some(true)) {
+                        return Err(FaultKind::Colon.at(here));
+                    }
+                    self.brackets[inner.index].1 = at;
+                    (colon, value, callable) = (inner.behind_colon, true, false);
+                    open.pop();
+                    at += 1;
+                }
+                ',' => {
+                    let Some(inner) = open.last_mut() else {
+                        return Err(if value { FaultKind::Trailing.at(here) } else { character });
+                    };
+                    if !value {
+                        return Err(character);
+                    }
+                    if !colon && (inner.close == b'}' || inner.named == Some(true)) {
+                        return Err(FaultKind::Colon.at(here));
+                    }
+                    inner.named = Some(colon);
+                    (colon, value, callable) = (false, false, false);
+                    at += 1;
+                }
+                ':' => {
+                    let may = open.last().is_some_and(|inner| match inner.close {
+                        b')' => callable && inner.named != Some(false),
+                        close => close == b'}',
+                    });
+                    if !value || colon || !may {
+                        return Err(if value && !open.is_empty() { FaultKind::Comma.at(here) } else { character });
+                    }
+                    (colon, value, callable) = (true, false, false);
+                    at += 1;
+                }
+                _ if value => {
+                    return Err(match open.last() {
+                        None => FaultKind::Trailing,
+                        Some(inner) if !colon && (inner.close == b'}' || inner.named == Some(true)) => FaultKind::Colon,
+                        Some(_) => FaultKind::Comma,
+                    }
+                    .at(here));
+                }
+                _ => {
+                    callable = next.is_alphabetic() || next == '_';
+                    value = true;
+                    at = scalar(text, at)?;
+                    callable &= !matches!(text.as_bytes()[at - 1], b'"' | b'\'' | b'#');
+                }
+            }
+        }
+        if open.is_empty() && value {
+            return Ok(whole);
+        }
+        let end = text.trim_end().len();
+        let bracket = open.last().map(|inner| self.brackets[inner.index].0);
+        Err(FaultKind::End(bracket).at(end..end))
+    }
+
+    /// Where in the text a part of it lies.
+    pub(super) fn range(&self, part: &str) -> Range<usize> {
+        let start = (part.as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize).min(self.text.len());
+        start..(start + part.len()).min(self.text.len())
+    }
+
+    /// The parts of a value that is a bracket; `None` if it is something else.
+    pub(super) fn parts(&self, value: &'a str) -> Option<Bracket<'a>> {
+        let open = *value.as_bytes().first().filter(|byte| matches!(byte, b'(' | b'[' | b'{'))?;
+        let start = self.range(value).start;
+        let index = self.brackets.binary_search_by_key(&start, |bracket| bracket.0).ok()?;
+        let text = &self.text[..self.brackets[index].1];
+        let mut inner = &self.brackets[index + 1..];
+        let mut parts = Vec::new();
+        // Of the current part: its name, where its value starts, and where the last of it ends that is neither white space nor comment.
+        let (mut name, mut first, mut end) = (None, None, 0);
+        let mut at = start + 1;
+        loop {
+            at = blank(text, at).ok()?;
+            match text.as_bytes().get(at) {
+                None => break,
+                Some(b',') => {
+                    parts.push(Part { name: name.take(), value: &text[first.take()?..end] });
+                    at += 1;
+                }
+                Some(b':') => {
+                    name = Some(&text[first.take()?..end]);
+                    at += 1;
+                }
+                Some(b'(' | b'[' | b'{') => {
+                    first.get_or_insert(at);
+                    let (opens, closes) = *inner.first()?;
+                    if opens != at {
+                        return None;
+                    }
+                    inner = &inner[inner.partition_point(|bracket| bracket.0 < closes)..];
+                    end = closes + 1;
+                    at = end;
+                }
+                Some(_) => {
+                    first.get_or_insert(at);
+                    end = scalar(text, at).ok()?;
+                    at = end;
+                }
+            }
+        }
+        if let Some(first) = first {
+            parts.push(Part { name, value: &text[first..end] });
+        }
+        Some(Bracket { open, parts })
+    }
+
+    /// The parts of a bracket of this kind.
+    pub(super) fn parts_in(&self, value: &'a str, open: u8) -> Option<Vec<Part<'a>>> {
+        self.parts(value).filter(|bracket| bracket.open == open).map(|bracket| bracket.parts)
+    }
+
+    /// The values of a bracket of this kind, if none has a name.
+    pub(super) fn items(&self, value: &'a str, open: u8) -> Option<Vec<&'a str>> {
+        self.parts_in(value, open)?.into_iter().map(|part| part.name.is_none().then_some(part.value)).collect()
+    }
+
+    /// The names and values of a bracket of this kind, if all have names.
+    pub(super) fn entries(&self, value: &'a str, open: u8) -> Option<Vec<(&'a str, &'a str)>> {
+        self.parts_in(value, open)?.into_iter().map(|part| Some((part.name?, part.value))).collect()
+    }
+}
+
+/// The place behind `#![enable(...)]`, as often as it stands there, and what is blank behind it.
+fn attributes(text: &str, mut at: usize) -> Result<usize, Fault> {
+    while text[at..].starts_with('#') {
+        let unexpected = || FaultKind::Character('#').at(at..at + 1);
+        let end = at + text[at..].find(']').ok_or_else(unexpected)?;
+        let inside = text[at + 1..end].trim_start().strip_prefix('!').map(str::trim_start);
+        let inside = inside.and_then(|rest| rest.strip_prefix('[')).map(str::trim_start);
+        let inside = inside.and_then(|rest| rest.strip_prefix("enable")).map(str::trim);
+        let names = inside.and_then(|rest| rest.strip_prefix('(')?.strip_suffix(')')).ok_or_else(unexpected)?;
+        for name in names.split(',').map(str::trim).filter(|name| !name.is_empty()) {
+            if !EXTENSIONS.contains(&name) {
+                let start = name.as_ptr() as usize - text.as_ptr() as usize;
+                return Err(FaultKind::Extension.at(start..start + name.len()));
+            }
+        }
+        at = blank(text, end + 1)?;
+    }
+    Ok(at)
+}
+
+/// The place behind white space and comments.
+fn blank(text: &str, mut at: usize) -> Result<usize, Fault> {
+    loop {
+        match text.as_bytes().get(at) {
+            Some(b' ' | b'\n' | b'\r' | b'\t') => at += 1,
+            Some(b'/') => match text.as_bytes().get(at + 1) {
+                Some(b'/') => at += text[at..].find('\n').unwrap_or(text.len() - at),
+                Some(b'*') => at = comment(text, at)?,
+                _ => return Ok(at),
+            },
+            Some(0..0x80) | None => return Ok(at),
+            Some(_) => match text[at..].chars().next().filter(|next| next.is_whitespace()) {
+                Some(next) => at += next.len_utf8(),
+                None => return Ok(at),
+            },
+        }
+    }
+}
+
+/// The place behind the comment, with those nested in it, that starts at `start` with `/*`.
+fn comment(text: &str, start: usize) -> Result<usize, Fault> {
+    let bytes = text.as_bytes();
+    let (mut depth, mut at) = (1, start + 2);
+    while let Some(two) = bytes.get(at..at + 2) {
+        match two {
+            b"/*" => (depth, at) = (depth + 1, at + 2),
+            b"*/" => (depth, at) = (depth - 1, at + 2),
+            _ => at += 1,
+        }
+        if depth == 0 {
+            return Ok(at);
+        }
+    }
+    Err(FaultKind::Comment.at(start + 2..text.len()))
+}
+
+/// The word that a value starts with (empty if none), and what follows it.
+pub(super) fn word(value: &str) -> (&str, &str) {
+    let end = value.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap_or(value.len());
+    let head = &value[..end];
+    if head.starts_with(|c: char| c.is_ascii_digit()) { ("", value) } else { (head, trim(&value[end..])) }
+}
+
+/// The text without white space and comments before it, and without white space behind it.
+pub(super) fn trim(text: &str) -> &str {
+    let text = text.trim_end();
+    blank(text, 0).map_or("", |start| &text[start..])
+}
+
+/// The place behind a value that is no bracket: a text in quotes, a character, a number or a word.
+fn scalar(text: &str, start: usize) -> Result<usize, Fault> {
+    let bytes = &text.as_bytes()[start..];
+    // Texts and characters of bytes are well formed, and of no use here.
+    let at = start + usize::from(matches!(bytes, [b'b', b'"' | b'\'', ..] | [b'b', b'r', b'"' | b'#', ..]));
+    match &text.as_bytes()[at..] {
+        [b'"', ..] => quoted(text, at, b'"'),
+        [b'\'', ..] => quoted(text, at, b'\''),
+        [b'r', b'"' | b'#', ..] => raw(text, at),
+        _ => {
+            let word = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '+' | '-');
+            let length = text[at..].find(|c| !word(c)).unwrap_or(text.len() - at);
+            match text[at..].chars().next() {
+                Some(next) if length == 0 => Err(FaultKind::Character(next).at(at..at + next.len_utf8())),
+                _ => Ok(at + length),
+            }
+        }
+    }
+}
+
+/// The place behind the text or character in quotes that starts at `start`.
+fn quoted(text: &str, start: usize, quote: u8) -> Result<usize, Fault> {
+    let bytes = text.as_bytes();
+    let mut at = start + 1;
+    loop {
+        match bytes.get(at) {
+            None => return Err(FaultKind::Quote.at(start..start)),
+            Some(byte) if *byte == quote => return Ok(at + 1),
+            Some(b'\\') => {
+                let Some((_, length)) = character(&text[at..]) else {
+                    let end = text[at + 1..].chars().next().map_or(text.len(), |next| at + 1 + next.len_utf8());
+                    return Err(FaultKind::Escape.at(at..end));
+                };
+                at += length;
+            }
+            Some(_) => at += 1,
+        }
+    }
+}
+
+/// The place behind the text `r#"..."#`, with any number of signs, whose `r` is at `start`.
+fn raw(text: &str, start: usize) -> Result<usize, Fault> {
+    let signs = text[start + 1..].bytes().take_while(|byte| *byte == b'#').count();
+    let inside = start + 1 + signs + 1;
+    if text.as_bytes().get(inside - 1) != Some(&b'"') {
+        return Err(FaultKind::Character('#').at(start + 1..start + 2));
+    }
+    let close = &format!("\"{}", "#".repeat(signs));
+    match text[inside..].find(close) {
+        Some(length) => Ok(inside + length + close.len()),
+        None => Err(FaultKind::Quote.at(start..start)),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test")]
+mod tests {
+    use super::*;
+
+    /// The kind of the first fault, and the text there.
+    fn fault(text: &str) -> Option<(FaultKind, &str)> {
+        Notation::new(text).check(0..text.len(), 8).err().map(|fault| (fault.kind, &text[fault.place]))
+    }
+
+    fn items(list: &str) -> Option<Vec<&str>> {
+        let mut notation = Notation::new(list);
+        let whole = notation.check(0..list.len(), 8).ok()?;
+        notation.items(whole, b'(')
+    }
+
+    #[test]
+    fn parts_are_what_stands_between_commas() {
+        assert_eq!(items("()"), Some(vec![]));
+        assert_eq!(items("( a , [b, c], \"d,)\\\"\" , )"), Some(vec!["a", "[b, c]", "\"d,)\\\"\""]));
+        assert_eq!(items("(/* x, */ a /* y) */, // z,\n b // w\n)"), Some(vec!["a", "b"]));
+        assert_eq!(items("(a) // end"), Some(vec!["a"]));
+        assert_eq!(items("(r\"a\\\", b, r#\"c), \"#, for)"), Some(vec!["r\"a\\\"", "b", "r#\"c), \"#", "for"]));
+        assert_eq!(
+            items("(A (1, [2]) , -1.5e-3, ',', b\"x,\", \u{a0}\u{e4})"),
+            Some(vec!["A (1, [2])", "-1.5e-3", "','", "b\"x,\"", "\u{e4}"])
+        );
+        assert_eq!(items("(a: 1)"), None);
+    }
+
+    #[test]
+    fn names_stand_before_colons() {
+        let text = "#![enable(implicit_some)] Scene(a: 1, b : (c: 2), d: { \"e:\": [], \"f\" : {} },)";
+        let mut notation = Notation::new(text);
+        let whole = notation.check(0..text.len(), 3).unwrap();
+        let fields = notation.entries(word(whole).1, b'(').unwrap();
+        assert_eq!(fields, [("a", "1"), ("b", "(c: 2)"), ("d", "{ \"e:\": [], \"f\" : {} }")]);
+        assert_eq!(notation.entries(fields[2].1, b'{').unwrap(), [("\"e:\"", "[]"), ("\"f\"", "{}")]);
+        assert_eq!(notation.entries(fields[1].1, b'{'), None);
+        assert_eq!(notation.parts(fields[0].1), None);
+    }
+
+    #[test]
+    fn faults_say_what_is_missing_and_where() {
+        use FaultKind::*;
+        for (text, kind, place) in [
+            ("", Start, ""),
+            ("hello (1)x", Trailing, ""),
+            ("[1]", Start, ""),
+            ("two words", Start, "two"),
+            ("(1", End(Some(0)), ""),
+            ("(a: [1, (2)", End(Some(4)), ""),
+            ("(a: )", Character(')'), ")"),
+            ("(1,,)", Character(','), ","),
+            ("(,)", Character(','), ","),
+            ("(1 2)", Comma, ""),
+            ("(a: 1 b: 2)", Comma, ""),
+            ("(a: 1, b)", Colon, ""),
+            ("(a: 1, b 2)", Colon, ""),
+            ("(1, b: 2)", Comma, ""),
+            ("(1: 2)", Comma, ""),
+            ("([a: 1])", Comma, ""),
+            ("(a: b: c)", Comma, ""),
+            ("({ 1 })", Colon, ""),
+            ("({ 1, 2 })", Colon, ""),
+            ("({ 1: 2, (3) })", Colon, ""),
+            ("([1)", Close(b']'), ""),
+            ("({\"a\": 1)", Close(b'}'), ""),
+            ("((1]", Close(b')'), ""),
+            ("(1))", Trailing, ""),
+            ("(1),", Trailing, ""),
+            ("(\"a)", Quote, ""),
+            ("(r#\"a\")", Quote, ""),
+            ("(r#a)", Character('#'), "#"),
+            ("(\"\\q\")", Escape, "\\q"),
+            ("(\"\\u{110000}\")", Escape, "\\u"),
+            ("(1 /* 2)", Comment, " 2)"),
+            ("(@)", Character('@'), "@"),
+            ("(: 1)", Character(':'), ":"),
+            ("#![enable(time_travel)] ()", Extension, "time_travel"),
+            ("#[x] ()", Character('#'), "#"),
+            ("(((((((((", Nesting, "("),
+        ] {
+            assert_eq!(fault(text), Some((kind, place)), "{text}");
+        }
+    }
+}
