@@ -139,18 +139,6 @@ impl Operation for Final {
         &self.columns
     }
 
-    fn find(&self, name: &str) -> Option<usize> {
-        inputs::register_column(name)
-    }
-
-    fn known(&self) -> String {
-        inputs::REGISTER_NAMES.to_owned()
-    }
-
-    fn how_to_give(&self, column: &Column) -> String {
-        format!("write `--in {}=N`", column.name)
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let mut registers = inputs::load(values);
         let fragment = final_combiner::run(&self.planned, self.profile, &self.policies, &mut registers, observer);

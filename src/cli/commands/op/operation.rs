@@ -16,7 +16,7 @@ use serde_json::{Map, Value, json};
 
 use super::super::Format;
 use super::super::exit::Failure;
-use super::table;
+use super::{inputs, table};
 
 /// Options of every operation.
 #[derive(Debug, Args)]
@@ -58,14 +58,20 @@ pub(super) trait Operation {
     /// What it takes.
     fn columns(&self) -> &[Column];
 
-    /// The column that a name, perhaps a short one, means.
-    fn find(&self, name: &str) -> Option<usize>;
+    /// The column that a name, perhaps a short one, means: that of a register, unless the operation takes something else.
+    fn find(&self, name: &str) -> Option<usize> {
+        inputs::register_column(name)
+    }
 
     /// Names that `find` knows, for messages.
-    fn known(&self) -> String;
+    fn known(&self) -> String {
+        inputs::REGISTER_NAMES.to_owned()
+    }
 
     /// How to give a column on the command line.
-    fn how_to_give(&self, column: &Column) -> String;
+    fn how_to_give(&self, column: &Column) -> String {
+        format!("write `--in {}=N`", column.name)
+    }
 
     /// Runs it on one value for each column.
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results;

@@ -92,10 +92,6 @@ impl Operation for Program {
         "tex0.r, tex0.g, tex0.b, tex0.a and so on for tex1 to tex3, primary, secondary, fog".to_owned()
     }
 
-    fn how_to_give(&self, column: &Column) -> String {
-        format!("write `--in {}=N`", column.name)
-    }
-
     fn run<O: Observer>(&self, values: &[i64], observer: &mut O) -> Results {
         let mut registers = inputs::load(values);
         registers.write(Register::Spare0, 3, registers.read(Register::Texture0, 3));
