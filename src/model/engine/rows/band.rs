@@ -6,9 +6,9 @@ use super::kernels::{self, LANES, Row};
 use super::levels::Reads;
 use super::patch::{Patch, SIDE, boxes, is_box, is_small};
 use super::quotient::{IOTA, Positions};
-use super::shader::Workshop;
+use super::stages::{self, Workshop};
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
-use super::{BLOCK, Compiled, Reasons, shader, small, store};
+use super::{BLOCK, Compiled, Reasons, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
 use crate::plan::{Plan, PlannedDraw};
@@ -310,7 +310,7 @@ pub(super) fn row_attributes<const FMA: bool>(setup: &Setup<'_>, piece: Piece<'_
 /// The stages of a texture shader.
 #[inline(always)]
 pub(super) fn shade<const WIDE: bool>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
-    shader::run(job, block, band);
+    stages::run(job, block, band);
 }
 
 impl Block {

@@ -1,7 +1,8 @@
 //! From a planned draw to the graph of its pixels: what they start from, then the order of the rules. The arithmetic itself is the kernels'.
 
 use super::Sampler;
-use super::graph::{Graph, Input, Value};
+use super::graph::Graph;
+use super::node::{Input, Value};
 use super::table::Channel;
 use crate::algebra::Algebra;
 use crate::combiner::registers::Registers;

@@ -1,7 +1,7 @@
 //! The rules on rows: each kernel is a rule's text in a loop over the pixels of a block.
 
 use super::BLOCK;
-use super::graph::{MOST, Mapping, Mux, Node, Pairs, Value};
+use super::node::{MOST, Mapping, Mux, Node, Pairs, Value};
 use crate::combiner::general::dot_product;
 use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
 use crate::combiner::output;

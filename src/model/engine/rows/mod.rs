@@ -2,13 +2,13 @@
 //!
 //! | file | knows |
 //! |---|---|
-//! | `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
+//! | `node.rs`, `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
-//! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `color.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `steady.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `levels.rs` | textures laid out for rows; address, fetch, filter; lods and levels |
-//! | `shader.rs`, `dot.rs` | texture shaders, stage by stage; the dot unit in single precision |
+//! | `shader.rs`, `stages.rs`, `dot.rs` | texture shaders, compiled; run stage by stage; the dot unit in single precision |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
 //! | `patch.rs`, `band.rs` | triangles to pieces to blocks |
 //! | `isa.rs` | the same text for several instruction sets |
@@ -18,6 +18,7 @@
 
 mod band;
 mod build;
+mod color;
 #[cfg(test)]
 mod dense;
 mod depth;
@@ -29,11 +30,13 @@ mod graph;
 pub(crate) mod isa;
 mod kernels;
 mod levels;
+mod node;
 mod patch;
 mod planes;
 mod quotient;
 mod shader;
 mod small;
+mod stages;
 mod steady;
 mod store;
 mod table;
@@ -49,7 +52,7 @@ use crate::raster::assemble::Assembled;
 use crate::rop::surface;
 use crate::state::{Filter, Named, TEXTURE_UNITS, TextureImage, TextureKind, named};
 use crate::texture::unit::Image;
-use graph::{Input, Node, Value};
+use node::{Input, Node, Value};
 use std::borrow::Cow;
 use std::sync::Arc;
 use table::{Key, Table};

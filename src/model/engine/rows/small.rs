@@ -2,12 +2,13 @@
 //! a pixel share one reciprocal. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::color::{colors, narrow_weights};
 use super::depth::depths;
 use super::kernels::Row;
 use super::patch::SIDE;
 use super::planes::inverse;
 use super::quotient::{FEW, Line, Positions, SLACK, Scaled, multiply_add};
-use super::triangle::{Piece, Planes, Setup, Varying, colors, narrow_weights};
+use super::triangle::{Piece, Planes, Setup, Varying};
 use super::{Compiled, Reasons};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::setup::Triangle;

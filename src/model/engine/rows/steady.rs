@@ -2,11 +2,12 @@
 //! remainders. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "an estimate of a quotient, which its remainder corrects")]
 
+use super::color::narrow;
 use super::fetch::Numbers;
 use super::kernels::STEP;
 use super::planes::Plane;
 use super::quotient::{IOTA_REAL, break_ties, nearest};
-use super::triangle::{Piece, Planes, Setup, Varying, narrow};
+use super::triangle::{Piece, Planes, Setup, Varying};
 use super::{BLOCK, Compiled};
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;

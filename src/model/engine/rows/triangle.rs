@@ -1,6 +1,7 @@
 //! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a piece.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::color::{colors, narrow_weights};
 use super::depth::depths;
 use super::direction::{Looking, only_face, positive};
 use super::fetch::Numbers;
@@ -9,14 +10,14 @@ use super::kernels::{LANES, Row, STEP};
 use super::levels::{Quads, Reads};
 use super::planes::{Plane, inverse};
 use super::quotient::{
-    FEW, Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
+    Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
 };
-use super::shader::Attributes;
+use super::stages::Attributes;
 use super::steady::SteadyRow;
 use super::{Compiled, Reason, Reasons, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
-use crate::raster::interpolate::{self, Sample};
+use crate::raster::interpolate::Sample;
 use crate::raster::setup::Triangle;
 use crate::state::{Named, Register, TEXTURE_UNITS};
 use crate::texture::cube::Face;
@@ -552,67 +553,4 @@ pub(super) struct Bounds {
 
 fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
     sample.coordinate(&plane.g).value as i32 - bias
-}
-
-/// Weights in 16 bits. [`FEW`] lanes apart, of which the compiler knows the number: one vector, and no loop around it.
-#[inline(always)]
-pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
-    if let (Ok(wide), Ok(out)) = (<&[i32; FEW]>::try_from(wide), <&mut [u16; FEW]>::try_from(&mut *out)) {
-        for n in 0..FEW {
-            out[n] = wide[n] as u16;
-        }
-        return;
-    }
-    for (out, wide) in out.iter_mut().zip(wide) {
-        *out = *wide as u16;
-    }
-}
-
-/// Settled weights in 16 bits.
-#[inline(always)]
-pub(super) fn narrow_weights(piece: Piece<'_>, varying: &mut Varying) {
-    // Not a loop over both: it is not always taken apart.
-    let ([w0, w2], [narrow0, narrow2]) = (&varying.weights, &mut varying.narrow);
-    narrow(&w0[piece.lanes()], &mut narrow0[piece.lanes()]);
-    narrow(&w2[piece.lanes()], &mut narrow2[piece.lanes()]);
-}
-
-/// INT-2 of all channels that are read.
-#[inline(always)]
-pub(super) fn colors(
-    context: &TriangleContext<'_>,
-    compiled: &Compiled,
-    piece: Piece<'_>,
-    varying: &Varying,
-    rows: &mut [Row],
-) {
-    let [w0, w2] = &varying.narrow;
-    for (slots, colors) in [(&compiled.primary, &context.primary), (&compiled.secondary, &context.secondary)] {
-        for channel in 0..4 {
-            let Some(slot) = slots[channel] else { continue };
-            let out = &mut rows[usize::from(slot)].0[piece.lanes()];
-            let corners = [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
-            if corners[0] == corners[1] && corners[1] == corners[2] {
-                out.fill(corners[0] as i16);
-            } else {
-                color(corners, &w0[piece.lanes()], &w2[piece.lanes()], out);
-            }
-        }
-    }
-}
-
-/// INT-2 of a channel; [`FEW`] lanes apart, as in [`narrow`].
-#[inline(always)]
-fn color(corners: [u16; 3], w0: &[u16], w2: &[u16], out: &mut [i16]) {
-    if let (Ok(w0), Ok(w2), Ok(out)) =
-        (<&[u16; FEW]>::try_from(w0), <&[u16; FEW]>::try_from(w2), <&mut [i16; FEW]>::try_from(&mut *out))
-    {
-        for n in 0..FEW {
-            out[n] = interpolate::color(corners, w0[n], w2[n]) as i16;
-        }
-        return;
-    }
-    for ((out, w0), w2) in out.iter_mut().zip(w0).zip(w2) {
-        *out = interpolate::color(corners, *w0, *w2) as i16;
-    }
 }

@@ -1,0 +1,179 @@
+//! The values of a graph: numbers that name them, and how each comes about.
+
+use crate::state::{
+    Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
+};
+
+/// A value of every pixel: its number in the graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct Value(pub(super) u16);
+
+/// What the operations start from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Input {
+    /// A channel of the interpolated diffuse.
+    Primary(usize),
+    /// A channel of the interpolated specular.
+    Secondary(usize),
+    /// The fog factor.
+    Fog,
+    /// A channel of what a texture unit yields.
+    Texture(usize, usize),
+    /// A channel of what the surface holds.
+    Destination(usize),
+}
+
+/// Most products in one sum: two dot products.
+pub(super) const MOST: usize = 6;
+
+/// Pairs whose products are added.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Pairs {
+    /// How many.
+    pub(super) count: usize,
+    /// The pairs, first and second factor in turn; zeros past the end.
+    pub(super) values: [Value; 2 * MOST],
+}
+
+impl Pairs {
+    pub(super) fn new(pairs: &[(Value, Value)]) -> Pairs {
+        let mut values = [Value(0); 2 * MOST];
+        for (n, (a, b)) in pairs.iter().enumerate() {
+            (values[2 * n], values[2 * n + 1]) = (*a.min(b), *a.max(b));
+        }
+        Pairs { count: pairs.len(), values }
+    }
+
+    fn renamed(mut self, name: impl Fn(Value) -> Value) -> Pairs {
+        for value in &mut self.values[..2 * self.count] {
+            *value = name(*value);
+        }
+        self
+    }
+}
+
+/// A mapping with the policies that it has; the defaults of those that it has not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Mapping {
+    /// CMB-2 to CMB-5.
+    pub(super) of: InputMapping,
+    /// CMB-3.
+    pub(super) centre: ExpandCentre,
+    /// CMB-4. With 127.5 the mapping yields halves.
+    pub(super) half: HalfBiasConstant,
+}
+
+impl Mapping {
+    /// A mapping that no policy concerns.
+    pub(super) fn plain(of: InputMapping) -> Mapping {
+        Mapping { of, centre: ExpandCentre::Centred, half: HalfBiasConstant::Half128 }
+    }
+
+    pub(super) fn new(of: InputMapping, policies: &Policies) -> Mapping {
+        let plain = Mapping::plain(of);
+        match of {
+            InputMapping::ExpandNormal | InputMapping::ExpandNegate => {
+                Mapping { centre: policies.expand_centre, ..plain }
+            }
+            InputMapping::HalfBiasNormal | InputMapping::HalfBiasNegate => {
+                Mapping { half: policies.half_bias, ..plain }
+            }
+            _ => plain,
+        }
+    }
+}
+
+/// What a mux is steered by, with its policy.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Mux(pub(super) MuxSelect, pub(super) MuxNegative);
+
+/// How a value comes about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Node {
+    /// The same in every pixel.
+    Constant(i16),
+    /// Given.
+    Input(Input),
+    /// CMB-2 to CMB-5.
+    Map(Mapping, Value),
+    /// NUM-2 of a sum of products, not saturated.
+    Sum(Pairs),
+    /// NUM-2 of a sum of products of halves (CMB-4=127.5).
+    HalfSum(Pairs),
+    /// CMB-9=after of a sum of products, which are of halves if told so; not saturated.
+    After(Bias, Scale, bool, Pairs),
+    /// NUM-2 of a product of two bytes.
+    Bytes(Value, Value),
+    /// NUM-2 of a difference of two products.
+    Difference([Value; 4]),
+    /// CMB-8 of two vectors that are still to be expanded (CMB-3), read as unsigned.
+    UnsignedDot([Value; 6]),
+    /// CMB-9, not saturated.
+    Scaled(Bias, Scale, Value),
+    /// CMB-9 and NUM-3.
+    Output(Bias, Scale, RegisterFloor, Value),
+    /// CMB-10: by the first; the second where it takes CD, otherwise the third.
+    Select(Mux, [Value; 3]),
+    /// a + b.
+    Add(Value, Value),
+    /// a - b.
+    Minus(Value, Value),
+    /// The smaller.
+    Least(Value, Value),
+    /// The larger.
+    Greatest(Value, Value),
+    /// Limited to 0..=255.
+    Clamp(Value),
+    /// ROP-5: without so many low bits.
+    Truncate(u32, Value),
+    /// A byte as two's complement (ROP-3).
+    Signed(Value),
+}
+
+impl Node {
+    /// The values that it is made of.
+    pub(super) fn operands(&self) -> Vec<Value> {
+        match self {
+            Node::Constant(_) | Node::Input(_) => Vec::new(),
+            Node::Map(_, v)
+            | Node::Scaled(_, _, v)
+            | Node::Output(_, _, _, v)
+            | Node::Clamp(v)
+            | Node::Truncate(_, v)
+            | Node::Signed(v) => vec![*v],
+            Node::Sum(pairs) | Node::HalfSum(pairs) | Node::After(_, _, _, pairs) => {
+                pairs.values[..2 * pairs.count].to_vec()
+            }
+            Node::Difference(v) => v.to_vec(),
+            Node::UnsignedDot(v) => v.to_vec(),
+            Node::Select(_, v) => v.to_vec(),
+            Node::Bytes(a, b) | Node::Add(a, b) | Node::Minus(a, b) | Node::Least(a, b) | Node::Greatest(a, b) => {
+                vec![*a, *b]
+            }
+        }
+    }
+
+    /// The same of other values.
+    pub(super) fn renamed(self, name: impl Fn(Value) -> Value) -> Node {
+        match self {
+            Node::Constant(_) | Node::Input(_) => self,
+            Node::Map(mapping, v) => Node::Map(mapping, name(v)),
+            Node::Sum(pairs) => Node::Sum(pairs.renamed(name)),
+            Node::HalfSum(pairs) => Node::HalfSum(pairs.renamed(name)),
+            Node::After(bias, scale, halves, pairs) => Node::After(bias, scale, halves, pairs.renamed(name)),
+            Node::Difference(v) => Node::Difference(v.map(name)),
+            Node::UnsignedDot(v) => Node::UnsignedDot(v.map(name)),
+            Node::Scaled(bias, scale, v) => Node::Scaled(bias, scale, name(v)),
+            Node::Output(bias, scale, floor, v) => Node::Output(bias, scale, floor, name(v)),
+            Node::Select(mux, v) => Node::Select(mux, v.map(name)),
+            Node::Bytes(a, b) => Node::Bytes(name(a), name(b)),
+            Node::Add(a, b) => Node::Add(name(a), name(b)),
+            Node::Minus(a, b) => Node::Minus(name(a), name(b)),
+            Node::Least(a, b) => Node::Least(name(a), name(b)),
+            Node::Greatest(a, b) => Node::Greatest(name(a), name(b)),
+            Node::Clamp(v) => Node::Clamp(name(v)),
+            Node::Truncate(bits, v) => Node::Truncate(bits, name(v)),
+            Node::Signed(v) => Node::Signed(name(v)),
+        }
+    }
+}

@@ -1,0 +1,548 @@
+//! The stages of a texture shader, one after the other, each for a whole block.
+//!
+//! What the vertices give a stage is interpolated piece by piece: numbers, which are rounded to single precision, and coordinates that a bump
+//! stage moves, which keep their fraction. A lane that is not proved is left open, and the definition runs its stages in the end.
+#![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
+
+use super::band::{Block, Run};
+use super::dot::{self, Floats};
+use super::fetch;
+use super::kernels::{LANES, Row};
+use super::levels::quotients;
+use super::planes::{Plane, inverse};
+use super::quotient::{IOTA_REAL, Line, Positions, nearest, nearest_32, position};
+use super::shader::{Number, Purpose, Shader, byte_of};
+use super::triangle::{Bounds, Piece, Setup};
+use super::{BLOCK, Compiled, Job, Reason, Sampler};
+use crate::combiner::registers::Registers;
+use crate::engine::pixel::TriangleContext;
+use crate::engine::walk::Band;
+use crate::number::convert::{factor, factor_byte};
+use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
+use crate::state::{MipFilter, Register, ShaderOperation, TEXTURE_UNITS};
+use crate::texture::place::Coordinates;
+use crate::trace::Silent;
+
+/// A number across a triangle.
+#[derive(Clone, Copy, Debug)]
+enum Function {
+    /// The same at its three vertices.
+    Same(f32),
+    /// So many times a quotient by D.
+    Plane(Plane, f64),
+}
+
+/// What of a triangle a texture shader needs.
+#[derive(Clone, Debug)]
+pub(super) struct Attributes {
+    numbers: Vec<Function>,
+    moved: Vec<[Plane; 2]>,
+}
+
+impl Attributes {
+    pub(super) fn new(context: &TriangleContext<'_>, shader: &Shader) -> Attributes {
+        let triangle = &context.triangle;
+        let inverse = inverse(triangle);
+        let numbers = shader.varying.iter().map(|(stage, component, purpose)| {
+            let set = shader.stages[*stage].state.coordinate_set;
+            let [a, b, c] = context.coordinate_set(set).map(|v| v[*component]);
+            if a == b && b == c {
+                return Function::Same(if *purpose == Purpose::Byte { byte_of(f64::from(a)) } else { a + 0.0 });
+            }
+            let (g, exponent) = triangle.attribute([a, b, c]).numbers();
+            // Far from the ends of double precision.
+            let scale = f64::from_bits(((exponent + 1023).max(0) as u64) << 52);
+            Function::Plane(Plane::new(triangle, &inverse, g), scale)
+        });
+        let numbers = numbers.collect();
+        let moved = shader.moved.iter().map(|stage| match context.coordinates_of(*stage) {
+            Some(Coordinates::Plane(g)) => [Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])],
+            _ => [Plane::default(); 2],
+        });
+        Attributes { numbers, moved: moved.collect() }
+    }
+}
+
+/// Coordinates that a stage moves, 1/256 texel, and more than they are off by.
+#[derive(Clone, Debug)]
+struct Moved {
+    u: [f64; LANES],
+    v: [f64; LANES],
+    off: [f64; LANES],
+}
+
+/// Lanes that are the definition's.
+#[derive(Clone, Debug)]
+struct Open {
+    /// Not 0.
+    narrow: [i32; LANES],
+    /// Negative, as the bits of doubles.
+    wide: [u64; LANES],
+}
+
+impl Default for Open {
+    fn default() -> Self {
+        Open { narrow: [0; LANES], wide: [0; LANES] }
+    }
+}
+
+impl Open {
+    fn is(&self, lane: usize) -> bool {
+        self.narrow[lane] != 0 || self.wide[lane] >> 63 != 0
+    }
+}
+
+/// What a texture shader works in.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Workshop {
+    /// The numbers that vary.
+    numbers: Vec<[f32; LANES]>,
+    /// Those that do not.
+    same: Vec<Floats>,
+    moved: Vec<Moved>,
+    open: Box<Open>,
+    /// First lane and number of the block's triangles.
+    triangles: Vec<(usize, usize)>,
+    vectors: Vec<[Floats; 3]>,
+    is_remapped: Vec<bool>,
+    dots: Vec<Floats>,
+    reflected: Vec<[Floats; 3]>,
+}
+
+impl Workshop {
+    /// Makes room for a draw's shader.
+    pub(super) fn begin(&mut self, shader: &Shader) {
+        self.numbers.resize(shader.varying.len(), [0.0; LANES]);
+        self.same.clear();
+        self.same.extend(shader.same.iter().map(|value| [*value; BLOCK]));
+        self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], off: [0.0; LANES] });
+        *self.open = Open::default();
+        self.triangles.clear();
+        self.vectors.resize(shader.vectors.len(), [[0.0; BLOCK]; 3]);
+        self.is_remapped.resize(shader.vectors.len(), false);
+        self.dots.resize(TEXTURE_UNITS, [0.0; BLOCK]);
+        self.reflected.resize(1, [[0.0; BLOCK]; 3]);
+    }
+}
+
+/// What estimates of coordinates may be off by.
+const COARSEST: f64 = 0.125;
+
+/// What the coordinate of a bump stage may be off by besides: its offset is floored at 2^-24 of 1/256 texel.
+const OFFSET: f64 = 1.0 / (1 << 23) as f64;
+
+/// What estimates of coordinates and offsets stay below, 1/256 texel; coordinates are limited beyond.
+const FARTHEST: f64 = (COORDINATE_LIMIT - 1) as f64;
+
+impl Setup<'_> {
+    /// What the vertices give the stages of a texture shader, for a piece.
+    #[inline(always)]
+    pub(super) fn attributes<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        shader: &Shader,
+        work: &mut Workshop,
+    ) {
+        let Some(attributes) = &self.attributes else { return };
+        let e = self.context.triangle.edges(piece.first.0, piece.first.1);
+        let real = [e[0] as f64, e[1] as f64, e[2] as f64];
+        let denominator = self.denominator.line(&real);
+        let bounds: Bounds = self.bounds::<FMA, ROW>(piece, &real, denominator);
+        work.triangles.push((piece.lane, self.context.number));
+        let open = &mut work.open.narrow[piece.lanes()];
+        open.fill(0);
+        work.open.wide[piece.lanes()].fill(0);
+        for ((number, out), (_, _, purpose)) in attributes.numbers.iter().zip(&mut work.numbers).zip(&shader.varying) {
+            let out = &mut out[piece.lanes()];
+            match number {
+                Function::Same(value) => out.fill(*value),
+                Function::Plane(plane, scale) => {
+                    let lines = (plane.line(&real).times(*scale), denominator);
+                    let off = self.margin::<ROW>(plane, &real, &bounds) * scale;
+                    match purpose {
+                        Purpose::Float | Purpose::Sign => rounded::<FMA, ROW>(piece.at, lines, off, out, open),
+                        Purpose::Byte => bytes::<FMA, ROW>(piece.at, lines, off, out, open),
+                    }
+                }
+            }
+        }
+        for (planes, moved) in attributes.moved.iter().zip(&mut work.moved) {
+            let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
+            let offs = [self.margin::<ROW>(&planes[0], &real, &bounds), self.margin::<ROW>(&planes[1], &real, &bounds)];
+            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + OFFSET;
+            // Also refuses what is no number.
+            let proves = (offs[0] < COARSEST) & (offs[1] < COARSEST);
+            if !proves {
+                open.fill(1);
+            }
+            moved.off[piece.lanes()].fill(if proves { off } else { 0.0 });
+            quotients::<FMA, ROW>(piece.at, lines, &mut moved.u[piece.lanes()], &mut moved.v[piece.lanes()]);
+        }
+    }
+}
+
+/// Quotients to the nearest single-precision number; lanes that are not proved, and zeros, are left open.
+#[inline(always)]
+fn rounded<const FMA: bool, const ROW: bool>(
+    at: Positions<'_>,
+    lines: (Line, Line),
+    off: f64,
+    out: &mut [f32],
+    open: &mut [i32],
+) {
+    let lanes = out.len();
+    let last = f64::from(at.last);
+    let (open, xs, ys, iota) = (&mut open[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    for n in 0..lanes {
+        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
+        let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
+        let (low, high) = ((value - off) as f32, (value + off) as f32);
+        out[n] = low;
+        open[n] |= i32::from((low != high) | (low == 0.0));
+    }
+}
+
+/// TSH-9 likewise.
+#[inline(always)]
+fn bytes<const FMA: bool, const ROW: bool>(
+    at: Positions<'_>,
+    lines: (Line, Line),
+    off: f64,
+    out: &mut [f32],
+    open: &mut [i32],
+) {
+    let lanes = out.len();
+    let last = f64::from(at.last);
+    let (open, xs, ys, iota) = (&mut open[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    for n in 0..lanes {
+        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
+        let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
+        let (low, high) = (limited((value - off) * 4096.0), limited((value + off) * 4096.0));
+        let (low, high) = (factor_byte(i64::from(low)), factor_byte(i64::from(high)));
+        out[n] = f32::from(low);
+        // Also what is no number.
+        open[n] |= i32::from((low != high) | value.is_nan() | off.is_nan());
+    }
+}
+
+/// A floor limited to 0..=4096; one less where it is a whole number, perhaps.
+#[inline(always)]
+fn limited(v: f64) -> i32 {
+    let v = if v > 0.0 { v } else { 0.0 };
+    nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
+}
+
+/// Runs the stages of a block's pixels, which leave their registers in their rows.
+#[inline(always)]
+pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
+    let Some(shader) = &job.compiled.shader else { return };
+    let Block { rows, varying, work, workshop, runs, defined, .. } = block;
+    workshop.is_remapped.fill(false);
+    let mut dotted = [false; TEXTURE_UNITS];
+    let alive = &mut varying.alive;
+    if shader.kills {
+        alive.fill(true);
+    }
+    for (index, stage) in shader.stages.iter().enumerate().filter(|(_, stage)| stage.runs) {
+        if stage.dots {
+            dot_product(job.compiled, shader, index, &mut dotted, workshop, rows);
+        }
+        let wanted = job.compiled.textures[index];
+        match stage.state.operation {
+            ShaderOperation::None | ShaderOperation::DotProduct => {}
+            ShaderOperation::PassThrough => {
+                for n in 0..4 {
+                    if let Some(slot) = wanted[n]
+                        && let Some(number) = workshop.number(stage.numbers[n])
+                    {
+                        let out = rows[usize::from(slot)].block_mut();
+                        for k in 0..BLOCK {
+                            out[k] = number[k] as i16;
+                        }
+                    }
+                }
+            }
+            ShaderOperation::CullFragment { drops_not_negative } => {
+                for n in 0..4 {
+                    let Some(number) = workshop.number(stage.numbers[n]) else { continue };
+                    for (alive, number) in alive.iter_mut().zip(number) {
+                        *alive &= (*number < 0.0) == drops_not_negative[n];
+                    }
+                }
+            }
+            ShaderOperation::Sample => {
+                let Some(at) = stage.sampler else { continue };
+                let sampler = &job.compiled.samplers[at];
+                let Some(table) = &sampler.table else { continue };
+                if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(at)) {
+                    let both = job.draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
+                    fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
+                } else {
+                    let faces = sampler.cube.then_some(&varying.faces[at]);
+                    fetch::locate(table, &mut varying.coordinates[at], faces, work);
+                    fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
+                }
+            }
+            operation => {
+                let Some(at) = stage.sampler else { continue };
+                let sampler = &job.compiled.samplers[at];
+                let Some(table) = &sampler.table else { continue };
+                let (numbers, faces) = (&mut varying.coordinates[at], &mut varying.faces[at]);
+                let earlier = job.compiled.textures[stage.state.previous];
+                match operation {
+                    ShaderOperation::BumpEnvironment { matrix, .. } => {
+                        let doubled = shader.stages[stage.state.previous].doubled;
+                        let moved = &workshop.moved[stage.moved];
+                        let [_, green, blue, _] = earlier.map(|slot| slot.map(|slot| rows[usize::from(slot)].block()));
+                        if let (Some(blue), Some(green)) = (blue, green) {
+                            bump(
+                                sampler,
+                                matrix,
+                                (blue, doubled[2]),
+                                (green, doubled[1]),
+                                moved,
+                                numbers,
+                                &mut workshop.open,
+                            );
+                        }
+                    }
+                    ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
+                        let channels = if operation == ShaderOperation::DependentAlphaRed { [3, 0] } else { [1, 2] };
+                        let doubled = shader.stages[stage.state.previous].doubled;
+                        for n in 0..2 {
+                            let Some(slot) = earlier[channels[n]] else { continue };
+                            let Some(table) = stage.dependent[n].first_chunk::<256>() else { continue };
+                            let (from, down) = (rows[usize::from(slot)].block(), u32::from(doubled[channels[n]]));
+                            for (out, from) in numbers[n].iter_mut().zip(from) {
+                                *out = table[usize::from((*from >> down) as u8)];
+                            }
+                        }
+                    }
+                    ShaderOperation::DotProduct2D => {
+                        for n in 0..2 {
+                            dot_product(job.compiled, shader, index + n - 1, &mut dotted, workshop, rows);
+                            let Some(out) = numbers[n].first_chunk_mut() else { continue };
+                            let limit = COORDINATE_LIMIT as i32;
+                            dot::coordinate(
+                                &workshop.dots[index + n - 1],
+                                sampler.sides[n],
+                                limit,
+                                sampler.bias(),
+                                out,
+                            );
+                        }
+                    }
+                    _ => {
+                        for n in 1..4 {
+                            dot_product(job.compiled, shader, n, &mut dotted, workshop, rows);
+                        }
+                        workshop.vector(shader, &operation);
+                        let [u, v] = numbers;
+                        if let (Some(u), Some(v), Some(faces)) =
+                            (u.first_chunk_mut(), v.first_chunk_mut(), faces.first_chunk_mut())
+                        {
+                            dot::on_faces(&workshop.reflected[0], sampler.sides[0], sampler.bias(), u, v, faces);
+                        }
+                    }
+                }
+                let faces = sampler.cube.then_some(&varying.faces[at]);
+                fetch::locate(table, &mut varying.coordinates[at], faces, work);
+                fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
+                if let Some(factors) = stage.luminance.first_chunk::<256>()
+                    && let Some(red) = earlier[0]
+                {
+                    let doubled = shader.stages[stage.state.previous].doubled[0];
+                    let mut products = [0.0; BLOCK];
+                    look_up(factors, rows[usize::from(red)].block(), doubled, &mut products);
+                    for slot in wanted[..3].iter().flatten() {
+                        let channel = rows[usize::from(*slot)].block_mut();
+                        luminance(&products, channel, &mut workshop.open.narrow);
+                    }
+                }
+            }
+        }
+    }
+    defined[Reason::Shader as usize] += define(job, runs, varying.alive.as_mut_slice(), workshop, rows, band);
+}
+
+impl Workshop {
+    fn number(&self, number: Number) -> Option<&Floats> {
+        match number {
+            Number::Unread => None,
+            Number::Same(n) => Some(&self.same[n]),
+            Number::Varying(n) => self.numbers[n].first_chunk(),
+        }
+    }
+
+    /// The vector that a cube map is looked up with.
+    #[inline(always)]
+    fn vector(&mut self, shader: &Shader, operation: &ShaderOperation) {
+        let constant: [Floats; 3];
+        let number = |work: &Workshop, n: usize| *work.number(shader.stages[n].numbers[3]).unwrap_or(&[0.0; BLOCK]);
+        let eye = match operation {
+            ShaderOperation::DotReflectSpecular => {
+                constant = [number(self, 1), number(self, 2), number(self, 3)];
+                Some(&constant)
+            }
+            ShaderOperation::DotReflectConstantEye { eye } => {
+                constant = [[eye[0]; BLOCK], [eye[1]; BLOCK], [eye[2]; BLOCK]];
+                Some(&constant)
+            }
+            _ => None,
+        };
+        let (dots, Some(out)) = (&self.dots, self.reflected.first_mut()) else { return };
+        match eye {
+            Some([a, b, c]) => dot::reflect([&dots[1], &dots[2], &dots[3]], [a, b, c], out),
+            None => *out = [dots[1], dots[2], dots[3]],
+        }
+    }
+}
+
+/// TSH-4: the dot product of a stage, once.
+#[inline(always)]
+fn dot_product(
+    compiled: &Compiled,
+    shader: &Shader,
+    index: usize,
+    dotted: &mut [bool; TEXTURE_UNITS],
+    work: &mut Workshop,
+    rows: &[Row],
+) {
+    let stage = &shader.stages[index];
+    if std::mem::replace(&mut dotted[index], true) {
+        return;
+    }
+    let (previous, doubled, remap) = &shader.vectors[stage.vector];
+    if !std::mem::replace(&mut work.is_remapped[stage.vector], true) {
+        for n in 0..3 {
+            if let Some(slot) = compiled.textures[*previous][n] {
+                remap.run(rows[usize::from(slot)].block(), doubled[n], &mut work.vectors[stage.vector][n]);
+            }
+        }
+    }
+    let mut out = work.dots[index];
+    if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| work.number(stage.numbers[n])) {
+        dot::products([s, t, r], &work.vectors[stage.vector], &mut out);
+    }
+    work.dots[index] = out;
+}
+
+/// TSH-7: coordinates moved by blue and green; lanes that are not proved are left open.
+#[inline(always)]
+fn bump(
+    sampler: &Sampler,
+    [m0, m1, m2, m3]: [f32; 4],
+    blue: (&[i16; BLOCK], bool),
+    green: (&[i16; BLOCK], bool),
+    moved: &Moved,
+    [u, v]: &mut [fetch::Numbers<i32>; 2],
+    open: &mut Open,
+) {
+    let (Some(u), Some(v)) = (u.first_chunk_mut(), v.first_chunk_mut()) else { return };
+    let mut along = [0.0; BLOCK];
+    for (entries, side, at, out) in
+        [([m0, m3], sampler.sides[0], &moved.u, u), ([m1, m2], sampler.sides[1], &moved.v, v)]
+    {
+        dot::moved(entries, blue, green, &mut along, &mut open.narrow);
+        place(&along, side, (at, &moved.off), sampler.bias(), &mut open.wide, out);
+    }
+}
+
+/// What estimates are of which numbers are to be moved, less a bias: floors, and as sign bits which are not proved.
+#[inline(always)]
+fn place(
+    along: &Floats,
+    side: u32,
+    (at, off): (&[f64; LANES], &[f64; LANES]),
+    bias: i32,
+    open: &mut [u64; LANES],
+    out: &mut [i32; BLOCK],
+) {
+    // A side of the image is 256 times its texels, and bytes are 128ths.
+    let side = 2.0 * f64::from(side);
+    for n in 0..BLOCK {
+        let at = at[n] + f64::from(along[n]) * side;
+        let t = at - 0.5;
+        let near = (t - super::quotient::whole(t)).abs();
+        open[n] |= (0.5 - off[n] - near).to_bits() | (FARTHEST - at.abs()).to_bits();
+        out[n] = nearest(t).wrapping_sub(bias);
+    }
+}
+
+/// More than a product in 4096ths below 4,097 is off by.
+const PRODUCT: f32 = 1.0 / 1024.0;
+
+/// TSH-8: what the channels of each pixel are multiplied by.
+#[inline(always)]
+fn look_up(factors: &[f32; 256], red: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
+    for n in 0..BLOCK {
+        out[n] = factors[usize::from((red[n] >> u32::from(doubled)) as u8)];
+    }
+}
+
+/// TSH-8 of a channel.
+#[inline(always)]
+fn luminance(factors: &Floats, channel: &mut [i16; BLOCK], open: &mut [i32; LANES]) {
+    for n in 0..BLOCK {
+        let product = f32::from(channel[n].max(0)) * factors[n];
+        let product = if product < 4097.0 { product } else { 4097.0 };
+        let (low, high) = (byte(product - PRODUCT), byte(product + PRODUCT));
+        open[n] |= low ^ high;
+        channel[n] = low as i16;
+    }
+}
+
+/// TSH-8: 4096ths, floored (one less where nothing remains, perhaps), as a byte, saturated.
+#[inline(always)]
+fn byte(product: f32) -> i32 {
+    factor(nearest_32(if product > 0.5 { product - 0.5 } else { 0.0 }).min(4096))
+}
+
+/// The open lanes, by the definition; how many they are.
+#[inline(never)]
+fn define(
+    job: Job<'_>,
+    runs: &[Run],
+    alive: &mut [bool],
+    work: &mut Workshop,
+    rows: &mut [Row],
+    band: &Band<'_>,
+) -> u64 {
+    let mut count = 0;
+    const UNITS: [Register; TEXTURE_UNITS] =
+        [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+    let mut known: Option<(usize, TriangleContext<'_>)> = None;
+    let height = job.plan.targets[job.draw.target].height;
+    for run in runs {
+        for n in (0..run.count).filter(|n| work.open.is(run.lane + n)) {
+            let lane = run.lane + n;
+            let at = work.triangles.partition_point(|(first, _)| *first <= lane);
+            let Some((_, number)) = at.checked_sub(1).map(|at| work.triangles[at]) else { continue };
+            if known.as_ref().is_none_or(|(other, _)| *other != number) {
+                known = TriangleContext::new(job.plan, job.draw, number, (0, i64::from(height)))
+                    .map(|context| (number, context));
+            }
+            let Some((_, context)) = &known else { continue };
+            let index = run.at + n;
+            let pixel = ((index % band.width) as i64, (band.first_row + index / band.width) as i64);
+            let sample = Sample::new(&context.triangle, context.triangle.edges(pixel.0, pixel.1));
+            let mut registers = Registers::<i32>::new();
+            let lives = context.sample_textures(&sample, pixel, &mut registers, job.textures, &mut Silent);
+            alive[lane] = lives.is_some();
+            count += 1;
+            if lives.is_none() {
+                // Nothing reads what it holds; and rows of constants must stay as they are, for the next block.
+                continue;
+            }
+            for (unit, register) in UNITS.into_iter().enumerate() {
+                for channel in 0..4 {
+                    if let Some(slot) = job.compiled.textures[unit][channel] {
+                        rows[usize::from(slot)].0[lane] = registers.read(register, channel) as i16;
+                    }
+                }
+            }
+        }
+    }
+    work.triangles.clear();
+    count
+}
