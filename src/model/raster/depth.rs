@@ -178,14 +178,11 @@ pub fn interpolate(e: [i64; 3], z: [f32; 3]) -> Binary {
 
 /// DEP-6: w_1 + b_0 (w_0 - w_1) + b_2 (w_2 - w_1) with weights in perspective, each term cut as in DEP-1.
 pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
-    let (of_first, power_of_first) = split(w[1]);
-    // Edge numbers times w_1/w_k, either of 24 bits, the product too.
     let edges = std::array::from_fn(|k| {
-        let (mantissa, power) = split(w[k]);
-        let (ratio, dropped) = first_24((i128::from(of_first) << 62) / i128::from(mantissa.max(1)));
+        let (ratio, power) = w_ratio(w[1], w[k]);
         let (edge, of_edge) = first_24(i128::from(e[k]));
         let (product, more) = first_24(i128::from(edge) * i128::from(ratio));
-        (product, power_of_first - power - 62 + dropped + of_edge + more)
+        (product, power + of_edge + more)
     });
     let (edges, _) = align(edges, 61);
     let (reciprocal, exponent) = reciprocal(edges);
@@ -210,6 +207,13 @@ pub fn interpolate_w(e: [i64; 3], w: [f32; 3]) -> Binary {
         (weights[k].0 * by, weights[k].1 + power)
     };
     sum_of_terms([term(0), split(w[1]), term(2)])
+}
+
+/// DEP-6: w_1/w_k of two positive w, 24 bits and an exponent.
+pub fn w_ratio(first: f32, w: f32) -> (i64, i32) {
+    let ((first, power_of_first), (mantissa, power)) = (split(first), split(w));
+    let (ratio, dropped) = first_24((i128::from(first) << 62) / i128::from(mantissa.max(1)));
+    (ratio, power_of_first - power - 62 + dropped)
 }
 
 /// The first 24 bits of a number, toward zero, and by how many bits it was shifted.

@@ -62,6 +62,22 @@ pub fn wrapped(unit: &PlannedUnit, mut vertices: [[f32; 4]; 3]) -> [[f32; 4]; 3]
     vertices
 }
 
+/// VOL-1: r of the vertices as a plane over D, or r and q, of which the ratio counts.
+pub fn layer_planes(
+    triangle: &Triangle,
+    coordinates: &Coordinates,
+    [r, q]: [[f32; 3]; 2],
+    layers: u32,
+) -> ([i64; 3], Option<[i64; 3]>) {
+    match coordinates {
+        Coordinates::Ratio(_) => {
+            let [r, q, _] = triangle.direction([r, q, q]);
+            (r, Some(q))
+        }
+        Coordinates::Plane(_) | Coordinates::Direction(_) => (triangle.coordinate(r, layers), None),
+    }
+}
+
 /// The three linear functions of sc, tc and |ma| of a direction on a face.
 pub fn on_face(direction: &[[i64; 3]; 3], face: Face) -> [[i64; 3]; 3] {
     face.components().map(
@@ -191,17 +207,9 @@ impl Interpolated<'_> {
         self.vertices.coordinates(self.unit.stage.coordinate_set).map(|vertex| vertex[n])
     }
 
-    /// r as a plane over D, or r and q, of which the ratio counts.
+    /// [`layer_planes`] of this place.
     fn layer_planes(&self, layers: u32) -> ([i64; 3], Option<[i64; 3]>) {
-        let (triangle, r) = (self.at.triangle, self.component(2));
-        match self.coordinates {
-            Coordinates::Ratio(_) => {
-                let q = self.component(3);
-                let [r, q, _] = triangle.direction([r, q, q]);
-                (r, Some(q))
-            }
-            Coordinates::Plane(_) | Coordinates::Direction(_) => (triangle.coordinate(r, layers), None),
-        }
+        layer_planes(self.at.triangle, self.coordinates, [self.component(2), self.component(3)], layers)
     }
 
     /// r, and q where it is not 1 at all three vertices.

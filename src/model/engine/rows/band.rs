@@ -408,7 +408,7 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
     let samplers = if compiled.shader.is_some() { &[] } else { &compiled.samplers[..] };
     for (n, sampler) in samplers.iter().enumerate() {
         let Some(table) = &sampler.table else { continue };
-        let faces = sampler.cube.then_some(&varying.faces[n]);
+        let faces = sampler.has_images().then_some(&varying.faces[n]);
         let wanted = compiled.textures[sampler.unit];
         if let (true, Some(reads)) = (sampler.mixes, varying.reads.get(n)) {
             let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
@@ -422,7 +422,8 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             fetch::locate(table, &mut varying.coordinates[at], faces, work);
         }
         found = Some((at, table.pitch));
-        fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
+        let references = &varying.references[n];
+        fetch::sample(table, &varying.coordinates[at], references, sampler.signed, wanted, work, rows);
         if let Some(key) = sampler.key {
             fetch::drop_keyed(key, work, alive);
         }

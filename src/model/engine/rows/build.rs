@@ -150,6 +150,8 @@ fn source(format: TextureFormat, channel: usize) -> Source {
             | TextureFormat::X1R5G5B5,
             3,
         ) => Source::One,
+        // SHD-1.
+        _ if format.depth().is_some() => Source::Channel(0),
         _ => Source::Channel(channel),
     }
 }

@@ -15,6 +15,7 @@ use crate::engine::pixel::TriangleContext;
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
+use crate::texture::address::address;
 use crate::texture::place::Place;
 
 const WIDTH: u32 = 640;
@@ -96,11 +97,26 @@ fn triangle(r: &mut Random, small: bool) -> [Vertex; 3] {
             _ if lean[0] < 0.0 => -0.5 - r.unit(),
             _ => 0.5 + 2.0 * r.unit(),
         };
-        vertex.texture_coordinates[2] = [st[0] * q, st[1] * q, 0.0, q];
-        vertex.texture_coordinates[3] = vertex.texture_coordinates[0];
+        vertex.texture_coordinates[2] = [st[0] * q, st[1] * q, z * q, q];
+        vertex.texture_coordinates[3] = [st[0], st[1], z, 1.0];
         vertex.texture_coordinates[1] = [direction[0], direction[1], direction[2], 1.0];
     }
     vertices
+}
+
+/// Formats of depths.
+const DEPTHS: &[TextureFormat] =
+    &[TextureFormat::Z16, TextureFormat::Z24S8, TextureFormat::Z16F, TextureFormat::Z24S8F];
+
+/// What makes an r of 0 to 1 cover what it is for, or less.
+fn steps(r: &mut Random, third: Third) -> f32 {
+    match third {
+        Third::Reference(format) => match format.depth() {
+            Some(depth) if depth.is_float() => r.of(&[1.0, 600.0, 1e30]),
+            _ => r.of(&[8.0, 1000.0, 65535.0, 16_777_215.0]),
+        },
+        _ => r.of(&[1.0, 1.0, 0.375, 4.0]),
+    }
 }
 
 /// No function, or one whose factors lie between 0 and 1 for some coordinates.
@@ -115,14 +131,25 @@ fn fog(r: &mut Random) -> Option<FogFunction> {
     Some(FogFunction { mode: r.of(FogMode::ALL), p0, p1, p2: 0.0, per_vertex: r.below(4) == 0 })
 }
 
+/// What the third coordinate is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Third {
+    Nothing,
+    /// Layers of a volume, with an address mode.
+    Layers(AddressMode),
+    /// To be compared with depths.
+    Reference(TextureFormat),
+}
+
 /// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, the latter two perhaps
-/// with levels, levels of another, and the fog factor, and test depth.
+/// with levels, levels of another, and the fog factor, and test depth or w. With a third coordinate the projected texture and the other are volumes or depths.
 fn scene(
     vertices: Vec<Vertex>,
     filter: Filter,
     depth: DepthFormat,
     fog: Option<FogFunction>,
     [cube, projected]: [bool; 2],
+    (third, w_buffer): (Third, bool),
 ) -> Scene {
     let texture = |kind, side: u32, faces: u32, levels: u32| Texture {
         name: String::new(),
@@ -132,7 +159,7 @@ fn scene(
             width: side,
             height: side,
             levels,
-            layers: 1,
+            layers: if kind == TextureKind::ThreeDimensional { faces } else { 1 },
             border: false,
             words: (0..Level::chain(TextureFormat::A8R8G8B8, side, side, levels, false).1 as u32 * faces)
                 .map(|n| n.wrapping_mul(0x9e37_79b9))
@@ -149,6 +176,21 @@ fn scene(
             ..unit
         })
     };
+    let nearest =
+        |texture| TextureUnit { min_filter: Filter::Nearest, mag_filter: Filter::Nearest, ..TextureUnit::new(texture) };
+    let with_r = match third {
+        Third::Nothing => None,
+        Third::Layers(address_r) => Some(TextureUnit { address_r, ..nearest(3) }),
+        Third::Reference(_) => {
+            let shadow = Some(ShadowComparison { function: CompareFunction::Less, reference: ShadowReference::R });
+            Some(TextureUnit { shadow, ..nearest(4) })
+        }
+    };
+    let (volume, mut depths) =
+        (texture(TextureKind::ThreeDimensional, 16, 8, 1), texture(TextureKind::TwoDimensional, 16, 1, 1));
+    if let Third::Reference(format) = third {
+        depths.format = format;
+    }
     let input = |register| CombinerInput { register, component: Component::Rgb, mapping: InputMapping::SignedIdentity };
     let mut rgb = Portion::idle(Component::Rgb);
     rgb.inputs = [Register::Texture0, Register::PrimaryColor, Register::Texture1, Register::Texture2].map(input);
@@ -175,8 +217,8 @@ fn scene(
         textures: [
             unit(0),
             if cube { mixed(1) } else { unit(1) },
-            if projected { mixed(2) } else { unit(0) },
-            mixed(2),
+            with_r.or(if projected { mixed(2) } else { unit(0) }),
+            with_r.or(mixed(2)),
         ],
         texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, true)),
         vertex_program: None,
@@ -196,7 +238,7 @@ fn scene(
         alpha_test: None,
         stencil_test: None,
         window_clip: None,
-        depth_test: Some(DepthTest::new(CompareFunction::Always, true)),
+        depth_test: Some(DepthTest { w_buffer, ..DepthTest::new(CompareFunction::Always, true) }),
         blend: None,
         blend_constant: [0; 4],
         color_mask: [true; 4],
@@ -218,6 +260,8 @@ fn scene(
             texture(TextureKind::TwoDimensional, 64, 1, 1),
             texture(TextureKind::Cube, 16, 6, 5),
             texture(TextureKind::TwoDimensional, 64, 1, 7),
+            volume,
+            depths,
         ],
         palettes: vec![],
         draws: vec![draw],
@@ -293,6 +337,20 @@ fn compare<const FMA: bool, const ROW: bool>(
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
             assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
+            match &sampler.third {
+                Some(super::Third::Layer(_, axis)) => {
+                    let layer = |texel: i64| address(unit.state.address_r, texel, unit.layers, false);
+                    let entry = i64::from(axis.first) + i64::from(varying.faces[index][lane]);
+                    let wanted = layer(place.layer(unit.layers).value >> 8);
+                    assert_eq!(layer(entry), wanted, "layers of unit {index} ({i}, {j}) of {:?}", context.vertices());
+                }
+                Some(super::Third::Reference(format)) => {
+                    let wanted = crate::raster::depth::word(*format, place.reference());
+                    let got = varying.references[index][lane];
+                    assert_eq!(got, wanted, "reference of unit {index} ({i}, {j}) of {:?}", context.vertices());
+                }
+                _ => {}
+            }
             if unit.kind == TextureKind::Cube {
                 assert_eq!(varying.faces[index][lane], place.face() as u32, "({i}, {j}) of {:?}", context.vertices());
             }
@@ -314,10 +372,22 @@ fn rows_interpolate_what_the_definition_does() {
         // Small ones at last, so many that their textures pay.
         let small = pixels >= wanted;
         let mixes = [0; 2].map(|_| random.below(2) == 0);
-        let vertices = (0..if small { 1024 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
-        let Ok(plan) = Plan::compile(&scene(vertices, filter, depth, fog, mixes), &PlanOptions::default()) else {
-            continue;
+        let mut vertices: Vec<Vertex> =
+            (0..if small { 1024 } else { 64 }).flat_map(|_| triangle(&mut random, small)).collect();
+        let third = match random.below(6) {
+            0 | 1 => Third::Layers(random.of(AddressMode::ALL)),
+            2 | 3 => Third::Reference(random.of(DEPTHS)),
+            _ => Third::Nothing,
         };
+        let w_buffer = random.below(3) == 0;
+        // r of as many steps as the format has, and w of many.
+        let (of_r, of_w) = (steps(&mut random, third), random.of(&[1.0, 1.0, 64.0, 65536.0, 1e9]));
+        for vertex in &mut vertices {
+            vertex.texture_coordinates.iter_mut().skip(2).for_each(|set| set[2] *= of_r);
+            vertex.position[3] *= if w_buffer { of_w } else { 1.0 };
+        }
+        let scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer));
+        let Ok(plan) = Plan::compile(&scene, &PlanOptions::default()) else { continue };
         let rows_of_plan = Rows::compile(&plan);
         let compiled = rows_of_plan.draw(&plan, 0, &[]);
         assert_eq!(compiled.samplers.len(), 4);

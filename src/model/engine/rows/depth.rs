@@ -8,6 +8,8 @@ use super::fetch::Numbers;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::triangle::Piece;
 use crate::engine::pixel::TriangleContext;
+use crate::raster::depth::w_ratio;
+use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 
 /// Bits of a double below the 24 that count.
@@ -23,7 +25,7 @@ const STEP: f64 = 1.0 / (1_u64 << 28) as f64;
 const ONE: u64 = 1023 << 52;
 
 /// A depth that no buffer has: the definition computes it.
-const UNKNOWN: u32 = u32::MAX;
+pub(super) const UNKNOWN: u32 = u32::MAX;
 
 /// A depth that no buffer has: the pixel is outside the draw's range, and dropped (DEP-4).
 pub(super) const OUTSIDE: u32 = u32::MAX - 1;
@@ -32,6 +34,8 @@ pub(super) const OUTSIDE: u32 = u32::MAX - 1;
 #[derive(Clone, Copy, Debug)]
 struct Depths<'a> {
     z: [f64; 3],
+    /// In a w buffer, what edge numbers are multiplied by (DEP-6); `z` holds w there.
+    ratios: [f64; 3],
     full: f64,
     offset: f64,
     range: Option<&'a DepthRange>,
@@ -52,24 +56,32 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let format = draw.depth_format;
     let offset = plane.offset.mantissa as f64 * power_of_two(plane.offset.exponent);
     let (z, full) = (plane.z.map(f64::from), f64::from(format.largest()));
-    let depths = Depths { z, full, offset, range: test.range.as_ref(), format };
+    let range = test.range.as_ref();
+    let depths = Depths { z, ratios: [1.0; 3], full, offset, range, format };
     let out = &mut out[piece.lanes()];
     let edges = [edge(0), edge(1), edge(2)];
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
     // Zero, or far from where binary32 or the steps between are at their ends.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
-    let unknown = if plane.w.is_some() {
-        // A w buffer: few scenes have one.
-        out.fill(UNKNOWN);
-        true
+    let exact_offset = plane.offset.mantissa.unsigned_abs() >> 53 == 0 && offset.is_finite();
+    let unknown = if let Some(w) = plane.w {
+        if exact_offset && w.iter().all(|w| *w > 0.0 && moderate(w)) {
+            let ratio = |(mantissa, exponent): (i64, i32)| mantissa as f64 * power_of_two(exponent);
+            let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
+            let depths = Depths { z: w.map(f64::from), ratios, ..depths };
+            depths.along::<FMA, ROW, true, true>(piece.at, edges, out)
+        } else {
+            out.fill(UNKNOWN);
+            true
+        }
     } else if test.range.is_none()
         && offset == 0.0
         && !format.is_float()
         && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole))
     {
-        depths.along::<FMA, ROW, false>(piece.at, edges, out)
-    } else if plane.z.iter().all(moderate) && plane.offset.mantissa.unsigned_abs() >> 53 == 0 && offset.is_finite() {
-        depths.along::<FMA, ROW, true>(piece.at, edges, out)
+        depths.along::<FMA, ROW, false, false>(piece.at, edges, out)
+    } else if exact_offset && plane.z.iter().all(moderate) {
+        depths.along::<FMA, ROW, true, false>(piece.at, edges, out)
     } else {
         out.fill(UNKNOWN);
         true
@@ -91,32 +103,36 @@ fn power_of_two(exponent: i32) -> f64 {
 }
 
 impl Depths<'_> {
-    /// Whether some are unknown.
+    /// Whether some are unknown. `GENERAL`: depths are not just floored. `W`: in a w buffer.
     #[inline(always)]
-    fn along<const FMA: bool, const ROW: bool, const GENERAL: bool>(
+    fn along<const FMA: bool, const ROW: bool, const GENERAL: bool, const W: bool>(
         &self,
         at: Positions<'_>,
         edges: [Line; 3],
         out: &mut [u32],
     ) -> bool {
         let lanes = out.len();
-        let (last, [z0, z1, z2]) = (f64::from(at.last), self.z);
+        let (last, [z0, z1, z2], [r0, r1, r2]) = (f64::from(at.last), self.z, self.ratios);
         let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
         for n in 0..lanes {
             let (x, y) = position::<ROW>(n, last, xs, ys, iota);
             let e0 = edges[0].at::<FMA, ROW>(x, y);
             let e1 = edges[1].at::<FMA, ROW>(x, y);
             let e2 = edges[2].at::<FMA, ROW>(x, y);
+            let (e0, e1, e2) =
+                if W { (cut24(cut24(e0) * r0), cut24(cut24(e1) * r1), cut24(cut24(e2) * r2)) } else { (e0, e1, e2) };
             let (x0, x1, x2) = (power(e0), power(e1), power(e2));
             let second = (x1 >= x0) & (x1 >= x2);
             let first = x0 >= x2;
             let z = if first { z0 } else { z2 };
-            let z = if second { z1 } else { z };
+            let z = if W | second { z1 } else { z };
             let top = if x0 > x2 { x0 } else { x2 };
             let top = if x1 > top { x1 } else { top };
             // The edge numbers as multiples of 2^(X-28), X being the exponent of the largest.
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
             let (e0, e1, e2) = (cut24(e0) * scale, cut24(e1) * scale, cut24(e2) * scale);
+            // The definition has 61 bits of the largest.
+            let (e0, e1, e2) = if W { (kept(e0, 32), kept(e1, 32), kept(e2, 32)) } else { (e0, e1, e2) };
             let sum = floor(e0) + floor(e1) + floor(e2);
             let length = power(sum);
             let quotient = length * (1_i64 << 29) as f64 / sum;
@@ -131,6 +147,7 @@ impl Depths<'_> {
             let b0 = cut24(e0 * reciprocal) * unit;
             let b1 = cut24(e1 * reciprocal) * unit;
             let b2 = cut24(e2 * reciprocal) * unit;
+            let (b0, b2, close) = if W { with_rest([b0, b1, b2], close) } else { (b0, b2, close) };
             // Of the reference vertex: 0.
             let (d0, d1, d2) = (z0 - z, z1 - z, z2 - z);
             // Differences of whole numbers need no rounding.
@@ -174,22 +191,54 @@ impl Depths<'_> {
             }
             depth = depth.max(lowest).min(highest);
         }
-        if depth <= 0.0 {
-            return 0;
-        }
-        if !self.format.is_float() {
-            // Both are whole numbers that 32 bits hold.
-            return depth.min(self.full) as u32;
-        }
-        let (kept, bias) = if self.format == DepthFormat::Z16F { (12, 7) } else { (16, 127) };
-        let word = (depth.to_bits() >> (52 - kept)) as i64 - ((1023 - bias) << kept);
-        match word {
-            ..0 => 0,
-            tiny if tiny >> kept == 0 => 0,
-            huge if huge >= if kept == 12 { 1 << 16 } else { 255 << 16 } => self.format.largest(),
-            word => word as u32,
-        }
+        word(self.format, depth)
     }
+}
+
+/// DEP-3 of a depth.
+#[inline(always)]
+pub(super) fn word(format: DepthFormat, depth: f64) -> u32 {
+    if depth <= 0.0 {
+        return 0;
+    }
+    if !format.is_float() {
+        return depth.min(f64::from(format.largest())) as u32;
+    }
+    let (kept, bias) = if format == DepthFormat::Z16F { (12, 7) } else { (16, 127) };
+    let word = (depth.to_bits() >> (52 - kept)) as i64 - ((1023 - bias) << kept);
+    match word {
+        ..0 => 0,
+        tiny if tiny >> kept == 0 => 0,
+        huge if huge >= if kept == 12 { 1 << 16 } else { 255 << 16 } => format.largest(),
+        word => word as u32,
+    }
+}
+
+/// DEP-6: the first weight and the third, of which the dominant one is what the others leave of 1; and whether that is too close to call, or was.
+#[inline(always)]
+fn with_rest([b0, b1, b2]: [f64; 3], close: bool) -> (f64, f64, bool) {
+    let [first, third] = most_dominant([power(b0), power(b1), power(b2)]);
+    // Where the second dominates, nobody reads it.
+    let (one, other) = (kept(b1, 60), kept(if first { b2 } else { b0 }, 60));
+    let (large, small) = if one > other { (one, other) } else { (other, one) };
+    let most = 1.0 - large;
+    let rest = most - small;
+    // What the differences lost, exactly.
+    let lost = ((1.0 - most) - large != 0.0) | ((most - rest) - small != 0.0);
+    let same = cut24(rest * (1.0 - ROUNDINGS)) == cut24(rest * (1.0 + ROUNDINGS));
+    let rest = cut24(rest);
+    (if first { rest } else { b0 }, if third { rest } else { b2 }, close | (lost & !same & (first | third)))
+}
+
+/// More than two roundings.
+const ROUNDINGS: f64 = 1.0 / (1_u64 << 50) as f64;
+
+/// A number of at most 24 bits that is not negative, floored at 2^-`bits`.
+#[inline(always)]
+fn kept(n: f64, bits: u32) -> f64 {
+    let steps = n * (1_u64 << bits) as f64;
+    // All others are whole; not all of them could be floored.
+    if steps < (1_u64 << 40) as f64 { floor(steps) * (1.0 / (1_u64 << bits) as f64) } else { n }
 }
 
 /// The largest power of two that is not above a positive number.
@@ -206,7 +255,7 @@ fn cut24(n: f64) -> f64 {
 
 /// The largest whole number that is not above another number of less than 51 bits.
 #[inline(always)]
-fn floor(n: f64) -> f64 {
+pub(super) fn floor(n: f64) -> f64 {
     let near = whole(n);
     if near > n { near - 1.0 } else { near }
 }

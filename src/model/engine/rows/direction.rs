@@ -181,7 +181,7 @@ impl Setup<'_> {
 
     /// What a linear function that is positive at all vertices is not below in a piece.
     #[inline(always)]
-    fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, bounds: &Bounds) -> f64 {
+    pub(super) fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, bounds: &Bounds) -> f64 {
         if ROW {
             let end = line.at::<FMA, true>(bounds.columns, 0.0);
             return if line.c < end { line.c } else { end };

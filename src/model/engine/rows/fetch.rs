@@ -3,6 +3,7 @@
 use super::BLOCK;
 use super::kernels::{LANES, Row};
 use super::levels::Reads;
+use super::store;
 use super::table::{Axis, Table, Texels};
 use crate::number::{Lane, Two};
 use crate::texture::filter::{bilinear, lerp};
@@ -53,11 +54,14 @@ pub(super) fn locate(
     }
 }
 
-/// Samples a unit at the entries that are [located](locate), and leaves the channels in `rows`, each in its own where that is wanted.
+/// Samples a unit at the entries that are [located](locate), and leaves the channels in `rows`, each in its own where that is wanted. What depths
+/// are compared with is in `references`.
 #[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample(
     table: &Table,
     [u, v]: &[Numbers<i32>; 2],
+    references: &Numbers<u32>,
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
@@ -85,6 +89,17 @@ pub(super) fn sample(
             fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
             filter_wide::<16>(upper, lower, (u, v), (*linear, signed[3]), alpha, red);
             filter_wide::<0>(upper, lower, (u, v), (*linear, signed[1]), green, blue);
+            return;
+        }
+        Texels::Depths(texels, function) => {
+            fetch(texels, entries, found);
+            let mut passed = [true; BLOCK];
+            store::test(*function, |n| references[n], |n| found[n], &mut passed);
+            for (out, _) in [red, green, blue, alpha].into_iter().zip(wanted).filter(|(_, wanted)| wanted.is_some()) {
+                for (out, passed) in out.iter_mut().zip(passed) {
+                    *out = if passed { 255 } else { 0 };
+                }
+            }
             return;
         }
         Texels::One(channel, texels) => {

@@ -5,6 +5,7 @@
 //! | `node.rs`, `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
 //! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `color.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `third.rs` | layers of volumes, depths to compare with |
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `steady.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs`, `levels.rs` | textures laid out for rows; address, fetch, filter; lods and levels |
@@ -40,6 +41,7 @@ mod stages;
 mod steady;
 mod store;
 mod table;
+mod third;
 mod triangle;
 
 pub(crate) use band::{Block, Job};
@@ -56,6 +58,7 @@ use node::{Input, Node, Value};
 use std::borrow::Cow;
 use std::sync::Arc;
 use table::{Key, Table};
+use third::Third;
 
 named! {
     /// Why the definition computed something of a pixel in the fast engine.
@@ -70,6 +73,8 @@ named! {
         Coordinates = "coordinates not proved",
         /// Weights of colours were too coarse.
         Weights = "weights not proved",
+        /// A depth to compare with was.
+        References = "depths to compare with not proved",
         /// A fog factor was.
         Fog = "fog not proved",
     }
@@ -109,6 +114,8 @@ pub(crate) struct Sampler {
     key: Option<(u32, u32)>,
     /// A stage of the texture shader makes its coordinates.
     depends: bool,
+    /// What r is for.
+    third: Option<Third>,
     /// An earlier sampler whose coordinates are this one's.
     shares: Option<usize>,
     /// `None`: of an image that is drawn by this scene, made anew for each draw.
@@ -119,6 +126,11 @@ impl Sampler {
     /// What is taken off coordinates, 1/256 texel: half a texel where it filters.
     fn bias(&self) -> i32 {
         if self.filters { 128 } else { 0 }
+    }
+
+    /// Faces or layers.
+    fn has_images(&self) -> bool {
+        self.cube || matches!(self.third, Some(Third::Layer(..)))
     }
 }
 
@@ -279,7 +291,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     compiled.reads_surface = reads || compiled.merges;
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
-    let planes = compiled.samplers.iter().all(|sampler| !(sampler.mixes || sampler.cube));
+    let planes = compiled.samplers.iter().all(|sampler| !(sampler.mixes || sampler.cube || sampler.third.is_some()));
     compiled.plain = planes && compiled.shader.is_none() && compiled.fog.is_none() && !compiled.samples_pixels;
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
@@ -290,7 +302,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
 fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     let [a, b] = [one, other].map(|sampler| &draw.units[sampler.index]);
     let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
-    !(one.mixes || other.mixes || one.cube || other.cube || one.depends || other.depends)
+    !(one.mixes || other.mixes || one.has_images() || other.has_images() || one.depends || other.depends)
         && one.filters == other.filters
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
         && a.state.cylindrical_wrap == b.state.cylindrical_wrap
@@ -328,7 +340,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             }
             (TextureImage::Target { .. } | TextureImage::Depth { .. }, None) => None,
         };
-        samplers.push(Sampler {
+        let mut sampler = Sampler {
             index,
             unit: unit.index,
             filters: unit.state.mag_filter == Filter::Linear,
@@ -338,9 +350,16 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             mixes: unit.needs_lod(),
             key,
             depends: draw.shader.is_some() && shader::is_dependent(&unit.stage.operation),
+            third: None,
             shares: None,
             table,
-        });
+        };
+        sampler.third = Third::of(unit, &sampler);
+        // Nobody gives it an r.
+        if sampler.depends && sampler.third.is_some() {
+            return None;
+        }
+        samplers.push(sampler);
     }
     Some(samplers)
 }

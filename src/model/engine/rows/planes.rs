@@ -49,6 +49,13 @@ impl Plane {
         [Plane::new(triangle, inverse, g[0]), Plane::new(triangle, inverse, g[1]), Plane::new(triangle, inverse, g[2])]
     }
 
+    /// A number of the vertices: so many times a quotient by D.
+    pub(super) fn number(triangle: &Triangle, inverse: &[f64; 3], values: [f32; 3]) -> (Plane, f64) {
+        let (g, exponent) = triangle.attribute(values).numbers();
+        // Far from the ends of double precision.
+        (Plane::new(triangle, inverse, g), f64::from_bits(((exponent + 1023).max(0) as u64) << 52))
+    }
+
     /// 256 b_k.
     #[inline(always)]
     pub(super) fn weight(triangle: &Triangle, k: usize) -> Plane {

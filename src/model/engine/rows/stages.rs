@@ -49,10 +49,8 @@ impl Attributes {
             if a == b && b == c {
                 return Function::Same(if *purpose == Purpose::Byte { byte_of(f64::from(a)) } else { a + 0.0 });
             }
-            let (g, exponent) = triangle.attribute([a, b, c]).numbers();
-            // Far from the ends of double precision.
-            let scale = f64::from_bits(((exponent + 1023).max(0) as u64) << 52);
-            Function::Plane(Plane::new(triangle, &inverse, g), scale)
+            let (plane, scale) = Plane::number(triangle, &inverse, [a, b, c]);
+            Function::Plane(plane, scale)
         });
         let numbers = numbers.collect();
         let moved = shader.moved.iter().map(|stage| match context.coordinates_of(*stage) {
@@ -278,9 +276,10 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                     let both = job.draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
                     fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
                 } else {
-                    let faces = sampler.cube.then_some(&varying.faces[at]);
+                    let faces = sampler.has_images().then_some(&varying.faces[at]);
                     fetch::locate(table, &mut varying.coordinates[at], faces, work);
-                    fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
+                    let (at, references) = (&varying.coordinates[at], &varying.references[at]);
+                    fetch::sample(table, at, references, sampler.signed, wanted, work, rows);
                 }
             }
             operation => {
@@ -345,9 +344,10 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                         }
                     }
                 }
-                let faces = sampler.cube.then_some(&varying.faces[at]);
+                let faces = sampler.has_images().then_some(&varying.faces[at]);
                 fetch::locate(table, &mut varying.coordinates[at], faces, work);
-                fetch::sample(table, &varying.coordinates[at], sampler.signed, wanted, work, rows);
+                let (at, references) = (&varying.coordinates[at], &varying.references[at]);
+                fetch::sample(table, at, references, sampler.signed, wanted, work, rows);
                 if let Some(factors) = stage.luminance.first_chunk::<256>()
                     && let Some(red) = earlier[0]
                 {

@@ -2,11 +2,11 @@
 
 use crate::number::Lane;
 use crate::state::{
-    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, Filter, Level, Named, ShadowComparison, ShadowReference,
-    TextureKind,
+    AddressMode, BORDER_TEXELS, CUBE_FACES, ColorKey, CompareFunction, Filter, Level, ShadowComparison,
+    ShadowReference, TextureKind, depth_of,
 };
+use crate::texture::address::address;
 use crate::texture::color_key;
-use crate::texture::cube::Face;
 use crate::texture::fetch::{Slice, lanes};
 use crate::texture::shadow;
 use crate::texture::unit::{Image, PlannedUnit};
@@ -83,6 +83,8 @@ pub(super) enum Texels {
     Levels(Vec<u32>),
     /// Footprints of halves, the high one in the high bits; signed ones with 32,768 added. Filtered, or the texel alone.
     Wide(Vec<u32>, bool),
+    /// Depths one by one, and how a reference compares with them.
+    Depths(Vec<u32>, CompareFunction),
 }
 
 /// What a channel of a table holds.
@@ -160,6 +162,8 @@ pub(super) struct Key {
     texture: usize,
     palette: Option<usize>,
     modes: [AddressMode; 2],
+    /// Of a volume, along its layers.
+    layers: Option<AddressMode>,
     /// Single texels or footprints.
     linear: bool,
     /// How many levels, if the lod counts: as many as any lod of the unit can reach.
@@ -179,6 +183,7 @@ impl Key {
             texture: state.texture,
             palette: state.palette,
             modes: unit.modes(),
+            layers: is_volume(unit).then_some(state.address_r),
             linear: linear(unit),
             levels: unit.needs_lod().then_some(unit.levels.len()),
             folds,
@@ -195,13 +200,35 @@ fn linear(unit: &PlannedUnit) -> bool {
     unit.needs_lod() || unit.is_wide() || unit.state.mag_filter == Filter::Linear
 }
 
-/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: rows do not sample it (16 bits whose lod
-/// counts, volumes, anisotropy, a depth compared with r).
-pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
-    if unit.is_wide() && unit.needs_lod() || unit.kind == TextureKind::ThreeDimensional || unit.state.anisotropy > 1 {
-        return None;
+fn is_volume(unit: &PlannedUnit) -> bool {
+    unit.kind == TextureKind::ThreeDimensional
+}
+
+/// The axis along which a volume's layers lie.
+pub(super) fn layers(unit: &PlannedUnit) -> Option<Axis> {
+    is_volume(unit).then(|| Axis::new(unit.state.address_r, unit.layers, false))
+}
+
+/// The comparison of a unit's depths with r.
+pub(super) fn compares_r(unit: &PlannedUnit) -> Option<ShadowComparison> {
+    unit.state.shadow.filter(|shadow| shadow.reference == ShadowReference::R)
+}
+
+/// The images of a table, one after the other; `None`: nothing but the border.
+fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
+    if let Some(axis) = layers(unit) {
+        let layer = |entry| address(unit.state.address_r, i64::from(axis.first + entry), unit.layers, false);
+        return (0..axis.count).map(|entry| layer(entry).map(|layer| layer as usize)).collect();
     }
-    if unit.state.shadow.is_some_and(|shadow| shadow.reference == ShadowReference::R) {
+    let faces = if unit.kind == TextureKind::Cube { CUBE_FACES as usize } else { 1 };
+    (0..faces).map(Some).collect()
+}
+
+/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: rows do not sample it (16 bits whose lod
+/// counts, anisotropy).
+pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
+    let single = unit.is_wide() || is_volume(unit) || unit.state.shadow.is_some();
+    if single && unit.needs_lod() || unit.state.anisotropy > 1 {
         return None;
     }
     let count = if unit.needs_lod() { unit.levels.len() } else { 1 };
@@ -212,9 +239,13 @@ pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
 
 /// Texels that a table of these axes decodes.
 pub(super) fn size(unit: &PlannedUnit, axes: &[[Axis; 2]]) -> u64 {
-    let faces = if unit.kind == TextureKind::Cube { CUBE_FACES } else { 1 };
+    let images = match layers(unit) {
+        Some(axis) => axis.count as u64,
+        None if unit.kind == TextureKind::Cube => u64::from(CUBE_FACES),
+        None => 1,
+    };
     let wide = axes.first().map_or(0, |axes| axes[0].count as u64 + 1);
-    u64::from(faces) * axes.iter().map(|axes| wide * (axes[1].count as u64 + 1)).sum::<u64>()
+    images * axes.iter().map(|axes| wide * (axes[1].count as u64 + 1)).sum::<u64>()
 }
 
 impl Table {
@@ -225,13 +256,14 @@ impl Table {
             | Texels::Footprints(all)
             | Texels::One(_, all)
             | Texels::Levels(all)
-            | Texels::Wide(all, _) => all.len() as u64,
+            | Texels::Wide(all, _)
+            | Texels::Depths(all, _) => all.len() as u64,
         }
     }
 
     /// Decodes the levels of a unit that these axes are of. `folds`: the reader knows of channels that are constant or equal.
     pub(super) fn new(unit: &PlannedUnit, levels: &[[Axis; 2]], image: &Image<'_, i32>, folds: bool) -> Table {
-        let faces: &[Face] = if unit.kind == TextureKind::Cube { Face::ALL } else { &[Face::PositiveX] };
+        let images = images(unit);
         // There is a level 0.
         let none = Axis { low: 0, high: 0, first: 0, mask: 0, count: 0, period: None };
         let axes = levels.first().copied().unwrap_or([none; 2]);
@@ -242,14 +274,14 @@ impl Table {
         let (wide, high) = ((columns.count + beyond) as usize, (rows.count + beyond) as usize);
         let mut all = Vec::new();
         let mut placed = Vec::new();
-        for face in faces {
+        for (n, number) in images.iter().enumerate() {
             let start = all.len();
             for (level, axes) in unit.levels.iter().zip(levels) {
                 let [columns, rows] = axes;
-                if *face == faces[0] && mixes {
+                if n == 0 && mixes {
                     placed.push(Placed { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
                 }
-                let slice = Slice { unit, level, image: Some(*face as usize) };
+                let slice = Slice { unit, level, image: *number };
                 for y in 0..rows.count + beyond {
                     // Past the end of smaller levels nobody reads.
                     let texel = |x: i32| decode(&slice, image, x.min(columns.count) + columns.first, y + rows.first);
@@ -259,14 +291,21 @@ impl Table {
         }
         let mut facts = Facts::new(all.first().copied().unwrap_or(0));
         all.iter().for_each(|texel| facts.see(*texel));
-        let folds = folds && !unit.is_wide();
-        let channels = if folds { facts.channels(unit.state.signed) } else { [0, 1, 2, 3].map(Channel::Of) };
+        let comparison = compares_r(unit);
+        let channels = match comparison {
+            // What comes of a comparison is the same in all of them.
+            Some(_) if folds => [Channel::Of(0); 4],
+            None if folds && !unit.is_wide() => facts.channels(unit.state.signed),
+            _ => [0, 1, 2, 3].map(Channel::Of),
+        };
         let mut distinct = (0..4).filter(|n| channels[*n] == Channel::Of(*n));
         let (one, more) = (distinct.next().unwrap_or(0), distinct.next().is_some());
         let count = columns.count as usize * rows.count as usize;
         let (texels, pitch, face) = if mixes {
-            let face = all.len() / faces.len();
+            let face = all.len() / images.len();
             (Texels::Levels(all), wide, face)
+        } else if let Some(comparison) = comparison {
+            (Texels::Depths(all, comparison.function), columns.count as usize, count)
         } else if unit.is_wide() {
             let linear = unit.state.mag_filter == Filter::Linear;
             (Texels::Wide(all, linear), wide, wide * high)
@@ -299,6 +338,9 @@ impl Table {
 fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, x: i32, y: i32) -> u32 {
     let texel = slice.texel(image.words, i64::from(x), i64::from(y));
     let unit = slice.unit;
+    if compares_r(unit).is_some() {
+        return depth_of(texel.word);
+    }
     if let Some(shadow) = unit.state.shadow {
         return if shadow::passes(shadow, 0, &texel) { u32::MAX } else { 0 };
     }
@@ -329,7 +371,7 @@ pub(super) fn entry_of_key(unit: &PlannedUnit, key: &ColorKey) -> (u32, u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::texture::address::address;
+    use crate::state::Named;
 
     /// The entry of every coordinate holds the texel that the address modes give, and its neighbour the next one.
     #[test]

@@ -14,6 +14,7 @@ use super::quotient::{
 };
 use super::stages::Attributes;
 use super::steady::SteadyRow;
+use super::third::{Third, ThirdPlanes, thirds};
 use super::{Compiled, Reason, Reasons, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
@@ -51,6 +52,8 @@ pub(super) struct Setup<'a> {
     /// 256 b0 and 256 b2, where some colour varies.
     pub(super) weights: Option<[Plane; 2]>,
     pub(super) samplers: Vec<Planes>,
+    /// What samplers make of r, if some of them make anything.
+    pub(super) thirds: Vec<ThirdPlanes>,
     pub(super) fog: Option<Box<Fog>>,
     /// Bits of the largest D.
     pub(super) bits: u32,
@@ -67,8 +70,12 @@ pub(super) struct Setup<'a> {
 pub(super) struct Varying {
     /// u and v of each sampler, 1/256 texel, less half a texel where it filters.
     pub(super) coordinates: [[Numbers<i32>; 2]; TEXTURE_UNITS],
-    /// Faces of cube maps.
+    /// Faces of cube maps, layers of volumes.
     pub(super) faces: [Numbers<u32>; TEXTURE_UNITS],
+    /// What depths are compared with.
+    pub(super) references: [Numbers<u32>; TEXTURE_UNITS],
+    /// Places among layers, 1/256 layer, twice.
+    pub(super) layers: [Numbers<i32>; 2],
     /// Depth, where it is tested.
     pub(super) depth: Numbers<u32>,
     /// The texture shader lets the pixel live.
@@ -92,6 +99,8 @@ impl Default for Varying {
         Varying {
             coordinates: [[[0; LANES]; 2]; TEXTURE_UNITS],
             faces: [[0; LANES]; TEXTURE_UNITS],
+            references: [[0; LANES]; TEXTURE_UNITS],
+            layers: [[0; LANES]; 2],
             depth: [0; LANES],
             alive: [true; LANES],
             reads: Vec::new(),
@@ -174,6 +183,7 @@ impl<'a> Setup<'a> {
             denominator: Plane::new(triangle, &inverse, p),
             weights: weighted.then(|| [Plane::weight(triangle, 0), Plane::weight(triangle, 2)]),
             samplers,
+            thirds: thirds(context, compiled, &inverse),
             defined: [const { Cell::new(0) }; REASONS],
             attributes: compiled.shader.as_ref().map(|shader| Box::new(Attributes::new(context, shader))),
             fog: compiled.fog.and_then(|_| Fog::new(context)).map(Box::new),
@@ -284,6 +294,9 @@ impl<'a> Setup<'a> {
                     self.defined(piece, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
                 }
             }
+        }
+        if !self.thirds.is_empty() {
+            self.thirds::<FMA, ROW>(piece, compiled, &e, (&real, denominator), &bounds, varying);
         }
         if let Some(planes) = &self.weights
             && !(ROW && varying.steady.weights.1)
@@ -486,7 +499,13 @@ impl<'a> Setup<'a> {
     }
 
     /// Coordinates by the definition, pixel by pixel.
-    fn defined(&self, piece: Piece<'_>, sampler: &Sampler, numbers: &mut [Numbers<i32>; 2], faces: &mut Numbers<u32>) {
+    pub(super) fn defined(
+        &self,
+        piece: Piece<'_>,
+        sampler: &Sampler,
+        numbers: &mut [Numbers<i32>; 2],
+        faces: &mut Numbers<u32>,
+    ) {
         for n in 0..piece.count {
             self.defined_lane(piece, n, sampler, numbers, faces);
         }
@@ -504,7 +523,10 @@ impl<'a> Setup<'a> {
         let unit = &self.context.draw.units[sampler.index];
         let sample = self.sample(piece, n);
         let Some(place) = self.context.place(unit, &sample, piece.pixel(n)) else { return };
-        let [u, v] = place.on(&unit.levels[0]);
+        let [u, v] = match sampler.third {
+            Some(Third::Counts) => [place.layer(unit.layers); 2],
+            _ => place.on(&unit.levels[0]),
+        };
         let lane = piece.lane + n;
         (numbers[0][lane], numbers[1][lane]) = (u.value as i32 - sampler.bias(), v.value as i32 - sampler.bias());
         faces[lane] = place.face() as u32;

@@ -1,0 +1,274 @@
+//! What becomes of r on rows: the layer of a volume (VOL-1), or the depth that a texture of depths is compared with (SHD-1).
+#![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
+
+use super::depth::{UNKNOWN, floor, word};
+use super::direction::{Looking, positive};
+use super::fetch::{Numbers, entry};
+use super::planes::Plane;
+use super::quotient::{IOTA_REAL, Line, Positions, nearest, position};
+use super::table::{self, Axis};
+use super::triangle::{Bounds, Piece, Planes, Setup, Varying};
+use super::{Compiled, Reason, Sampler};
+use crate::engine::pixel::TriangleContext;
+use crate::raster::depth;
+use crate::raster::interpolate::Sample;
+use crate::state::DepthFormat;
+use crate::texture::place::{Place, layer_planes};
+use crate::texture::unit::PlannedUnit;
+
+/// What a sampler takes r for.
+#[derive(Clone, Debug)]
+pub(crate) enum Third {
+    /// The layer of a volume: a sampler whose coordinates are both r, and where its layers lie.
+    Layer(Box<Sampler>, Axis),
+    /// Of that sampler: it counts layers.
+    Counts,
+    /// What depths in this format are compared with.
+    Reference(DepthFormat),
+}
+
+impl Third {
+    /// That of a unit, whose sampler is otherwise complete.
+    pub(super) fn of(unit: &PlannedUnit, sampler: &Sampler) -> Option<Third> {
+        if let Some(axis) = table::layers(unit) {
+            let sides = [unit.layers; 2];
+            let counts = Sampler { sides, filters: false, table: None, third: Some(Third::Counts), ..sampler.clone() };
+            return Some(Third::Layer(Box::new(counts), axis));
+        }
+        let format = unit.format.depth().unwrap_or(DepthFormat::Z16);
+        table::compares_r(unit).map(|_| Third::Reference(format))
+    }
+}
+
+/// The linear functions of r of a sampler.
+#[derive(Debug)]
+pub(super) enum ThirdPlanes {
+    /// It has no use for r.
+    None,
+    /// Layers: r twice.
+    Layer(Planes),
+    /// Depths.
+    Reference(Reference),
+}
+
+/// What depths are compared with across a triangle.
+#[derive(Debug)]
+pub(super) enum Reference {
+    /// The same word everywhere.
+    Same(u32),
+    /// So many times a quotient by D.
+    Plane(Plane, f64),
+    /// So many times r by q, which is positive.
+    Ratio([Plane; 3], f64),
+    /// Anything else: the definition, pixel by pixel.
+    Other,
+}
+
+/// Those of a draw's samplers; none if no sampler has any.
+#[inline(always)]
+pub(super) fn thirds(context: &TriangleContext<'_>, compiled: &Compiled, inverse: &[f64; 3]) -> Vec<ThirdPlanes> {
+    if compiled.samplers.iter().all(|sampler| sampler.third.is_none()) {
+        return Vec::new();
+    }
+    compiled.samplers.iter().map(|sampler| third(context, sampler, inverse)).collect()
+}
+
+fn third(context: &TriangleContext<'_>, sampler: &Sampler, inverse: &[f64; 3]) -> ThirdPlanes {
+    let triangle = &context.triangle;
+    let unit = &context.draw.units[sampler.index];
+    let set = context.coordinate_set(unit.stage.coordinate_set);
+    let [r, q] = [2, 3].map(|n| set.map(|vertex| vertex[n]));
+    match (&sampler.third, context.coordinates_of(sampler.unit)) {
+        (Some(Third::Layer(..)), Some(coordinates)) => {
+            ThirdPlanes::Layer(match layer_planes(triangle, coordinates, [r, q], unit.layers) {
+                (r, None) => Planes::Plane([Plane::new(triangle, inverse, r); 2]),
+                (r, Some(q)) => match positive([r, r, q], [unit.layers; 2]) {
+                    Some((g, reach)) => Planes::Ratio(Plane::three(triangle, inverse, &g), reach),
+                    None => Planes::Other,
+                },
+            })
+        }
+        (Some(Third::Reference(format)), Some(_)) => {
+            let same = |values: [f32; 3]| values[0] == values[1] && values[1] == values[2];
+            ThirdPlanes::Reference(if same(r) && same(q) {
+                // As at its first vertex.
+                let sample = Sample::new(triangle, [triangle.doubled_area, 0, 0]);
+                Reference::Same(defined(context, unit, *format, &sample, (0, 0)))
+            } else if q == [1.0; 3] {
+                let (plane, scale) = Plane::number(triangle, inverse, r);
+                Reference::Plane(plane, scale)
+            } else {
+                let ((above, over), (below, by)) =
+                    (Plane::number(triangle, inverse, r), Plane::number(triangle, inverse, q));
+                match positive([above.g, above.g, below.g], [0; 2]) {
+                    Some((g, _)) => Reference::Ratio(Plane::three(triangle, inverse, &g), over / by),
+                    None => Reference::Other,
+                }
+            })
+        }
+        _ => ThirdPlanes::None,
+    }
+}
+
+/// SHD-1 by the definition: the word that depths are compared with.
+fn defined(
+    context: &TriangleContext<'_>,
+    unit: &PlannedUnit,
+    format: DepthFormat,
+    sample: &Sample<'_>,
+    pixel: (i64, i64),
+) -> u32 {
+    context.place(unit, sample, pixel).map_or(0, |place| depth::word(format, place.reference()))
+}
+
+impl Setup<'_> {
+    /// Layers and references of a piece.
+    #[inline(always)]
+    pub(super) fn thirds<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        compiled: &Compiled,
+        e: &[i64; 3],
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+        varying: &mut Varying,
+    ) {
+        let Varying { faces, references, layers, whole, .. } = varying;
+        let all = compiled.samplers.iter().zip(&self.thirds).zip(faces).zip(references);
+        for (((sampler, planes), faces), references) in all {
+            match (&sampler.third, planes) {
+                (Some(Third::Layer(counts, axis)), ThirdPlanes::Layer(planes)) => {
+                    let lines = (real, denominator);
+                    self.layers::<FMA, ROW>(piece, counts, planes, e, lines, bounds, layers, faces, &mut whole[0]);
+                    let (layers, faces) = (&mut layers[0][piece.lanes()], &mut faces[piece.lanes()]);
+                    axis.reduce(layers);
+                    for (face, layer) in faces.iter_mut().zip(layers) {
+                        *face = entry(axis, (*layer).max(axis.low).min(axis.high)) as u32;
+                    }
+                }
+                (Some(Third::Reference(format)), ThirdPlanes::Reference(reference)) => {
+                    let out = &mut references[piece.lanes()];
+                    let lines = (real, denominator);
+                    if self.references::<FMA, ROW>(piece.at, *format, reference, lines, bounds, out) {
+                        self.defined_references(piece, sampler, *format, out);
+                    }
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// VOL-1: places among layers, twice.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+    fn layers<const FMA: bool, const ROW: bool>(
+        &self,
+        piece: Piece<'_>,
+        counts: &Sampler,
+        planes: &Planes,
+        e: &[i64; 3],
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+        layers: &mut [Numbers<i32>; 2],
+        faces: &mut Numbers<u32>,
+        whole: &mut Numbers<i32>,
+    ) {
+        let done = match planes {
+            Planes::Plane(planes) => {
+                let [first, second] = layers;
+                let (first, second) = (&mut first[piece.lanes()], &mut second[piece.lanes()]);
+                let lines = (real, denominator);
+                self.on_planes::<FMA, ROW>(piece, planes, 0, e, lines, bounds, first, second, whole);
+                true
+            }
+            Planes::Ratio(planes, reach) => {
+                let looking = Looking::new(planes, real, bounds);
+                self.projected::<FMA, ROW>(piece, counts, planes, *reach, &looking, bounds, layers, faces)
+            }
+            _ => false,
+        };
+        if !done {
+            self.defined(piece, counts, layers, faces);
+        }
+    }
+
+    /// SHD-1: the words that depths are compared with; whether some are unknown.
+    #[inline(always)]
+    fn references<const FMA: bool, const ROW: bool>(
+        &self,
+        at: Positions<'_>,
+        format: DepthFormat,
+        reference: &Reference,
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+        out: &mut [u32],
+    ) -> bool {
+        let (lines, off) = match reference {
+            Reference::Same(word) => {
+                out.fill(*word);
+                return false;
+            }
+            Reference::Plane(plane, scale) => {
+                let off = self.margin::<ROW>(plane, real, bounds) * scale;
+                ((plane.line(real).times(*scale), denominator), off)
+            }
+            Reference::Ratio(planes, scale) => {
+                let looking = Looking::new(planes, real, bounds);
+                let [r, _, q] = looking.lines;
+                let (off, _) = looking.off(1.0 / self.least::<FMA, ROW>(q, &planes[2], bounds), *scale);
+                ((r.times(*scale), q), off)
+            }
+            Reference::Other => (Default::default(), f64::NAN),
+        };
+        // Also refuses what is no number.
+        let proves = off >= 0.0 && off < f64::from(format.largest());
+        if !proves {
+            out.fill(UNKNOWN);
+            return true;
+        }
+        if format.is_float() {
+            words::<FMA, ROW>(at, lines, off, |depth| word(format, depth), out)
+        } else {
+            let full = f64::from(format.largest());
+            let floored = |depth: f64| {
+                let depth = if depth > 0.0 { depth } else { 0.0 };
+                nearest(floor(if depth < full { depth } else { full })) as u32
+            };
+            words::<FMA, ROW>(at, lines, off, floored, out)
+        }
+    }
+
+    /// The unknown ones, by the definition.
+    #[inline(never)]
+    fn defined_references(&self, piece: Piece<'_>, sampler: &Sampler, format: DepthFormat, out: &mut [u32]) {
+        let unit = &self.context.draw.units[sampler.index];
+        let unknown = out[..piece.count].iter_mut().enumerate().filter(|(_, word)| **word == UNKNOWN);
+        for (n, word) in unknown {
+            self.tell(Reason::References, 1);
+            *word = defined(self.context, unit, format, &self.sample(piece, n), piece.pixel(n));
+        }
+    }
+}
+
+/// DEP-3 of quotients that are off by less than `off`; whether some are unknown.
+#[inline(always)]
+fn words<const FMA: bool, const ROW: bool>(
+    at: Positions<'_>,
+    lines: (Line, Line),
+    off: f64,
+    word: impl Fn(f64) -> u32,
+    out: &mut [u32],
+) -> bool {
+    let lanes = out.len();
+    let last = f64::from(at.last);
+    let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let mut open = 0;
+    for n in 0..lanes {
+        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
+        let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
+        let (low, high) = (word(value - off), word(value + off));
+        open |= low ^ high;
+        out[n] = if low == high { low } else { UNKNOWN };
+    }
+    open != 0
+}
