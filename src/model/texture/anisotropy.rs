@@ -6,7 +6,7 @@ use super::lod::Quad;
 pub const MOST_TAPS: usize = 8;
 
 /// One level-0 texel in the coordinates of a [`Quad`].
-const TEXEL: u128 = 65536;
+const TEXEL: u32 = 65536;
 
 /// Taps of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,41 +19,62 @@ pub struct Taps<Offset, Weight> {
     pub weights: [Weight; MOST_TAPS],
 }
 
+impl Taps<i64, i32> {
+    /// One tap, where the pixel is.
+    const ONE: Self = Taps { count: 1, offsets: [[0; 2]; MOST_TAPS], weights: [256, 0, 0, 0, 0, 0, 0, 0] };
+}
+
 /// The taps of a quad's footprint, whose longer side counts as at most `limit` times the shorter one. `None`: a pixel of the quad lies behind the
 /// viewer, and one tap is left.
 pub fn taps(quad: Option<Quad>, limit: u32) -> Taps<i64, i32> {
-    let mut taps = Taps { count: 1, offsets: [[0; 2]; MOST_TAPS], weights: [0; MOST_TAPS] };
-    taps.weights[0] = 256;
-    let Some([origin, right, lower]) = quad else { return taps };
+    let Some([origin, right, lower]) = quad else { return Taps::ONE };
     // Farther than this everything is as far.
     let most = 1 << 40;
-    let along =
-        |to: [i64; 2]| [0, 1].map(|n| i128::from(to[n]).saturating_sub(i128::from(origin[n])).clamp(-most, most));
-    let squared = |[u, v]: [i128; 2]| (u * u + v * v).unsigned_abs();
+    let along = |to: [i64; 2]| [0, 1].map(|n| to[n].saturating_sub(origin[n]).clamp(-most, most));
     let (x, y) = (along(right), along(lower));
-    let lengths = [x, y].map(|axis| squared(axis).isqrt());
-    let (axis, long, short) =
-        if lengths[0] >= lengths[1] { (x, lengths[0], lengths[1]) } else { (y, lengths[1], lengths[0]) };
-    let width = short.max(long.div_ceil(u128::from(limit))).max(TEXEL);
-    if long <= width {
-        return taps;
+    let near = |axis: [i64; 2]| axis.iter().all(|n| n.unsigned_abs() < NEAR);
+    if near(x) && near(y) {
+        taps_of_near(x, y, limit)
+    } else {
+        taps_of_far(x.map(i128::from), y.map(i128::from), limit)
     }
-    // Half the distance of two taps, as parts of the axis: `step` of twice its length.
-    let pairs = long.div_ceil(2 * width) as usize;
-    let step = if pairs == 1 { long - width } else { width };
-    // To nearest; what the outermost two weigh is not negative.
-    let inner = ((512 * width / long).div_ceil(2) as i32).min(128 / (pairs as i32 - 1).max(1));
-    taps.count = 2 * pairs;
-    for pair in 0..pairs {
-        let reach = ((2 * pair as i128 + 1) * step as i128, 2 * long as i128);
-        let offset = axis.map(|n| (n * reach.0 / reach.1 / 256) as i64);
-        let weight = if pair + 1 == pairs { 128 - (pairs as i32 - 1) * inner } else { inner };
-        for (side, tap) in [(1, 2 * pair), (-1, 2 * pair + 1)] {
-            (taps.offsets[tap], taps.weights[tap]) = (offset.map(|n| side * n), weight);
-        }
-    }
-    taps
 }
+
+/// Steps of a footprint that need no more than 64 bits.
+const NEAR: u64 = 1 << 26;
+
+/// The taps of a footprint's two steps, in integers of some width.
+macro_rules! taps_in {
+    ($name:ident, $signed:ty, $unsigned:ty) => {
+        fn $name(x: [$signed; 2], y: [$signed; 2], limit: u32) -> Taps<i64, i32> {
+            let squared = |[u, v]: [$signed; 2]| (u * u + v * v).unsigned_abs();
+            let lengths = [x, y].map(|axis| squared(axis).isqrt());
+            let (axis, long, short) =
+                if lengths[0] >= lengths[1] { (x, lengths[0], lengths[1]) } else { (y, lengths[1], lengths[0]) };
+            let width = short.max(long.div_ceil(limit.into())).max(<$unsigned>::from(TEXEL));
+            if long <= width {
+                return Taps::ONE;
+            }
+            // Half the distance of two taps, as parts of the axis: `step` of twice its length.
+            let pairs = long.div_ceil(2 * width) as usize;
+            let step = if pairs == 1 { long - width } else { width };
+            // To nearest; what the outermost two weigh is not negative.
+            let inner = ((512 * width / long).div_ceil(2) as i32).min(128 / (pairs as i32 - 1).max(1));
+            let mut taps = Taps { count: 2 * pairs, weights: [0; MOST_TAPS], ..Taps::ONE };
+            for pair in 0..pairs {
+                let reach = ((2 * pair as $signed + 1) * step as $signed, 2 * long as $signed);
+                let offset = axis.map(|n| (n * reach.0 / reach.1 / 256) as i64);
+                let weight = if pair + 1 == pairs { 128 - (pairs as i32 - 1) * inner } else { inner };
+                for (side, tap) in [(1, 2 * pair), (-1, 2 * pair + 1)] {
+                    (taps.offsets[tap], taps.weights[tap]) = (offset.map(|n| side * n), weight);
+                }
+            }
+            taps
+        }
+    };
+}
+taps_in!(taps_of_near, i64, u64);
+taps_in!(taps_of_far, i128, u128);
 
 /// The same of real numbers: s and t at the quad, sides in texels.
 #[allow(clippy::float_arithmetic, reason = "the ideal's footprint")]
@@ -108,6 +129,12 @@ mod tests {
     }
 
     proptest! {
+        #[test]
+        fn both_widths_agree(x in proptest::array::uniform2(-67_108_863..67_108_864_i64), y in proptest::array::uniform2(-67_108_863..67_108_864_i64), small in 0..26, limit in 1..=3_u32) {
+            let (x, y) = (x.map(|n| n >> small), y.map(|n| n >> (small / 2)));
+            prop_assert_eq!(taps_of_near(x, y, 1 << limit), taps_of_far(x.map(i128::from), y.map(i128::from), 1 << limit));
+        }
+
         #[test]
         fn weights_make_a_whole(
             x in proptest::array::uniform2(-(1_i64 << 62)..1 << 62), y in proptest::array::uniform2(-(1_i64 << 62)..1 << 62),

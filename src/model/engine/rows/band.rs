@@ -7,6 +7,7 @@ use super::levels::Reads;
 use super::patch::{Patch, SIDE, boxes, is_box, is_small};
 use super::quotient::{IOTA, Positions};
 use super::stages::{self, Workshop};
+use super::taps::Footprints;
 use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
 use super::{BLOCK, Compiled, Reasons, small, store};
 use crate::engine::pixel::TriangleContext;
@@ -99,6 +100,13 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
     block.varying.reads.clear();
     if compiled.samplers.iter().any(|sampler| sampler.mixes) {
         block.varying.reads.resize(compiled.samplers.len(), Reads::default());
+    }
+    block.varying.footprints.clear();
+    if compiled.estimates {
+        block.varying.footprints.resize(compiled.samplers.len(), Footprints::default());
+        for (footprints, sampler) in block.varying.footprints.iter_mut().zip(&compiled.samplers) {
+            footprints.begin(sampler);
+        }
     }
     if let Some(shader) = &compiled.shader {
         block.workshop.begin(shader);
@@ -414,6 +422,12 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             let both = draw.units[sampler.index].state.mip_filter == MipFilter::Linear;
             fetch::sample_levels(table, reads, both, sampler.signed, wanted, work, rows);
             // Its entries took the place of the others.
+            found = None;
+            continue;
+        }
+        if let (1.., Some(footprints)) = (sampler.pairs, varying.footprints.get(n)) {
+            let at = &varying.coordinates[n];
+            fetch::sample_taps(table, at, &footprints.pairs, sampler.signed, wanted, work, rows);
             found = None;
             continue;
         }

@@ -9,6 +9,7 @@ use super::kernels::Row;
 use super::levels::Reads;
 use super::patch::{Patch, boxes, is_small};
 use super::quotient::{self, IOTA};
+use super::taps::{Footprints, Pair};
 use super::triangle::{Piece, Setup, Varying, whole_steps};
 use super::{BLOCK, Reasons, Rows};
 use crate::engine::pixel::TriangleContext;
@@ -16,6 +17,7 @@ use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
 use crate::texture::address::address;
+use crate::texture::anisotropy;
 use crate::texture::place::Place;
 
 const WIDTH: u32 = 640;
@@ -142,14 +144,14 @@ enum Third {
 }
 
 /// A scene of some triangles that read the diffuse, a plane texture, a cube map and a projected texture, all filtered or none, the latter two perhaps
-/// with levels, levels of another, and the fog factor, and test depth or w. With a third coordinate the projected texture and the other are volumes or depths.
+/// with levels, levels of another, and the fog factor, and test depth or w. The first may have several taps. With a third coordinate the projected texture and the other are volumes or depths.
 fn scene(
     vertices: Vec<Vertex>,
     filter: Filter,
     depth: DepthFormat,
     fog: Option<FogFunction>,
     [cube, projected]: [bool; 2],
-    (third, w_buffer): (Third, bool),
+    (third, w_buffer, anisotropy): (Third, bool, u32),
 ) -> Scene {
     let texture = |kind, side: u32, faces: u32, levels: u32| Texture {
         name: String::new(),
@@ -168,6 +170,7 @@ fn scene(
         }),
     };
     let unit = |texture| Some(TextureUnit { min_filter: filter, mag_filter: filter, ..TextureUnit::new(texture) });
+    let flat = unit(0).map(|unit| TextureUnit { anisotropy, ..unit });
     let mixed = |texture| {
         unit(texture).map(|unit| TextureUnit {
             min_filter: Filter::Linear,
@@ -215,9 +218,9 @@ fn scene(
         scissor: None,
         fog: Fog { enabled: true, color: [0; 3], function: fog },
         textures: [
-            unit(0),
+            flat,
             if cube { mixed(1) } else { unit(1) },
-            with_r.or(if projected { mixed(2) } else { unit(0) }),
+            with_r.or(if projected { mixed(2) } else { flat }),
             with_r.or(mixed(2)),
         ],
         texture_shader: [0, 1, 2, 3].map(|unit| ShaderStage::conventional(unit, true)),
@@ -308,7 +311,7 @@ fn compare<const FMA: bool, const ROW: bool>(
     // What an earlier piece left must not pass for this one's.
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
     setup.interpolate::<FMA, ROW>(piece, compiled, &[], varying, rows);
-    let (context, mut wanted) = (&setup.context, Reads::default());
+    let (context, mut wanted, mut taps) = (&setup.context, Reads::default(), Footprints::default());
     for n in 0..piece.count {
         let (i, j) = (piece.first.0 + i64::from(piece.at.x[n]), piece.first.1 + i64::from(piece.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
@@ -337,6 +340,18 @@ fn compare<const FMA: bool, const ROW: bool>(
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - bias);
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
             assert_eq!(got, wanted, "unit {index} ({i}, {j}) of {:?}", context.vertices());
+            if sampler.pairs > 0 {
+                taps.begin(sampler);
+                let sides = [unit.levels[0].width, unit.levels[0].height];
+                let quad = anisotropy::taps(place.quad(), unit.state.anisotropy);
+                Footprints::set(&mut taps.pairs, 0, &quad, sides);
+                for (got, wanted) in varying.footprints[index].pairs.iter().zip(&taps.pairs) {
+                    let of =
+                        |pair: &Pair, lane: usize| (pair.weights[lane], [0, 1].map(|n: usize| pair.offsets[n][lane]));
+                    let (got, wanted) = (of(got, lane), of(wanted, 0));
+                    assert_eq!(got, wanted, "taps of unit {index} ({i}, {j}) of {:?}", context.vertices());
+                }
+            }
             match &sampler.third {
                 Some(super::Third::Layer(_, axis)) => {
                     let layer = |texel: i64| address(unit.state.address_r, texel, unit.layers, false);
@@ -386,7 +401,8 @@ fn rows_interpolate_what_the_definition_does() {
             vertex.texture_coordinates.iter_mut().skip(2).for_each(|set| set[2] *= of_r);
             vertex.position[3] *= if w_buffer { of_w } else { 1.0 };
         }
-        let scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer));
+        let anisotropy = random.of(&[1, 1, 2, 4, 8]);
+        let scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer, anisotropy));
         let Ok(plan) = Plan::compile(&scene, &PlanOptions::default()) else { continue };
         let rows_of_plan = Rows::compile(&plan);
         let compiled = rows_of_plan.draw(&plan, 0, &[]);
@@ -397,6 +413,8 @@ fn rows_interpolate_what_the_definition_does() {
         let draw = &plan.draws[0];
         let (mut varying, mut rows) = (Varying::default(), vec![Row::of(0); compiled.rows.len()]);
         varying.reads.resize(compiled.samplers.len(), Reads::default());
+        varying.footprints.resize(compiled.samplers.len(), Footprints::default());
+        varying.footprints.iter_mut().zip(&compiled.samplers).for_each(|(taps, sampler)| taps.begin(sampler));
         let mut planes = Vec::new();
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {

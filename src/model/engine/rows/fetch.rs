@@ -5,6 +5,7 @@ use super::kernels::{LANES, Row};
 use super::levels::Reads;
 use super::store;
 use super::table::{Axis, Table, Texels};
+use super::taps::Pair;
 use crate::number::{Lane, Two};
 use crate::texture::filter::{bilinear, lerp};
 
@@ -60,19 +61,38 @@ pub(super) fn locate(
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample(
     table: &Table,
-    [u, v]: &[Numbers<i32>; 2],
+    at: &[Numbers<i32>; 2],
     references: &Numbers<u32>,
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
     rows: &mut [Row],
 ) {
+    if texels(table, at, references, signed, wanted, work, rows) {
+        load(signed, wanted, rows);
+    }
+}
+
+/// The same, but that signed channels still have 128 added where it says `true`.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+fn texels(
+    table: &Table,
+    [u, v]: &[Numbers<i32>; 2],
+    references: &Numbers<u32>,
+    signed: [bool; 4],
+    wanted: [Option<u16>; 4],
+    work: &mut Workspace,
+    rows: &mut [Row],
+) -> bool {
     let Workspace { entries, texels: found, upper, lower, .. } = work;
-    let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return };
+    let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return false };
     let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
     // What nobody wants goes to the first rows.
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
-    let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
+    let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else {
+        return false;
+    };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     match &table.texels {
         Texels::Single(texels) => {
@@ -89,7 +109,7 @@ pub(super) fn sample(
             fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
             filter_wide::<16>(upper, lower, (u, v), (*linear, signed[3]), alpha, red);
             filter_wide::<0>(upper, lower, (u, v), (*linear, signed[1]), green, blue);
-            return;
+            return false;
         }
         Texels::Depths(texels, function) => {
             fetch(texels, entries, found);
@@ -100,7 +120,7 @@ pub(super) fn sample(
                     *out = if passed { 255 } else { 0 };
                 }
             }
-            return;
+            return false;
         }
         Texels::One(channel, texels) => {
             fetch(texels, entries, found);
@@ -121,8 +141,53 @@ pub(super) fn sample(
             }
         }
     }
+    true
+}
+
+/// TEX-17: the taps of a unit's pixels, each sampled, weighed and added.
+#[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
+pub(super) fn sample_taps(
+    table: &Table,
+    at: &[Numbers<i32>; 2],
+    pairs: &[Pair],
+    signed: [bool; 4],
+    wanted: [Option<u16>; 4],
+    work: &mut Workspace,
+    rows: &mut [Row],
+) {
+    let mut sums = [[0_u16; BLOCK]; 4];
+    for Pair { offsets, weights } in pairs {
+        let Some(weights) = weights.first_chunk::<BLOCK>() else { return };
+        for side in [1, -1] {
+            let mut at = *at;
+            for axis in 0..2 {
+                for (at, offset) in at[axis].iter_mut().zip(&offsets[axis]) {
+                    *at += side * offset;
+                }
+            }
+            locate(table, &mut at, None, work);
+            texels(table, &at, &NO_REFERENCES, signed, wanted, work, rows);
+            for (sums, wanted) in sums.iter_mut().zip(wanted) {
+                let Some(wanted) = wanted else { continue };
+                let channel = rows[usize::from(wanted)].block();
+                for n in 0..BLOCK {
+                    sums[n] += channel[n] as u16 * weights[n];
+                }
+            }
+        }
+    }
+    for (sums, wanted) in sums.iter().zip(wanted) {
+        let Some(wanted) = wanted else { continue };
+        for (out, sum) in rows[usize::from(wanted)].block_mut().iter_mut().zip(sums) {
+            *out = ((sum + 128) >> 8) as i16;
+        }
+    }
     load(signed, wanted, rows);
 }
+
+/// Nothing is compared.
+static NO_REFERENCES: Numbers<u32> = [0; LANES];
 
 /// KEY-1: drops lanes whose single texel, just sampled, is the key in the bits that are compared.
 #[inline(always)]

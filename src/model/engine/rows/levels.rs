@@ -1,20 +1,18 @@
 //! TEX-9 to TEX-11 on rows: the lod of each pixel, and where it is read on which levels.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::direction::Looking;
 use super::fetch::{Numbers, entry};
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
+use super::quads::{AtQuads, Known, Measure, Quads, floor};
+use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::table::{Placed, Table};
-use super::triangle::{Bounds, Piece, Planes, Setup, whole_steps};
-use super::{BLOCK, Reason, Sampler};
+use super::triangle::{Bounds, Piece, Planes, Setup};
+use super::{Reason, Sampler};
 use crate::state::Filter;
-use crate::texture::cube::Face;
-use crate::texture::lod;
-use crate::texture::place::{Coordinates, Place};
+use crate::texture::lod::{self, Quad};
+use crate::texture::place::Place;
 use crate::texture::unit::PlannedUnit;
-use std::ops::Range;
 
 /// What the lanes of a block read of a texture whose levels count.
 #[derive(Clone, Debug)]
@@ -26,7 +24,7 @@ pub(super) struct Reads {
     /// Weight of the next level, 0..=255.
     pub(super) weights: Numbers<i32>,
     /// Lods of quads.
-    pub(super) known: Known,
+    pub(super) known: Known<i32>,
 }
 
 impl Default for Reads {
@@ -40,15 +38,9 @@ impl Default for Reads {
     }
 }
 
-/// What lods are computed in.
+/// What lanes are placed on levels in.
 #[derive(Clone, Debug)]
-pub(super) struct Quads {
-    /// Where the upper left pixels of the quads lie, from the piece's first.
-    origins: [Numbers<f64>; 2],
-    /// u and v of the three pixels of each quad, 1/65536 texel, whole numbers.
-    coordinates: [[Numbers<f64>; 2]; 3],
-    /// Of quads: negative, as the bits of doubles, where nothing is known.
-    unknown: Numbers<u64>,
+pub(super) struct Placing {
     /// u and v of the lanes on level 0, 1/256 texel, with their fractions.
     at: [Numbers<f64>; 2],
     lods: Numbers<i32>,
@@ -61,12 +53,9 @@ pub(super) struct Quads {
     open: Numbers<bool>,
 }
 
-impl Default for Quads {
+impl Default for Placing {
     fn default() -> Self {
-        Quads {
-            origins: [[0.0; LANES]; 2],
-            coordinates: [[[0.0; LANES]; 2]; 3],
-            unknown: [0; LANES],
+        Placing {
             at: [[0.0; LANES]; 2],
             lods: [0; LANES],
             levels: [[0; LANES]; 2],
@@ -77,44 +66,11 @@ impl Default for Quads {
     }
 }
 
-/// Lods of quads that lie side by side, for the rows that share them.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Known {
-    /// Number of the triangle, and row.
-    of: Option<(usize, i64)>,
-    /// The quads' columns.
-    columns: Range<i64>,
-    /// The lod of each, from the first column on.
-    lods: Vec<i32>,
-}
-
 /// Coordinates of a quad that are further apart than this have their lod from the definition, 1/65536 texel.
 const FARTHEST: f64 = (1 << 26) as f64;
 
-/// Coordinates, 1/256 texel, whose multiples are far from the ends of what doubles hold exactly.
-const MOST: f64 = (1_u64 << 36) as f64;
-
-/// What an estimate of a coordinate may be off by, its own steps.
-const COARSEST: f64 = 0.125;
-
 /// Mantissas closer to 2 than this are too close to call: seven squarings multiply roundings by 128.
 const CLOSE: f64 = 1.0 / (1_u64 << 40) as f64;
-
-/// Coordinates of level 0 around a piece: two quotients.
-struct Ground<'p> {
-    along: Line,
-    down: Line,
-    denominator: Line,
-    /// More than an estimate is off by, 1/256 texel.
-    off: f64,
-    /// More than what the floors of a smaller level's numerators make (INT-4).
-    floors: f64,
-    face: Face,
-    /// All of it lies behind the viewer, where no lod is known.
-    behind: bool,
-    /// Where exact remainders decide what is not proved.
-    planes: Option<&'p [Plane; 2]>,
-}
 
 impl Setup<'_> {
     /// Everything that a unit whose levels count reads in a piece.
@@ -127,7 +83,7 @@ impl Setup<'_> {
         e: &[i64; 3],
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
-        quads: &mut Quads,
+        (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut Reads,
     ) {
         let Some(table) = &sampler.table else { return };
@@ -139,16 +95,16 @@ impl Setup<'_> {
             return;
         };
         let lanes = piece.at.x.len();
-        if ground.behind {
-            quads.lods[..lanes].fill(lod::LEAST);
-        } else {
-            self.lods::<FMA, ROW>(piece, (unit, &ground), e, quads, &mut reads.known);
+        let spread = self.of_quads::<FMA, ROW, i32>(piece, (unit, &ground), e, quads, &mut reads.known);
+        for n in 0..lanes {
+            placing.lods[n] = reads.known.each[spread.quad(n)];
         }
         let (at, denominator) = (piece.at, ground.denominator);
-        let [at_u, at_v] = &mut quads.at;
+        let [at_u, at_v] = &mut placing.at;
         quotients::<FMA, ROW>(at, [ground.along, ground.down, denominator], &mut at_u[..lanes], &mut at_v[..lanes]);
-        quads.open[..lanes].fill(false);
-        let [low, high] = choose(unit, lanes, &mut quads.lods, &mut quads.levels, &mut reads.weights[piece.lanes()]);
+        placing.open[..lanes].fill(false);
+        let [low, high] =
+            choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[piece.lanes()]);
         for which in 0..2 {
             reads.entries[which][piece.lanes()].fill(0);
             reads.coordinates[which][0][piece.lanes()].fill(0);
@@ -157,7 +113,7 @@ impl Setup<'_> {
         let mut opens = false;
         for level in low..=high {
             let shifts = unit.plane_shifts(&unit.levels[level as usize]);
-            let Quads { at, lods, levels, read, close, open, .. } = &mut *quads;
+            let Placing { at, lods, levels, read, close, open } = &mut *placing;
             for axis in 0..2 {
                 let scale = f64::from_bits(u64::from(1023 - shifts[axis]) << 52);
                 let off = ground.off * scale + if shifts[axis] > 0 { ground.floors } else { 0.0 };
@@ -193,7 +149,7 @@ impl Setup<'_> {
                 put(level, levels, v, &mut to_v[piece.lanes()]);
             }
         }
-        for n in (0..piece.count).filter(|n| opens && quads.open[*n]) {
+        for n in (0..piece.count).filter(|n| opens && placing.open[*n]) {
             self.defined_reads(piece, n, sampler, table, reads);
         }
     }
@@ -204,186 +160,6 @@ impl Setup<'_> {
         let (floor, exact) = floor(plane.exact(e).at(x, y), self.denominator.exact(e).at(x, y), i64::from(value));
         let lowered = exact && plane.lowers(&self.context.triangle) && self.sample(piece, n).truncation(&plane.g) > 0;
         floor as i32 - i32::from(lowered)
-    }
-
-    /// The coordinates of level 0 around a piece. `None`: nothing would be proved.
-    #[inline(always)]
-    fn ground<'p, const FMA: bool, const ROW: bool>(
-        &self,
-        sampler: &Sampler,
-        planes: &'p Planes,
-        (real, denominator): (&[f64; 3], Line),
-        bounds: &Bounds,
-    ) -> Option<Ground<'p>> {
-        // Pixels of a quad lie up to one outside of the piece.
-        let (columns, rows) = (bounds.columns + 1.0, bounds.rows + 1.0);
-        // None of them lies further to the left of a row's first pixel, or above a piece's.
-        let left = if ROW { 1.0 } else { columns };
-        let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
-        let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
-        let lowest = least(denominator);
-        let (ground, range) = match planes {
-            Planes::Plane(planes) => {
-                let widest = 1.0 / lowest;
-                let ratio = self.denominator.terms(real, columns, rows) * widest;
-                // What lies outside of the triangle may be larger than at the vertices.
-                let most = |plane: &Plane| plane.terms(real, columns, rows) * widest + 2.0 * plane.reach * ratio;
-                let (one, other) = (most(&planes[0]), most(&planes[1]));
-                let range = (if one > other { one } else { other }) * (1.0 + ratio);
-                let p = &self.context.triangle.p;
-                let ground = Ground {
-                    along: planes[0].line(real),
-                    down: planes[1].line(real),
-                    denominator,
-                    off: range * SLACK,
-                    floors: 1.25 / p[0].min(p[1]).min(p[2]) as f64,
-                    face: Face::PositiveX,
-                    behind: false,
-                    planes: Some(planes),
-                };
-                (ground, range)
-            }
-            Planes::Ratio(planes, _) => {
-                let looking = Looking::around(planes, real, columns, rows);
-                let [s, t, q] = looking.lines;
-                let sides = sampler.sides.map(|side| 256.0 * f64::from(side));
-                let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
-                let (off, range) = looking.off(1.0 / least(q), most);
-                let lines = [s.times(sides[0]), t.times(sides[1])];
-                let [along, down] = lines;
-                // Signs have been changed where q is negative.
-                let behind = match self.context.coordinates_of(sampler.unit) {
-                    Some(Coordinates::Ratio(g)) => g[2][0] < 0,
-                    _ => false,
-                };
-                let face = Face::PositiveX;
-                (Ground { along, down, denominator: q, off, floors: 0.0, face, behind, planes: None }, range)
-            }
-            Planes::Direction(planes, face) => {
-                let looking = Looking::around(planes, real, columns, rows);
-                let face = match face {
-                    Some(face) => *face,
-                    None if ROW => looking.face::<FMA>(bounds.columns)?,
-                    None => return None,
-                };
-                let [s, t, m] = face.components();
-                let m = looking.component(m);
-                // The first pixel of a quad may look at another face.
-                if !looking.stays(face, least) {
-                    return None;
-                }
-                let size = 128.0 * f64::from(sampler.sides[0]);
-                let (off, range) = looking.off(1.0 / least(m), size);
-                let lines = [looking.component(s), looking.component(t)].map(|line| line.plus(m).times(size));
-                let [along, down] = lines;
-                let behind = false;
-                (Ground { along, down, denominator: m, off, floors: 0.0, face, behind, planes: None }, range)
-            }
-            Planes::Other | Planes::Shared => return None,
-        };
-        // Also refuses what is no number.
-        let proves = lowest > 0.0
-            && least(ground.denominator) > 0.0
-            && range < MOST
-            && ground.off < COARSEST / 256.0
-            && ground.floors < COARSEST;
-        proves.then_some(ground)
-    }
-
-    /// TEX-11, TEX-10: the lod of each lane's quad.
-    #[inline(always)]
-    fn lods<const FMA: bool, const ROW: bool>(
-        &self,
-        piece: Piece<'_>,
-        (unit, ground): (&PlannedUnit, &Ground<'_>),
-        e: &[i64; 3],
-        quads: &mut Quads,
-        known: &mut Known,
-    ) {
-        let (i, j) = piece.first;
-        let lanes = piece.at.x.len();
-        let above = (j & !1) - j;
-        if !ROW {
-            let [xs, ys] = &mut quads.origins;
-            for n in 0..lanes {
-                let (x, y) = (i64::from(piece.at.x[n]), i64::from(piece.at.y[n]));
-                (xs[n], ys[n]) = ((((i + x) & !1) - i) as f64, (((j + y) & !1) - j) as f64);
-            }
-            known.lods.resize(known.lods.len().max(LANES), 0);
-            known.of = None;
-            self.lods_of::<FMA>(piece, (unit, ground), e, piece.count, quads, &mut known.lods);
-            quads.lods[..lanes].copy_from_slice(&known.lods[..lanes]);
-            return;
-        }
-        let wanted = (i >> 1)..((i + piece.count as i64 - 1) >> 1) + 1;
-        let row = Some((self.context.number, j >> 1));
-        let follows = wanted.start >= known.columns.start && wanted.start <= known.columns.end;
-        if known.of != row || !follows {
-            (known.of, known.columns) = (row, wanted.start..wanted.start);
-        }
-        while known.columns.end < wanted.end {
-            let next = known.columns.end;
-            let count = ((wanted.end - next) as usize).min(BLOCK);
-            let [xs, ys] = &mut quads.origins;
-            for k in 0..whole_steps(count) {
-                (xs[k], ys[k]) = ((2 * (next + k.min(count - 1) as i64) - i) as f64, above as f64);
-            }
-            let first = (next - known.columns.start) as usize;
-            known.lods.resize(known.lods.len().max(first + LANES), 0);
-            self.lods_of::<FMA>(piece, (unit, ground), e, count, quads, &mut known.lods[first..]);
-            known.columns.end += count as i64;
-        }
-        let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
-        let (last, lods) = ((piece.count - 1 + odd) >> 1, &known.lods[first..]);
-        for n in 0..lanes {
-            quads.lods[n] = lods[((n + odd) >> 1).min(last)];
-        }
-    }
-
-    /// The lods of some quads, whose first pixels are [known](Quads::origins).
-    #[inline(always)]
-    fn lods_of<const FMA: bool>(
-        &self,
-        piece: Piece<'_>,
-        (unit, ground): (&PlannedUnit, &Ground<'_>),
-        e: &[i64; 3],
-        count: usize,
-        quads: &mut Quads,
-        lods: &mut [i32],
-    ) {
-        const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
-        let rounded = whole_steps(count);
-        let Quads { origins: [xs, ys], coordinates, unknown, .. } = &mut *quads;
-        let (xs, ys, unknown) = (&xs[..rounded], &ys[..rounded], &mut unknown[..rounded]);
-        unknown.fill(0);
-        for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
-            corners::<FMA>(ground, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
-        }
-        if let Some(planes) = ground.planes {
-            for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
-                for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
-                    let (x, y) = (xs[n] as i64 + x, ys[n] as i64 + y);
-                    let bottom = self.denominator.exact(e).at(x, y);
-                    for (plane, at) in planes.iter().zip(at) {
-                        at[n] = floor(plane.exact(e).times(256).at(x, y), bottom, at[n] as i64).0 as f64;
-                    }
-                }
-            }
-            unknown.fill(0);
-        }
-        log_ratios(coordinates, rounded, lods, unknown);
-        for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
-            let pixel = (piece.first.0 + xs[n] as i64, piece.first.1 + ys[n] as i64);
-            lods[n] = self.defined_lod(piece, unit, pixel);
-        }
-    }
-
-    /// The lod of a quad of which estimates do not tell it.
-    #[inline(never)]
-    fn defined_lod(&self, piece: Piece<'_>, unit: &PlannedUnit, pixel: (i64, i64)) -> i32 {
-        self.tell(Reason::Levels, 1);
-        let sample = self.sample(piece, 0);
-        lod::log2_ratio(self.context.place(unit, &sample, pixel).and_then(|place| place.quad()))
     }
 
     /// The planes of a level.
@@ -429,34 +205,24 @@ impl Setup<'_> {
     }
 }
 
-/// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.
-#[inline(always)]
-fn corners<const FMA: bool>(
-    ground: &Ground<'_>,
-    [xs, ys]: [&[f64]; 2],
-    [right, below]: [f64; 2],
-    u: &mut [f64],
-    v: &mut [f64],
-    unknown: &mut [u64],
-) {
-    let lanes = u.len();
-    let (v, unknown, xs, ys) = (&mut v[..lanes], &mut unknown[..lanes], &xs[..lanes], &ys[..lanes]);
-    let (along, down, denominator) = (ground.along.times(256.0), ground.down.times(256.0), ground.denominator);
-    let off = 256.0 * ground.off;
-    for n in 0..lanes {
-        let (x, y) = (xs[n] + right, ys[n] + below);
-        let r = 1.0 / denominator.at::<FMA, false>(x, y);
-        let (p, q) = (along.at::<FMA, false>(x, y) * r, down.at::<FMA, false>(x, y) * r);
-        let (near_p, near_q) = (whole(p), whole(q));
-        unknown[n] |= ((p - near_p).abs() - off).to_bits() | ((q - near_q).abs() - off).to_bits();
-        u[n] = if near_p > p { near_p - 1.0 } else { near_p };
-        v[n] = if near_q > q { near_q - 1.0 } else { near_q };
+impl Measure for i32 {
+    fn behind() -> i32 {
+        lod::LEAST
+    }
+
+    #[inline(always)]
+    fn measure(_: &PlannedUnit, at: &AtQuads, _: usize, out: &mut [i32], unknown: &mut [u64]) {
+        log_ratios(at, out.len(), out, unknown);
+    }
+
+    fn defined(_: &PlannedUnit, quad: Option<Quad>) -> i32 {
+        lod::log2_ratio(quad)
     }
 }
 
 /// TEX-11, TEX-10 of the three pixels of quads, and as sign bits which are not known.
 #[inline(always)]
-fn log_ratios(at: &[[Numbers<f64>; 2]; 3], lanes: usize, lods: &mut [i32], unknown: &mut [u64]) {
+fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64]) {
     let [[u, v], [right_u, right_v], [lower_u, lower_v]] = at;
     let (lods, unknown) = (&mut lods[..lanes], &mut unknown[..lanes]);
     for n in 0..lanes {
@@ -508,14 +274,6 @@ fn on_level(at: &[f64], scale: f64, off: f64, out: &mut Numbers<i32>, close: &mu
         out[n] = nearest(t);
         close[n] = (0.5 - off - (t - whole(t)).abs()).to_bits();
     }
-}
-
-/// The floor of a quotient of numbers modulo 2^64, given one that is off by one at most, and whether nothing remains.
-#[inline(always)]
-fn floor(top: i64, bottom: i64, value: i64) -> (i64, bool) {
-    let rest = top.wrapping_sub(value.wrapping_mul(bottom));
-    let by = i64::from(rest >= bottom) - i64::from(rest < 0);
-    (value + by, rest == by * bottom)
 }
 
 /// TEX-9: levels and weight of each lane; `lods` become biased. The least level that is read, and the largest.

@@ -8,7 +8,8 @@
 //! | `third.rs` | layers of volumes, depths to compare with |
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `steady.rs` | rows with one denominator: quotients by steps, exact |
-//! | `table.rs`, `fetch.rs`, `levels.rs` | textures laid out for rows; address, fetch, filter; lods and levels |
+//! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
+//! | `quads.rs`, `levels.rs`, `taps.rs` | coordinates at quads; lods and levels; the taps of anisotropy |
 //! | `shader.rs`, `stages.rs`, `dot.rs` | texture shaders, compiled; run stage by stage; the dot unit in single precision |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
 //! | `patch.rs`, `band.rs` | triangles to pieces to blocks |
@@ -34,6 +35,7 @@ mod levels;
 mod node;
 mod patch;
 mod planes;
+mod quads;
 mod quotient;
 mod shader;
 mod small;
@@ -41,6 +43,7 @@ mod stages;
 mod steady;
 mod store;
 mod table;
+mod taps;
 mod third;
 mod triangle;
 
@@ -114,6 +117,8 @@ pub(crate) struct Sampler {
     key: Option<(u32, u32)>,
     /// A stage of the texture shader makes its coordinates.
     depends: bool,
+    /// Most taps of a pixel (TEX-17), two and two; 0: there is one.
+    pairs: usize,
     /// What r is for.
     third: Option<Third>,
     /// An earlier sampler whose coordinates are this one's.
@@ -155,6 +160,8 @@ pub(crate) struct Compiled {
     samplers: Vec<Sampler>,
     /// The texture shader, if rows run it.
     shader: Option<Arc<shader::Shader>>,
+    /// Something is estimated at every pixel besides coordinates: taps, layers, depths to compare with.
+    estimates: bool,
     /// Nothing varies but colours, depth and coordinates of textures on planes, of one level.
     plain: bool,
     /// Texture units are the definition's, pixel by pixel.
@@ -246,6 +253,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         read: [0; 2],
         samplers,
         shader: None,
+        estimates: false,
         plain: false,
         samples_pixels,
         reads_surface: false,
@@ -291,8 +299,13 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     compiled.reads_surface = reads || compiled.merges;
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
-    let planes = compiled.samplers.iter().all(|sampler| !(sampler.mixes || sampler.cube || sampler.third.is_some()));
-    compiled.plain = planes && compiled.shader.is_none() && compiled.fog.is_none() && !compiled.samples_pixels;
+    compiled.estimates = compiled.samplers.iter().any(|sampler| sampler.pairs > 0 || sampler.third.is_some());
+    let planes = compiled.samplers.iter().all(|sampler| !(sampler.mixes || sampler.cube));
+    compiled.plain = planes
+        && !compiled.estimates
+        && compiled.shader.is_none()
+        && compiled.fog.is_none()
+        && !compiled.samples_pixels;
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled
@@ -304,6 +317,7 @@ fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
     let [first, second] = [a, b].map(|unit| unit.stage.coordinate_set);
     !(one.mixes || other.mixes || one.has_images() || other.has_images() || one.depends || other.depends)
         && one.filters == other.filters
+        && one.pairs + other.pairs == 0
         && (a.kind, a.levels[0]) == (b.kind, b.levels[0])
         && a.state.cylindrical_wrap == b.state.cylindrical_wrap
         // Coordinates are limited where they stand.
@@ -350,13 +364,14 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             mixes: unit.needs_lod(),
             key,
             depends: draw.shader.is_some() && shader::is_dependent(&unit.stage.operation),
+            pairs: unit.state.anisotropy as usize / 2,
             third: None,
             shares: None,
             table,
         };
         sampler.third = Third::of(unit, &sampler);
         // Nobody gives it an r.
-        if sampler.depends && sampler.third.is_some() {
+        if sampler.depends && sampler.third.is_some() || draw.shader.is_some() && sampler.pairs > 0 {
             return None;
         }
         samplers.push(sampler);

@@ -225,10 +225,10 @@ fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
 }
 
 /// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: rows do not sample it (16 bits whose lod
-/// counts, anisotropy).
+/// counts, several taps of those or of a volume).
 pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
     let single = unit.is_wide() || is_volume(unit) || unit.state.shadow.is_some();
-    if single && unit.needs_lod() || unit.state.anisotropy > 1 {
+    if single && (unit.needs_lod() || unit.state.anisotropy > 1) {
         return None;
     }
     let count = if unit.needs_lod() { unit.levels.len() } else { 1 };

@@ -67,7 +67,7 @@ pub(super) enum Reference {
 /// Those of a draw's samplers; none if no sampler has any.
 #[inline(always)]
 pub(super) fn thirds(context: &TriangleContext<'_>, compiled: &Compiled, inverse: &[f64; 3]) -> Vec<ThirdPlanes> {
-    if compiled.samplers.iter().all(|sampler| sampler.third.is_none()) {
+    if !compiled.estimates {
         return Vec::new();
     }
     compiled.samplers.iter().map(|sampler| third(context, sampler, inverse)).collect()

@@ -7,13 +7,15 @@ use super::direction::{Looking, only_face, positive};
 use super::fetch::Numbers;
 use super::fog::Fog;
 use super::kernels::{LANES, Row, STEP};
-use super::levels::{Quads, Reads};
+use super::levels::{Placing, Reads};
 use super::planes::{Plane, inverse};
+use super::quads::Quads;
 use super::quotient::{
     Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
 };
 use super::stages::Attributes;
 use super::steady::SteadyRow;
+use super::taps::Footprints;
 use super::third::{Third, ThirdPlanes, thirds};
 use super::{Compiled, Reason, Reasons, Sampler};
 use crate::combiner::registers::Registers;
@@ -83,6 +85,9 @@ pub(super) struct Varying {
     /// What samplers read whose levels count; as many as are wanted.
     pub(super) reads: Vec<Reads>,
     pub(super) quads: Box<Quads>,
+    pub(super) placing: Box<Placing>,
+    /// The taps of samplers that have several; as many as are wanted.
+    pub(super) footprints: Vec<Footprints>,
     /// Of the row whose pieces come now.
     pub(super) steady: SteadyRow,
     /// W0 and W2 while they are settled.
@@ -105,6 +110,8 @@ impl Default for Varying {
             alive: [true; LANES],
             reads: Vec::new(),
             quads: Box::default(),
+            placing: Box::default(),
+            footprints: Vec::new(),
             steady: SteadyRow::default(),
             weights: [[0; LANES]; 2],
             narrow: [[0; LANES]; 2],
@@ -249,9 +256,10 @@ impl<'a> Setup<'a> {
         let divided = if ROW && varying.steady.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
             if sampler.mixes {
-                let Varying { reads, quads, .. } = &mut *varying;
+                let Varying { reads, quads, placing, .. } = &mut *varying;
+                let work = (&mut **quads, &mut **placing);
                 let Some(reads) = reads.get_mut(n) else { continue };
-                self.levels::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, quads, reads);
+                self.levels::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, work, reads);
             } else if let (Planes::Plane(planes), false) = (planes, ROW && varying.steady.samplers[n].1) {
                 let Varying { coordinates, whole, .. } = &mut *varying;
                 let lanes = piece.lanes();
@@ -295,7 +303,13 @@ impl<'a> Setup<'a> {
                 }
             }
         }
-        if !self.thirds.is_empty() {
+        if compiled.estimates {
+            let Varying { quads, footprints, .. } = &mut *varying;
+            for ((sampler, planes), taps) in compiled.samplers.iter().zip(&self.samplers).zip(footprints) {
+                if sampler.pairs > 0 {
+                    self.taps::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, quads, taps);
+                }
+            }
             self.thirds::<FMA, ROW>(piece, compiled, &e, (&real, denominator), &bounds, varying);
         }
         if let Some(planes) = &self.weights

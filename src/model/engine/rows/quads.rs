@@ -1,0 +1,319 @@
+//! TEX-11 on rows: coordinates at the quads of a piece, exact, and what units take of them: a lod, or the taps of a footprint.
+#![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
+
+use super::direction::Looking;
+use super::fetch::Numbers;
+use super::kernels::LANES;
+use super::planes::Plane;
+use super::quotient::{Line, SLACK, whole};
+use super::triangle::{Bounds, Piece, Planes, Setup, whole_steps};
+use super::{BLOCK, Reason, Sampler};
+use crate::texture::cube::Face;
+use crate::texture::lod::Quad;
+use crate::texture::place::{Coordinates, Place};
+use crate::texture::unit::PlannedUnit;
+use std::ops::Range;
+
+/// Coordinates of the three pixels of quads: u and v of each, 1/65536 texel, whole numbers.
+pub(super) type AtQuads = [[Numbers<f64>; 2]; 3];
+
+/// What a unit takes of a quad.
+pub(super) trait Measure: Copy {
+    /// Where a pixel of the quad lies behind the viewer.
+    fn behind() -> Self;
+
+    /// That of the first `count` quads. Sign bits of `unknown` say of which coordinates do not tell it; more can be set.
+    fn measure(unit: &PlannedUnit, at: &AtQuads, count: usize, out: &mut [Self], unknown: &mut [u64]);
+
+    /// That of one quad, by the definition.
+    fn defined(unit: &PlannedUnit, quad: Option<Quad>) -> Self;
+}
+
+/// What coordinates at quads are computed in.
+#[derive(Clone, Debug)]
+pub(super) struct Quads {
+    /// Where the upper left pixels of the quads lie, from the piece's first.
+    origins: [Numbers<f64>; 2],
+    coordinates: AtQuads,
+    /// Of quads: negative, as the bits of doubles, where nothing is known.
+    unknown: Numbers<u64>,
+}
+
+impl Default for Quads {
+    fn default() -> Self {
+        Quads { origins: [[0.0; LANES]; 2], coordinates: [[[0.0; LANES]; 2]; 3], unknown: [0; LANES] }
+    }
+}
+
+/// What was taken of quads that lie side by side, for the rows that share them.
+#[derive(Clone, Debug)]
+pub(super) struct Known<T> {
+    /// Number of the triangle, and row.
+    of: Option<(usize, i64)>,
+    /// The quads' columns.
+    columns: Range<i64>,
+    /// Of each, from the first column on.
+    pub(super) each: Vec<T>,
+}
+
+impl<T> Default for Known<T> {
+    fn default() -> Self {
+        Known { of: None, columns: 0..0, each: Vec::new() }
+    }
+}
+
+/// Which of the [known](Known) quads the lanes of a piece belong to.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Spread {
+    first: usize,
+    odd: usize,
+    shift: u32,
+    last: usize,
+}
+
+impl Spread {
+    /// The quad of a lane.
+    #[inline(always)]
+    pub(super) fn quad(&self, lane: usize) -> usize {
+        self.first + ((lane + self.odd) >> self.shift).min(self.last)
+    }
+}
+
+/// Coordinates, 1/256 texel, whose multiples are far from the ends of what doubles hold exactly.
+const MOST: f64 = (1_u64 << 36) as f64;
+
+/// What an estimate of a coordinate may be off by, its own steps.
+const COARSEST: f64 = 0.125;
+
+/// Coordinates of level 0 around a piece: two quotients.
+pub(super) struct Ground<'p> {
+    pub(super) along: Line,
+    pub(super) down: Line,
+    pub(super) denominator: Line,
+    /// More than an estimate is off by, 1/256 texel.
+    pub(super) off: f64,
+    /// More than what the floors of a smaller level's numerators make (INT-4).
+    pub(super) floors: f64,
+    pub(super) face: Face,
+    /// All of it lies behind the viewer, where no lod is known.
+    pub(super) behind: bool,
+    /// Where exact remainders decide what is not proved.
+    pub(super) planes: Option<&'p [Plane; 2]>,
+}
+
+impl Setup<'_> {
+    /// The coordinates of level 0 around a piece. `None`: nothing would be proved.
+    #[inline(always)]
+    pub(super) fn ground<'p, const FMA: bool, const ROW: bool>(
+        &self,
+        sampler: &Sampler,
+        planes: &'p Planes,
+        (real, denominator): (&[f64; 3], Line),
+        bounds: &Bounds,
+    ) -> Option<Ground<'p>> {
+        // Pixels of a quad lie up to one outside of the piece.
+        let (columns, rows) = (bounds.columns + 1.0, bounds.rows + 1.0);
+        // None of them lies further to the left of a row's first pixel, or above a piece's.
+        let left = if ROW { 1.0 } else { columns };
+        let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
+        let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
+        let lowest = least(denominator);
+        let (ground, range) = match planes {
+            Planes::Plane(planes) => {
+                let widest = 1.0 / lowest;
+                let ratio = self.denominator.terms(real, columns, rows) * widest;
+                // What lies outside of the triangle may be larger than at the vertices.
+                let most = |plane: &Plane| plane.terms(real, columns, rows) * widest + 2.0 * plane.reach * ratio;
+                let (one, other) = (most(&planes[0]), most(&planes[1]));
+                let range = (if one > other { one } else { other }) * (1.0 + ratio);
+                let p = &self.context.triangle.p;
+                let ground = Ground {
+                    along: planes[0].line(real),
+                    down: planes[1].line(real),
+                    denominator,
+                    off: range * SLACK,
+                    floors: 1.25 / p[0].min(p[1]).min(p[2]) as f64,
+                    face: Face::PositiveX,
+                    behind: false,
+                    planes: Some(planes),
+                };
+                (ground, range)
+            }
+            Planes::Ratio(planes, _) => {
+                let looking = Looking::around(planes, real, columns, rows);
+                let [s, t, q] = looking.lines;
+                let sides = sampler.sides.map(|side| 256.0 * f64::from(side));
+                let most = if sides[0] > sides[1] { sides[0] } else { sides[1] };
+                let (off, range) = looking.off(1.0 / least(q), most);
+                let lines = [s.times(sides[0]), t.times(sides[1])];
+                let [along, down] = lines;
+                // Signs have been changed where q is negative.
+                let behind = match self.context.coordinates_of(sampler.unit) {
+                    Some(Coordinates::Ratio(g)) => g[2][0] < 0,
+                    _ => false,
+                };
+                let face = Face::PositiveX;
+                (Ground { along, down, denominator: q, off, floors: 0.0, face, behind, planes: None }, range)
+            }
+            Planes::Direction(planes, face) => {
+                let looking = Looking::around(planes, real, columns, rows);
+                let face = match face {
+                    Some(face) => *face,
+                    None if ROW => looking.face::<FMA>(bounds.columns)?,
+                    None => return None,
+                };
+                let [s, t, m] = face.components();
+                let m = looking.component(m);
+                // The first pixel of a quad may look at another face.
+                if !looking.stays(face, least) {
+                    return None;
+                }
+                let size = 128.0 * f64::from(sampler.sides[0]);
+                let (off, range) = looking.off(1.0 / least(m), size);
+                let lines = [looking.component(s), looking.component(t)].map(|line| line.plus(m).times(size));
+                let [along, down] = lines;
+                let behind = false;
+                (Ground { along, down, denominator: m, off, floors: 0.0, face, behind, planes: None }, range)
+            }
+            Planes::Other | Planes::Shared => return None,
+        };
+        // Also refuses what is no number.
+        let proves = lowest > 0.0
+            && least(ground.denominator) > 0.0
+            && range < MOST
+            && ground.off < COARSEST / 256.0
+            && ground.floors < COARSEST;
+        proves.then_some(ground)
+    }
+
+    /// What a unit takes of the quads of a piece, and which lanes belong to which.
+    #[inline(always)]
+    pub(super) fn of_quads<const FMA: bool, const ROW: bool, T: Measure>(
+        &self,
+        piece: Piece<'_>,
+        (unit, ground): (&PlannedUnit, &Ground<'_>),
+        e: &[i64; 3],
+        quads: &mut Quads,
+        known: &mut Known<T>,
+    ) -> Spread {
+        let (i, j) = piece.first;
+        let lanes = piece.at.x.len();
+        let above = (j & !1) - j;
+        let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind());
+        if ground.behind {
+            room(known, 1);
+            (known.of, known.each[0]) = (None, T::behind());
+            return Spread::default();
+        }
+        if !ROW {
+            let [xs, ys] = &mut quads.origins;
+            for n in 0..lanes {
+                let (x, y) = (i64::from(piece.at.x[n]), i64::from(piece.at.y[n]));
+                (xs[n], ys[n]) = ((((i + x) & !1) - i) as f64, (((j + y) & !1) - j) as f64);
+            }
+            room(known, LANES);
+            known.of = None;
+            self.measured::<FMA, T>(piece, (unit, ground), e, piece.count, quads, &mut known.each);
+            return Spread { last: lanes - 1, ..Spread::default() };
+        }
+        let wanted = (i >> 1)..((i + piece.count as i64 - 1) >> 1) + 1;
+        let row = Some((self.context.number, j >> 1));
+        let follows = wanted.start >= known.columns.start && wanted.start <= known.columns.end;
+        if known.of != row || !follows {
+            (known.of, known.columns) = (row, wanted.start..wanted.start);
+        }
+        while known.columns.end < wanted.end {
+            let next = known.columns.end;
+            let count = ((wanted.end - next) as usize).min(BLOCK);
+            let [xs, ys] = &mut quads.origins;
+            for k in 0..whole_steps(count) {
+                (xs[k], ys[k]) = ((2 * (next + k.min(count - 1) as i64) - i) as f64, above as f64);
+            }
+            let first = (next - known.columns.start) as usize;
+            room(known, first + LANES);
+            self.measured::<FMA, T>(piece, (unit, ground), e, count, quads, &mut known.each[first..]);
+            known.columns.end += count as i64;
+        }
+        let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
+        Spread { first, odd, shift: 1, last: (piece.count - 1 + odd) >> 1 }
+    }
+
+    /// That of some quads, whose first pixels are [known](Quads::origins).
+    #[inline(always)]
+    fn measured<const FMA: bool, T: Measure>(
+        &self,
+        piece: Piece<'_>,
+        (unit, ground): (&PlannedUnit, &Ground<'_>),
+        e: &[i64; 3],
+        count: usize,
+        quads: &mut Quads,
+        out: &mut [T],
+    ) {
+        const PIXELS: [(i64, i64); 3] = [(0, 0), (1, 0), (0, 1)];
+        let rounded = whole_steps(count);
+        let Quads { origins: [xs, ys], coordinates, unknown, .. } = &mut *quads;
+        let (xs, ys, unknown) = (&xs[..rounded], &ys[..rounded], &mut unknown[..rounded]);
+        unknown.fill(0);
+        for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
+            corners::<FMA>(ground, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
+        }
+        if let Some(planes) = ground.planes {
+            for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
+                for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
+                    let (x, y) = (xs[n] as i64 + x, ys[n] as i64 + y);
+                    let bottom = self.denominator.exact(e).at(x, y);
+                    for (plane, at) in planes.iter().zip(at) {
+                        at[n] = floor(plane.exact(e).times(256).at(x, y), bottom, at[n] as i64).0 as f64;
+                    }
+                }
+            }
+            unknown.fill(0);
+        }
+        T::measure(unit, coordinates, count, &mut out[..rounded], unknown);
+        for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
+            let pixel = (piece.first.0 + xs[n] as i64, piece.first.1 + ys[n] as i64);
+            out[n] = self.defined_quad(piece, unit, pixel);
+        }
+    }
+
+    /// That of a quad of which estimates do not tell it.
+    #[inline(never)]
+    pub(super) fn defined_quad<T: Measure>(&self, piece: Piece<'_>, unit: &PlannedUnit, pixel: (i64, i64)) -> T {
+        self.tell(Reason::Levels, 1);
+        let sample = self.sample(piece, 0);
+        T::defined(unit, self.context.place(unit, &sample, pixel).and_then(|place| place.quad()))
+    }
+}
+
+/// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.
+#[inline(always)]
+fn corners<const FMA: bool>(
+    ground: &Ground<'_>,
+    [xs, ys]: [&[f64]; 2],
+    [right, below]: [f64; 2],
+    u: &mut [f64],
+    v: &mut [f64],
+    unknown: &mut [u64],
+) {
+    let lanes = u.len();
+    let (v, unknown, xs, ys) = (&mut v[..lanes], &mut unknown[..lanes], &xs[..lanes], &ys[..lanes]);
+    let (along, down, denominator) = (ground.along.times(256.0), ground.down.times(256.0), ground.denominator);
+    let off = 256.0 * ground.off;
+    for n in 0..lanes {
+        let (x, y) = (xs[n] + right, ys[n] + below);
+        let r = 1.0 / denominator.at::<FMA, false>(x, y);
+        let (p, q) = (along.at::<FMA, false>(x, y) * r, down.at::<FMA, false>(x, y) * r);
+        let (near_p, near_q) = (whole(p), whole(q));
+        unknown[n] |= ((p - near_p).abs() - off).to_bits() | ((q - near_q).abs() - off).to_bits();
+        u[n] = if near_p > p { near_p - 1.0 } else { near_p };
+        v[n] = if near_q > q { near_q - 1.0 } else { near_q };
+    }
+}
+
+/// The floor of a quotient of numbers modulo 2^64, given one that is off by one at most, and whether nothing remains.
+#[inline(always)]
+pub(super) fn floor(top: i64, bottom: i64, value: i64) -> (i64, bool) {
+    let rest = top.wrapping_sub(value.wrapping_mul(bottom));
+    let by = i64::from(rest >= bottom) - i64::from(rest < 0);
+    (value + by, rest == by * bottom)
+}
