@@ -12,23 +12,68 @@ use crate::texture::dot;
 /// A float for each pixel of a block.
 pub(super) type Floats = [f32; BLOCK];
 
+/// TSH-1 to TSH-3: what makes three fractions of a register.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Remap {
+    /// Each of a byte.
+    Bytes(Linear),
+    /// Of two halves of 16 bits: the mappings of TSH-3.
+    Halves(DotMapping),
+}
+
+impl Remap {
+    pub(super) fn new(mapping: DotMapping) -> Remap {
+        Linear::new(mapping).map_or(Remap::Halves(mapping), Remap::Bytes)
+    }
+
+    /// The fractions of registers, R, G, B, A, of which some may hold twice the byte.
+    #[inline(always)]
+    pub(super) fn run(self, registers: [Option<&[i16; BLOCK]>; 4], doubled: [bool; 4], out: &mut [Floats; 3]) {
+        match self {
+            Remap::Bytes(linear) => {
+                for n in 0..3 {
+                    if let Some(register) = registers[n] {
+                        linear.run(register, doubled[n], &mut out[n]);
+                    }
+                }
+            }
+            Remap::Halves(mapping) => {
+                let [Some(r), Some(g), Some(b), Some(a)] = registers else { return };
+                let down = doubled.map(u32::from);
+                let [x, y, z] = out;
+                // Two loops, each of which knows its mapping.
+                macro_rules! each {
+                    ($mapping:expr) => {
+                        for n in 0..BLOCK {
+                            let bytes = [r[n] >> down[0], g[n] >> down[1], b[n] >> down[2], a[n] >> down[3]];
+                            let bytes = [bytes[0] as u8, bytes[1] as u8, bytes[2] as u8, bytes[3] as u8];
+                            [x[n], y[n], z[n]] = dot::remap($mapping, bytes);
+                        }
+                    };
+                }
+                if mapping == DotMapping::Hilo1 { each!(DotMapping::Hilo1) } else { each!(DotMapping::HiloHemisphere) }
+            }
+        }
+    }
+}
+
 /// TSH-1 and TSH-2: a mapping whose numerators are a linear function of the byte.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Remap {
+pub(super) struct Linear {
     signed: bool,
     times: i16,
     plus: i16,
     whole: i16,
 }
 
-impl Remap {
+impl Linear {
     /// `None`: the mapping is another one.
-    pub(super) fn new(mapping: DotMapping) -> Option<Remap> {
+    fn new(mapping: DotMapping) -> Option<Linear> {
         let of = |byte: u8| dot::fractions(mapping, [byte; 4]);
         let (plus, whole) = of(0)[0];
         let times = of(1)[0].0 - plus;
         let [times, plus, whole] = [times, plus, whole].map(|n| i16::try_from(n).ok());
-        let remap = Remap { signed: of(128)[0].0 < of(127)[0].0, times: times?, plus: plus?, whole: whole? };
+        let remap = Linear { signed: of(128)[0].0 < of(127)[0].0, times: times?, plus: plus?, whole: whole? };
         let fits = |byte: u8| of(byte) == [(i32::from(remap.numerator(i16::from(byte))), i32::from(remap.whole)); 3];
         (0..=255).all(fits).then_some(remap)
     }
@@ -39,9 +84,9 @@ impl Remap {
         byte.wrapping_mul(self.times).wrapping_add(self.plus)
     }
 
-    /// The fractions of registers, which may hold twice the byte.
+    /// The fractions of a channel, which may hold twice the byte.
     #[inline(always)]
-    pub(super) fn run(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
+    fn run(self, register: &[i16; BLOCK], doubled: bool, out: &mut Floats) {
         let whole = f32::from(self.whole);
         for n in 0..BLOCK {
             out[n] = f32::from(self.numerator(register[n] >> u32::from(doubled))) / whole;
@@ -171,22 +216,29 @@ mod tests {
     use crate::state::Named;
     use crate::texture::shader;
 
-    /// Every byte of every mapping of bytes, plain and doubled.
+    /// Every byte in every channel of every mapping, plain and doubled, beside others.
     #[test]
     fn bytes_become_the_fractions_of_the_definition() {
         for mapping in DotMapping::ALL {
-            let Some(remap) = Remap::new(*mapping) else {
-                assert!(matches!(mapping, DotMapping::Hilo1 | DotMapping::HiloHemisphere));
-                continue;
-            };
-            let mut out = [0.0; BLOCK];
-            remap.run(&std::array::from_fn(|n| n as i16), false, &mut out);
-            for byte in 0..=255_u8 {
-                assert_eq!(out[usize::from(byte)], dot::remap(*mapping, [byte; 4])[0], "{mapping:?} {byte}");
-            }
-            remap.run(&std::array::from_fn(|n| 2 * i16::from(n as u8 as i8)), true, &mut out);
-            for byte in 0..=255_u8 {
-                assert_eq!(out[usize::from(byte)], dot::remap(*mapping, [byte; 4])[1], "{mapping:?} {byte}");
+            let halves = matches!(mapping, DotMapping::Hilo1 | DotMapping::HiloHemisphere);
+            assert_eq!(matches!(Remap::new(*mapping), Remap::Halves(_)), halves);
+            for round in 0..64_u8 {
+                let doubled = [0, 1, 2, 3].map(|n: u8| round >> n & 1 != 0);
+                let bytes =
+                    |n: usize| [1_u8, 5, 37, 101].map(|times| (n as u8).wrapping_mul(times).wrapping_add(round));
+                let register = |channel: usize| -> [i16; BLOCK] {
+                    std::array::from_fn(|n| {
+                        let byte = bytes(n)[channel];
+                        if doubled[channel] { 2 * i16::from(byte as i8) } else { i16::from(byte) }
+                    })
+                };
+                let registers = [register(0), register(1), register(2), register(3)];
+                let mut out = [[0.0; BLOCK]; 3];
+                Remap::new(*mapping).run(registers.each_ref().map(Some), doubled, &mut out);
+                for n in 0..BLOCK {
+                    let got = out.each_ref().map(|out| out[n]);
+                    assert_eq!(got, dot::remap(*mapping, bytes(n)), "{mapping:?} {:?}", bytes(n));
+                }
             }
         }
     }

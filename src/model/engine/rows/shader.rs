@@ -88,7 +88,7 @@ pub(super) fn is_dependent(operation: &ShaderOperation) -> bool {
 }
 
 impl Shader {
-    /// The shader of a draw whose units rows sample. `None`: rows lack one of its mappings, or a dependent read has levels.
+    /// The shader of a draw whose units rows sample. `None`: a dependent read has levels, or luminance is scaled too far.
     pub(super) fn new(draw: &PlannedDraw, samplers: &[Sampler], scale: DependentScale) -> Option<Shader> {
         let planned = draw.shader.as_ref()?;
         let mut shader = Shader {
@@ -148,7 +148,7 @@ impl Shader {
             for n in 0..components {
                 stage.numbers[n] = self.number(draw, index, &state, n, Purpose::Float);
             }
-            stage.vector = self.vector(all, samplers, &state)?;
+            stage.vector = self.vector(all, samplers, &state);
         }
         match state.operation {
             ShaderOperation::PassThrough => {
@@ -209,24 +209,24 @@ impl Shader {
         Number::Varying(self.varying.len() - 1)
     }
 
-    /// The remapped colour that a stage reads. `None`: rows lack the mapping.
+    /// The remapped colour that a stage reads.
     fn vector(
         &mut self,
         all: &[PlannedShaderStage; TEXTURE_UNITS],
         samplers: &[Sampler],
         state: &ShaderStage,
-    ) -> Option<usize> {
+    ) -> usize {
         let ShaderStage { previous, mapping, .. } = *state;
-        let remap = Remap::new(mapping)?;
+        let remap = Remap::new(mapping);
         if let Some(known) = self.vectors.iter().position(|vector| (vector.0, vector.2) == (previous, remap)) {
-            return Some(known);
+            return known;
         }
         let luminance =
             matches!(all[previous].state.operation, ShaderOperation::BumpEnvironment { luminance: Some(_), .. });
         let signed = samplers.iter().find(|sampler| sampler.unit == previous).map_or([false; 4], |s| s.signed);
         let doubled = [0, 1, 2, 3].map(|n| signed[n] && !(luminance && n < 3));
         self.vectors.push((previous, doubled, remap));
-        Some(self.vectors.len() - 1)
+        self.vectors.len() - 1
     }
 }
 

@@ -414,11 +414,10 @@ fn dot_product(
     }
     let (previous, doubled, remap) = &shader.vectors[stage.vector];
     if !std::mem::replace(&mut work.is_remapped[stage.vector], true) {
-        for n in 0..3 {
-            if let Some(slot) = compiled.textures[*previous][n] {
-                remap.run(rows[usize::from(slot)].block(), doubled[n], &mut work.vectors[stage.vector][n]);
-            }
-        }
+        let [r, g, b, a] = &compiled.textures[*previous];
+        let register = |slot: &Option<u16>| slot.map(|slot| rows[usize::from(slot)].block());
+        let registers = [register(r), register(g), register(b), register(a)];
+        remap.run(registers, *doubled, &mut work.vectors[stage.vector]);
     }
     let mut out = work.dots[index];
     if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| work.number(stage.numbers[n])) {
