@@ -26,6 +26,7 @@ pub type Vector<N> = [N; 3];
 
 /// TSH-1, TSH-2 and TSH-3: the bytes R, G, B, A of a colour as three fractions, numerator and denominator. All numerators and denominators have at most
 /// 24 bits.
+#[inline(always)]
 pub fn fractions(mapping: DotMapping, bytes: [u8; 4]) -> [(i32, i32); 3] {
     let [r, g, b, a] = bytes;
     let each = |of: fn(u8) -> i32, whole: i32| [r, g, b].map(|byte| (of(byte), whole));
@@ -51,6 +52,7 @@ fn third_of_unit(high: i32, low: i32) -> i32 {
 }
 
 /// TSH-1 to TSH-3 in single precision: each fraction rounded once.
+#[inline(always)]
 pub fn remap(mapping: DotMapping, bytes: [u8; 4]) -> Vector<f32> {
     fractions(mapping, bytes).map(|(numerator, denominator)| numerator as f32 / denominator as f32)
 }

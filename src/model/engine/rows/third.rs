@@ -227,14 +227,9 @@ impl Setup<'_> {
             return true;
         }
         if format.is_float() {
-            words::<FMA, ROW>(at, lines, off, |depth| word(format, depth), out)
+            words::<FMA, ROW, true>(at, lines, off, format, out)
         } else {
-            let full = f64::from(format.largest());
-            let floored = |depth: f64| {
-                let depth = if depth > 0.0 { depth } else { 0.0 };
-                nearest(floor(if depth < full { depth } else { full })) as u32
-            };
-            words::<FMA, ROW>(at, lines, off, floored, out)
+            words::<FMA, ROW, false>(at, lines, off, format, out)
         }
     }
 
@@ -250,15 +245,23 @@ impl Setup<'_> {
     }
 }
 
-/// DEP-3 of quotients that are off by less than `off`; whether some are unknown.
+/// DEP-3 in a fixed-point format.
 #[inline(always)]
-fn words<const FMA: bool, const ROW: bool>(
+fn floored(full: f64, depth: f64) -> u32 {
+    let depth = if depth > 0.0 { depth } else { 0.0 };
+    nearest(floor(if depth < full { depth } else { full })) as u32
+}
+
+/// DEP-3 of quotients that are off by less than `off`; whether some are unknown. `FLOAT`: the format is one of floats.
+#[inline(always)]
+fn words<const FMA: bool, const ROW: bool, const FLOAT: bool>(
     at: Positions<'_>,
     lines: (Line, Line),
     off: f64,
-    word: impl Fn(f64) -> u32,
+    format: DepthFormat,
     out: &mut [u32],
 ) -> bool {
+    let full = f64::from(format.largest());
     let lanes = out.len();
     let last = f64::from(at.last);
     let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
@@ -266,7 +269,9 @@ fn words<const FMA: bool, const ROW: bool>(
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
-        let (low, high) = (word(value - off), word(value + off));
+        let (low, high) = (value - off, value + off);
+        let (low, high) =
+            if FLOAT { (word(format, low), word(format, high)) } else { (floored(full, low), floored(full, high)) };
         open |= low ^ high;
         out[n] = if low == high { low } else { UNKNOWN };
     }
