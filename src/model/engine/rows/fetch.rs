@@ -21,6 +21,8 @@ pub(super) struct Workspace {
     lower: [[u32; 2]; BLOCK],
     /// Channels of the next level.
     next: [[i16; BLOCK]; 4],
+    /// Halves of 16 bits: of a level and of the next one.
+    halves: [[i32; BLOCK]; 2],
 }
 
 impl Default for Workspace {
@@ -31,6 +33,7 @@ impl Default for Workspace {
             upper: [[0; 2]; BLOCK],
             lower: [[0; 2]; BLOCK],
             next: [[0; BLOCK]; 4],
+            halves: [[0; BLOCK]; 2],
         }
     }
 }
@@ -85,7 +88,7 @@ fn texels(
     work: &mut Workspace,
     rows: &mut [Row],
 ) -> bool {
-    let Workspace { entries, texels: found, upper, lower, .. } = work;
+    let Workspace { entries, texels: found, upper, lower, halves: [half, _], .. } = work;
     let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return false };
     let last = wanted.iter().rposition(Option::is_some).unwrap_or(0);
     // What nobody wants goes to the first rows.
@@ -104,11 +107,14 @@ fn texels(
             }
         }
         // `sample_levels`.
-        Texels::Levels(_) => {}
+        Texels::Levels(_) | Texels::WideLevels(_) => {}
         Texels::Wide(texels, linear) => {
             fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
-            filter_wide::<16>(upper, lower, (u, v), (*linear, signed[3]), alpha, red);
-            filter_wide::<0>(upper, lower, (u, v), (*linear, signed[1]), green, blue);
+            let kept = if *linear { -1 } else { 0 };
+            filter_half::<16>(upper, lower, (u, v), kept, half);
+            bytes(half, signed[3], alpha, red);
+            filter_half::<0>(upper, lower, (u, v), kept, half);
+            bytes(half, signed[1], green, blue);
             return false;
         }
         Texels::Depths(texels, function) => {
@@ -208,12 +214,42 @@ pub(super) fn sample_levels(
     work: &mut Workspace,
     rows: &mut [Row],
 ) {
-    let Texels::Levels(texels) = &table.texels else { return };
-    let Workspace { entries, upper, lower, next, .. } = work;
+    let (texels, is_wide) = match &table.texels {
+        Texels::Levels(texels) => (texels, false),
+        Texels::WideLevels(texels) => (texels, true),
+        _ => return,
+    };
+    let Workspace { entries, upper, lower, next, halves, .. } = work;
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
     let block = |of: &Numbers<i32>| -> [i32; BLOCK] { *of.first_chunk().unwrap_or(&[0; BLOCK]) };
+    if is_wide {
+        let weights = block(&reads.weights);
+        for (lane, signed) in [(0, signed[3]), (1, signed[1])] {
+            for which in 0..1 + usize::from(both) {
+                let Some(found) = reads.entries[which].first_chunk::<BLOCK>() else { return };
+                for n in 0..BLOCK {
+                    entries[n] = found[n] as u32;
+                }
+                let (u, v) = (block(&reads.coordinates[which][0]), block(&reads.coordinates[which][1]));
+                fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
+                if lane == 0 {
+                    filter_half::<16>(upper, lower, (&u, &v), -1, &mut halves[which]);
+                } else {
+                    filter_half::<0>(upper, lower, (&u, &v), -1, &mut halves[which]);
+                }
+            }
+            let [half, next] = &mut *halves;
+            if both {
+                for n in 0..BLOCK {
+                    half[n] = lerp(half[n], next[n], weights[n]);
+                }
+            }
+            if lane == 0 { bytes(half, signed, alpha, red) } else { bytes(half, signed, green, blue) }
+        }
+        return;
+    }
     for which in (0..1 + usize::from(both)).rev() {
         let Some(found) = reads.entries[which].first_chunk::<BLOCK>() else { return };
         for n in 0..BLOCK {
@@ -367,23 +403,29 @@ fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &m
     }
 }
 
-/// TEX-6 of a half, which begins at bit `SHIFT`, and TEX-1, TEX-18 of its bytes.
+/// TEX-6 of a half, which begins at bit `SHIFT`; `kept` are the bits of weights that count.
 #[inline(always)]
-fn filter_wide<const SHIFT: u32>(
+fn filter_half<const SHIFT: u32>(
     upper: &[[u32; 2]; BLOCK],
     lower: &[[u32; 2]; BLOCK],
     (u, v): (&[i32; BLOCK], &[i32; BLOCK]),
-    (linear, signed): (bool, bool),
-    high: &mut [i16; BLOCK],
-    low: &mut [i16; BLOCK],
+    kept: i32,
+    out: &mut [i32; BLOCK],
 ) {
     let half = |texel: u32| (texel >> SHIFT & 0xffff) as i32;
     for n in 0..BLOCK {
         let ([a, b], [c, d]) = (upper[n], lower[n]);
-        let (along, down) = if linear { (weight(u[n]) as i32, weight(v[n]) as i32) } else { (0, 0) };
-        let value = bilinear([half(a), half(b), half(c), half(d)], along, down, |v| v);
-        low[n] = (value & 255) as i16;
-        let byte = (value >> 8) as i16;
+        let (along, down) = (weight(u[n]) as i32 & kept, weight(v[n]) as i32 & kept);
+        out[n] = bilinear([half(a), half(b), half(c), half(d)], along, down, |v| v);
+    }
+}
+
+/// TEX-1, TEX-18: the bytes of a half.
+#[inline(always)]
+fn bytes(half: &[i32; BLOCK], signed: bool, high: &mut [i16; BLOCK], low: &mut [i16; BLOCK]) {
+    for n in 0..BLOCK {
+        low[n] = (half[n] & 255) as i16;
+        let byte = (half[n] >> 8) as i16;
         high[n] = if signed { 2 * (byte - 128) } else { byte };
     }
 }

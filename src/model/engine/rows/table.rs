@@ -81,6 +81,8 @@ pub(super) enum Texels {
     One(usize, Vec<u32>),
     /// Footprints of every level, all with the rows of the widest.
     Levels(Vec<u32>),
+    /// The same of halves, as below.
+    WideLevels(Vec<u32>),
     /// Footprints of halves, the high one in the high bits; signed ones with 32,768 added. Filtered, or the texel alone.
     Wide(Vec<u32>, bool),
     /// Depths one by one, and how a reference compares with them.
@@ -224,11 +226,11 @@ fn images(unit: &PlannedUnit) -> Vec<Option<usize>> {
     (0..faces).map(Some).collect()
 }
 
-/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: rows do not sample it (16 bits whose lod
-/// counts, several taps of those or of a volume).
+/// The axes of the levels of a unit that rows can sample: of level 0, or of all if the lod counts. `None`: rows do not sample it (several taps of 16 bits
+/// or of a volume).
 pub(super) fn axes(unit: &PlannedUnit) -> Option<Vec<[Axis; 2]>> {
-    let single = unit.is_wide() || is_volume(unit) || unit.state.shadow.is_some();
-    if single && (unit.needs_lod() || unit.state.anisotropy > 1) {
+    let single = is_volume(unit) || unit.state.shadow.is_some();
+    if single && unit.needs_lod() || (single || unit.is_wide()) && unit.state.anisotropy > 1 {
         return None;
     }
     let count = if unit.needs_lod() { unit.levels.len() } else { 1 };
@@ -256,6 +258,7 @@ impl Table {
             | Texels::Footprints(all)
             | Texels::One(_, all)
             | Texels::Levels(all)
+            | Texels::WideLevels(all)
             | Texels::Wide(all, _)
             | Texels::Depths(all, _) => all.len() as u64,
         }
@@ -303,7 +306,7 @@ impl Table {
         let count = columns.count as usize * rows.count as usize;
         let (texels, pitch, face) = if mixes {
             let face = all.len() / images.len();
-            (Texels::Levels(all), wide, face)
+            (if unit.is_wide() { Texels::WideLevels(all) } else { Texels::Levels(all) }, wide, face)
         } else if let Some(comparison) = comparison {
             (Texels::Depths(all, comparison.function), columns.count as usize, count)
         } else if unit.is_wide() {
