@@ -200,7 +200,7 @@ pub(super) fn expression(step: &Step) -> String {
         }
         "floor_ratio" => {
             let axis = step.name.rsplit('.').next().unwrap_or_default();
-            format!("floor(256 * {} * N_{axis} / N_q)", value(9))
+            format!("floor(256 * {} * N_{axis} / N_q){}", value(9), short(step))
         }
         "cube_face" => {
             let [x, y, z] = direction(&step.inputs);
@@ -249,7 +249,7 @@ pub(super) fn expression(step: &Step) -> String {
         }
         "floor_plane_moved" => {
             let axis = step.name.rsplit('.').next().unwrap_or_default();
-            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D + {} / 2^24)", value(7))
+            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D + {} / 2^24){}", value(7), short(step))
         }
         "float_product" => format!("{} * {}", value(0), value(1)),
         "float_sum" => format!("({} + {}) + {}", value(0), value(1), value(2)),
@@ -295,6 +295,17 @@ pub(super) fn expression(step: &Step) -> String {
 fn direction(inputs: &[Operand]) -> [i128; 3] {
     let at = |n: usize| inputs.get(n).map_or(0, |o| i128::from(o.value));
     [0, 3, 6].map(|first| (0..3).map(|k| at(first + k) * at(9 + k)).sum())
+}
+
+/// Which weights fall short (INT-4t), as an end of a formula.
+fn short(step: &Step) -> &'static str {
+    let is = |name: &str| step.inputs.iter().any(|input| input.name == name && input.value == 1);
+    match (is("short0"), is("short2")) {
+        (false, false) => "",
+        (true, false) => ", b0 short by 2^-24",
+        (false, true) => ", b2 short by 2^-24",
+        (true, true) => ", b0 and b2 short by 2^-24",
+    }
 }
 
 /// The minor component of u or v and the magnitude of the major one, of a step on a face.

@@ -37,6 +37,8 @@ fn is_parameter(name: &str) -> bool {
         "y",
         "size",
         "lowered",
+        "short0",
+        "short2",
         "exponent",
         "lod_bias",
         "min_lod",
@@ -210,11 +212,14 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
             let s: i128 = (0..3).map(|k| v(k) * v(6 + k)).sum();
             let q: i128 = (0..3).map(|k| v(3 + k) * v(6 + k)).sum();
             let limit = 1 << 24;
-            let value = if q == 0 {
-                limit * s.signum()
-            } else {
-                (256 * v(9) * s * q.signum()).div_euclid(q.abs()).clamp(-limit, limit) - v(10)
+            let floor = |s: i128, q: i128| match q {
+                0 => limit * s.signum(),
+                _ => shader::floor_scaled(s * q.signum(), q.abs(), 256 * v(9)).clamp(-limit, limit),
             };
+            let value = floor(shader::short_of_unit(inputs, 0, 6, 10), shader::short_of_unit(inputs, 3, 6, 10));
+            if floor(s, q) - value != v(15) {
+                return None;
+            }
             Number { value, per_one: 256 }
         }
         "floor_factor" => {
@@ -328,8 +333,15 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
         "dependent_256" => Number { value: v(1) * v(0), per_one: 256 },
         "bump_offset" => Number { value: shader::bump_offset(inputs), per_one: 1 << 32 },
         "floor_plane_moved" => {
-            let sum = shader::numerator(inputs);
-            let value = ((sum << 24) + v(7) * v(6)).div_euclid(v(6) << 24).clamp(-(1 << 24), 1 << 24) - v(8);
+            let (sum, [whole, part]) = (shader::numerator(inputs), shader::short(inputs, 0, 3, 8));
+            let (down, limit) = (v(6) << 24, 1 << 24);
+            let exact = ((sum << 24) + v(7) * v(6)).div_euclid(down).clamp(-limit, limit);
+            let moved = whole + v(7) * v(6);
+            let rest = (moved.rem_euclid(down) * v(9) + part).div_euclid(down * v(9));
+            let value = (moved.div_euclid(down) + rest).clamp(-limit, limit);
+            if exact - value != v(13) {
+                return None;
+            }
             Number { value, per_one: 256 }
         }
         "luminance" => Number { value: shader::luminance(inputs), per_one: 4096 },

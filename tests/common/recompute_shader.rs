@@ -22,6 +22,33 @@ pub fn numerator(inputs: &Inputs) -> i128 {
     (0..3).map(|k| value(inputs, k) * value(inputs, 3 + k)).sum()
 }
 
+/// 2^24 times the numerator of a function with weights that fall short, as a whole number and one over P1 (INT-4t): its numbers, the edge functions,
+/// and P0, P1, P2, short0, short2 begin at these inputs.
+pub fn short(inputs: &Inputs, x: usize, e: usize, p: usize) -> [i128; 2] {
+    let v = |n: usize| value(inputs, n);
+    let short = [v(p + 3), 0, v(p + 4)];
+    let whole = (0..3).map(|k| v(x + k) * v(e + k) * ((1 << 24) - short[k])).sum();
+    [whole, v(x + 1) * (0..3).map(|k| short[k] * v(p + k) * v(e + k)).sum::<i128>()]
+}
+
+/// The same times P1, of numbers of 28 bits.
+pub fn short_of_unit(inputs: &Inputs, x: usize, e: usize, p: usize) -> i128 {
+    let [whole, part] = short(inputs, x, e, p);
+    whole * value(inputs, p + 1) + part
+}
+
+/// floor(scale n / d), d > 0, scale below 2^24; n and d may have 120 bits. Limited to 2^60.
+pub fn floor_scaled(n: i128, d: i128, scale: i128) -> i128 {
+    let (whole, part) = (n.div_euclid(d).clamp(-1 << 36, 1 << 36), n.rem_euclid(d));
+    let (mut value, mut rest) = (whole * scale, 0);
+    for bit in (0..24).rev() {
+        rest = 2 * rest + (scale >> bit & 1) * part;
+        value += rest / d << bit;
+        rest %= d;
+    }
+    value
+}
+
 /// floor(scale n / D 2^exponent).
 pub fn floor_number(inputs: &Inputs, scale: i128) -> i128 {
     let (n, d, exponent) = (numerator(inputs) * scale, value(inputs, 6), value(inputs, 7));

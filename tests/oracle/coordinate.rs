@@ -99,6 +99,16 @@ impl Setup {
         [0, 2].into_iter().filter(|i| *i != dominant).map(|i| sample.e[i] * (x[i] * self.p[1] - self.p[i] * x[1])).sum()
     }
 
+    /// INT-4t: 2^24 times the numerator of x with weights that fall short, as a whole number and one over P_1.
+    ///
+    /// The edge functions of weights 0 and 2 count 2^24 - 1 times instead of 2^24 times where they fall short, and vertex 1 has what is left.
+    fn short(&self, sample: &Sample, x: [i128; 3]) -> [i128; 2] {
+        let (n, dominant) = self.weights(sample);
+        let falls = |k: usize| i128::from(!self.exact && k != 1 && k != dominant);
+        let whole = (0..3).map(|k| x[k] * sample.e[k] * ((1 << 24) - falls(k))).sum();
+        [whole, x[1] * (0..3).map(|k| falls(k) * n[k]).sum::<i128>()]
+    }
+
     /// Whether q is 1 at all vertices.
     fn is_plane(&self, set: usize) -> bool {
         self.component(set, 3) == [1.0; 3]
@@ -192,21 +202,26 @@ fn plane(setup: &Setup, sample: &Sample, set: usize, axis: usize, size: u32) -> 
     if tie && setup.lean(sample, g) > 0 { u - 1 } else { u }
 }
 
-/// TEX-15, ties as INT-4t has them.
+/// TEX-15 with weights that fall short (INT-4t).
 fn ratio(setup: &Setup, sample: &Sample, s: [i128; 3], q: [i128; 3], size: u32) -> i128 {
-    let (ns, nq) = (Setup::total(sample, s), Setup::total(sample, q));
-    if nq == 0 {
-        return ns.signum() * LIMIT;
+    let [n, d] = [s, q].map(|x| {
+        let [whole, part] = setup.short(sample, x);
+        whole * setup.p[1] + part
+    });
+    if d == 0 {
+        return n.signum() * LIMIT;
     }
+    let (n, d) = (n * d.signum(), d.abs());
+    // What is below 1 is multiplied bit by bit, so that nothing leaves 127 bits.
     let scale = 256 * i128::from(size);
-    let (value, tie) = floor_div(scale * ns, nq);
-    if tie && value > -LIMIT && value <= LIMIT {
-        let lean = setup.lean(sample, s) * scale - value * setup.lean(sample, q);
-        if nq.signum() * lean > 0 {
-            return value - 1;
-        }
+    let (whole, part) = (n.div_euclid(d), n.rem_euclid(d));
+    let (mut value, mut rest) = (0, 0);
+    for bit in (0..24).rev() {
+        rest = 2 * rest + (scale >> bit & 1) * part;
+        value = 2 * value + rest / d;
+        rest %= d;
     }
-    value.clamp(-LIMIT, LIMIT)
+    (value + whole.clamp(-2 * LIMIT, 2 * LIMIT) * scale).clamp(-LIMIT, LIMIT)
 }
 
 /// TSH-7's movement in 2^-24 of 1/256 texel.
@@ -223,17 +238,18 @@ fn moved_by(total: i128, d: i128, by: i128) -> Option<i128> {
     Some(whole + (by >> 24) + floor_div((rest << 24) + (by & 0xff_ffff) * d, d << 24).0)
 }
 
-/// TSH-7: s or t of a set, moved; q is not divided by.
+/// TSH-7: s or t of a set with weights that fall short (INT-4t), moved; q is not divided by.
 fn moved(setup: &Setup, sample: &Sample, set: usize, axis: usize, by: Exact, size: u32) -> i128 {
     let g = setup.plane(setup.component(set, axis), size);
-    let (total, by) = (Setup::total(sample, g), offset(by, size));
-    let u = moved_by(total, sample.d, by).unwrap_or(0).clamp(-LIMIT, LIMIT);
-    let (rest, down) = (total.rem_euclid(sample.d), sample.d << 24);
-    let tie = ((rest << 24) + (by & 0xff_ffff) * sample.d) % down == 0;
-    if tie && setup.lean(sample, g) > 0 { u - 1 } else { u }
+    let ([whole, part], by) = (setup.short(sample, g), offset(by, size));
+    // Both in 2^-24 of 1/256 texel; whole steps of the movement are added at last.
+    let (down, p) = (sample.d << 24, setup.p[1]);
+    let sum = whole + (by & 0xff_ffff) * sample.d;
+    let steps = sum.div_euclid(down) + (sum.rem_euclid(down) * p + part).div_euclid(down * p);
+    ((by >> 24) + steps).clamp(-LIMIT, LIMIT)
 }
 
-/// TEX-12, TEX-13: ties as for ratios.
+/// TEX-12, TEX-13; a tie leans as its numerator and denominator do.
 fn direction(setup: &Setup, sample: &Sample, three: [[i128; 3]; 3], size: u32) -> (usize, [i128; 2]) {
     let v = three.map(|x| Setup::total(sample, x));
     if v == [0; 3] {

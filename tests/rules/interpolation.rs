@@ -28,7 +28,7 @@ pub fn at(triangle: &Triangle, i: i64, j: i64) -> Sample<'_> {
 }
 
 fn settled(value: i64, lowered: bool) -> Settled {
-    Settled { value, lowered }
+    Settled { value, lowered: lowered.into() }
 }
 
 #[test]
@@ -85,18 +85,25 @@ fn examples_of_interpolation() {
     let int4t = example(
         "INT-4t",
         "pixel (10, 1), n = 64. s = (0, 0, 1): u would be 256 exactly, S = (1/64) 16384 > 0, so u = 255 and the nearest \
-         texel is 0. s = (0, 1, 0): u is 1792 exactly, S < 0, so u stays 1792.",
+         texel is 0. s = (0, 1, 0): u is 1792 exactly, S < 0, so u stays 1792. q = 2 at all vertices and s = (0, 0, 2): N_q \
+         loses nothing, N_s / N_q is 1/64 less 2^-24 of itself, u = floor(256 - 2^-16) = 255.",
     );
     let sample = at(&triangle, 10, 1);
     let plane = |s| triangle.coordinate(s, 64);
     let [third, second] = [plane([0.0, 0.0, 1.0]), plane([0.0, 1.0, 0.0])];
     int4t.gives("256 D", sample.sum(&third), 256 * i128::from(sample.d));
-    int4t.gives("64 b2", 64 * sample.n[2], sample.d).gives("S > 0", sample.truncation(&third) > 0, true);
+    int4t.gives("64 b2", 64 * sample.n[2], sample.d).gives("S > 0", sample.shortfall(&third) > 0, true);
     let u = sample.coordinate(&third);
     int4t.gives("u of (0, 0, 1)", u, settled(255, true)).gives("its texel", filter::nearest(u.value), 0);
     int4t.gives("1792 D", sample.sum(&second), 1792 * i128::from(sample.d));
-    int4t.gives("S < 0", sample.truncation(&second) < 0, true);
+    int4t.gives("S < 0", sample.shortfall(&second) < 0, true);
     int4t.gives("u of (0, 1, 0)", sample.coordinate(&second), settled(1792, false));
+    let [numerator, denominator, _] = triangle.direction([[0.0, 0.0, 2.0], [2.0; 3], [0.0; 3]]);
+    int4t.gives("the loss of N_q", sample.shortfall(&denominator), 0);
+    let parts = sample.sum(&numerator) * i128::from(triangle.p[1]);
+    int4t.gives("the loss of N_s in 2^-24 / P_1", sample.shortfall(&numerator), parts);
+    int4t.gives("64 N_s", 64 * sample.sum(&numerator), sample.sum(&denominator));
+    int4t.gives("u of the ratio", sample.ratio(&numerator, &denominator, 64), settled(255, true));
 
     let int6 = example("INT-6", "on `Nv10` w = 1 + 2^-20 counts as 1, w = 1 + 2^-15 as itself.");
     let p = |w: f32, profile| right_triangle(96.0, [w, 1.0, 1.0], profile).p;

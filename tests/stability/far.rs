@@ -79,7 +79,7 @@ fn u(covered: &Covered<'_>) -> (i64, i64) {
     };
     let settled = place.on(&covered.unit.levels[0])[0];
     // INT-4t takes an exact tie one step lower: that is the rule and no error.
-    let u = settled.value + i64::from(settled.lowered);
+    let u = settled.value + settled.lowered;
     // Everything as whole numbers: w, s and q of the scene are multiples of 2^-23, 2^-5 and 2^-5.
     let whole = |value: f32, bits: i32| (f64::from(value) * f64::from(bits).exp2()) as i128;
     let w = covered.w().map(|w| whole(w, 23));

@@ -134,6 +134,6 @@ fn errors(corners: [[f32; 2]; 3], w: [f64; 3]) -> [Errors; 2] {
 /// counts as exact.
 fn beyond(settled: Settled, exact: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
-    let error = (settled.value + i64::from(settled.lowered)) as f64 - exact;
+    let error = (settled.value + settled.lowered) as f64 - exact;
     if error > ROUNDING { error } else { (-error - 1.0 - ROUNDING).max(0.0) }
 }

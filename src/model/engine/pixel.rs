@@ -271,7 +271,7 @@ impl<'a> TriangleContext<'a> {
             }
             weights
         } else {
-            [Settled { value: 0, lowered: false }; 2]
+            [Settled { value: 0, lowered: 0 }; 2]
         };
         let lane = |n: usize| {
             let k = 2 * n;

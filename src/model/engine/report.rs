@@ -72,9 +72,9 @@ pub(super) fn weights<O: Observer>(
             plain(format!("P{k}"), sample.triangle.p[k]),
             plain(format!("E{k}"), sample.e[k]),
             plain("D", sample.d),
-            plain("lowered", i64::from(settled.lowered)),
+            plain("lowered", settled.lowered),
         ];
-        let (rule, note) = if settled.lowered {
+        let (rule, note) = if settled.lowered != 0 {
             ("INT-3", Some(format!("exact tie; weight {} dominates: one step lower", sample.dominant())))
         } else {
             ("INT-2", None)
@@ -187,8 +187,8 @@ impl TriangleContext<'_> {
                 let (g, exponent) = attribute.numbers();
                 let mut inputs = quotient(observer, "FOG-4", g);
                 inputs.push(given(observer, "FOG-4", "fog.G.exponent", exponent.into()));
-                inputs.push(plain("lowered", i64::from(q.lowered)));
-                let note = q.lowered.then(|| "exactly on a step: one step lower (INT-4t)".to_string());
+                inputs.push(plain("lowered", q.lowered));
+                let note = (q.lowered != 0).then(|| "exactly on a step: one step lower (INT-4t)".to_string());
                 observer.step(Step::given(FOG, "FOG-4", "fog.q", q.value).per(4096).by("fog_steps", inputs).note(note));
                 let operation = match mode {
                     FogMode::Exp => "fog_exp",

@@ -65,8 +65,8 @@ impl Sample<'_> {
     /// floor(2^bits times the value), ties as INT-4t has them, at a sample that the triangle covers.
     pub fn steps(&self, attribute: &Attribute, bits: i32) -> Settled {
         let (value, exact) = self.attribute(attribute).floor_steps(bits);
-        let lowered = exact && !self.triangle.exact_reciprocal && self.truncation(&attribute.g) > 0;
-        Settled { value: value - i64::from(lowered), lowered }
+        let lowered = i64::from(self.lowers_tie(exact, || self.shortfall(&attribute.g)));
+        Settled { value: value - lowered, lowered }
     }
 }
 

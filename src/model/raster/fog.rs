@@ -242,8 +242,8 @@ mod tests {
                 let numerator: i128 = (0..3).map(|k| i128::from(e[k]) * 4 * i128::from(sample.n[k])).sum();
                 let (floor, tie) = (numerator.div_euclid(sample.d.into()), numerator.rem_euclid(sample.d.into()) == 0);
                 let steps = sample.steps(&attribute, FACTOR_BITS);
-                prop_assert_eq!(i128::from(steps.value + i64::from(steps.lowered)), floor);
-                prop_assert!(tie || !steps.lowered);
+                prop_assert_eq!(i128::from(steps.value + steps.lowered), floor);
+                prop_assert!(tie || steps.lowered == 0);
             }
         }
     }

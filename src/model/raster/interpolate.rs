@@ -28,14 +28,18 @@ pub struct Sample<'a> {
     pub ideal: Option<[f64; 3]>,
 }
 
-/// A quotient's floor, and what a tie did to it.
+/// A quotient's floor, and what weights that fall short did to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settled {
     /// The result.
     pub value: i64,
-    /// The quotient was exact and the chip's truncation took it one step lower.
-    pub lowered: bool,
+    /// By how many steps that is lower than the floor of the exact quotient. 0 or 1 on a tie (INT-3, INT-4t); of coordinates divided by q (TEX-15)
+    /// or moved (TSH-7) also more, or less than none.
+    pub lowered: i64,
 }
+
+/// INT-4t: a weight that falls short does so by 2^-24 of itself.
+pub const SHORT_BITS: u32 = 24;
 
 /// Largest magnitude of a texel coordinate, 1/256 texel (RAS-0, TEX-15).
 pub const COORDINATE_LIMIT: i64 = super::TEXEL_LIMIT << 8;
@@ -61,17 +65,17 @@ impl<'a> Sample<'a> {
 
     #[inline(always)]
     fn weight(&self, k: usize) -> Settled {
-        let (value, exact) = quotient(i128::from(self.n[k]) << 8, self.d);
-        let lowered = exact && value > 0 && !self.triangle.exact_reciprocal && self.dominant() != k;
-        Settled { value: value - i64::from(lowered), lowered }
+        let (value, rest) = quotient(i128::from(self.n[k]) << 8, self.d);
+        let lowered = rest == 0 && value > 0 && !self.triangle.exact_reciprocal && self.dominant() != k;
+        Settled { value: value - i64::from(lowered), lowered: lowered.into() }
     }
 
     /// INT-4, INT-4t: floor(sum G E / D), 1/256 texel.
     #[inline(always)]
     pub fn coordinate(&self, g: &[i64; 3]) -> Settled {
-        let (value, exact) = quotient(self.sum(g), self.d);
-        let lowered = exact && !self.triangle.exact_reciprocal && self.truncation(g) > 0;
-        Settled { value: value - i64::from(lowered), lowered }
+        let (value, rest) = quotient(self.sum(g), self.d);
+        let lowered = i64::from(self.lowers_tie(rest == 0, || self.shortfall(g)));
+        Settled { value: value - lowered, lowered }
     }
 
     /// A factor in 4096ths, 0..=4096.
@@ -80,16 +84,30 @@ impl<'a> Sample<'a> {
         quotient(self.sum(g), self.d).0.clamp(0, 4096)
     }
 
-    /// TEX-15: 256 size s/q as a floor, 1/256 texel, limited to [`COORDINATE_LIMIT`]; q = 0 is infinite, 0/0 is 0. Ties as in INT-4t.
+    /// TEX-15: 256 size s/q as a floor, 1/256 texel, limited to [`COORDINATE_LIMIT`], of s and q with weights that fall short (INT-4t). By 0 it is
+    /// infinite; 0/0 is 0.
     pub fn ratio(&self, s: &[i64; 3], q: &[i64; 3], size: u32) -> Settled {
+        let (scale, limit) = (i128::from(size) << 8, i128::from(COORDINATE_LIMIT));
         let (ns, nq) = (self.sum(s), self.sum(q));
-        if nq == 0 {
-            return Settled { value: COORDINATE_LIMIT * ns.signum() as i64, lowered: false };
-        }
-        let scale = i128::from(size) << 8;
-        let (numerator, denominator) = if nq > 0 { (ns * scale, nq) } else { (-ns * scale, -nq) };
-        let direction = |value: i128| (self.truncation(s) * scale - value * self.truncation(q)) * nq.signum();
-        self.settled_ratio(numerator, denominator, direction)
+        let exact = match nq {
+            0 => limit * ns.signum(),
+            _ => (ns * scale * nq.signum()).div_euclid(nq.abs()),
+        };
+        let (loss_s, loss_q) = (self.shortfall(s), self.shortfall(q));
+        let unit = self.short_unit();
+        let (numerator, denominator) = (ns * unit - loss_s, nq * unit - loss_q);
+        // Not far from the quotient, or beyond the limit as it is.
+        let near = exact.clamp(-2 * limit, 2 * limit);
+        // scale numerator - near denominator, which has more than 127 bits only where the quotient is many times the limit.
+        let rest = (ns * scale - near * nq).checked_mul(unit);
+        let rest = rest.and_then(|rest| rest.checked_sub(loss_s * scale - near * loss_q));
+        let value = match rest {
+            _ if denominator == 0 => limit * numerator.signum(),
+            Some(rest) => near + (rest * denominator.signum()).div_euclid(denominator.abs()),
+            None => limit * numerator.signum() * denominator.signum(),
+        };
+        let value = value.clamp(-limit, limit) as i64;
+        Settled { value, lowered: exact.clamp(-limit, limit) as i64 - value }
     }
 
     /// TEX-12: 128 n (s + m)/m as a floor, 1/256 texel of a face of n texels, for a minor direction s and the major one m, which is not
@@ -97,23 +115,16 @@ impl<'a> Sample<'a> {
     pub fn face_coordinate(&self, s: &[i64; 3], m: &[i64; 3], size: u32) -> Settled {
         let (ns, nm) = (self.sum(s), self.sum(m));
         if nm <= 0 {
-            return Settled { value: 0, lowered: false };
+            return Settled { value: 0, lowered: 0 };
         }
         let scale = i128::from(size) << 7;
-        let (ts, tm) = (self.truncation(s), self.truncation(m));
-        self.settled_ratio((ns + nm) * scale, nm, |value| (ts + tm) * scale - value * tm)
-    }
-
-    /// A floor within the limit; one step lower if it is exact and `direction`, the way that truncation moves it, is down.
-    #[inline(always)]
-    fn settled_ratio(&self, numerator: i128, denominator: i128, direction: impl Fn(i128) -> i128) -> Settled {
-        let value = numerator.div_euclid(denominator);
-        if value.abs() > i128::from(COORDINATE_LIMIT) {
-            return Settled { value: COORDINATE_LIMIT * value.signum() as i64, lowered: false };
-        }
-        let tie = numerator.rem_euclid(denominator) == 0 && !self.triangle.exact_reciprocal;
-        let lowered = tie && value > -i128::from(COORDINATE_LIMIT) && direction(value) > 0;
-        Settled { value: value as i64 - i64::from(lowered), lowered }
+        let numerator = (ns + nm) * scale;
+        let value = numerator.div_euclid(nm);
+        let lowered = self.lowers_tie(numerator.rem_euclid(nm) == 0, || {
+            let (loss_s, loss_m) = (self.shortfall(s), self.shortfall(m));
+            (loss_s + loss_m) * scale - value * loss_m
+        });
+        Settled { value: value as i64 - i64::from(lowered), lowered: lowered.into() }
     }
 
     /// sum G_k E_k.
@@ -122,20 +133,41 @@ impl<'a> Sample<'a> {
         (0..3).map(|k| i128::from(g[k]) * i128::from(self.e[k])).sum()
     }
 
-    /// INT-4t: which way truncating the weights 0 and 2 moves a linear function; its sign is all that counts.
+    /// INT-4t: whether weights 0 and 2 fall short: those that do not dominate, unless the reciprocal is exact.
+    pub fn short(&self) -> [bool; 2] {
+        if self.triangle.exact_reciprocal {
+            return [false; 2];
+        }
+        let dominant = self.dominant();
+        [dominant != 0, dominant != 2]
+    }
+
+    /// INT-4t: what a linear function loses where weights 0 and 2 fall short and weight 1 takes up the difference, times 2^24 P_1.
     ///
-    /// Weight i, unless dominant, comes out a hair low and weight 1 takes up the difference: the function changes by
-    /// -eps sum b_i (u_i - u_1), which is -eps' times this sum of E_i (G_i P_1 - P_i G_1).
-    pub fn truncation(&self, g: &[i64; 3]) -> i128 {
-        let (p, dominant) = (&self.triangle.p, self.dominant());
+    /// With u_k = G_k / P_k that is 2^-24 b_i (u_i - u_1) of the quotient, for each weight i that falls short, which is 2^-24 / (P_1 D) times
+    /// E_i (G_i P_1 - P_i G_1).
+    pub fn shortfall(&self, g: &[i64; 3]) -> i128 {
+        let p = &self.triangle.p;
         [0, 2]
             .into_iter()
-            .filter(|i| *i != dominant)
-            .map(|i| {
+            .zip(self.short())
+            .filter(|(_, short)| *short)
+            .map(|(i, _)| {
                 let difference = i128::from(g[i]) * i128::from(p[1]) - i128::from(p[i]) * i128::from(g[1]);
                 difference * i128::from(self.e[i])
             })
             .sum()
+    }
+
+    /// INT-4t: whether a quotient is one step lower, given if it is exact and what its numerator loses.
+    #[inline(always)]
+    pub fn lowers_tie(&self, exact: bool, shortfall: impl FnOnce() -> i128) -> bool {
+        exact && !self.triangle.exact_reciprocal && shortfall() > 0
+    }
+
+    /// What a [shortfall](Self::shortfall) is divided by: P_1 2^24.
+    pub fn short_unit(&self) -> i128 {
+        i128::from(self.triangle.p[1]) << SHORT_BITS
     }
 }
 
@@ -165,13 +197,13 @@ pub(crate) fn most_dominant<T: PartialOrd + Copy>([a, b, c]: [T; 3]) -> [bool; 2
     [(a >= b) & (a > c), ((c > b) & (c >= a)) | all]
 }
 
-/// floor(n / d) and whether nothing remains. 0 < d < 2^62; limited to 2^26, which only samples outside the triangle reach.
+/// floor(n / d) and what remains. 0 < d < 2^62; limited to 2^26, which only samples outside the triangle reach, with something for a remainder.
 ///
 /// The 128-bit division is avoided: the top 35 bits of d estimate the quotient within one step, and the exact remainder settles it.
 #[inline(always)]
-fn quotient(n: i128, d: i64) -> (i64, bool) {
+fn quotient(n: i128, d: i64) -> (i64, i64) {
     if n.unsigned_abs() >> 26 >= u128::from(d.unsigned_abs()) {
-        return (n.signum() as i64 * (1 << 26), false);
+        return (n.signum() as i64 * (1 << 26), d);
     }
     let excess = (64 - d.leading_zeros()).saturating_sub(35);
     let mut value = ((n >> excess) as i64).div_euclid(d >> excess);
@@ -184,7 +216,7 @@ fn quotient(n: i128, d: i64) -> (i64, bool) {
         value += 1;
         remainder -= i128::from(d);
     }
-    (value, remainder == 0)
+    (value, remainder as i64)
 }
 
 #[cfg(test)]
@@ -201,7 +233,7 @@ mod tests {
             let remainder = ((d as f64 * r) as i64).min(d - 1);
             for remainder in [remainder, 0, d - 1] {
                 let n = i128::from(q) * i128::from(d) + i128::from(remainder);
-                prop_assert_eq!(quotient(n, d), (q, remainder == 0));
+                prop_assert_eq!(quotient(n, d), (q, remainder));
             }
         }
     }
@@ -221,7 +253,7 @@ mod tests {
                 let s = Sample::new(&t, t.edges(i, j));
                 let [w0, w2] = s.weights();
                 assert!(w0.value >= 0 && w2.value >= 0 && w0.value + w2.value <= 256);
-                lowered += i32::from(w0.lowered) + i32::from(w2.lowered);
+                lowered += w0.lowered + w2.lowered;
             }
         }
         assert!(lowered > 0);
@@ -234,7 +266,7 @@ mod tests {
             assert!(t.exact_reciprocal, "{w}");
             for j in 0..64 {
                 for i in 0..63 - j {
-                    assert!(Sample::new(&t, t.edges(i, j)).weights().iter().all(|w| !w.lowered), "{w}");
+                    assert!(Sample::new(&t, t.edges(i, j)).weights().iter().all(|w| w.lowered == 0), "{w}");
                 }
             }
         }
@@ -291,7 +323,7 @@ mod tests {
             for i in 0..100 {
                 let e = t.edges(i, j);
                 if t.covers(e) {
-                    assert_eq!(Sample::new(&t, e).coordinate(&g), Settled { value: 48 * 256, lowered: false });
+                    assert_eq!(Sample::new(&t, e).coordinate(&g), Settled { value: 48 * 256, lowered: 0 });
                 }
             }
         }

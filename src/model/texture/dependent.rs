@@ -8,7 +8,7 @@ use super::report::Report;
 use super::shader::{self, OFFSET_BITS};
 use super::shader_report;
 use super::unit::PlannedUnit;
-use crate::raster::interpolate::{COORDINATE_LIMIT, Sample, Settled};
+use crate::raster::interpolate::{COORDINATE_LIMIT, SHORT_BITS, Sample, Settled};
 use crate::state::{DependentScale, Level};
 use crate::trace::{Observer, Rule};
 
@@ -24,6 +24,9 @@ pub enum Target<'a> {
     /// A direction made by the dot unit (TSH-4, TSH-5).
     Vector([f32; 3]),
 }
+
+// One unit for both: 2^-24.
+const _: () = assert!(OFFSET_BITS == SHORT_BITS);
 
 /// TSH-7: planes of level 0 over D, and what they are moved by.
 #[derive(Clone, Copy, Debug)]
@@ -57,26 +60,26 @@ impl Moved<'_> {
         std::array::from_fn(|n| shader::offset(self.entries()[n], self.blue_green, sides[n]))
     }
 
-    /// INT-4 and INT-4t of the moved coordinate.
+    /// INT-4 of the moved coordinate, with weights that fall short (INT-4t).
     fn on(&self, unit: &PlannedUnit, level: &Level) -> [Settled; 2] {
         let (planes, offsets) = (self.planes(unit, level), self.offsets(unit, level));
         std::array::from_fn(|n| {
-            let (value, exact) = self.quotient(&planes[n], offsets[n], OFFSET_BITS);
-            let limit = i128::from(COORDINATE_LIMIT);
-            let lowered = exact
-                && value.abs() < limit
-                && !self.at.triangle.exact_reciprocal
-                && self.at.truncation(&planes[n]) > 0;
-            Settled { value: value.clamp(-limit, limit) as i64 - i64::from(lowered), lowered }
+            let (exact, rest) = self.quotient(&planes[n], offsets[n], OFFSET_BITS);
+            // The remainder is of 2^24 D, which the shortfall is of too.
+            let unit = i128::from(self.at.triangle.p[1]);
+            let short = rest * unit - self.at.shortfall(&planes[n]);
+            let floor = exact + short.div_euclid((i128::from(self.at.d) << OFFSET_BITS) * unit);
+            let limited = |value: i128| value.clamp(-i128::from(COORDINATE_LIMIT), COORDINATE_LIMIT.into()) as i64;
+            Settled { value: limited(floor), lowered: limited(exact) - limited(floor) }
         })
     }
 
-    /// floor((sum G E / D + offset / 2^24) 2^(24 - drop)), and whether nothing remains.
-    fn quotient(&self, planes: &[i64; 3], offset: i64, drop: u32) -> (i128, bool) {
+    /// floor((sum G E / D + offset / 2^24) 2^(24 - drop)), and what remains of D 2^drop.
+    fn quotient(&self, planes: &[i64; 3], offset: i64, drop: u32) -> (i128, i128) {
         let d = i128::from(self.at.d);
         let numerator = (self.at.sum(planes) << OFFSET_BITS) + i128::from(offset) * d;
         let denominator = d << drop;
-        (numerator.div_euclid(denominator), numerator.rem_euclid(denominator) == 0)
+        (numerator.div_euclid(denominator), numerator.rem_euclid(denominator))
     }
 }
 
@@ -102,7 +105,7 @@ impl Target<'_> {
     /// u and v on a level, 1/256 texel.
     pub fn on(&self, unit: &PlannedUnit, level: &Level) -> [Settled; 2] {
         let sides = unit.scale(level);
-        let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Settled { value: of(n), lowered: false });
+        let plain = |of: &dyn Fn(usize) -> i64| [0, 1].map(|n| Settled { value: of(n), lowered: 0 });
         match self {
             Target::Moved(moved) => moved.on(unit, level),
             Target::Bytes(bytes, scale) => plain(&|n| shader::dependent(bytes[n], sides[n], *scale)),

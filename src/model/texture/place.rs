@@ -2,7 +2,7 @@
 
 use super::cube::{Face, Signed};
 use super::lod::Quad;
-use super::report::Report;
+use super::report::{Report, shortfall};
 use super::shader_report;
 use super::unit::PlannedUnit;
 use crate::raster::attribute::Attribute;
@@ -124,7 +124,7 @@ pub trait Place {
 
     /// VOL-1: the place among so many layers, 1/256 layer. Only interpolated coordinates have one: 0.
     fn layer(&self, _layers: u32) -> Settled {
-        Settled { value: 0, lowered: false }
+        Settled { value: 0, lowered: 0 }
     }
     /// The ideal's r/q, likewise.
     fn real_r(&self) -> f64 {
@@ -316,7 +316,7 @@ impl Place for Interpolated<'_> {
         let shifts = self.unit.plane_shifts(level);
         let direction = self.tell_direction(report, observer);
         for (axis, letter) in ["u", "v"].into_iter().enumerate() {
-            let lowered = plain("lowered", i64::from(settled[axis].lowered));
+            let lowered = plain("lowered", settled[axis].lowered);
             let size = plain("size", i64::from(sides[axis]));
             let (rule, operation, mut inputs) = match self.coordinates {
                 Coordinates::Plane(g) => {
@@ -333,7 +333,10 @@ impl Place for Interpolated<'_> {
             inputs.extend(edges.clone());
             match self.coordinates {
                 Coordinates::Plane(_) => inputs.push(plain("D", self.at.d)),
-                Coordinates::Ratio(_) => inputs.push(size),
+                Coordinates::Ratio(_) => {
+                    inputs.push(size);
+                    inputs.extend(shortfall(self.at));
+                }
                 Coordinates::Direction(_) => {
                     inputs.push(plain(report.name("face"), self.face() as i64));
                     inputs.push(size);
@@ -368,8 +371,13 @@ impl Place for Interpolated<'_> {
             }
         };
         inputs.extend((0..3).map(|k| plain(format!("E{k}"), self.at.e[k])));
-        inputs.push(if q.is_some() { plain("size", i64::from(layers)) } else { plain("D", self.at.d) });
-        inputs.push(plain("lowered", i64::from(settled.lowered)));
+        if q.is_some() {
+            inputs.push(plain("size", i64::from(layers)));
+            inputs.extend(shortfall(self.at));
+        } else {
+            inputs.push(plain("D", self.at.d));
+        }
+        inputs.push(plain("lowered", settled.lowered));
         let ideal = real_coordinate(self.real_r(), layers);
         report.coordinate(rule, "w", settled, ideal, (operation, inputs), observer);
     }

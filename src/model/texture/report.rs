@@ -7,7 +7,7 @@ use super::lod::{Choice, Quad};
 use super::unit::PlannedUnit;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
-use crate::raster::interpolate::Settled;
+use crate::raster::interpolate::{Sample, Settled};
 use crate::rop::blend::compare_operation;
 use crate::state::{
     AddressMode, ColorKey, ColorKeyMode, DepthFormat, Filter, MipFilter, Named, ShadowComparison, ShadowReference,
@@ -25,6 +25,13 @@ pub struct Report<'a> {
     pub unit: &'a PlannedUnit,
     /// Put before the names of what happens on the second of two levels: `"next."`.
     pub prefix: &'a str,
+}
+
+/// INT-4t: the weights of the vertices, and whether weights 0 and 2 fall short of their shares.
+pub fn shortfall(at: &Sample<'_>) -> Vec<Operand> {
+    let [first, third] = at.short().map(i64::from);
+    let weights = (0..3).map(|k| plain(format!("P{k}"), at.triangle.p[k]));
+    weights.chain([plain("short0", first), plain("short2", third)]).collect()
 }
 
 impl Report<'_> {
@@ -63,7 +70,10 @@ impl Report<'_> {
         (operation, inputs): (&'static str, Vec<Operand>),
         observer: &mut O,
     ) {
-        let note = settled.lowered.then(|| "exactly on a 1/256 texel: one step lower (INT-4t)".to_string());
+        let note = (settled.lowered != 0).then(|| match rule {
+            "TEX-15" | "TSH-7" => "weights fall short: another 1/256 texel (INT-4t)".to_string(),
+            _ => "exactly on a 1/256 texel: one step lower (INT-4t)".to_string(),
+        });
         observer.step(
             Step::given(&self.block(), rule, self.name(letter), settled.value)
                 .per(256)

@@ -3,7 +3,7 @@
 use super::chain::{Color, Dot};
 use super::dependent::{Dependent, Target};
 use super::dot::Reflection;
-use super::report::Report;
+use super::report::{Report, shortfall};
 use super::shader::OFFSET_BITS;
 use crate::combiner::registers::channel_name;
 use crate::number::Lane;
@@ -290,7 +290,8 @@ pub(super) fn coordinates<O: Observer>(
                 inputs.extend((0..3).map(|k| plain(format!("E{k}"), moved.at.e[k])));
                 inputs.push(plain("D", moved.at.d));
                 inputs.push(Operand { per_one, ..plain(offset_name, offset) });
-                inputs.push(plain("lowered", i64::from(settled[axis].lowered)));
+                inputs.extend(shortfall(&moved.at));
+                inputs.push(plain("lowered", settled[axis].lowered));
                 ("TSH-7", "floor_plane_moved", inputs)
             }
             Target::Bytes(bytes, scale) => {

@@ -3,6 +3,7 @@
 
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::raster::ideal;
+use ninebit::raster::interpolate::SHORT_BITS;
 use ninebit::state::{
     ExpandCentre, FogMode, HalfBiasConstant, OutputRounding, Profile, RegisterFloor, TriangleVertices,
 };
@@ -36,13 +37,13 @@ pub fn of(rule: Rule, plan: &Plan) -> Option<(f64, f64)> {
         }
         Rule::Int2 => symmetric(2.5 + 2.0 * 255.0 * weights(plan)),
         // A floor, one step lower on a tie, and what the weights are off.
-        Rule::Int4 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
+        Rule::Int4 => Some((-1.0 - coordinate_slack(plan, 0.0), coordinate_slack(plan, 0.0))),
         Rule::Tex12 | Rule::Tex15 | Rule::Tex9 | Rule::Tex17 => None,
         // The ideal follows these coordinates: only the floor is left, and the last bits of float64.
         Rule::Tsh4 | Rule::Tsh6 => Some((-1.0 - 1e-6, 1e-6)),
         // A quotient by q magnifies what weights are off, as in TEX-15.
         Rule::Tsh7 if projects(plan) => None,
-        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan), coordinate_slack(plan))),
+        Rule::Tsh7 => Some((-1.0 - coordinate_slack(plan, SHORT), coordinate_slack(plan, SHORT))),
         Rule::Tsh8 => Some((-1.0 - 255.0 / 4096.0, 255.0 / 4096.0)),
         Rule::Tsh9 => {
             let slack = number_slack(plan) + 255.0 / 4096.0;
@@ -93,11 +94,14 @@ fn weights(plan: &Plan) -> f64 {
     triangles(plan).map(|(draw, vertices)| relative(plan, draw, vertices)).fold(0.0, f64::max)
 }
 
-/// How far weights that are off move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle times their
-/// relative error, twice because their sum is off as well.
-fn coordinate_slack(plan: &Plan) -> f64 {
+/// INT-4t: how much of a weight is missing.
+const SHORT: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
+
+/// How far weights that are off, and so much besides, move a texture coordinate, in 256ths of a texel: the span of the coordinate over a triangle
+/// times their relative error, twice because their sum is off as well.
+fn coordinate_slack(plan: &Plan, besides: f64) -> f64 {
     let slack = triangles(plan).flat_map(|(draw, vertices)| {
-        let relative = relative(plan, draw, vertices);
+        let relative = relative(plan, draw, vertices) + besides;
         draw.units.iter().flat_map(move |unit| {
             let sets = vertices.coordinates(unit.stage.coordinate_set);
             let sides = unit.scale(&unit.levels[0]);

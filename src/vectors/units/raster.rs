@@ -183,7 +183,7 @@ impl Unit for ColorWeights {
         results[..3].copy_from_slice(&sample.e);
         results[3..6].copy_from_slice(&triangle.p);
         for (n, weight) in weights.into_iter().enumerate() {
-            (results[6 + n], results[8 + n]) = (weight.lowered.into(), weight.value);
+            (results[6 + n], results[8 + n]) = (weight.lowered, weight.value);
         }
     }
 
@@ -371,7 +371,7 @@ impl Unit for TextureCoordinate {
         let g = triangle.coordinate([11, 12, 13].map(|n| f32::from_bits(inputs[n] as u32)), inputs[14] as u32);
         let u = sample.coordinate(&g);
         results[..3].copy_from_slice(&g);
-        (results[3], results[4]) = (u.lowered.into(), u.value);
+        (results[3], results[4]) = (u.lowered, u.value);
     }
 
     fn reach(&self, _: &[i64], _: &[i64]) -> Reach {

@@ -5,9 +5,13 @@ use super::Sampler;
 use super::fetch::Numbers;
 use super::planes::Plane;
 use super::quotient::{Line, Positions, SLACK, Scaled, estimate_two, nearest, prove, whole};
+use super::short::{Short, floors};
 use super::triangle::{Bounds, Piece, Setup};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
+
+/// What an estimate of a coordinate divided by q may be off by, 1/256 texel.
+const COARSEST: f64 = 0.125;
 
 /// The face that all three vertices look at, none of them along its edge: so does everything between them.
 pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
@@ -154,7 +158,7 @@ impl Setup<'_> {
         self.quotients::<FMA, ROW>(piece, sampler, [along, down, m], widest, margin, bounds, numbers, faces)
     }
 
-    /// TEX-15 of a piece, s, t and a positive q: two more quotients. `reach` is more than their magnitudes, in images. `false`: nothing would
+    /// TEX-15 of a piece, s, t and a positive q: two more quotients, of what weights that fall short leave. `reach` is more than their magnitudes, in images. `false`: nothing would
     /// be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
@@ -166,6 +170,7 @@ impl Setup<'_> {
         reach: f64,
         looking: &Looking,
         bounds: &Bounds,
+        short: &mut Short,
         numbers: &mut [Numbers<i32>; 2],
         faces: &mut Numbers<u32>,
     ) -> bool {
@@ -176,7 +181,26 @@ impl Setup<'_> {
         // The error of s or t, that of q as often as it is in the quotient, once more what is taken off, and as much again.
         let margin = 8.0 * looking.error * most * (1.0 + reach) * widest;
         let lines = [s.times(width), t.times(height), q];
-        self.quotients::<FMA, ROW>(piece, sampler, lines, widest, margin, bounds, numbers, faces)
+        if self.context.triangle.exact_reciprocal {
+            return self.quotients::<FMA, ROW>(piece, sampler, lines, widest, margin, bounds, numbers, faces);
+        }
+        // Also refuses what is no number.
+        let proves = margin < COARSEST;
+        if !proves {
+            return false;
+        }
+        short.keep::<FMA, ROW>(piece.at, lines, self.losses_by_q(planes, [width, height]));
+        let (lanes, [u, v], Short { at, close, .. }) = (piece.at.x.len(), &mut *numbers, short);
+        floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[piece.lanes()]);
+        floors(&at[1][..lanes], margin, sampler.bias(), close, &mut v[piece.lanes()]);
+        let mut any = 0;
+        for close in &close[..lanes] {
+            any |= close;
+        }
+        for n in (0..piece.count).filter(|n| any >> 63 != 0 && close[*n] >> 63 != 0) {
+            self.defined_lane(piece, n, sampler, numbers, faces);
+        }
+        true
     }
 
     /// What a linear function that is positive at all vertices is not below in a piece.

@@ -6,6 +6,7 @@ use super::kernels::LANES;
 use super::planes::{Plane, inverse};
 use super::quads::{AtQuads, Known, Measure, Quads, floor};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
+use super::short::Short;
 use super::table::{Placed, Table};
 use super::triangle::{Bounds, Piece, Planes, Setup};
 use super::{Reason, Sampler};
@@ -83,6 +84,7 @@ impl Setup<'_> {
         e: &[i64; 3],
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
+        short: &Short,
         (quads, placing): (&mut Quads, &mut Placing),
         reads: &mut Reads,
     ) {
@@ -101,8 +103,18 @@ impl Setup<'_> {
         }
         let (at, denominator) = (piece.at, ground.denominator);
         let [at_u, at_v] = &mut placing.at;
-        quotients::<FMA, ROW>(at, [ground.along, ground.down, denominator], &mut at_u[..lanes], &mut at_v[..lanes]);
+        let (lines, (u, v)) = ([ground.along, ground.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
+        let mut opens = false;
         placing.open[..lanes].fill(false);
+        if let Some(losses) = ground.losses {
+            short.divide::<FMA, ROW>(at, lines, losses, [u, v]);
+            for (open, close) in placing.open[..piece.count].iter_mut().zip(&short.close) {
+                *open = close >> 63 != 0;
+                opens |= *open;
+            }
+        } else {
+            quotients::<FMA, ROW>(at, lines, u, v);
+        }
         let [low, high] =
             choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[piece.lanes()]);
         for which in 0..2 {
@@ -110,7 +122,6 @@ impl Setup<'_> {
             reads.coordinates[which][0][piece.lanes()].fill(0);
             reads.coordinates[which][1][piece.lanes()].fill(0);
         }
-        let mut opens = false;
         for level in low..=high {
             let shifts = unit.plane_shifts(&unit.levels[level as usize]);
             let Placing { at, lods, levels, read, close, open } = &mut *placing;
@@ -158,8 +169,8 @@ impl Setup<'_> {
     fn settled(&self, piece: Piece<'_>, n: usize, plane: &Plane, e: &[i64; 3], value: i32) -> i32 {
         let (x, y) = (i64::from(piece.at.x[n].min(piece.at.last)), i64::from(piece.at.y[n]));
         let (floor, exact) = floor(plane.exact(e).at(x, y), self.denominator.exact(e).at(x, y), i64::from(value));
-        let lowered = exact && plane.lowers(&self.context.triangle) && self.sample(piece, n).truncation(&plane.g) > 0;
-        floor as i32 - i32::from(lowered)
+        let ties = exact && plane.lowers(&self.context.triangle);
+        floor as i32 - i32::from(ties && self.sample(piece, n).shortfall(&plane.g) > 0)
     }
 
     /// The planes of a level.

@@ -5,6 +5,7 @@
 //! | `node.rs`, `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
 //! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `color.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `short.rs` | what weights that fall short take off coordinates that are divided by q or moved |
 //! | `third.rs` | layers of volumes, depths to compare with |
 //! | `small.rs` | the same for small triangles, four functions at a time |
 //! | `steady.rs` | rows with one denominator: quotients by steps, exact |
@@ -38,6 +39,7 @@ mod planes;
 mod quads;
 mod quotient;
 mod shader;
+mod short;
 mod small;
 mod stages;
 mod steady;

@@ -6,6 +6,7 @@ use super::fetch::Numbers;
 use super::kernels::LANES;
 use super::planes::Plane;
 use super::quotient::{Line, SLACK, whole};
+use super::short::Losses;
 use super::triangle::{Bounds, Piece, Planes, Setup, whole_steps};
 use super::{BLOCK, Reason, Sampler};
 use crate::texture::cube::Face;
@@ -99,6 +100,8 @@ pub(super) struct Ground<'p> {
     pub(super) behind: bool,
     /// Where exact remainders decide what is not proved.
     pub(super) planes: Option<&'p [Plane; 2]>,
+    /// What the three functions lose where weights fall short (TEX-15).
+    pub(super) losses: Option<[Losses; 3]>,
 }
 
 impl Setup<'_> {
@@ -136,6 +139,7 @@ impl Setup<'_> {
                     face: Face::PositiveX,
                     behind: false,
                     planes: Some(planes),
+                    losses: None,
                 };
                 (ground, range)
             }
@@ -153,7 +157,8 @@ impl Setup<'_> {
                     _ => false,
                 };
                 let face = Face::PositiveX;
-                (Ground { along, down, denominator: q, off, floors: 0.0, face, behind, planes: None }, range)
+                let losses = (!self.context.triangle.exact_reciprocal).then(|| self.losses_by_q(planes, sides));
+                (Ground { along, down, denominator: q, off, floors: 0.0, face, behind, planes: None, losses }, range)
             }
             Planes::Direction(planes, face) => {
                 let looking = Looking::around(planes, real, columns, rows);
@@ -173,7 +178,8 @@ impl Setup<'_> {
                 let lines = [looking.component(s), looking.component(t)].map(|line| line.plus(m).times(size));
                 let [along, down] = lines;
                 let behind = false;
-                (Ground { along, down, denominator: m, off, floors: 0.0, face, behind, planes: None }, range)
+                let losses = None;
+                (Ground { along, down, denominator: m, off, floors: 0.0, face, behind, planes: None, losses }, range)
             }
             Planes::Other | Planes::Shared => return None,
         };

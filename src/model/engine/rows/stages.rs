@@ -8,10 +8,10 @@ use super::band::{Block, Run};
 use super::dot::{self, Floats};
 use super::fetch;
 use super::kernels::{LANES, Row};
-use super::levels::quotients;
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, nearest_32, position};
 use super::shader::{Number, Purpose, Shader, byte_of};
+use super::short::Short;
 use super::triangle::{Bounds, Piece, Setup};
 use super::{BLOCK, Compiled, Job, Reason, Sampler};
 use crate::combiner::registers::Registers;
@@ -98,6 +98,7 @@ pub(super) struct Workshop {
     /// Those that do not.
     same: Vec<Floats>,
     moved: Vec<Moved>,
+    short: Box<Short>,
     open: Box<Open>,
     /// First lane and number of the block's triangles.
     triangles: Vec<(usize, usize)>,
@@ -164,6 +165,9 @@ impl Setup<'_> {
                 }
             }
         }
+        if !attributes.moved.is_empty() {
+            self.fall_short::<FMA, ROW>(piece, (&real, denominator), &bounds, &mut work.short);
+        }
         for (planes, moved) in attributes.moved.iter().zip(&mut work.moved) {
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
             let offs = [self.margin::<ROW>(&planes[0], &real, &bounds), self.margin::<ROW>(&planes[1], &real, &bounds)];
@@ -173,8 +177,13 @@ impl Setup<'_> {
             if !proves {
                 open.fill(1);
             }
-            moved.off[piece.lanes()].fill(if proves { off } else { 0.0 });
-            quotients::<FMA, ROW>(piece.at, lines, &mut moved.u[piece.lanes()], &mut moved.v[piece.lanes()]);
+            let losses = [planes[0].losses(self), planes[1].losses(self), [0.0; 2]];
+            for (to, close) in moved.off[piece.lanes()].iter_mut().zip(&work.short.close) {
+                // Where it is too close to call which weights fall short, nothing is proved.
+                *to = if close >> 63 != 0 { 1.0 } else { off };
+            }
+            let at = [&mut moved.u[piece.lanes()], &mut moved.v[piece.lanes()]];
+            work.short.divide::<FMA, ROW>(piece.at, lines, losses, at);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::direction::{Looking, positive};
 use super::fetch::{Numbers, entry};
 use super::planes::Plane;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position};
+use super::short::Short;
 use super::table::{self, Axis};
 use super::triangle::{Bounds, Piece, Planes, Setup, Varying};
 use super::{Compiled, Reason, Sampler};
@@ -133,13 +134,14 @@ impl Setup<'_> {
         bounds: &Bounds,
         varying: &mut Varying,
     ) {
-        let Varying { faces, references, layers, whole, .. } = varying;
+        let Varying { faces, references, layers, whole, short, .. } = varying;
         let all = compiled.samplers.iter().zip(&self.thirds).zip(faces).zip(references);
         for (((sampler, planes), faces), references) in all {
             match (&sampler.third, planes) {
                 (Some(Third::Layer(counts, axis)), ThirdPlanes::Layer(planes)) => {
                     let lines = (real, denominator);
-                    self.layers::<FMA, ROW>(piece, counts, planes, e, lines, bounds, layers, faces, &mut whole[0]);
+                    let work = (&mut **short, &mut whole[0]);
+                    self.layers::<FMA, ROW>(piece, counts, planes, e, lines, bounds, layers, faces, work);
                     let (layers, faces) = (&mut layers[0][piece.lanes()], &mut faces[piece.lanes()]);
                     axis.reduce(layers);
                     for (face, layer) in faces.iter_mut().zip(layers) {
@@ -171,7 +173,7 @@ impl Setup<'_> {
         bounds: &Bounds,
         layers: &mut [Numbers<i32>; 2],
         faces: &mut Numbers<u32>,
-        whole: &mut Numbers<i32>,
+        (short, whole): (&mut Short, &mut Numbers<i32>),
     ) {
         let done = match planes {
             Planes::Plane(planes) => {
@@ -183,7 +185,7 @@ impl Setup<'_> {
             }
             Planes::Ratio(planes, reach) => {
                 let looking = Looking::new(planes, real, bounds);
-                self.projected::<FMA, ROW>(piece, counts, planes, *reach, &looking, bounds, layers, faces)
+                self.projected::<FMA, ROW>(piece, counts, planes, *reach, &looking, bounds, short, layers, faces)
             }
             _ => false,
         };

@@ -13,6 +13,7 @@ use super::quads::Quads;
 use super::quotient::{
     Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
 };
+use super::short::Short;
 use super::stages::Attributes;
 use super::steady::SteadyRow;
 use super::taps::Footprints;
@@ -97,6 +98,8 @@ pub(super) struct Varying {
     /// Of a small triangle.
     pub(super) reciprocals: Reciprocals,
     pub(super) whole: [Numbers<i32>; 2],
+    /// Where something is divided by q.
+    pub(super) short: Box<Short>,
 }
 
 impl Default for Varying {
@@ -117,6 +120,7 @@ impl Default for Varying {
             narrow: [[0; LANES]; 2],
             reciprocals: Reciprocals::default(),
             whole: [[0; LANES]; 2],
+            short: Box::default(),
         }
     }
 }
@@ -252,14 +256,21 @@ impl<'a> Setup<'a> {
         } else {
             self.bounds::<FMA, ROW>(piece, &real, denominator)
         };
+        let by_q = |planes: &Planes| matches!(planes, Planes::Ratio(..));
+        if self.samplers.iter().any(by_q)
+            || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if by_q(of)))
+        {
+            self.fall_short::<FMA, ROW>(piece, (&real, denominator), &bounds, &mut varying.short);
+        }
         // In a loop of its own: what compilers compute before it is left out where nothing is divided by D.
         let divided = if ROW && varying.steady.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
             if sampler.mixes {
-                let Varying { reads, quads, placing, .. } = &mut *varying;
+                let Varying { reads, quads, placing, short, .. } = &mut *varying;
                 let work = (&mut **quads, &mut **placing);
                 let Some(reads) = reads.get_mut(n) else { continue };
-                self.levels::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, work, reads);
+                let lines = (&real, denominator);
+                self.levels::<FMA, ROW>(piece, (sampler, planes), &e, lines, &bounds, short, work, reads);
             } else if let (Planes::Plane(planes), false) = (planes, ROW && varying.steady.samplers[n].1) {
                 let Varying { coordinates, whole, .. } = &mut *varying;
                 let lanes = piece.lanes();
@@ -292,8 +303,10 @@ impl<'a> Setup<'a> {
                 Planes::Ratio(planes, reach) => {
                     let (numbers, faces) = (&mut varying.coordinates[n], &mut varying.faces[n]);
                     let looking = Looking::new(planes, &real, &bounds);
-                    let done =
-                        self.projected::<FMA, ROW>(piece, sampler, planes, *reach, &looking, &bounds, numbers, faces);
+                    let short = &mut varying.short;
+                    let done = self.projected::<FMA, ROW>(
+                        piece, sampler, planes, *reach, &looking, &bounds, short, numbers, faces,
+                    );
                     if !done {
                         self.defined(piece, sampler, numbers, faces);
                     }
@@ -481,7 +494,7 @@ impl<'a> Setup<'a> {
             settle::<ROW>(piece.at, top, bottom, plane.small(self.bits), values, whole);
             if plane.lowers(&self.context.triangle) {
                 for k in (0..piece.count).filter(|k| whole[*k] != 0) {
-                    values[k] -= i32::from(self.sample(piece, k).truncation(&plane.g) > 0);
+                    values[k] -= i32::from(self.sample(piece, k).shortfall(&plane.g) > 0);
                 }
             }
         }
