@@ -214,7 +214,7 @@ fn apply(operation: &str, inputs: &[(String, Number)], policies: &Value) -> Opti
             let limit = 1 << 24;
             let floor = |s: i128, q: i128| match q {
                 0 => limit * s.signum(),
-                _ => shader::floor_scaled(s * q.signum(), q.abs(), 256 * v(9)).clamp(-limit, limit),
+                _ => shader::floor_of_product(s * q.signum(), q.abs(), 256 * v(9)).clamp(-limit, limit),
             };
             let value = floor(shader::short_of_unit(inputs, 0, 6, 10), shader::short_of_unit(inputs, 3, 6, 10));
             if floor(s, q) - value != v(15) {

@@ -38,7 +38,7 @@ pub fn short_of_unit(inputs: &Inputs, x: usize, e: usize, p: usize) -> i128 {
 }
 
 /// floor(scale n / d), d > 0, scale below 2^24; n and d may have 120 bits. Limited to 2^60.
-pub fn floor_scaled(n: i128, d: i128, scale: i128) -> i128 {
+pub fn floor_of_product(n: i128, d: i128, scale: i128) -> i128 {
     let (whole, part) = (n.div_euclid(d).clamp(-1 << 36, 1 << 36), n.rem_euclid(d));
     let (mut value, mut rest) = (whole * scale, 0);
     for bit in (0..24).rev() {

@@ -1,6 +1,7 @@
 //! Examples of the section "Texture units".
 
 use crate::handbook::example;
+use crate::interpolation::{at, of_the_section};
 use crate::pixel::{Pixel, covering, scene};
 use ninebit::state::*;
 use ninebit::texture::address::address;
@@ -72,12 +73,24 @@ fn examples_of_texture_units() {
 
     let tex15 = example(
         "TEX-15",
-        "s = 1, q = 2 at all vertices, n = 64: u = 64 * 256 / 2 = 8192, texel 32. q = 0 and s = 1: u = 2^24.",
+        "s = 1, q = 2 at all vertices, n = 64: u = 64 * 256 / 2 = 8192, texel 32. q = 0 and s = 1: u = 2^24. The section's \
+         triangle, pixel (10, 1), s = 1: q = (0, 1, -7) is 0 there and loses -2^-27, so it is above 0: u = 2^24; q = (0, -1, 7) \
+         is below: u = -2^24.",
     );
     let projected = |q: f32| sampled(TextureFormat::L8, &[0; 64], 1.0, q, |_| {});
     tex15.gives("u of 1/2", projected(2.0).value("unit0.u"), 8192);
     tex15.gives("texel of 1/2", projected(2.0).value("unit0.x"), 32);
     tex15.gives("u of 1/0", projected(0.0).value("unit0.u"), 1 << 24);
+    let triangle = of_the_section();
+    let sample = at(&triangle, 10, 1);
+    for (sign, value) in [(1.0, 1 << 24), (-1.0, -1 << 24)] {
+        let [s, q, one] = triangle.direction([[1.0; 3], [0.0, sign, -7.0 * sign], [1.0; 3]]);
+        tex15.gives("q", sample.sum(&q), 0);
+        // -2^-27 of 1.
+        let loss = -sign as i128 * sample.sum(&one) * i128::from(triangle.p[1]);
+        tex15.gives("8 times its loss", 8 * sample.shortfall(&q), loss);
+        tex15.gives("u", sample.ratio(&s, &q, 64).value, value);
+    }
 
     let tex16 = example("TEX-16", "TEXTURE1 of a draw without a second texture is (0, 0, 0, 255).");
     let unbound = Draw { combiners: Combiners::showing(FinalRegister::Texture1), ..covering(Vertex::default()) };
