@@ -119,6 +119,71 @@ fn weights_of_eight_bits_show_as_a_wide_bar() {
     }
 }
 
+/// Scenes of rules that have no policy: their bands of 48 rows, the first of which is the card's, and what the model says of its draw.
+const OPEN: [(&str, u32, &[&str]); 6] = [
+    ("DEP-6-slope", 5, &["NB0402"]),
+    ("FOG-3-third", 4, &[]),
+    ("KEY-1-filter", 4, &["NB0402"]),
+    ("SHD-1-filter", 4, &["NB0402"]),
+    ("TEX-17-weights", 3, &[]),
+    ("TEX-7-border", 3, &["NB0317"]),
+];
+const BAND: u32 = 48;
+
+/// A band of a picture.
+fn band(picture: &Rgba, number: u32) -> Rgba {
+    let pixels = picture.width as usize * BAND as usize;
+    let first = number as usize * pixels;
+    Rgba { height: BAND, pixels: picture.pixels[first..first + pixels].to_vec(), ..picture.clone() }
+}
+
+#[test]
+fn bands_of_open_questions_look_different() {
+    for (name, bands, refused) in OPEN {
+        let loaded = scene::load(&folder().join(format!("{name}.ron")), &Limits::default()).unwrap();
+        assert!(loaded.warnings.is_empty(), "{name}: {}", loaded.render_warnings(false));
+        let picture = picture(&loaded.plan, "", 0);
+        assert_eq!(picture.height, bands * BAND, "{name}");
+        let all: Vec<Rgba> = (0..bands).map(|number| band(&picture, number)).collect();
+        for (n, a) in all.iter().enumerate().skip(1) {
+            for (m, b) in all.iter().enumerate().skip(n + 1) {
+                assert!(apart(a, b) >= 900, "{name}: bands {} and {}: {}", n + 1, m + 1, apart(a, b));
+            }
+        }
+        // What the model does not refuse is its own reading, which comes first.
+        if refused.is_empty() {
+            assert_eq!(all[0].pixels, all[1].pixels, "{name}");
+        } else {
+            assert!(
+                all[0].pixels.iter().all(|pixel| *pixel == all[0].pixels[0]),
+                "{name}: somebody draws the card's band"
+            );
+        }
+    }
+}
+
+/// The card's draw stands in the scene behind `// ? `, and the model refuses it for what the scene asks, and for nothing else.
+#[test]
+fn open_questions_are_refused_by_name() {
+    for (name, _, refused) in OPEN {
+        let text = std::fs::read_to_string(folder().join(format!("{name}.ron"))).unwrap();
+        assert_eq!(text.matches("// ? ").count(), usize::from(!refused.is_empty()), "{name}");
+        let path = Path::new("question.ron");
+        let asked = scene::parse(&text.replace("// ? ", ""), path, &Limits::default());
+        let rule = name.rsplit_once('-').unwrap().0;
+        match asked {
+            Ok(loaded) => assert!(refused.is_empty() && loaded.warnings.is_empty(), "{name}"),
+            Err(error) => {
+                for finding in &error.diagnostics {
+                    assert!(refused.contains(&finding.code), "{name}: {error}");
+                    assert_eq!(finding.rule, Some(rule), "{name}: {error}");
+                }
+                assert!(!refused.is_empty(), "{name}: {error}");
+            }
+        }
+    }
+}
+
 /// What `docs/hardware.md` says becomes of a capture: replay names the policy that draws it.
 #[test]
 fn a_capture_is_recognised() {
