@@ -32,6 +32,35 @@ fn hexadecimal_numbers() {
     }
 }
 
+/// Units of the vectors: inputs as tables write them, refused by name where a column does not take them or a chip has no such unit.
+#[test]
+fn units() {
+    let stencil = "unit stencil-test --in function=greater --in fail=Keep --in depth_fail=Invert --in pass=Increment --in reference=0x80 \
+                   --in mask=255 --in in.stored=127";
+    let whole = format!("op {stencil} --in write_mask=15 --in depth_passes=1");
+    let text = Bench::new().run(&whole).text();
+    assert_eq!(text, "stencil-test, profile Nv2a\n  result: mid.operation Increment  out.passes 1  out.stored 112\n");
+    let json: Value = serde_json::from_str(&Bench::new().run(&format!("{whole} --format json")).text()).unwrap();
+    assert_eq!((&json["operation"], &json["results"]["out.stored"]), (&"stencil-test".into(), &112.into()));
+    let failed = |arguments: &str, says: &str| Bench::new().run(&format!("op {arguments}")).failed(2, says);
+    failed(stencil, "`in.write_mask` is not given");
+    failed(&format!("{stencil} --in write_mask=256"), "write a whole number from 0 to 255");
+    failed(&format!("{stencil} --in function=Sometimes"), "one of Never, Less");
+    failed(&format!("{stencil} --in light=1"), "has no input `light`");
+    failed("unit volume-layer --profile nv10 --in mode=Wrap", "Nv10 has no unit `volume-layer`");
+    failed("unit level", "there is no such unit");
+    let beyond = "unit depth-word --profile nv10 --in format=Z16F --in mantissa=1 --in exponent=0";
+    failed(beyond, "does not take these inputs together");
+    let word = "unit depth-word --in format=Z16F --in mantissa=3 --in exponent=-1";
+    assert_eq!(Bench::new().run(&format!("op {word}")).text(), "depth-word, profile Nv2a\n  result: out.word 007800\n");
+    let bench = Bench::new();
+    bench.write("rows.tsv", "format\tmantissa\texponent\nZ16\t5\t-1\nZ24S8F\t3\t-1\n");
+    let text = bench.run("op unit depth-word --inputs rows.tsv").text();
+    assert_eq!(text, "format\tmantissa\texponent\tresult.out.word\nZ16\t5\t-1\t000002\nZ24S8F\t3\t-1\t7f8000\n");
+    bench.write("broken.tsv", "format\tmantissa\texponent\nZ17\t5\t-1\n");
+    bench.run("op unit depth-word --inputs broken.tsv").failed(3, "`Z17` is not one of Z16, Z24S8");
+}
+
 #[test]
 fn products_and_sums() {
     assert_eq!(result(PRODUCT, "spare0.r"), 78);

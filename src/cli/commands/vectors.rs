@@ -82,7 +82,7 @@ impl From<VectorError> for Failure {
 }
 
 /// A chip lacks a unit.
-fn lacks(unit: &dyn Unit, profile: Profile) -> Failure {
+pub(super) fn lacks(unit: &dyn Unit, profile: Profile) -> Failure {
     Failure::usage(
         format!("{} has no unit `{}`", profile.name(), unit.name()),
         "`ninebit vectors list` says which chips have a unit",
@@ -90,7 +90,7 @@ fn lacks(unit: &dyn Unit, profile: Profile) -> Failure {
 }
 
 /// Reads the name of a unit.
-fn unit(name: &str) -> Result<&'static dyn Unit, String> {
+pub(super) fn unit(name: &str) -> Result<&'static dyn Unit, String> {
     units::by_name(name).ok_or_else(|| {
         let known: Vec<&str> = units::all().into_iter().map(Unit::name).collect();
         format!("there is no such unit; the units are {}", known.join(", "))

@@ -7,7 +7,7 @@
 mod check;
 mod fold;
 mod liveness;
-mod windows;
+pub mod windows;
 
 use crate::combiner::final_combiner::PlannedFinal;
 use crate::combiner::general::PlannedStage;

@@ -6,7 +6,7 @@ use std::ops::Range;
 /// The target's pixels that surface clip, scissor and window clip leave: rectangles none of which is empty, from the top down.
 ///
 /// A pixel is drawn alike whichever rectangle it lies in, so the engines draw one after the other and test nothing.
-pub(super) fn windows(draw: &Draw, target: &Target) -> Vec<Rectangle> {
+pub fn windows(draw: &Draw, target: &Target) -> Vec<Rectangle> {
     let whole = Rectangle { x: 0, y: 0, width: target.width, height: target.height };
     let bounds = [target.clip, draw.scissor].into_iter().flatten().fold(whole, common);
     if bounds.width == 0 || bounds.height == 0 {

@@ -160,7 +160,7 @@ fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer
 
 /// VOL-1: the layer of a volume. `None`: beyond them, in the border.
 #[inline(always)]
-fn layer<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer: &mut O) -> Option<usize> {
+pub fn layer<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer: &mut O) -> Option<usize> {
     let settled = place.layer(unit.layers);
     let of = |w: i64| address(unit.state.address_r, nearest(w), unit.layers, false).map(|layer| layer as usize);
     let real = || of(floored(real_coordinate(place.real_r(), unit.layers)));

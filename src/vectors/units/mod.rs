@@ -1,8 +1,10 @@
 //! The units that vectors are made of, in the order of the pipe.
 
 mod block;
+mod clip;
 mod combiner;
 mod combiner_stage;
+mod depth;
 pub(super) mod final_combiner;
 mod fog;
 mod number;
@@ -10,7 +12,9 @@ mod pixel_shader;
 mod program;
 mod raster;
 mod rop;
+mod sampling;
 mod shader;
+mod stencil;
 mod texel;
 mod texture;
 mod texture_environment;
@@ -28,10 +32,15 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &number::VertexSnap,
         &number::Depth,
         &raster::Coverage,
+        &clip::Clip,
         &raster::ColorWeights,
         &raster::ColorInterpolation,
         &raster::TextureCoordinate,
         &raster::DepthInterpolation,
+        &depth::PixelDepth,
+        &depth::WBuffer,
+        &depth::DepthRange,
+        &depth::DepthWord,
         &fog::LightUnit,
         &fog::FogFactor,
         &fog::FogTable,
@@ -41,8 +50,13 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &texture::Bilinear,
         &texture::CubeFace,
         &texture::LevelChoice,
+        &sampling::AnisotropyTaps,
+        &sampling::CylindricalWrap,
+        &sampling::VolumeLayer,
         &texel::TexelExpansion,
         &texel::CompressedBlock,
+        &sampling::ColorKey,
+        &sampling::ShadowComparison,
         &shader::Remap,
         &shader::DotProduct,
         &shader::BumpOffset,
@@ -64,6 +78,7 @@ pub fn all() -> Vec<&'static dyn Unit> {
         &texture_environment::Combine,
         &pixel_shader::Instruction,
         &rop::AlphaTest,
+        &stencil::StencilTest,
         &rop::Blend,
         &rop::SurfaceStore,
         &rop::SurfaceLoad,

@@ -14,14 +14,14 @@ const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];
 const FARTHEST: i64 = 640 * 16;
 
 /// Three positions in 1/16 pixel, and a pixel.
-fn geometry() -> Vec<Column> {
+pub(super) fn geometry() -> Vec<Column> {
     let mut columns = POSITIONS.map(|name| Column::signed(name, 17, 0, FARTHEST)).to_vec();
     columns.extend(["in.column", "in.row"].map(|name| Column::unsigned(name, 10, 640)));
     columns
 }
 
 /// Moves the pixel into the triangle's box, and a third of the triangles to whole pixels and a small size, where edges and ties are met.
-fn fit(inputs: &mut [i64]) {
+pub(super) fn fit(inputs: &mut [i64]) {
     let (positions, pixel) = inputs.split_at_mut(6);
     let mixed = positions.iter().fold(0, |sum, n| (sum * 31 + n) & 0xffff);
     if mixed % 3 == 0 {
@@ -47,7 +47,7 @@ fn sixteenths(n: i64) -> f32 {
 }
 
 /// The triangle; `w` are the bits of three floats, if perspective counts.
-fn triangle(inputs: &[i64], w: Option<&[i64]>, profile: Profile) -> Option<Triangle> {
+pub(super) fn triangle(inputs: &[i64], w: Option<&[i64]>, profile: Profile) -> Option<Triangle> {
     let positions = [0, 1, 2].map(|n| {
         let w = w.map_or(1.0, |w| f32::from_bits(w[n] as u32));
         [sixteenths(inputs[2 * n]), sixteenths(inputs[2 * n + 1]), 0.0, w]
@@ -56,7 +56,7 @@ fn triangle(inputs: &[i64], w: Option<&[i64]>, profile: Profile) -> Option<Trian
 }
 
 /// Whether the pixel is covered.
-fn is_covered(inputs: &[i64], profile: Profile) -> bool {
+pub(super) fn is_covered(inputs: &[i64], profile: Profile) -> bool {
     triangle(inputs, None, profile).is_some_and(|t| t.covers(t.edges(inputs[6], inputs[7])))
 }
 

@@ -11,7 +11,7 @@ fn channels() -> Vec<Column> {
 }
 
 /// The formats for which `wanted` holds, as a column.
-fn formats(wanted: fn(TextureFormat) -> bool) -> Column {
+pub(super) fn formats(wanted: fn(TextureFormat) -> bool) -> Column {
     // Depths, which come last, are compared and not expanded.
     let count = TextureFormat::ALL.iter().take_while(|format| format.depth().is_none()).count();
     let all = &TextureFormat::ALL[..count];

@@ -12,6 +12,25 @@ use ninebit::texture::{address, filter, lod, shader};
 
 const SIZES: [i64; 9] = [1, 2, 3, 4, 17, 64, 100, 256, 4096];
 
+/// Unit 0 with a texture of this format, of two dimensions and one texel.
+pub(super) fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit {
+    let (levels, face_words) = Level::chain(format, 1, 1, 1, false);
+    PlannedUnit {
+        index: 0,
+        state,
+        stage: ShaderStage::conventional(0, true),
+        kind: TextureKind::TwoDimensional,
+        format,
+        levels,
+        face_words,
+        layers: 1,
+        border: false,
+        dithered: false,
+        palette: None,
+        live: 15,
+    }
+}
+
 /// Mode, size, and a coordinate in 1/256 texel.
 fn addressing() -> Vec<Column> {
     vec![
@@ -329,8 +348,6 @@ impl Unit for LevelChoice {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        let (width, levels) = (1 << 9, inputs[3] as u32);
-        let (levels, face_words) = Level::chain(TextureFormat::A8R8G8B8, width, width, levels, false);
         let state = TextureUnit {
             min_filter: named(inputs[0]),
             mag_filter: named(inputs[1]),
@@ -340,20 +357,9 @@ impl Unit for LevelChoice {
             max_lod: inputs[6] as i32,
             ..TextureUnit::new(0)
         };
-        let unit = PlannedUnit {
-            index: 0,
-            state,
-            stage: ShaderStage::conventional(0, true),
-            kind: TextureKind::TwoDimensional,
-            format: TextureFormat::A8R8G8B8,
-            levels,
-            face_words,
-            layers: 1,
-            border: false,
-            dithered: false,
-            palette: None,
-            live: 15,
-        };
+        let side = 1 << 9;
+        let (levels, face_words) = Level::chain(TextureFormat::A8R8G8B8, side, side, inputs[3] as u32, false);
+        let unit = PlannedUnit { levels, face_words, ..planned(state, TextureFormat::A8R8G8B8) };
         let log2_ratio = lod::log2_ratio(Some([[0, 0], [inputs[7], inputs[8]], [inputs[9], inputs[10]]]));
         let biased = lod::biased(&unit, log2_ratio);
         let choice = lod::choose(&unit, biased);

@@ -13,6 +13,7 @@ mod inputs;
 mod operation;
 mod program;
 mod table;
+mod unit;
 pub(crate) mod words;
 
 use clap::{Args, Subcommand};
@@ -53,6 +54,8 @@ pub(crate) enum Command {
     Address(address::Arguments),
     /// A look-up in a cube map: face, coordinates, texels
     Cube(cube::Arguments),
+    /// Any unit of the conformance vectors: stencil test, depth words, interpolation and so on
+    Unit(unit::Arguments),
 }
 
 /// The chip.
@@ -73,5 +76,6 @@ pub(crate) fn run(command: &Command, context: Context) -> Result<(), Failure> {
         Command::Filter(arguments) => filter::run(arguments),
         Command::Address(arguments) => address::run(arguments, context),
         Command::Cube(arguments) => cube::run(arguments, context),
+        Command::Unit(arguments) => unit::run(arguments),
     }
 }

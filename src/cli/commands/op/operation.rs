@@ -16,7 +16,8 @@ use serde_json::{Map, Value, json};
 
 use super::super::Format;
 use super::super::exit::Failure;
-use super::{inputs, table};
+use super::inputs::{self, number};
+use super::table;
 
 /// Options of every operation.
 #[derive(Debug, Args)]
@@ -55,6 +56,11 @@ pub(super) trait Operation {
     /// The command's name.
     const NAME: &'static str;
 
+    /// What results are headed with.
+    fn name(&self) -> &str {
+        Self::NAME
+    }
+
     /// What it takes.
     fn columns(&self) -> &[Column];
 
@@ -71,6 +77,22 @@ pub(super) trait Operation {
     /// How to give a column on the command line.
     fn how_to_give(&self, column: &Column) -> String {
         format!("write `--in {}=N`", column.name)
+    }
+
+    /// The value of a column that a text means, if the column takes it.
+    fn read(&self, column: usize, text: &str) -> Option<i64> {
+        number(text).filter(|value| self.columns()[column].range.contains(value))
+    }
+
+    /// What a column takes.
+    fn wants(&self, column: usize) -> String {
+        let range = &self.columns()[column].range;
+        format!("a whole number from {} to {}", range.start(), range.end())
+    }
+
+    /// Whether values of all columns go together; if not, what is wrong.
+    fn check(&self, _values: &[i64]) -> Result<(), String> {
+        Ok(())
     }
 
     /// Runs it on one value for each column.
@@ -104,6 +126,9 @@ fn one<T: Operation>(operation: &T, format: Format) -> Result<String, Failure> {
         let missing = || Failure::usage(format!("`{}` is not given", column.name), operation.how_to_give(column));
         values.push(column.value.ok_or_else(missing)?);
     }
+    operation
+        .check(&values)
+        .map_err(|message| Failure::usage(message, "`ninebit vectors export` shows rows that go together"))?;
     let mut recorder = Recorder::default();
     let results = operation.run(&values, &mut recorder);
     let mut steps = given(operation.columns(), &values, &recorder.steps);
@@ -117,7 +142,7 @@ fn one<T: Operation>(operation: &T, format: Format) -> Result<String, Failure> {
             };
             let value = json!({
                 "format": "ninebit-op-1",
-                "operation": T::NAME,
+                "operation": operation.name(),
                 "profile": profile,
                 "policies": policies,
                 "steps": steps_value(&steps),
@@ -152,10 +177,12 @@ fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
 fn text<T: Operation>(operation: &T, steps: &[Step], results: &Results) -> String {
     let mut out = String::new();
     if let Some((profile, policies)) = operation.chip() {
-        let _ = writeln!(out, "{}, profile {}", T::NAME, profile.name());
+        let _ = writeln!(out, "{}, profile {}", operation.name(), profile.name());
         out.push_str(&policies_text(&policies));
     }
-    out.push_str(&steps_text(steps));
+    if !steps.is_empty() {
+        out.push_str(&steps_text(steps));
+    }
     if results.is_empty() {
         out.push_str("  result: nothing is written\n");
         return out;

@@ -140,20 +140,13 @@ fn row(
         return Err(format!("{} {plural}, the header has {}", fields.len(), columns.len()));
     }
     for (index, (field, column)) in fields.iter().zip(columns).enumerate() {
-        let wanted = &operation.columns()[*column].range;
-        let value = super::inputs::number(field).filter(|value| wanted.contains(value)).ok_or_else(|| {
+        values[*column] = operation.read(*column, field).ok_or_else(|| {
             let field: String = field.chars().take(40).collect();
-            let range = format!("{} to {}", wanted.start(), wanted.end());
-            format!(
-                "column {} (`{}`): `{}` is not a whole number from {range}",
-                index + 1,
-                names[index],
-                shown::name(&field)
-            )
+            let wanted = operation.wants(*column);
+            format!("column {} (`{}`): `{}` is not {wanted}", index + 1, names[index], shown::name(&field))
         })?;
-        values[*column] = value;
     }
-    Ok(())
+    operation.check(values)
 }
 
 /// Broken rows.

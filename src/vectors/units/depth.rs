@@ -1,0 +1,354 @@
+//! What becomes of a depth: offset, range, the word that is stored; and w buffers.
+
+use super::named;
+use super::raster::{fit, geometry, is_covered, triangle};
+use crate::column::{Column, Kind};
+use crate::unit::{Conditions, Reach, Unit};
+use ninebit::raster::depth::{Binary, DepthPlane, ranged, slope, word};
+use ninebit::raster::setup::Triangle;
+use ninebit::state::{self, CompareFunction, DepthFormat, DepthTest, Profile, VertexDepths};
+
+const Z: [&str; 3] = ["in.z0", "in.z1", "in.z2"];
+
+fn float(bits: i64) -> f32 {
+    f32::from_bits(bits as u32)
+}
+
+fn floats(inputs: &[i64]) -> [f32; 3] {
+    std::array::from_fn(|n| float(inputs[n]))
+}
+
+/// A test of depths in steps of the buffer.
+fn test() -> DepthTest {
+    DepthTest { vertex_depths: VertexDepths::Steps, ..DepthTest::new(CompareFunction::Always, true) }
+}
+
+/// A triangle, where any will do.
+fn any() -> Option<Triangle> {
+    Triangle::new([[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]], true, Profile::Nv2a)
+}
+
+/// Whether the chip has the depth format of that number.
+fn has(format: i64, profile: Profile) -> bool {
+    profile == Profile::Nv2a || !named::<DepthFormat>(format).is_float()
+}
+
+/// Powers of two between which a format's words lie apart: the first, and how many.
+fn powers(format: i64) -> (i64, i64) {
+    match named::<DepthFormat>(format) {
+        DepthFormat::Z16 => (2, 14),
+        DepthFormat::Z24S8 => (8, 16),
+        DepthFormat::Z16F => (-6, 15),
+        DepthFormat::Z24S8F => (-20, 40),
+    }
+}
+
+/// A float with the sign and fraction of `bits`, which say its power of two as well: one of `count` from the first.
+fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
+    bits & 0x807f_ffff | (127 + first + (bits >> 3) % count) << 23
+}
+
+/// The word of a depth.
+#[derive(Debug)]
+pub(super) struct DepthWord;
+
+impl Unit for DepthWord {
+    fn name(&self) -> &'static str {
+        "depth-word"
+    }
+
+    fn about(&self) -> &'static str {
+        "the word that stands for a depth of mantissa 2^exponent steps, in a format"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["DEP-3"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        vec![
+            Column::choice::<DepthFormat>("cfg.format"),
+            Column::signed("in.mantissa", 32, -(1 << 31), (1 << 31) - 1),
+            Column::signed("in.exponent", 9, -180, 110),
+        ]
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.word", Kind::Hex(24))]
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // 1.5; 2^-7; 600; the largest of each format, and what is next to it.
+        let numbers = [
+            [3, -1],
+            [1, -7],
+            [1, -6],
+            [600, 0],
+            [8191, -4],
+            [1, 9],
+            [0xffff, 0],
+            [0x1_ffff, -1],
+            [0x1_0000, 0],
+            [0xff_ffff, 0],
+            [0x100_0000, 0],
+            [0x1_ffff, 103],
+            [1, 127 - 17],
+            [1, -126],
+            [1, -127],
+            [-1, 0],
+        ];
+        (0..4).flat_map(|format| numbers.map(|[mantissa, exponent]| vec![format, mantissa, exponent])).collect()
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        // Mostly depths that no end of the format limits.
+        if inputs[2] & 7 != 0 {
+            inputs[1] = inputs[1].max(-inputs[1] / 2);
+            let bits = 64 - i64::from(inputs[1].leading_zeros());
+            let (first, count) = powers(inputs[0]);
+            inputs[2] = first + 1 - bits + inputs[2].rem_euclid(count);
+        }
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        has(inputs[0], profile)
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        results[0] = word(named(inputs[0]), Binary { mantissa: inputs[1], exponent: inputs[2] as i32 }).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// The range of depths.
+#[derive(Debug)]
+pub(super) struct DepthRange;
+
+impl Unit for DepthRange {
+    fn name(&self) -> &'static str {
+        "depth-range"
+    }
+
+    fn about(&self) -> &'static str {
+        "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["DEP-3", "DEP-4"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![
+            Column::choice::<DepthFormat>("cfg.format"),
+            Column::flag("cfg.clamps"),
+            Column::flag("cfg.drops_triangles"),
+        ];
+        let names = ["in.lowest", "in.highest", "in.z0", "in.z1", "in.z2", "in.depth"];
+        columns.extend(names.map(|name| Column::float(name, true, 26)));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![
+            Column::result("mid.drawn", Kind::Unsigned(1)),
+            Column::result("out.kept", Kind::Unsigned(1)),
+            Column::result("out.word", Kind::Hex(24)),
+        ]
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // The handbook's examples, and all that a depth can be to two limits.
+        let bits = |n: f32| i64::from(n.to_bits());
+        let depths = [99.5, 100.0, 100.25, 200.0, 200.5].map(bits);
+        let rows = [[201.0, 202.0, 250.0], [1.0, 2.0, 99.0], [99.0, 100.0, 99.0], [200.0, 201.0, 300.0]]
+            .into_iter()
+            .flat_map(|z| depths.map(|depth| [&[bits(100.0), bits(200.0)][..], &z.map(bits), &[depth]].concat()));
+        rows.flat_map(|row| [[0, 0], [0, 1], [1, 0], [1, 1]].map(|cfg| [&[1][..], &cfg, &row].concat())).collect()
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let format = inputs[0];
+        for input in &mut inputs[3..] {
+            if *input & 7 != 0 {
+                *input = sized(*input, powers(format)) & 0x7fff_ffff;
+            }
+        }
+        if float(inputs[3]) > float(inputs[4]) {
+            inputs.swap(3, 4);
+        }
+        // At a limit.
+        match inputs[8] & 15 {
+            0 => inputs[8] = inputs[3],
+            1 => inputs[8] = inputs[4],
+            2 => inputs[5] = inputs[3],
+            3 => inputs[6] = inputs[4],
+            _ => {}
+        }
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        has(inputs[0], profile) && float(inputs[3]) <= float(inputs[4])
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let format = named(inputs[0]);
+        let [clamps, drops_triangles] = [inputs[1] != 0, inputs[2] != 0];
+        let range = state::DepthRange { lowest: float(inputs[3]), highest: float(inputs[4]), clamps, drops_triangles };
+        let test = DepthTest { range: Some(range), ..test() };
+        let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, (floats(&inputs[5..8]), [1.0; 3])));
+        let kept = plane.and_then(|_| ranged(Some(&range), Binary::new(float(inputs[8]))));
+        let word = kept.map_or(0, |depth| word(format, depth));
+        results.copy_from_slice(&[plane.is_some().into(), kept.is_some().into(), word.into()]);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// A pixel's depth, with bias and slope.
+#[derive(Debug)]
+pub(super) struct PixelDepth;
+
+impl Unit for PixelDepth {
+    fn name(&self) -> &'static str {
+        "pixel-depth"
+    }
+
+    fn about(&self) -> &'static str {
+        "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["DEP-1", "DEP-3", "DEP-5"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = geometry();
+        columns.push(Column::choice::<DepthFormat>("cfg.format"));
+        columns.extend(Z.map(|name| Column::float(name, false, 24)));
+        columns.push(Column::float("in.bias", true, 16));
+        columns.push(Column::float("in.factor", true, 8));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![
+            Column::result("mid.slope", Kind::Unsigned(60)),
+            Column::result("mid.exponent", Kind::Signed(10)),
+            Column::result("out.word", Kind::Hex(24)),
+        ]
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        fit(inputs);
+        // Depths that the formats hold, and mostly offsets that leave them there.
+        let (factor, (first, count)) = (inputs[13], powers(inputs[8]));
+        for z in &mut inputs[9..12] {
+            *z = sized(*z, (first + count / 2, count / 2)) & 0x7fff_ffff;
+        }
+        if factor & 3 != 0 {
+            inputs[12] = if factor & 4 != 0 { 0 } else { sized(inputs[12], (first, count)) };
+            inputs[13] = if factor & 0x30 == 0 { 0 } else { sized(factor, (-3, 6)) };
+        }
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        has(inputs[8], profile) && is_covered(inputs, profile)
+    }
+
+    fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
+        let Some(triangle) = triangle(inputs, None, conditions.profile) else { return results.fill(0) };
+        let (format, z) = (named(inputs[8]), floats(&inputs[9..12]));
+        let offset = state::PolygonOffset { bias: float(inputs[12]), factor: float(inputs[13]) };
+        let plane = DepthPlane::new(&DepthTest { offset, ..test() }, format, &triangle, (z, [1.0; 3]));
+        let slope = slope(&triangle, z);
+        let depth = plane.unwrap_or_default().at(triangle.edges(inputs[6], inputs[7]));
+        results.copy_from_slice(&[slope.mantissa, slope.exponent.into(), word(format, depth).into()]);
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
+
+/// A pixel of a w buffer.
+#[derive(Debug)]
+pub(super) struct WBuffer;
+
+impl Unit for WBuffer {
+    fn name(&self) -> &'static str {
+        "w-buffer"
+    }
+
+    fn about(&self) -> &'static str {
+        "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)"
+    }
+
+    fn rules(&self) -> &'static [&'static str] {
+        &["DEP-3", "DEP-6"]
+    }
+
+    fn inputs(&self) -> Vec<Column> {
+        let mut columns = vec![Column::choice::<DepthFormat>("cfg.format")];
+        columns.extend(["in.e0", "in.e1", "in.e2"].map(|name| Column::unsigned(name, 30, (1 << 30) - 1)));
+        columns.extend(["in.w0", "in.w1", "in.w2"].map(|name| Column::float(name, false, 25)));
+        columns.push(Column::float("in.bias", true, 16));
+        columns
+    }
+
+    fn results(&self) -> Vec<Column> {
+        vec![Column::result("out.word", Kind::Hex(24))]
+    }
+
+    fn regressions(&self) -> Vec<Vec<i64>> {
+        // Pixels of captured buffers: TriH and LargeZ.
+        let steep = [325.0_f32, 325.0, 58.0];
+        let large = [16_777_046.0_f32, 16_777_047.0, 16_777_047.0];
+        let captured = [
+            ([408_448, 51_072, 51_200], steep),
+            ([229_504, 153_216, 128_000], steep),
+            ([24_448, 51_072, 435_200], steep),
+            ([1_556_480, 24_637_440, 52_449_280], large),
+            ([13_025_280, 24_637_440, 40_980_480], large),
+        ];
+        let rows = captured.into_iter().map(|(e, w)| [&[1][..], &e, &w.map(|w| i64::from(w.to_bits())), &[0]].concat());
+        rows.collect()
+    }
+
+    fn fit(&self, inputs: &mut [i64]) {
+        let shift = inputs[7] & 15;
+        for edge in &mut inputs[1..4] {
+            *edge >>= shift;
+        }
+        // Near each other, and a bias seldom.
+        let (first, count) = powers(inputs[0]);
+        let nearest = first + (inputs[7] >> 4) % (count - 4);
+        for w in &mut inputs[4..7] {
+            *w = sized(*w, (nearest.max(-20), 5));
+        }
+        if inputs[7] & 0x30 != 0 {
+            inputs[7] = 0;
+        }
+    }
+
+    fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
+        // RAS-0 has no smaller w.
+        has(inputs[0], profile) && inputs[1..4].iter().any(|e| *e > 0) && inputs[4..7].iter().all(|w| *w >= 107 << 23)
+    }
+
+    fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
+        let (format, w) = (named(inputs[0]), floats(&inputs[4..7]));
+        let offset = state::PolygonOffset { bias: float(inputs[7]), factor: 0.0 };
+        let test = DepthTest { w_buffer: true, offset, ..test() };
+        let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, ([0.0; 3], w)));
+        results[0] = word(format, plane.unwrap_or_default().at([1, 2, 3].map(|n| inputs[n]))).into();
+    }
+
+    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+        Reach::Geometry
+    }
+}
