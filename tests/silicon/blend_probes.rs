@@ -4,6 +4,7 @@ use crate::probes::{Answers, single};
 use crate::sheet::{ALPHA_ONLY, OVER, RGB_ONLY, Sheet, bind, cell, copy, opaque};
 use crate::table::{Row, bytes};
 use ninebit::state::*;
+use std::collections::BTreeMap;
 
 /// A drawing sequence of the blend tests, on a texel.
 #[derive(Clone, Copy)]
@@ -178,6 +179,33 @@ pub fn alpha_test(rows: &[Row]) -> Answers {
         tested.alpha_test = row.flag("enabled").then(|| AlphaTest { function: row.named("function"), reference: 127 });
         tested.blend = Some(OVER);
         sheet.draw(tested);
+    }
+    single(sheet.show(frame, rows.len()))
+}
+
+/// color-key: a texel behind a key, over a background.
+pub fn color_key(rows: &[Row]) -> Answers {
+    let mut sheet = Sheet::new();
+    let frame = sheet.target(SurfaceFormat::A8R8G8B8, [0; 4]);
+    let mut textures = BTreeMap::new();
+    for format in [TextureFormat::A8R8G8B8, TextureFormat::X8R8G8B8] {
+        textures.insert(format.name(), sheet.texels_of(format, rows.iter().map(|row| row.bytes("texel"))));
+    }
+    for (n, row) in rows.iter().enumerate() {
+        sheet.draw(cell(frame, n, row.bytes("background")));
+        let mut keyed = cell(frame, n, [255; 4]);
+        bind(&mut keyed, 0, textures[row.text("format")]);
+        if let Some(unit) = &mut keyed.textures[0] {
+            let key = || ColorKey { color: row.bytes("key"), mode: row.named("mode") };
+            unit.color_key = (row.text("mode") != "-").then(key);
+        }
+        keyed.combiners = Combiners::showing(FinalRegister::Texture0);
+        if row.flag("blended") {
+            keyed.blend = Some(OVER);
+        } else {
+            opaque(&mut keyed);
+        }
+        sheet.draw(keyed);
     }
     single(sheet.show(frame, rows.len()))
 }

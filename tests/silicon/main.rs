@@ -21,3 +21,4 @@ mod raster_probes;
 mod settings;
 mod sheet;
 mod table;
+mod unit_probes;

@@ -47,11 +47,16 @@ impl Sheet {
 
     /// A texture of one texel a probe.
     pub fn texels(&mut self, texels: impl Iterator<Item = [u8; 4]>) -> usize {
+        self.texels_of(TextureFormat::A8R8G8B8, texels)
+    }
+
+    /// The same in a format whose words have the channels where A8R8G8B8 has them.
+    pub fn texels_of(&mut self, format: TextureFormat, texels: impl Iterator<Item = [u8; 4]>) -> usize {
         let mut words: Vec<u32> = texels.map(|[r, g, b, a]| u32::from_be_bytes([a, r, g, b])).collect();
         words.resize(WIDTH, 0);
         let (width, words) = (WIDTH as u32, words.into());
         let texels = Texels { width, height: 1, levels: 1, layers: 1, border: false, words };
-        self.texture(TextureFormat::A8R8G8B8, TextureImage::Texels(texels))
+        self.texture(format, TextureImage::Texels(texels))
     }
 
     fn texture(&mut self, format: TextureFormat, image: TextureImage) -> usize {

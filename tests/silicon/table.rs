@@ -42,6 +42,11 @@ impl Row {
         &self.fields[at]
     }
 
+    /// The columns and what stands in them.
+    pub fn fields(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.columns.iter().map(String::as_str).zip(self.fields.iter().map(String::as_str))
+    }
+
     /// A number.
     pub fn number<T: std::str::FromStr>(&self, column: &str) -> T {
         let text = self.text(column);
