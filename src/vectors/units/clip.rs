@@ -18,17 +18,11 @@ fn rectangle(inputs: &[i64]) -> Rectangle {
 }
 
 impl Unit for Clip {
-    fn name(&self) -> &'static str {
-        "clip"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "clip",
+        &["CLP-1", "CLP-2"],
         "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CLP-1", "CLP-2"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::names("cfg.window_clip", &["Off", "Inclusive", "Exclusive"])];

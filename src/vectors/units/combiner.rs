@@ -34,17 +34,11 @@ fn written(raw: <i32 as Lane>::Full, conditions: &Conditions) -> i64 {
 pub(super) struct InputMapping;
 
 impl Unit for InputMapping {
-    fn name(&self) -> &'static str {
-        "input-mapping"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "input-mapping",
+        &["CMB-2", "CMB-3", "CMB-4", "CMB-5"],
         "a register through one of the eight input mappings becomes a factor"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-2", "CMB-3", "CMB-4", "CMB-5"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::choice::<state::InputMapping>("cfg.mapping"), Column::register("in.x")]
@@ -69,17 +63,11 @@ impl Unit for InputMapping {
 pub(super) struct Product;
 
 impl Unit for Product {
-    fn name(&self) -> &'static str {
-        "product"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "product",
+        &["CMB-6", "NUM-2", "NUM-3"],
         "AB: the product of two factors, rounded to the nearest 255th, saturated"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-6", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::factor("in.a"), Column::factor("in.b")]
@@ -114,17 +102,11 @@ impl Unit for Product {
 pub(super) struct Sum;
 
 impl Unit for Sum {
-    fn name(&self) -> &'static str {
-        "sum"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "sum",
+        &["CMB-7", "NUM-2", "NUM-3"],
         "AB + CD: the sum of two products at full width, rounded once, saturated"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-7", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         ["in.a", "in.b", "in.c", "in.d"].map(Column::factor).to_vec()
@@ -162,17 +144,11 @@ impl Unit for Sum {
 pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
-    fn name(&self) -> &'static str {
-        "dot-product"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "dot-product",
+        &["CMB-8", "NUM-2", "NUM-3"],
         "A . B: the sum of three products at full width, rounded once, saturated"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-8", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         ["in.a.r", "in.a.g", "in.a.b", "in.b.r", "in.b.g", "in.b.b"].map(Column::factor).to_vec()
@@ -199,17 +175,7 @@ impl Unit for DotProduct {
 pub(super) struct Mux;
 
 impl Unit for Mux {
-    fn name(&self) -> &'static str {
-        "mux"
-    }
-
-    fn about(&self) -> &'static str {
-        "whether the mux takes CD, by the most or the least significant bit of SPARE0.a"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-10"]
-    }
+    known_as!("mux", &["CMB-10"], "whether the mux takes CD, by the most or the least significant bit of SPARE0.a");
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::choice::<MuxSelect>("cfg.select"), Column::register("in.spare0.a")]
@@ -233,17 +199,11 @@ impl Unit for Mux {
 pub(super) struct ScaleBias;
 
 impl Unit for ScaleBias {
-    fn name(&self) -> &'static str {
-        "scale-bias"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "scale-bias",
+        &["CMB-9", "NUM-2", "NUM-3"],
         "AB through the output of a portion: rounded to the nearest 255th, biased, scaled, saturated"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-9", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![

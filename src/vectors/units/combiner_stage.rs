@@ -79,17 +79,11 @@ fn general_stage<L: Lane>(inputs: &[i64], mut file: Registers<L>, conditions: &C
 }
 
 impl Unit for GeneralStage {
-    fn name(&self) -> &'static str {
-        "general-stage"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "general-stage",
+        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "NUM-2", "NUM-3"],
         "an RGB portion of texture0, texture1, primary and secondary: AB to spare0, CD to spare1, AB + CD or the mux to texture2"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = configuration(true);
@@ -183,17 +177,11 @@ fn alpha_portion<L: Lane>(inputs: &[i64], mut file: Registers<L>, conditions: &C
 }
 
 impl Unit for AlphaPortion {
-    fn name(&self) -> &'static str {
-        "alpha-portion"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "alpha-portion",
+        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-9", "CMB-10", "NUM-2", "NUM-3"],
         "an alpha portion of the blue or alpha of four registers: AB to spare1, CD to texture2, AB + CD or the mux to texture3"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-9", "CMB-10", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = configuration(false);
@@ -262,17 +250,11 @@ fn blue_to_alpha<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &
 }
 
 impl Unit for BlueToAlpha {
-    fn name(&self) -> &'static str {
-        "blue-to-alpha"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "blue-to-alpha",
+        &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"],
         "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         &[Profile::Nv2a]
@@ -351,17 +333,11 @@ fn two_stages<L: Lane, O: Observer>(
 }
 
 impl Unit for TwoStages {
-    fn name(&self) -> &'static str {
-        "two-stages"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "two-stages",
+        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"],
         "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![

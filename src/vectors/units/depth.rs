@@ -53,17 +53,7 @@ fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
 pub(super) struct DepthWord;
 
 impl Unit for DepthWord {
-    fn name(&self) -> &'static str {
-        "depth-word"
-    }
-
-    fn about(&self) -> &'static str {
-        "the word that stands for a depth of mantissa 2^exponent steps, in a format"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["DEP-3"]
-    }
+    known_as!("depth-word", &["DEP-3"], "the word that stands for a depth of mantissa 2^exponent steps, in a format");
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -128,17 +118,11 @@ impl Unit for DepthWord {
 pub(super) struct DepthRange;
 
 impl Unit for DepthRange {
-    fn name(&self) -> &'static str {
-        "depth-range"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "depth-range",
+        &["DEP-3", "DEP-4"],
         "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["DEP-3", "DEP-4"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![
@@ -214,17 +198,11 @@ impl Unit for DepthRange {
 pub(super) struct PixelDepth;
 
 impl Unit for PixelDepth {
-    fn name(&self) -> &'static str {
-        "pixel-depth"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "pixel-depth",
+        &["DEP-1", "DEP-3", "DEP-5"],
         "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["DEP-1", "DEP-3", "DEP-5"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = geometry();
@@ -280,17 +258,11 @@ impl Unit for PixelDepth {
 pub(super) struct WBuffer;
 
 impl Unit for WBuffer {
-    fn name(&self) -> &'static str {
-        "w-buffer"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "w-buffer",
+        &["DEP-3", "DEP-6"],
         "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["DEP-3", "DEP-6"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<DepthFormat>("cfg.format")];

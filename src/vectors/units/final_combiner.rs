@@ -84,17 +84,11 @@ fn planned(inputs: &[i64], all: bool) -> PlannedFinal {
 }
 
 impl Unit for FinalCombiner {
-    fn name(&self) -> &'static str {
-        "final-combiner"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "final-combiner",
+        &["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"],
         "A B + (1 - A) C + D of red, G of alpha; an input is a register of its own, SPARE0 + SECONDARY, or E F"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns: Vec<Column> =

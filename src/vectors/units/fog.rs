@@ -24,17 +24,11 @@ fn moderate(bits: i64) -> i64 {
 pub(super) struct FogFactor;
 
 impl Unit for FogFactor {
-    fn name(&self) -> &'static str {
-        "fog-factor"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "fog-factor",
+        &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
         "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<FogMode>("cfg.mode"), Column::flag("cfg.per_vertex")];
@@ -98,17 +92,7 @@ impl Unit for FogFactor {
 pub(super) struct FogTable;
 
 impl Unit for FogTable {
-    fn name(&self) -> &'static str {
-        "fog-table"
-    }
-
-    fn about(&self) -> &'static str {
-        "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["FOG-4"]
-    }
+    known_as!("fog-table", &["FOG-4"], "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode");
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -135,17 +119,11 @@ impl Unit for FogTable {
 pub(super) struct LightUnit;
 
 impl Unit for LightUnit {
-    fn name(&self) -> &'static str {
-        "light-unit"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "light-unit",
+        &["FOG-1", "FOG-3"],
         "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["FOG-1", "FOG-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         ["in.a", "in.b", "in.c", "in.d"].map(|name| Column::word(name, 32)).to_vec()

@@ -1,5 +1,22 @@
 //! The units that vectors are made of, in the order of the pipe.
 
+/// A unit's name, the rules that it applies, and what it does, in one line.
+macro_rules! known_as {
+    ($name:expr, $rules:expr, $about:expr $(,)?) => {
+        fn name(&self) -> &'static str {
+            $name
+        }
+
+        fn about(&self) -> &'static str {
+            $about
+        }
+
+        fn rules(&self) -> &'static [&'static str] {
+            $rules
+        }
+    };
+}
+
 mod block;
 mod clip;
 mod combiner;

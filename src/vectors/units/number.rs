@@ -13,17 +13,11 @@ fn float(bits: i64) -> f32 {
 pub(super) struct VertexColor;
 
 impl Unit for VertexColor {
-    fn name(&self) -> &'static str {
-        "vertex-color"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "vertex-color",
+        &["NUM-4"],
         "a float vertex colour c becomes a byte: clamped to 0..1, cut to 14 significant bits, floor(255 c + 1/2)"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["NUM-4"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::float("in.color", true, 2)]
@@ -53,17 +47,11 @@ impl Unit for VertexColor {
 pub(super) struct ConstantColor;
 
 impl Unit for ConstantColor {
-    fn name(&self) -> &'static str {
-        "constant-color"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "constant-color",
+        &["NUM-0"],
         "a float constant c becomes a byte: floor(255 c + 1/2) after clamping to 0..1, exactly"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["NUM-0"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::float("in.color", true, 2)]
@@ -87,17 +75,7 @@ impl Unit for ConstantColor {
 pub(super) struct VertexSnap;
 
 impl Unit for VertexSnap {
-    fn name(&self) -> &'static str {
-        "vertex-snap"
-    }
-
-    fn about(&self) -> &'static str {
-        "a window coordinate becomes 1/16 pixel, truncated toward zero"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["RAS-1"]
-    }
+    known_as!("vertex-snap", &["RAS-1"], "a window coordinate becomes 1/16 pixel, truncated toward zero");
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::float("in.coordinate", true, 12)]
@@ -121,17 +99,7 @@ impl Unit for VertexSnap {
 pub(super) struct Depth;
 
 impl Unit for Depth {
-    fn name(&self) -> &'static str {
-        "depth"
-    }
-
-    fn about(&self) -> &'static str {
-        "a depth z becomes floor(z (2^bits - 1)), clamped to the buffer's range"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["DEP-1"]
-    }
+    known_as!("depth", &["DEP-1"], "a depth z becomes floor(z (2^bits - 1)), clamped to the buffer's range");
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]), Column::float("in.depth", true, 2)]

@@ -65,17 +65,11 @@ pub(super) fn is_covered(inputs: &[i64], profile: Profile) -> bool {
 pub(super) struct Coverage;
 
 impl Unit for Coverage {
-    fn name(&self) -> &'static str {
-        "coverage"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "coverage",
+        &["RAS-2", "RAS-3"],
         "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["RAS-2", "RAS-3"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         geometry()
@@ -121,17 +115,11 @@ impl Unit for Coverage {
 pub(super) struct ColorWeights;
 
 impl Unit for ColorWeights {
-    fn name(&self) -> &'static str {
-        "color-weights"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "color-weights",
+        &["INT-1", "INT-2", "INT-3", "INT-6"],
         "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["INT-1", "INT-2", "INT-3", "INT-6"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = geometry();
@@ -197,17 +185,11 @@ impl Unit for ColorWeights {
 pub(super) struct DepthInterpolation;
 
 impl Unit for DepthInterpolation {
-    fn name(&self) -> &'static str {
-        "depth-interpolation"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "depth-interpolation",
+        &["DEP-1"],
         "the depth of a covered pixel from three vertex depths in units of the buffer's last bit"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["DEP-1"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = geometry();
@@ -279,17 +261,11 @@ fn w(name: &str) -> Column {
 pub(super) struct ColorInterpolation;
 
 impl Unit for ColorInterpolation {
-    fn name(&self) -> &'static str {
-        "color-interpolation"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "color-interpolation",
+        &["INT-2"],
         "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["INT-2"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["in.c0", "in.c1", "in.c2"].map(Column::byte).to_vec();
@@ -320,17 +296,11 @@ impl Unit for ColorInterpolation {
 pub(super) struct TextureCoordinate;
 
 impl Unit for TextureCoordinate {
-    fn name(&self) -> &'static str {
-        "texture-coordinate"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "texture-coordinate",
+        &["INT-1", "INT-4", "INT-4t", "INT-6"],
         "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["INT-1", "INT-4", "INT-4t", "INT-6"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = geometry();

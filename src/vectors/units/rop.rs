@@ -29,17 +29,7 @@ fn bytes(values: &[i64]) -> [u8; 4] {
 pub(super) struct AlphaTest;
 
 impl Unit for AlphaTest {
-    fn name(&self) -> &'static str {
-        "alpha-test"
-    }
-
-    fn about(&self) -> &'static str {
-        "whether a fragment of this alpha passes"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["ROP-1"]
-    }
+    known_as!("alpha-test", &["ROP-1"], "whether a fragment of this alpha passes");
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")]
@@ -68,17 +58,11 @@ fn blend_state(inputs: &[i64]) -> state::Blend {
 }
 
 impl Unit for Blend {
-    fn name(&self) -> &'static str {
-        "blend"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "blend",
+        &["ROP-2", "ROP-3", "ROP-4"],
         "a fragment blended with what a surface of eight bits a channel holds"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["ROP-2", "ROP-3", "ROP-4"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![
@@ -141,17 +125,7 @@ impl Unit for Blend {
 pub(super) struct SurfaceStore;
 
 impl Unit for SurfaceStore {
-    fn name(&self) -> &'static str {
-        "surface-store"
-    }
-
-    fn about(&self) -> &'static str {
-        "a colour as the word that a surface of this format keeps"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["ROP-5"]
-    }
+    known_as!("surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps");
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<SurfaceFormat>("cfg.format")];
@@ -177,17 +151,7 @@ impl Unit for SurfaceStore {
 pub(super) struct SurfaceLoad;
 
 impl Unit for SurfaceLoad {
-    fn name(&self) -> &'static str {
-        "surface-load"
-    }
-
-    fn about(&self) -> &'static str {
-        "the word of a surface as the colour that a blend reads"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["ROP-5"]
-    }
+    known_as!("surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads");
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]

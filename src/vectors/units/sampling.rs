@@ -42,17 +42,11 @@ fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interp
 pub(super) struct ColorKey;
 
 impl Unit for ColorKey {
-    fn name(&self) -> &'static str {
-        "color-key"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "color-key",
+        &["KEY-1"],
         "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["KEY-1"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -127,17 +121,11 @@ fn of_word(format: DepthFormat, depth: u32) -> f32 {
 }
 
 impl Unit for ShadowComparison {
-    fn name(&self) -> &'static str {
-        "shadow-comparison"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "shadow-comparison",
+        &["DEP-3", "SHD-1"],
         "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["DEP-3", "SHD-1"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         &[Profile::Nv2a]
@@ -216,17 +204,11 @@ impl Unit for ShadowComparison {
 pub(super) struct VolumeLayer;
 
 impl Unit for VolumeLayer {
-    fn name(&self) -> &'static str {
-        "volume-layer"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "volume-layer",
+        &["INT-4", "TEX-7", "TEX-15", "VOL-1"],
         "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["INT-4", "TEX-7", "TEX-15", "VOL-1"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         &[Profile::Nv2a]
@@ -295,17 +277,11 @@ pub(super) struct AnisotropyTaps;
 const PAIRS: usize = anisotropy::MOST_TAPS / 2;
 
 impl Unit for AnisotropyTaps {
-    fn name(&self) -> &'static str {
-        "anisotropy-taps"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "anisotropy-taps",
+        &["TEX-11", "TEX-17"],
         "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-11", "TEX-17"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::listed("cfg.limit", Kind::Unsigned(4), &[2, 4, 8])];
@@ -378,17 +354,11 @@ impl Unit for AnisotropyTaps {
 pub(super) struct CylindricalWrap;
 
 impl Unit for CylindricalWrap {
-    fn name(&self) -> &'static str {
-        "cylindrical-wrap"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "cylindrical-wrap",
+        &["CYL-1"],
         "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["CYL-1"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<AddressMode>("cfg.mode")];

@@ -30,17 +30,11 @@ fn floats(names: &[&str]) -> Vec<Column> {
 pub(super) struct Remap;
 
 impl Unit for Remap {
-    fn name(&self) -> &'static str {
-        "shader-remap"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "shader-remap",
+        &["TSH-1", "TSH-2", "TSH-3"],
         "a colour's bytes as the three floats that the dot unit reads"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TSH-1", "TSH-2", "TSH-3"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         NV2A
@@ -66,17 +60,11 @@ impl Unit for Remap {
 pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
-    fn name(&self) -> &'static str {
-        "shader-dot-product"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "shader-dot-product",
+        &["TSH-1", "TSH-2", "TSH-3", "TSH-4"],
         "the dot product of float coordinates and a remapped colour, in single precision"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TSH-1", "TSH-2", "TSH-3", "TSH-4"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         NV2A
@@ -108,17 +96,11 @@ impl Unit for DotProduct {
 pub(super) struct BumpOffset;
 
 impl Unit for BumpOffset {
-    fn name(&self) -> &'static str {
-        "bump-offset"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "bump-offset",
+        &["TSH-7"],
         "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TSH-7"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         NV2A
@@ -150,17 +132,11 @@ impl Unit for BumpOffset {
 pub(super) struct Luminance;
 
 impl Unit for Luminance {
-    fn name(&self) -> &'static str {
-        "bump-luminance"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "bump-luminance",
+        &["TSH-8", "NUM-6"],
         "a channel times R / 255 scale + offset, in 4096ths and as a byte"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TSH-8", "NUM-6"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         NV2A
@@ -191,17 +167,11 @@ impl Unit for Luminance {
 pub(super) struct Dependent;
 
 impl Unit for Dependent {
-    fn name(&self) -> &'static str {
-        "dependent-coordinate"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "dependent-coordinate",
+        &["TSH-4", "TSH-6"],
         "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TSH-4", "TSH-6"]
-    }
+    );
 
     fn profiles(&self) -> &'static [Profile] {
         NV2A

@@ -11,17 +11,11 @@ use ninebit::state::{self, CompareFunction, Named, StencilOperation};
 pub(super) struct StencilTest;
 
 impl Unit for StencilTest {
-    fn name(&self) -> &'static str {
-        "stencil-test"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "stencil-test",
+        &["STN-1"],
         "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["STN-1"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<CompareFunction>("cfg.function")];

@@ -28,17 +28,7 @@ fn is_compressed(format: TextureFormat) -> bool {
 pub(super) struct TexelExpansion;
 
 impl Unit for TexelExpansion {
-    fn name(&self) -> &'static str {
-        "texel-expansion"
-    }
-
-    fn about(&self) -> &'static str {
-        "the word of a texel as the bytes that a unit reads"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-1"]
-    }
+    known_as!("texel-expansion", &["TEX-1"], "the word of a texel as the bytes that a unit reads");
 
     fn inputs(&self) -> Vec<Column> {
         vec![formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)]
@@ -72,17 +62,11 @@ impl Unit for TexelExpansion {
 pub(super) struct CompressedBlock;
 
 impl Unit for CompressedBlock {
-    fn name(&self) -> &'static str {
-        "compressed-block"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "compressed-block",
+        &["TEX-2", "TEX-3", "TEX-4"],
         "the texel in a column and row of a DXT block; DXT1 has two words, the others four"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-2", "TEX-3", "TEX-4"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![formats(is_compressed)];

@@ -59,17 +59,11 @@ fn place(inputs: &[i64], index: i64) -> [i64; 2] {
 pub(super) struct NearestAddress;
 
 impl Unit for NearestAddress {
-    fn name(&self) -> &'static str {
-        "nearest-address"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "nearest-address",
+        &["TEX-5", "TEX-7", "TEX-8"],
         "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-5", "TEX-7", "TEX-8"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         addressing()
@@ -102,17 +96,11 @@ impl Unit for NearestAddress {
 pub(super) struct LinearAddress;
 
 impl Unit for LinearAddress {
-    fn name(&self) -> &'static str {
-        "linear-address"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "linear-address",
+        &["TEX-6", "TEX-7", "TEX-8"],
         "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-6", "TEX-7", "TEX-8"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         addressing()
@@ -151,17 +139,11 @@ impl Unit for LinearAddress {
 pub(super) struct LinearStep;
 
 impl Unit for LinearStep {
-    fn name(&self) -> &'static str {
-        "linear-step"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "linear-step",
+        &["TEX-6", "TEX-9"],
         "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-6", "TEX-9"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")]
@@ -185,17 +167,11 @@ impl Unit for LinearStep {
 pub(super) struct Bilinear;
 
 impl Unit for Bilinear {
-    fn name(&self) -> &'static str {
-        "bilinear"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "bilinear",
+        &["TEX-6"],
         "one channel of four texels mixed along u on both rows, then along v; signed channels are -128..127"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-6"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns =
@@ -240,17 +216,11 @@ impl Unit for Bilinear {
 pub(super) struct CubeFace;
 
 impl Unit for CubeFace {
-    fn name(&self) -> &'static str {
-        "cube-face"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "cube-face",
+        &["TEX-12", "TEX-13"],
         "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-12", "TEX-13"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512])];
@@ -292,17 +262,11 @@ impl Unit for CubeFace {
 pub(super) struct LevelChoice;
 
 impl Unit for LevelChoice {
-    fn name(&self) -> &'static str {
-        "level-choice"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "level-choice",
+        &["TEX-9", "TEX-10", "TEX-11"],
         "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        &["TEX-9", "TEX-10", "TEX-11"]
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![

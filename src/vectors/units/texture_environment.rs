@@ -72,17 +72,11 @@ fn classic(inputs: &[i64], profile: Profile) -> Option<Combiners> {
 }
 
 impl Unit for Classic {
-    fn name(&self) -> &'static str {
-        "texture-environment"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "texture-environment",
+        RULES,
         "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        RULES
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let modes = numbers(|mode: Mode| !is_combining(mode));
@@ -158,17 +152,11 @@ fn combine(inputs: &[i64], profile: Profile) -> Option<Combiners> {
 }
 
 impl Unit for Combine {
-    fn name(&self) -> &'static str {
-        "texture-combine"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "texture-combine",
+        RULES,
         "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        RULES
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let modes = numbers(is_combining);

@@ -72,17 +72,11 @@ fn places(inputs: &[i64]) -> [(Register, usize); 3] {
 }
 
 impl Unit for Stage {
-    fn name(&self) -> &'static str {
-        "texture-stage"
-    }
-
-    fn about(&self) -> &'static str {
+    known_as!(
+        "texture-stage",
+        RULES,
         "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current"
-    }
-
-    fn rules(&self) -> &'static [&'static str] {
-        RULES
-    }
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let operations: Vec<i64> = (0..).zip(Operation::ALL).filter(|(_, o)| combines(**o)).map(|(n, _)| n).collect();
