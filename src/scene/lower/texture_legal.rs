@@ -137,25 +137,21 @@ pub(super) fn layers(reader: &mut Reader<'_>, kind: TextureKind, layers: u32, pl
 
 /// A rectangle has one level, and a volume.
 pub(super) fn levels(reader: &mut Reader<'_>, kind: TextureKind, levels: u32, place: Range<usize>) -> Option<()> {
-    if kind == TextureKind::ThreeDimensional && levels > 1 {
-        reader.push(
-            Diagnostic::error("NB0230", place, format!("a volume cannot have {levels} levels"))
-                .label("one at most")
-                .rule("VOL-1")
-                .help("write `levels: 1`: which of them a volume reads is not known"),
-        );
-        return None;
+    let (what, rule, help) = match kind {
+        TextureKind::ThreeDimensional => {
+            ("volume", "VOL-1", "write `levels: 1`: which of them a volume reads is not known")
+        }
+        TextureKind::Rectangle => {
+            ("rectangle texture", "TEX-9", "write `levels: 1`, or scale it to powers of two and leave `kind` out")
+        }
+        _ => return Some(()),
+    };
+    if levels <= 1 {
+        return Some(());
     }
-    if kind == TextureKind::Rectangle && levels > 1 {
-        reader.push(
-            Diagnostic::error("NB0230", place, format!("a rectangle texture cannot have {levels} levels"))
-                .label("one at most")
-                .rule("TEX-9")
-                .help("write `levels: 1`, or scale it to powers of two and leave `kind` out"),
-        );
-        return None;
-    }
-    Some(())
+    let message = format!("a {what} cannot have {levels} levels");
+    reader.push(Diagnostic::error("NB0230", place, message).label("one at most").rule(rule).help(help));
+    None
 }
 
 /// Border texels: of nv2a, two dimensions, no blocks.

@@ -159,8 +159,8 @@ impl Setup<'_> {
                     let lines = (plane.line(&real).times(*scale), denominator);
                     let off = self.margin::<ROW>(plane, &real, &bounds) * scale;
                     match purpose {
-                        Purpose::Float | Purpose::Sign => rounded::<FMA, ROW>(piece.at, lines, off, out, open),
-                        Purpose::Byte => bytes::<FMA, ROW>(piece.at, lines, off, out, open),
+                        Purpose::Float | Purpose::Sign => rounded::<FMA, ROW, false>(piece.at, lines, off, out, open),
+                        Purpose::Byte => rounded::<FMA, ROW, true>(piece.at, lines, off, out, open),
                     }
                 }
             }
@@ -188,9 +188,9 @@ impl Setup<'_> {
     }
 }
 
-/// Quotients to the nearest single-precision number; lanes that are not proved, and zeros, are left open.
+/// Quotients to the nearest single-precision number, or as `BYTE`s (TSH-9); lanes that are not proved, and zeros of the former, are left open.
 #[inline(always)]
-fn rounded<const FMA: bool, const ROW: bool>(
+fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     at: Positions<'_>,
     lines: (Line, Line),
     off: f64,
@@ -203,32 +203,17 @@ fn rounded<const FMA: bool, const ROW: bool>(
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
-        let (low, high) = ((value - off) as f32, (value + off) as f32);
-        out[n] = low;
-        open[n] |= i32::from((low != high) | (low == 0.0));
-    }
-}
-
-/// TSH-9 likewise.
-#[inline(always)]
-fn bytes<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
-    lines: (Line, Line),
-    off: f64,
-    out: &mut [f32],
-    open: &mut [i32],
-) {
-    let lanes = out.len();
-    let last = f64::from(at.last);
-    let (open, xs, ys, iota) = (&mut open[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
-    for n in 0..lanes {
-        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
-        let (low, high) = (limited((value - off) * 4096.0), limited((value + off) * 4096.0));
-        let (low, high) = (factor_byte(i64::from(low)), factor_byte(i64::from(high)));
-        out[n] = f32::from(low);
-        // Also what is no number.
-        open[n] |= i32::from((low != high) | value.is_nan() | off.is_nan());
+        if BYTE {
+            let (low, high) = (limited((value - off) * 4096.0), limited((value + off) * 4096.0));
+            let (low, high) = (factor_byte(i64::from(low)), factor_byte(i64::from(high)));
+            out[n] = f32::from(low);
+            // Also what is no number.
+            open[n] |= i32::from((low != high) | value.is_nan() | off.is_nan());
+        } else {
+            let (low, high) = ((value - off) as f32, (value + off) as f32);
+            out[n] = low;
+            open[n] |= i32::from((low != high) | (low == 0.0));
+        }
     }
 }
 
