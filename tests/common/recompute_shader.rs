@@ -43,7 +43,7 @@ pub fn floor_of_product(n: i128, d: i128, scale: i128) -> i128 {
     let (mut value, mut rest) = (whole * scale, 0);
     for bit in (0..24).rev() {
         rest = 2 * rest + (scale >> bit & 1) * part;
-        value += rest / d << bit;
+        value += (rest / d) << bit;
         rest %= d;
     }
     value
