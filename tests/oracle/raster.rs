@@ -346,8 +346,7 @@ impl Setup {
             }
             _ => v.position[2],
         });
-        // DEP-6: times w_1/w_k, 24 bits each, as fractions of 2^-WIDE.
-        const WIDE: i32 = 40;
+        // DEP-6: times w_1/w_k, 24 bits each; 61 bits of the largest count.
         let w = self.vertices.map(|v| v.position[3]);
         let in_perspective = |k: usize| {
             let ((m, e), (n, f)) = (split(w[1]), split(w[k]));
@@ -356,11 +355,11 @@ impl Setup {
             let zeros = ratio.trailing_zeros() as i32;
             let edge = keep(sample.e[k], bits(sample.e[k]) - 24);
             let product = edge * (ratio >> zeros);
-            shift(keep(product, bits(product) - 24), e - f - 60 + zeros + WIDE)
+            (keep(product, bits(product) - 24), e - f - 60 + zeros)
         };
         // Edge numbers with 24 bits, their sum in steps of the 29th bit of the largest.
         let edges = match test.w_buffer {
-            true => [0, 1, 2].map(in_perspective),
+            true => align([0, 1, 2].map(in_perspective), 61),
             false => sample.e.map(|e| keep(e, bits(e) - 24)),
         };
         let values = if test.w_buffer { w } else { z };
