@@ -191,6 +191,7 @@ impl Setup<'_> {
         }
         short.keep::<FMA, ROW>(piece.at, lines, self.losses_by_q(planes, [width, height]));
         let (lanes, [u, v], Short { at, close, .. }) = (piece.at.x.len(), &mut *numbers, short);
+        close[..lanes].fill(0);
         floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[piece.lanes()]);
         floors(&at[1][..lanes], margin, sampler.bias(), close, &mut v[piece.lanes()]);
         let mut any = 0;

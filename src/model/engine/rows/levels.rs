@@ -104,17 +104,11 @@ impl Setup<'_> {
         let (at, denominator) = (piece.at, ground.denominator);
         let [at_u, at_v] = &mut placing.at;
         let (lines, (u, v)) = ([ground.along, ground.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
-        let mut opens = false;
-        placing.open[..lanes].fill(false);
-        if let Some(losses) = ground.losses {
-            short.divide::<FMA, ROW>(at, lines, losses, [u, v]);
-            for (open, close) in placing.open[..piece.count].iter_mut().zip(&short.close) {
-                *open = close >> 63 != 0;
-                opens |= *open;
-            }
-        } else {
-            quotients::<FMA, ROW>(at, lines, u, v);
+        match ground.losses {
+            Some(losses) => short.divide::<FMA, ROW>(at, lines, losses, [u, v]),
+            None => quotients::<FMA, ROW>(at, lines, u, v),
         }
+        placing.open[..lanes].fill(false);
         let [low, high] =
             choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[piece.lanes()]);
         for which in 0..2 {
@@ -122,6 +116,7 @@ impl Setup<'_> {
             reads.coordinates[which][0][piece.lanes()].fill(0);
             reads.coordinates[which][1][piece.lanes()].fill(0);
         }
+        let mut opens = false;
         for level in low..=high {
             let shifts = unit.plane_shifts(&unit.levels[level as usize]);
             let Placing { at, lods, levels, read, close, open } = &mut *placing;

@@ -19,7 +19,7 @@ pub(super) type Losses = [f64; 2];
 pub(super) struct Short {
     first: Numbers<f64>,
     third: Numbers<f64>,
-    /// As sign bits: which weight dominates is too close to call.
+    /// As sign bits: which weight dominates is too close to call, for an estimate; then, what is not proved of something else.
     pub(super) close: Numbers<u64>,
     /// Two quotients.
     pub(super) at: [Numbers<f64>; 2],
@@ -68,7 +68,6 @@ impl Setup<'_> {
         if triangle.exact_reciprocal {
             short.first[..lanes].fill(0.0);
             short.third[..lanes].fill(0.0);
-            short.close[..lanes].fill(0);
             return;
         }
         let (mut lines, mut terms) = ([Line::default(); 3], 0.0);
@@ -77,7 +76,25 @@ impl Setup<'_> {
             lines[k] = Line { c: p * e[k], x: p * triangle.a[k] as f64, y: p * triangle.b[k] as f64 };
             terms += lines[k].c.abs() + lines[k].x.abs() * bounds.columns + lines[k].y.abs() * bounds.rows;
         }
+        let mut any = 0;
         dominance::<FMA, ROW>(piece.at, [lines[0], lines[2], denominator], 4.0 * SLACK * terms, short, lanes);
+        for close in &short.close[..lanes] {
+            any |= close;
+        }
+        if any >> 63 != 0 {
+            self.settle_dominance(piece, short);
+        }
+    }
+
+    /// Lanes that are too close to call: whole numbers tell.
+    #[inline(never)]
+    fn settle_dominance(&self, piece: Piece<'_>, short: &mut Short) {
+        for n in (0..piece.at.x.len()).filter(|n| short.close[*n] >> 63 != 0) {
+            let sample = self.sample(piece, n.min(piece.count - 1));
+            let [first, third] = sample.short();
+            short.first[n] = if first { sample.n[0] as f64 } else { 0.0 };
+            short.third[n] = if third { sample.n[2] as f64 } else { 0.0 };
+        }
     }
 }
 
@@ -172,7 +189,7 @@ impl Short {
     }
 }
 
-/// Floors, less a bias, of numbers that are off by less than `off`, and as sign bits which are not proved, among those that were.
+/// Floors, less a bias, of numbers that are off by less than `off`, and as sign bits which are not proved, besides those that were not.
 #[inline(always)]
 pub(super) fn floors(at: &[f64], off: f64, bias: i32, close: &mut [u64], out: &mut [i32]) {
     let lanes = at.len();

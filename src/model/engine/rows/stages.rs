@@ -178,10 +178,7 @@ impl Setup<'_> {
                 open.fill(1);
             }
             let losses = [planes[0].losses(self), planes[1].losses(self), [0.0; 2]];
-            for (to, close) in moved.off[piece.lanes()].iter_mut().zip(&work.short.close) {
-                // Where it is too close to call which weights fall short, nothing is proved.
-                *to = if close >> 63 != 0 { 1.0 } else { off };
-            }
+            moved.off[piece.lanes()].fill(if proves { off } else { 0.0 });
             let at = [&mut moved.u[piece.lanes()], &mut moved.v[piece.lanes()]];
             work.short.divide::<FMA, ROW>(piece.at, lines, losses, at);
         }
