@@ -63,22 +63,24 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
     // Zero, or far from where binary32 or the steps between are at their ends.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
+    // Floored, and nothing else.
+    let is_plain = range.is_none() && offset == 0.0 && !format.is_float();
     let exact_offset = plane.offset.mantissa.unsigned_abs() >> 53 == 0 && offset.is_finite();
     let unknown = if let Some(w) = plane.w {
         if exact_offset && w.iter().all(|w| *w > 0.0 && moderate(w)) {
             let ratio = |(mantissa, exponent): (i64, i32)| mantissa as f64 * power_of_two(exponent);
             let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
             let depths = Depths { z: w.map(f64::from), ratios, ..depths };
-            depths.along::<FMA, ROW, true, true>(piece.at, edges, out)
+            if is_plain {
+                depths.along::<FMA, ROW, false, true>(piece.at, edges, out)
+            } else {
+                depths.along::<FMA, ROW, true, true>(piece.at, edges, out)
+            }
         } else {
             out.fill(UNKNOWN);
             true
         }
-    } else if test.range.is_none()
-        && offset == 0.0
-        && !format.is_float()
-        && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole))
-    {
+    } else if is_plain && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole)) {
         depths.along::<FMA, ROW, false, false>(piece.at, edges, out)
     } else if exact_offset && plane.z.iter().all(moderate) {
         depths.along::<FMA, ROW, true, false>(piece.at, edges, out)
@@ -151,7 +153,7 @@ impl Depths<'_> {
             // Of the reference vertex: 0.
             let (d0, d1, d2) = (z0 - z, z1 - z, z2 - z);
             // Differences of whole numbers need no rounding.
-            let rounded = |d: f64| if GENERAL { f64::from(d as f32) } else { d };
+            let rounded = |d: f64| if GENERAL | W { f64::from(d as f32) } else { d };
             let (t0, t1, t2) = (b0 * rounded(d0), b1 * rounded(d1), b2 * rounded(d2));
             let largest = if t0.abs() > t1.abs() { t0.abs() } else { t1.abs() };
             let largest = if t2.abs() > largest { t2.abs() } else { largest };
@@ -219,15 +221,20 @@ pub(super) fn word(format: DepthFormat, depth: f64) -> u32 {
 fn with_rest([b0, b1, b2]: [f64; 3], close: bool) -> (f64, f64, bool) {
     let [first, third] = most_dominant([power(b0), power(b1), power(b2)]);
     // Where the second dominates, nobody reads it.
-    let (one, other) = (kept(b1, 60), kept(if first { b2 } else { b0 }, 60));
-    let (large, small) = if one > other { (one, other) } else { (other, one) };
+    // One choice at a time: nested ones would become branches.
+    let other = if first { b2 } else { b0 };
+    let (one, other) = (kept(b1, 60), kept(other, 60));
+    let large = if one > other { one } else { other };
+    let small = if one > other { other } else { one };
     let most = 1.0 - large;
     let rest = most - small;
     // What the differences lost, exactly.
     let lost = ((1.0 - most) - large != 0.0) | ((most - rest) - small != 0.0);
     let same = cut24(rest * (1.0 - ROUNDINGS)) == cut24(rest * (1.0 + ROUNDINGS));
     let rest = cut24(rest);
-    (if first { rest } else { b0 }, if third { rest } else { b2 }, close | (lost & !same & (first | third)))
+    let b0 = if first { rest } else { b0 };
+    let b2 = if third { rest } else { b2 };
+    (b0, b2, close | (lost & !same & (first | third)))
 }
 
 /// More than two roundings.
@@ -238,7 +245,8 @@ const ROUNDINGS: f64 = 1.0 / (1_u64 << 50) as f64;
 fn kept(n: f64, bits: u32) -> f64 {
     let steps = n * (1_u64 << bits) as f64;
     // All others are whole; not all of them could be floored.
-    if steps < (1_u64 << 40) as f64 { floor(steps) * (1.0 / (1_u64 << bits) as f64) } else { n }
+    let floored = floor(steps) * (1.0 / (1_u64 << bits) as f64);
+    if steps < (1_u64 << 40) as f64 { floored } else { n }
 }
 
 /// The largest power of two that is not above a positive number.

@@ -5,7 +5,7 @@ use super::depth::{UNKNOWN, floor, word};
 use super::direction::{Looking, positive};
 use super::fetch::{Numbers, entry};
 use super::planes::Plane;
-use super::quotient::{IOTA_REAL, Line, Positions, nearest, position};
+use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::short::Short;
 use super::table::{self, Axis};
 use super::triangle::{Bounds, Piece, Planes, Setup, Varying};
@@ -229,10 +229,20 @@ impl Setup<'_> {
             return true;
         }
         if format.is_float() {
-            words::<FMA, ROW, true>(at, lines, off, format, out)
-        } else {
-            words::<FMA, ROW, false>(at, lines, off, format, out)
+            return words::<FMA, ROW, true>(at, lines, off, format, out);
         }
+        if ROW && within::<FMA>(at, lines, off, f64::from(format.largest())) {
+            let steady = lines.1.x == 0.0;
+            let proved = if steady {
+                floors::<FMA, false>(at, (lines.0.times(1.0 / lines.1.c), lines.1), off, out)
+            } else {
+                floors::<FMA, true>(at, lines, off, out)
+            };
+            if proved {
+                return false;
+            }
+        }
+        words::<FMA, ROW, false>(at, lines, off, format, out)
     }
 
     /// The unknown ones, by the definition.
@@ -245,6 +255,39 @@ impl Setup<'_> {
             *word = defined(self.context, unit, format, &self.sample(piece, n), piece.pixel(n));
         }
     }
+}
+
+/// Whether all quotients of a row lie within a buffer: between its ends they rise or fall.
+#[inline(always)]
+fn within<const FMA: bool>(at: Positions<'_>, lines: (Line, Line), off: f64, full: f64) -> bool {
+    let last = f64::from(at.last);
+    let (first, last) =
+        (lines.0.c / lines.1.c, lines.0.at::<FMA, true>(last, 0.0) / lines.1.at::<FMA, true>(last, 0.0));
+    let (low, high) = if first < last { (first, last) } else { (last, first) };
+    // Also refuses what is no number.
+    low - off > 0.0 && high + off < full
+}
+
+/// Floors of quotients along a row, which are off by less than `off` and lie within a buffer; whether all are proved. `DIVIDES`: the divisor is not 1.
+#[inline(always)]
+fn floors<const FMA: bool, const DIVIDES: bool>(
+    at: Positions<'_>,
+    lines: (Line, Line),
+    off: f64,
+    out: &mut [u32],
+) -> bool {
+    let lanes = out.len();
+    let (last, limit) = (f64::from(at.last), 0.5 - off);
+    let iota = &IOTA_REAL[..lanes];
+    let mut close = 0;
+    for n in 0..lanes {
+        let x = if iota[n] < last { iota[n] } else { last };
+        let value = lines.0.at::<FMA, true>(x, 0.0);
+        let value = if DIVIDES { value / lines.1.at::<FMA, true>(x, 0.0) } else { value } - 0.5;
+        out[n] = nearest(value) as u32;
+        close |= (limit - (value - whole(value)).abs()).to_bits();
+    }
+    close >> 63 == 0
 }
 
 /// DEP-3 in a fixed-point format.
