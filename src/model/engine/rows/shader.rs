@@ -68,7 +68,7 @@ pub(super) struct Shader {
     pub(super) kills: bool,
 }
 
-/// The largest scale and offset whose sums are known to within what a [`luminance`] may be off by.
+/// The largest scale and offset whose sums are known to within what a `luminance` of the stages may be off by.
 const LARGEST_LUMINANCE: f32 = (1 << 20) as f32;
 
 /// Whether a stage samples where an earlier one sends it.
