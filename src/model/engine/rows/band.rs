@@ -101,6 +101,12 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
     if compiled.samplers.iter().any(|sampler| sampler.mixes) {
         block.varying.reads.resize(compiled.samplers.len(), Reads::default());
     }
+    // Lanes without a pixel are fetched too: the layers of an earlier volume may lie beyond the images of another texture.
+    for (faces, sampler) in block.varying.faces.iter_mut().zip(&compiled.samplers) {
+        if sampler.has_images() {
+            faces.fill(0);
+        }
+    }
     block.varying.footprints.clear();
     if compiled.estimates {
         block.varying.footprints.resize(compiled.samplers.len(), Footprints::default());
