@@ -357,7 +357,7 @@ impl Printer<'_> {
         let [ab, cd, sum] = layout::OUTPUTS;
         let (rgb, alpha) = ("out_rgb", "out_alpha");
         let mut out = "/* A general stage: all of it is read, then all of it is written (CMB-1). What is ZERO throughout or has no destination is left out. */\n\
-             @fn void nb_stage(@state, @int stage, @changed)\n{\n"
+             @fn void nb_stage(@state, @uint stage, @changed)\n{\n"
             .to_string();
         for (name, word) in
             [("in_rgb", Word::RcInRgb), (rgb, Word::RcOutRgb), ("in_alpha", Word::RcInAlpha), (alpha, Word::RcOutAlpha)]
@@ -366,31 +366,33 @@ impl Printer<'_> {
         }
         out.push_str("    @int a[3], b[3], ab[3], cd[3], third[3], takes_cd = 0, alpha_ab = 0, alpha_cd = 0;\n");
         out.push_str("    for (@int c = 0; c < 3; c++) cd[c] = 0;\n    for (@int c = 0; c < 3; c++) third[c] = 0;\n");
-        for (n, result) in ["ab", "cd"].into_iter().enumerate() {
-            let [x, y] = [2 * n, 2 * n + 1].map(|n| field("in_rgb", layout::BYTES[n]));
-            let dot = field(rgb, layout::DOT_PRODUCTS[n]);
-            let step = format!("nb_operands({x}, r, a);\nnb_operands({y}, r, b);\nnb_products({dot}, a, b, {result});");
-            let both = layout::BYTES[2 * n].put(255) | layout::BYTES[2 * n + 1].put(255);
-            let (guard, indent) = if n == 0 { ("", "    ") } else { ("    if ((in_rgb & {}u) != 0u) {\n", "        ") };
-            out.push_str(&guard.replace("{}", &both.to_string()));
-            step.lines().for_each(|line| _ = writeln!(out, "{indent}{line}"));
-            out.push_str(if n == 0 { "" } else { "    }\n" });
-        }
-        let [third_rgb, third_alpha] = [rgb, alpha].map(|word| field(word, sum));
-        let mux = |word| field(word, layout::MUX);
-        let _ = writeln!(out, "    if (({third_rgb}) != 0u || ({third_alpha}) != 0u) {{");
-        let _ = writeln!(out, "        takes_cd = nb_takes_cd({by_most}, r[{}][3]);", code(FinalRegister::Spare0));
-        let _ = writeln!(
-            out,
-            "        for (@int c = 0; c < 3; c++) third[c] = nb_third({}, takes_cd, ab[c], cd[c]);\n    }}",
-            mux(rgb)
-        );
-        let _ = writeln!(out, "    if (({alpha} & {}u) != 0u) {{", ab.put(15) | cd.put(15) | sum.put(15));
+        let spare0 = code(FinalRegister::Spare0);
+        let takes_cd = format!("        takes_cd = nb_takes_cd({by_most}, r[{spare0}][3]);\n");
+        let any_alpha = format!("    if (({alpha} & {}u) != 0u) {{\n", ab.put(15) | cd.put(15) | sum.put(15));
+        out.push_str(&any_alpha);
         for (n, result) in ["alpha_ab", "alpha_cd"].into_iter().enumerate() {
             let [x, y] = [2 * n, 2 * n + 1].map(|n| field("in_alpha", layout::BYTES[n]));
             let _ = writeln!(out, "        {result} = nb_product(nb_operand({x}, r), nb_operand({y}, r));");
         }
-        out.push_str("    }\n");
+        let _ = writeln!(out, "{takes_cd}    }}");
+        let product = |n: usize, result: &str, indent: &str| {
+            let [x, y] = [2 * n, 2 * n + 1].map(|n| field("in_rgb", layout::BYTES[n]));
+            let dot = field(rgb, layout::DOT_PRODUCTS[n]);
+            format!(
+                "{indent}nb_operands({x}, r, a);\n{indent}nb_operands({y}, r, b);\n{indent}nb_products({dot}, a, b, {result});\n"
+            )
+        };
+        let mux = |word| field(word, layout::MUX);
+        let any_second = format!("    if (({rgb} & {}u) != 0u) {{\n", cd.put(15) | sum.put(15));
+        let read = layout::BYTES[2].put(255) | layout::BYTES[3].put(255);
+        let _ = write!(
+            out,
+            "{}{any_second}        if ((in_rgb & {read}u) != 0u) {{\n{}        }}\n\
+             {takes_cd}        for (@int c = 0; c < 3; c++) third[c] = nb_third({}, takes_cd, ab[c], cd[c]);\n    }}\n",
+            product(0, "ab", "    "),
+            product(1, "cd", "            "),
+            mux(rgb)
+        );
         let mut open: Option<(usize, bool)> = None;
         for write in writes() {
             let (output, channel) = match write {
@@ -403,6 +405,12 @@ impl Printer<'_> {
             let (operation, raw) = (field(word, layout::OPERATION), ["ab", "cd", "third"][output]);
             if open != Some((output, is_alpha)) {
                 out.push_str(if open.is_some() { "    }\n" } else { "" });
+                // Where a portion of alphas is idle, as in many stages, that is asked once.
+                match (open.is_some_and(|(_, alphas)| alphas), is_alpha) {
+                    (false, true) => out.push_str(&any_alpha),
+                    (true, false) => out.push_str("    }\n"),
+                    _ => {}
+                }
                 let _ = writeln!(out, "    if (({destination}) != 0u) {{");
                 // A dot product is the same in each channel.
                 match layout::DOT_PRODUCTS.get(output).filter(|_| !is_alpha) {
@@ -430,7 +438,8 @@ impl Printer<'_> {
             };
             let _ = writeln!(out, "        {guard}r[{destination}][{to}] = {value};");
         }
-        out + "    }\n}\n"
+        let closes = if open.is_some_and(|(_, alphas)| alphas) { "    }\n    }\n}\n" } else { "    }\n}\n" };
+        out + closes
     }
 
     /// The constants of a stage, or of the final combiner, where they are not the last ones.
@@ -441,7 +450,7 @@ impl Printer<'_> {
             let word = match (chip, stage) {
                 (Profile::Nv2a, true) => {
                     let word = [Word::RcConstantColor0, Word::RcConstantColor1][n].name();
-                    format!("@s.{word}[{} ? stage : 0]", is_set(&self.config(), layout::OWN_CONSTANTS[n]))
+                    format!("@s.{word}[stage & own{n}]")
                 }
                 _ => format!("@s.{}[{n}]", Word::RcColor.name()),
             };
@@ -466,11 +475,17 @@ impl Printer<'_> {
             (FinalRegister::Texture2, "@i.texture[2][c]"),
             (FinalRegister::Texture3, "@i.texture[3][c]"),
         ];
+        let (chip, config) = (self.generic.chip, self.config());
+        // All bits where each stage has constants of its own, none where all have those of the first.
+        let [own0, own1] = layout::OWN_CONSTANTS.map(|each| field(&config, each));
+        let own = format!("    @in @uint own0 = 0u - ({own0}), own1 = 0u - ({own1});\n");
         let mut out = format!(
             "@public void nb_fragment(@state, @inputs, @out @int fragment[4])\n{{\n    @int x[3], y[3], a[3], b[3], constant[4];\n    @registers;\n\
-             \x20   @in @uint final0 = @s.{}, final1 = @s.{};\n    @uint word, loaded0 = 0u, loaded1 = 0u;\n    for (@int c = 0; c < 4; c++) {{\n",
+             \x20   @in @uint final0 = @s.{}, final1 = @s.{};\n    @uint word, loaded0 = 0u, loaded1 = 0u, stages = {};\n{}    for (@int c = 0; c < 4; c++) {{\n",
             Word::RcFinal0.name(),
-            Word::RcFinal1.name()
+            Word::RcFinal1.name(),
+            field(&config, layout::stages(chip)),
+            if chip == Profile::Nv2a { own } else { String::new() },
         );
         for number in 0..16 {
             let value = given.iter().find(|(register, _)| code(*register) == number).map_or("0", |(_, value)| value);
@@ -484,11 +499,10 @@ impl Printer<'_> {
                 let _ = writeln!(out, "    r[{spare0}][{channel}] = r[{texture0}][{from}]; /* CMB-13 */");
             }
         }
-        let stages = field(&self.config(), layout::stages(self.generic.chip));
         let most = self.generic.chip.general_stages();
         let _ = write!(
             out,
-            "    for (@int stage = 0; stage < {most} && @uint(stage) < ({stages}); stage++) {{\n{}        nb_stage(state, stage, r);\n    }}\n{}",
+            "    if (stages > {most}u) stages = {most}u;\n    for (@uint stage = 0u; stage < stages; stage++) {{\n{}        nb_stage(state, stage, r);\n    }}\n{}",
             self.constants(true, "        "),
             self.constants(false, "    ")
         );
@@ -541,12 +555,18 @@ fn operands(inputs: Mapped) -> String {
         format!("    if ({is_alpha}) {{\n        {same}\n    }} else {{\n        {own}\n    }}\n")
     };
     let plain = all(&str::to_owned);
-    let looked = |x: &str| format!("nb_mapping[{mapping}][{x} + 256]");
+    let looked = format!("nb_mapping[{mapping}][{one} + 256]");
+    // A pointer to what a register of 0 is mapped to, another to the register: the fields are taken apart once for three channels.
+    let looked_rgb = format!(
+        "    const int16_t *mapped = nb_mapping[{mapping}] + 256;\n    @in @int *given = r[{register}];\n\
+         \x20   if ({is_alpha}) {{\n        for (@int c = 0; c < 3; c++) x[c] = mapped[given[{alpha}]];\n    }} else {{\n\
+         \x20       for (@int c = 0; c < 3; c++) x[c] = mapped[given[c]];\n    }}\n"
+    );
     let (mapped_rgb, mapped) = match inputs {
         Mapped::Computed => {
             (format!("{plain}    nb_mapped_rgb({mapping}, x);\n"), format!("nb_mapped({mapping}, {one})"))
         }
-        Mapped::Looked => (all(&looked), looked(&one)),
+        Mapped::Looked => (looked_rgb, looked),
     };
     format!(
         "/* An input of an RGB portion: register, component, mapping. */\n\
