@@ -114,6 +114,7 @@ fn wider_random_scenes_sample_in_every_way() {
     need("layer", &["inside"]);
     need("taps", &["1", "2", "4", "6", "8"]);
     need("cylinder", &["moved", "stays"]);
+    need("texels", &["longer than pixels", "shorter than pixels"]);
     assert!(missing.is_empty(), "too seldom: {missing:?}");
 }
 

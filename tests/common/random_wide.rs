@@ -300,16 +300,20 @@ fn reads_layers(c: &mut Choices<'_>, scene: &mut Scene, (draw, k): (usize, usize
     });
 }
 
-/// Another reading of the same words.
+/// Another reading of the same words; of a target, often in texels of another size.
 fn texture_format(c: &mut Choices<'_>, texture: &mut Texture) {
     if c.once_in(2) {
+        let resizes = matches!(texture.image, TextureImage::Target { .. }) && c.below(3) != 0;
         let bytes = texture.format.bytes();
         let fitting: Vec<TextureFormat> = TextureFormat::ALL
             .iter()
             .copied()
-            .filter(|f| f.bytes() == bytes && f.is_compressed() == texture.format.is_compressed())
+            .filter(|f| (f.bytes() != bytes) == resizes && f.is_compressed() == texture.format.is_compressed())
             .filter(|f| *f != TextureFormat::P8 && f.depth().is_none())
             .collect();
+        if resizes {
+            texture.kind = TextureKind::Rectangle;
+        }
         if texture.format != TextureFormat::P8 {
             texture.format = c.pick(&fitting);
         }

@@ -11,6 +11,7 @@ use ninebit::state::{
     AddressMode, ColorKey, ColorKeyMode, DepthFormat, Filter, MipFilter, Named, Profile, Scene, ShadowComparison,
     TextureFormat, TextureImage, TextureKind, TextureUnit,
 };
+use std::cmp::Ordering;
 
 /// A bound unit and its texture's words as they stand when a draw begins.
 pub struct Image {
@@ -41,7 +42,17 @@ impl Image {
             }
             TextureImage::Target { target } => {
                 let s = &surfaces[*target];
-                ([s.width, s.height], 1, false, s.words.clone())
+                let (pixel, texel) = (8 * scene.targets[*target].format.bytes(), 8 * texture.format.bytes());
+                let width = s.width * pixel / texel;
+                match pixel.cmp(&texel) {
+                    Ordering::Less => count("texels", "longer than pixels"),
+                    Ordering::Equal => {}
+                    Ordering::Greater => count("texels", "shorter than pixels"),
+                }
+                // Bit n of a row is bit n % pixel of a pixel, and bit n % texel of a texel.
+                let bit = |n: usize| s.words[n / pixel as usize] >> (n % pixel as usize) & 1;
+                let word = |k: usize| (0..texel as usize).map(|n| bit(k * texel as usize + n) << n).sum();
+                ([width, s.height], 1, false, (0..(width * s.height) as usize).map(word).collect())
             }
         };
         let palette = unit.palette.map_or(Vec::new(), |p| scene.palettes[p].entries.to_vec());

@@ -1,6 +1,6 @@
 //! How much work a render does: counted while it is done, and the fragments of a draw without shading them.
 
-use super::{cleared, images, walk};
+use super::{TextureWords, cleared, walk};
 use crate::plan::{Plan, PlannedDraw};
 use crate::state::Named;
 use crate::trace::{Observer, Step, Work};
@@ -34,7 +34,8 @@ pub fn count(plan: &Plan) -> Vec<DrawCounts> {
         let target = &mut frames.surfaces[planned.target];
         let width = target.width as usize;
         let (mut words, mut depth) = (std::mem::take(&mut target.words), std::mem::take(&mut target.depth));
-        let textures = images::<i32>(plan, &frames.surfaces);
+        let texture_words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
+        let textures = texture_words.images();
         let mut band = walk::Band { first_row: 0, width, words: &mut words, depth: &mut depth };
         (counts.fragments, counts.stored) = walk::draw(plan, planned, &textures, &mut band, &mut counts);
         let target = &mut frames.surfaces[planned.target];

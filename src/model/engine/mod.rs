@@ -10,17 +10,19 @@ mod counting;
 pub mod pixel;
 mod report;
 mod rows;
+mod texture_words;
 mod tracing;
 pub mod walk;
 
 pub use counting::{DrawCounts, count, fragments};
 pub use rows::{Isa, Reason};
+pub use texture_words::TextureWords;
 pub use tracing::{DrawTrace, FRAGMENTS, PixelTrace, TraceEnd, TraceError, Tracer, trace, trace_last};
 
 use crate::frame::{Frames, Surface};
 use crate::plan::Plan;
 use crate::rop::surface;
-use crate::state::{Named, Target, Texture, TextureImage, named};
+use crate::state::{Named, Target, named};
 use crate::texture::unit::Image;
 use crate::threads::Team;
 use crate::trace::Silent;
@@ -241,7 +243,7 @@ impl<'a> Renderer<'a> {
                 all.fetch_add(own, Ordering::Relaxed);
             }
         };
-        draw_bands(plan, plan.draws[draws.start].target, height, frames, team, &run);
+        draw_bands(plan, draws.clone(), height, frames, team, &run);
         shaded.into_iter().map(AtomicU64::into_inner).collect()
     }
 }
@@ -275,26 +277,25 @@ pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// Each texture as it stands at this moment. Without surfaces nothing reads those that are targets.
-pub fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface]) -> Vec<Image<'a, L>> {
-    let words = |texture: &'a Texture| match &texture.image {
-        TextureImage::Texels(texels) => &texels.words[..],
-        TextureImage::Target { target } => surfaces.get(*target).map_or(&[][..], |surface| &surface.words),
-        TextureImage::Depth { target } => surfaces.get(*target).map_or(&[][..], |surface| &surface.depth),
-    };
-    plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect()
-}
-
 /// What draws in one band.
 type RunBand<'r> = dyn Fn(&[Image<'_, i32>], &mut walk::Band<'_>, &mut rows::Block) + Sync + 'r;
 
-/// Draws on a target, in bands of so many rows, which threads take one after the other.
-fn draw_bands(plan: &Plan, target: usize, height: usize, frames: &mut Frames, team: &Team, run_band: &RunBand<'_>) {
+/// Runs draws on their target, in bands of so many rows, which threads take one after the other.
+fn draw_bands(
+    plan: &Plan,
+    draws: Range<usize>,
+    height: usize,
+    frames: &mut Frames,
+    team: &Team,
+    run_band: &RunBand<'_>,
+) {
+    let target = plan.draws[draws.start].target;
     let surface = &mut frames.surfaces[target];
     let width = surface.width as usize;
     // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
     let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
-    let textures = images(plan, &frames.surfaces);
+    let texture_words = TextureWords::new(plan, &plan.draws[draws], &frames.surfaces);
+    let textures = texture_words.images();
     let mut depths = depth.chunks_mut(height * width);
     let bands = words.chunks_mut(height * width).enumerate().map(|(number, words)| walk::Band {
         first_row: number * height,
@@ -320,7 +321,7 @@ fn draw_bands(plan: &Plan, target: usize, height: usize, frames: &mut Frames, te
 /// Runs one draw by the definition, on one thread.
 pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
     let draw = &plan.draws[index];
-    draw_bands(plan, draw.target, BAND, frames, &Team::new(1), &|textures, band, _| {
+    draw_bands(plan, index..index + 1, BAND, frames, &Team::new(1), &|textures, band, _| {
         walk::draw(plan, draw, textures, band, &mut Silent);
     });
 }

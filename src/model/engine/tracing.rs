@@ -4,7 +4,7 @@ use std::convert::Infallible;
 use std::fmt;
 
 use super::pixel::{DepthStencil, Fragment, TriangleContext};
-use super::{cleared, cleared_colors, draw_defined, images};
+use super::{TextureWords, cleared, cleared_colors, draw_defined};
 use crate::number::Paired;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Piece;
@@ -260,7 +260,8 @@ impl<'a> Tracer<'a> {
                 (finished..index).for_each(|before| draw_defined(plan, before, &mut frames));
                 finished = index;
             }
-            let textures = images(plan, &frames.surfaces);
+            let texture_words = TextureWords::new(plan, std::slice::from_ref(planned), &frames.surfaces);
+            let textures = texture_words.images();
             let mut context = TriangleContext::vacant(plan, planned);
             for number in 0..planned.assembly.triangles.len() {
                 let Some(e) = covered(&mut context, number, self.pixel) else { continue };

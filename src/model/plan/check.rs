@@ -183,28 +183,29 @@ impl Check<'_> {
                         continue;
                     };
                     let of_depths = matches!(texture.image, TextureImage::Depth { .. });
-                    let fits = match texture.format.depth() {
+                    let (pixel, texel) = (shown.format.bytes(), texture.format.bytes());
+                    let columns = match texture.format.depth() {
                         Some(format) => {
-                            of_depths && shown.depth.is_some_and(|depth| depth.format.bits() == format.bits())
+                            let same = shown.depth.is_some_and(|depth| depth.format.bits() == format.bits());
+                            (of_depths && same).then_some(shown.width)
                         }
-                        None => {
-                            let bytes = texture.format.bytes() == shown.format.bytes();
-                            !of_depths
-                                && bytes
-                                && !texture.format.is_compressed()
-                                && texture.format != TextureFormat::P8
+                        // How texels of another size would follow each other in a texture that is not a rectangle, nobody knows.
+                        None if pixel != texel && texture.kind != TextureKind::Rectangle => None,
+                        None if of_depths || texture.format.is_compressed() || texture.format == TextureFormat::P8 => {
+                            None
                         }
+                        None => surface::texel_columns(shown.width, pixel, texel),
                     };
-                    if matches!(texture.kind, TextureKind::Cube | TextureKind::ThreeDimensional) || !fits {
+                    if matches!(texture.kind, TextureKind::Cube | TextureKind::ThreeDimensional) || columns.is_none() {
                         let (kind, format) = (texture.kind.name(), texture.format.name());
                         let what = if of_depths { "the depths of " } else { "" };
                         let message =
                             format!("texture `{name}` shows {what}target `{}` as {kind}, {format}", shown.name);
-                        let help = "take TwoDimensional or Rectangle, and a format of texels as long as the pixels, of depths \
-                                    for a depth buffer";
+                        let help = "take TwoDimensional or Rectangle, and a format of texels as long as the pixels (a Rectangle may \
+                                    have others, whole ones in each row), of depths for a depth buffer";
                         self.refuse("TEX-1", message, help);
                     }
-                    self.sides(texture, shown.width, shown.height);
+                    self.sides(texture, columns.unwrap_or(shown.width), shown.height);
                 }
             }
         }

@@ -275,8 +275,11 @@ impl Plan {
 pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
     match &scene.textures[texture].image {
         TextureImage::Texels(texels) => (texels.width, texels.height),
-        TextureImage::Target { target } | TextureImage::Depth { target } => {
-            (scene.targets[*target].width, scene.targets[*target].height)
+        TextureImage::Depth { target } => (scene.targets[*target].width, scene.targets[*target].height),
+        TextureImage::Target { target } => {
+            let (shown, texel) = (&scene.targets[*target], scene.textures[texture].format.bytes());
+            let columns = surface::texel_columns(shown.width, shown.format.bytes(), texel);
+            (columns.unwrap_or(shown.width), shown.height)
         }
     }
 }

@@ -1,5 +1,7 @@
 //! ROP-5, ROP-6: what the surface formats store and what blending reads back.
 
+use std::borrow::Cow;
+
 use crate::number::Word;
 use crate::state::{SurfaceFormat, TextureFormat};
 use crate::texture::format;
@@ -46,6 +48,23 @@ fn dropped_alpha_bits(format: SurfaceFormat) -> u32 {
 pub fn kept(format: SurfaceFormat, word: u32) -> [u8; 4] {
     let (shown, read) = (show(format, word), read(format, word));
     std::array::from_fn(|n| if sampled_channels(format) >> n & 1 != 0 { shown[n] } else { read[n] })
+}
+
+/// How many texels of `texel` bytes a row of so many pixels of `pixel` bytes is in memory; `None` where its end is no end of a texel.
+pub fn texel_columns(width: u32, pixel: u32, texel: u32) -> Option<u32> {
+    let bytes = u64::from(width) * u64::from(pixel);
+    let columns = u32::try_from(bytes / u64::from(texel)).ok()?;
+    bytes.is_multiple_of(u64::from(texel)).then_some(columns)
+}
+
+/// Pixels of `pixel` bytes as texels of `texel` bytes: the same memory, lowest byte first. One, two or four bytes each.
+pub fn texels(words: &[u32], pixel: u32, texel: u32) -> Cow<'_, [u32]> {
+    if pixel == texel {
+        return Cow::Borrowed(words);
+    }
+    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(pixel as usize)).collect();
+    let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
+    bytes.chunks(texel as usize).map(word).collect()
 }
 
 /// Whether blending is allowed.
@@ -170,5 +189,22 @@ mod tests {
         assert_eq!(pack(SurfaceFormat::X1A7R8G8B8Z, [0, 0, 0, 255]), 0x7f00_0000);
         assert_eq!(read(SurfaceFormat::X1A7R8G8B8Z, 0x7f00_0000)[3], 255);
         assert_eq!(read(SurfaceFormat::X1A7R8G8B8O, 0xc000_0000)[3], 129);
+    }
+
+    #[test]
+    fn texels_of_other_sizes_are_the_same_bytes() {
+        let words = [0x4433_2211, 0x8877_6655];
+        let bytes = [0x11, 0x22, 0x33, 0x44, 0x55, 0x66, 0x77, 0x88];
+        assert_eq!(*texels(&words, 4, 1), bytes);
+        assert_eq!(*texels(&words, 4, 2), [0x2211, 0x4433, 0x6655, 0x8877]);
+        assert_eq!(*texels(&bytes, 1, 4), words);
+        for (pixel, texel) in [(1, 2), (2, 1), (4, 2), (2, 4), (1, 4), (4, 1), (2, 2)] {
+            let pixels = texels(&bytes, 1, pixel);
+            assert_eq!(*texels(&texels(&pixels, pixel, texel), texel, pixel), *pixels);
+        }
+        assert_eq!(texel_columns(3, 4, 2), Some(6));
+        assert_eq!(texel_columns(3, 2, 4), None);
+        assert_eq!(texel_columns(6, 1, 2), Some(3));
+        assert_eq!(texel_columns(u32::MAX, 4, 1), None);
     }
 }

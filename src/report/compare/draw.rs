@@ -5,8 +5,8 @@ use super::meter::Counts;
 use super::{
     ChannelError, CompareOptions, Comparison, Decided, Histogram, Mode, RuleError, Statistics, WorstPixel, bound,
 };
-use ninebit::engine::cleared_colors;
 use ninebit::engine::pixel::DepthStencil;
+use ninebit::engine::{TextureWords, cleared_colors};
 use ninebit::number::Lane;
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::rop::surface;
@@ -68,8 +68,27 @@ pub(super) struct Images<'a, L> {
     pub(super) lane: Vec<Image<'a, L>>,
     /// Only the definition's words.
     pub(super) words: Vec<Image<'a, i32>>,
-    /// Width and states of those that are surfaces.
-    pub(super) states: Vec<Option<(u32, &'a [State])>>,
+    /// Those that are surfaces.
+    pub(super) states: Vec<Option<Seen<'a>>>,
+}
+
+/// A surface that is read as a texture.
+pub(super) struct Seen<'a> {
+    /// Pixels of a row.
+    width: usize,
+    states: &'a [State],
+    /// Bytes of a pixel and of a texel.
+    pixel: u32,
+    texel: u32,
+}
+
+impl Seen<'_> {
+    /// Whether one of the pixels that a texel shows has diverged.
+    pub(super) fn diverged(&self, x: u32, y: u32) -> bool {
+        let row = &self.states[y as usize * self.width..][..self.width];
+        let [first, last] = [x * self.texel, x * self.texel + self.texel - 1].map(|byte| (byte / self.pixel) as usize);
+        row[first..=last].iter().any(|state| state.diverged)
+    }
 }
 
 /// How the two sides are evaluated.
@@ -200,7 +219,8 @@ fn each<B: Send, T: Send>(bands: Vec<B>, work: impl Fn(B) -> T + Send + Sync) ->
 fn banded<M: Method>(plan: &Plan, options: &CompareOptions) -> Outcome {
     let height = plan.targets[options.target].height as usize;
     let surfaces: Vec<Surface<M::Lane>> = Vec::new();
-    let images = images(plan, &surfaces);
+    let words = texture_words(plan, &plan.draws, &surfaces);
+    let images = images(plan, &words, &surfaces);
     let bands = each((0..height.div_ceil(BAND)).collect(), |number| {
         let rows = (number * BAND, (number * BAND + BAND).min(height));
         let mut surface = Surface::new(plan, options.target, rows);
@@ -245,7 +265,8 @@ fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
         let empty = Surface { first_row: 0, width: 0, words: vec![], depth: vec![], held: vec![], states: vec![] };
         // The surface leaves the others for the draw, so that they can be read as textures.
         let mut surface = std::mem::replace(&mut surfaces[planned.target], empty);
-        let images = images(plan, &surfaces);
+        let words = texture_words(plan, std::slice::from_ref(planned), &surfaces);
+        let images = images(plan, &words, &surfaces);
         let drawn = each(surface.bands(), |mut band| {
             let mut counts = Counts::default();
             M::draw(plan, planned, &images, &mut band, &mut counts);
@@ -257,8 +278,13 @@ fn surfaces<M: Method>(plan: &Plan) -> (Vec<Surface<M::Lane>>, Counts) {
     (surfaces, counts)
 }
 
-/// The textures now. Without surfaces nothing reads those that are targets.
-fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
+/// The words of the textures now, as these draws find them. Without surfaces nothing reads those that are targets.
+fn texture_words<'a, L>(plan: &'a Plan, draws: &[PlannedDraw], surfaces: &'a [Surface<L>]) -> TextureWords<'a> {
+    TextureWords::of(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
+}
+
+/// The textures of these words.
+fn images<'a, L>(plan: &'a Plan, words: &'a TextureWords<'a>, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
     let surface = |texture: &Texture| match &texture.image {
         TextureImage::Target { target } => {
             let surface = plan.targets[*target].format;
@@ -270,22 +296,29 @@ fn images<'a, L>(plan: &'a Plan, surfaces: &'a [Surface<L>]) -> Images<'a, L> {
         TextureImage::Depth { target } => surfaces.get(*target).map(|s| (s, 0)),
         TextureImage::Texels(_) => None,
     };
-    let words = |texture: &'a Texture| match &texture.image {
-        TextureImage::Texels(texels) => &texels.words[..],
-        TextureImage::Target { .. } => surface(texture).map_or(&[][..], |(s, _)| &s.words),
-        TextureImage::Depth { .. } => surface(texture).map_or(&[][..], |(s, _)| &s.depth),
+    // Bytes of pixel and texel.
+    let sizes = |texture: &Texture| match &texture.image {
+        TextureImage::Target { target } => (plan.targets[*target].format.bytes(), texture.format.bytes()),
+        TextureImage::Texels(_) | TextureImage::Depth { .. } => (1, 1),
+    };
+    let seen = |texture: &Texture| {
+        let ((surface, _), (pixel, texel)) = (surface(texture)?, sizes(texture));
+        Some(Seen { width: surface.width, states: &surface.states, pixel, texel })
     };
     Images {
         lane: plan
             .textures
             .iter()
-            .map(|texture| {
-                let memory = surface(texture).map(|(s, channels)| (&s.held[..], channels));
-                Image { words: words(texture), memory }
+            .zip(words.images())
+            .map(|(texture, image)| {
+                // Of texels of another size no lane holds anything.
+                let (pixel, texel) = sizes(texture);
+                let memory = surface(texture).filter(|_| pixel == texel);
+                Image { memory: memory.map(|(s, channels)| (&s.held[..], channels)), ..image }
             })
             .collect(),
-        words: plan.textures.iter().map(|texture| Image { words: words(texture), memory: None }).collect(),
-        states: plan.textures.iter().map(|t| surface(t).map(|(s, _)| (s.width as u32, &s.states[..]))).collect(),
+        words: words.images(),
+        states: plan.textures.iter().map(seen).collect(),
     }
 }
 

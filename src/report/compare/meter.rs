@@ -82,7 +82,7 @@ pub(super) struct Log<'a> {
     /// In order.
     pub(super) decisions: Vec<(Decision, i64)>,
     /// Pixels of the textures' surfaces that have diverged, by texture.
-    pub(super) diverged: &'a [Option<(u32, &'a [super::draw::State])>],
+    pub(super) diverged: &'a [Option<super::draw::Seen<'a>>],
     /// One of them was read.
     pub(super) tainted: bool,
 }
@@ -95,8 +95,8 @@ impl Observer for Log<'_> {
         self.decisions.push((decision, outcome));
     }
     fn fetched(&mut self, texture: usize, (x, y): (u32, u32)) {
-        if let Some(Some((width, states))) = self.diverged.get(texture) {
-            self.tainted |= states[(y * width + x) as usize].diverged;
+        if let Some(Some(seen)) = self.diverged.get(texture) {
+            self.tainted |= seen.diverged(x, y);
         }
     }
 }

@@ -10,6 +10,7 @@ use super::texture_levels::{self, Wanted};
 use super::texture_source::{Given, Request, Sources, Variant, only};
 use super::*;
 use crate::reader::Entry;
+use ninebit::rop::surface;
 use ninebit::state::{
     CUBE_FACES, DepthFormat, Named, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
 };
@@ -362,21 +363,39 @@ fn of_target<'a>(
             );
             return None;
         }
-        Some((format, place)) if format.bytes() != target.format.bytes() => {
-            let (texel, pixel) = (format.bytes(), target.format.bytes());
-            let of = if format.is_compressed() { "a block" } else { "a texel" };
-            reader.push(
-                Diagnostic::error("NB0218", place, format!("{of} of {texel} bytes cannot show a pixel of {pixel}"))
-                    .label("another size")
-                    .help(format!("leave `format` out, which means {own:?} here, or take one of {pixel} bytes")),
-            );
-            return None;
-        }
         Some((format, place)) => (format, place),
         None => (own, place.clone()),
     };
+    let (texel, pixel) = (format.bytes(), target.format.bytes());
+    let columns = surface::texel_columns(target.width, pixel, texel);
+    let problem = match columns {
+        _ if texel == pixel => None,
+        _ if format.is_compressed() => {
+            Some((format!("a block of {texel} bytes cannot show a pixel of {pixel}"), String::new()))
+        }
+        _ if kind != TextureKind::Rectangle => {
+            let message =
+                format!("a texel of {texel} bytes cannot show a pixel of {pixel} in a {} texture", kind.name());
+            Some((message, ", or write `kind: Rectangle`, whose rows are read in texels of another size".to_owned()))
+        }
+        None => {
+            let bytes = u64::from(target.width) * u64::from(pixel);
+            let message = format!("a row of {bytes} bytes is no whole number of texels of {texel}");
+            Some((message, String::new()))
+        }
+        Some(_) => None,
+    };
+    if let Some((message, or)) = problem {
+        let size = if pixel == 1 { "1 byte".to_owned() } else { format!("{pixel} bytes") };
+        reader.push(
+            Diagnostic::error("NB0218", format_place, message).label("another size").help(format!(
+                "leave `format` out, which means {own:?} here, or take another with texels of {size}{or}"
+            )),
+        );
+        return None;
+    }
     legal::format(reader, format, format_place)?;
-    legal::sides(reader, kind, format, target.width, target.height, place)?;
+    legal::sides(reader, kind, format, columns.unwrap_or(target.width), target.height, place)?;
     Some(Texture { name: name.to_owned(), kind, format, image: TextureImage::Target { target: index } })
 }
 

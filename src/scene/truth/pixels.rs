@@ -6,7 +6,7 @@ use super::{Equation, Field, Interpolated, NormalSource, Space, Truth, lighting}
 use crate::mesh::Mesh;
 use crate::vector::{Vector, dot, unit_or_zero, wide};
 use ninebit::engine::walk::{self, Band};
-use ninebit::engine::{RenderOptions, cleared, images, render};
+use ninebit::engine::{RenderOptions, TextureWords, cleared, render};
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::raster::ideal::Outline;
 use ninebit::state::{Vertex, VertexColor};
@@ -81,7 +81,8 @@ fn seen(plan: &Plan, truth: &Truth, target: usize) -> Vec<Option<(usize, usize)>
     // What other targets hold decides nothing here but what tests on alpha read.
     let reads = plan.draws.iter().any(|planned| planned.target == target && plan.reads_target(planned));
     let others = reads.then(|| render(plan, &RenderOptions::default()));
-    let images = images(plan, others.as_ref().map_or(&[], |frames| &frames.surfaces));
+    let texture_words = TextureWords::new(plan, &plan.draws, others.as_ref().map_or(&[], |frames| &frames.surfaces));
+    let images = texture_words.images();
     let mut surface = cleared(plan).surfaces.swap_remove(target);
     let width = surface.width as usize;
     let mut seen = vec![None; surface.words.len()];

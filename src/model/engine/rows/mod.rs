@@ -52,6 +52,7 @@ mod triangle;
 pub(crate) use band::{Block, Job};
 pub use isa::Isa;
 
+use crate::engine::TextureWords;
 use crate::engine::pixel::TriangleContext;
 use crate::frame::Surface;
 use crate::plan::{Plan, PlannedDraw};
@@ -207,16 +208,12 @@ impl Rows {
         if compiled.samplers.iter().all(|sampler| sampler.table.is_some()) {
             return Cow::Borrowed(compiled);
         }
+        let words = TextureWords::new(plan, &plan.draws[index..=index], surfaces);
         let mut compiled = compiled.clone();
         for sampler in compiled.samplers.iter_mut().filter(|sampler| sampler.table.is_none()) {
             let unit = &plan.draws[index].units[sampler.index];
-            let words = match &plan.textures[unit.state.texture].image {
-                TextureImage::Target { target } => &surfaces[*target].words,
-                TextureImage::Depth { target } => &surfaces[*target].depth,
-                TextureImage::Texels(_) => continue,
-            };
             if let Some(axes) = table::axes(unit) {
-                let image = Image { words, memory: None };
+                let image = Image { words: words.words(unit.state.texture), memory: None };
                 sampler.table = Some(Arc::new(Table::new(unit, &axes, &image, false)));
             }
         }

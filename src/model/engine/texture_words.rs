@@ -1,0 +1,52 @@
+//! The words of textures as a draw finds them: texels of their own, or what a target holds then.
+
+use std::borrow::Cow;
+
+use crate::plan::{Plan, PlannedDraw};
+use crate::rop::surface;
+use crate::state::{Texture, TextureImage};
+use crate::texture::unit::Image;
+
+use super::Surface;
+
+/// The words of each texture of a plan at one moment, in the order of the scene.
+#[derive(Clone, Debug)]
+pub struct TextureWords<'a>(Vec<Cow<'a, [u32]>>);
+
+impl<'a> TextureWords<'a> {
+    /// Those of `surfaces`, as these draws find them: a target that one of them reads in texels of another size is written anew. Without
+    /// surfaces no draw may read those that are targets.
+    pub fn new(plan: &'a Plan, draws: &[PlannedDraw], surfaces: &'a [Surface]) -> TextureWords<'a> {
+        TextureWords::of(plan, draws, |target| surfaces.get(target).map(|s| (&s.words[..], &s.depth[..])))
+    }
+
+    /// Those of surfaces of whatever kind: `surface` gives the words of a target and of its depth buffer, if there are any.
+    pub fn of(
+        plan: &'a Plan,
+        draws: &[PlannedDraw],
+        surface: impl Fn(usize) -> Option<(&'a [u32], &'a [u32])>,
+    ) -> TextureWords<'a> {
+        let samples = |n: usize| draws.iter().flat_map(|draw| &draw.units).any(|unit| unit.state.texture == n);
+        let words = |(n, texture): (usize, &'a Texture)| match &texture.image {
+            TextureImage::Texels(texels) => Cow::Borrowed(&texels.words[..]),
+            TextureImage::Depth { target } => Cow::Borrowed(surface(*target).map_or(&[][..], |(_, depth)| depth)),
+            TextureImage::Target { target } => {
+                let (pixel, words) =
+                    (plan.targets[*target].format, surface(*target).map_or(&[][..], |(words, _)| words));
+                let (pixel, texel) = (pixel.bytes(), texture.format.bytes());
+                surface::texels(if pixel == texel || samples(n) { words } else { &[] }, pixel, texel)
+            }
+        };
+        TextureWords(plan.textures.iter().enumerate().map(words).collect())
+    }
+
+    /// The words of one texture.
+    pub fn words(&self, texture: usize) -> &[u32] {
+        &self.0[texture]
+    }
+
+    /// All of them as images without what a lane may hold.
+    pub fn images<L>(&self) -> Vec<Image<'_, L>> {
+        self.0.iter().map(|words| Image { words, memory: None }).collect()
+    }
+}
