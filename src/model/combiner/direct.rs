@@ -133,7 +133,7 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     }
     #[inline(always)]
     fn map(&mut self, mapping: InputMapping, x: L) -> L::Mapped {
-        self.observer.settle_factor::<L>(mapping::rule(mapping), mapping::map_one(x, mapping, self.policies))
+        self.observer.observe_factor::<L>(mapping::rule(mapping), mapping::map_one(x, mapping, self.policies))
     }
     #[inline(always)]
     fn plain(&mut self, x: L) -> L::Mapped {
@@ -167,20 +167,20 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     #[inline(always)]
     fn rounded(&mut self, sum: Self::Sum) -> L {
         self.count(Work::Roundings, sum.rule);
-        self.observer.settle(sum.rule, sum.sum.rounded())
+        self.observer.observe(sum.rule, sum.sum.rounded())
     }
     #[inline(always)]
     fn rounded_after(&mut self, bias: Bias, scale: Scale, sum: Self::Sum) -> L {
         self.count(Work::Roundings, sum.rule);
-        self.observer.settle(Rule::Cmb9, output::rounded_after::<L>(sum.sum, bias, scale))
+        self.observer.observe(Rule::Cmb9, output::rounded_after::<L>(sum.sum, bias, scale))
     }
     #[inline(always)]
     fn scaled(&mut self, bias: Bias, scale: Scale, x: L) -> L {
-        self.observer.settle(Rule::Cmb9, output::scaled(output::biased(x, bias), scale))
+        self.observer.observe(Rule::Cmb9, output::scaled(output::biased(x, bias), scale))
     }
     #[inline(always)]
     fn saturated(&mut self, x: L) -> L {
-        self.observer.settle(Rule::Num3, x.saturated(self.policies.register_floor))
+        self.observer.observe(Rule::Num3, x.saturated(self.policies.register_floor))
     }
     #[inline(always)]
     fn max0(&mut self, x: L) -> L {
@@ -212,7 +212,7 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     }
     #[inline(always)]
     fn truncated(&mut self, bits: u32, x: L) -> L {
-        self.observer.settle(Rule::Rop5, x.truncated(bits))
+        self.observer.observe(Rule::Rop5, x.truncated(bits))
     }
     #[inline(always)]
     fn signed_byte(&mut self, x: L) -> L {
@@ -220,6 +220,6 @@ impl<L: Lane, O: Observer> Algebra for Direct<'_, L, O> {
     }
     #[inline(always)]
     fn yielded(&mut self, rule: Rule, x: L) -> L {
-        self.observer.settle(rule, x)
+        self.observer.observe(rule, x)
     }
 }

@@ -289,7 +289,7 @@ impl<'a> TriangleContext<'a> {
                     let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(&source(k), channel));
                     // Bytes are as they were given.
                     if O::MEASURES && matches!(source(k), VertexColor::Floats(_)) {
-                        observer.settle(Rule::Num4, corner)
+                        observer.observe(Rule::Num4, corner)
                     } else {
                         corner
                     }
@@ -301,7 +301,7 @@ impl<'a> TriangleContext<'a> {
                     let value = interpolate::color(c, w0, w2);
                     channel += 1;
                     if O::MEASURES && live >> (channel - 1) & 1 != 0 {
-                        observer.settle(Rule::Int2, value)
+                        observer.observe(Rule::Int2, value)
                     } else {
                         value
                     }
@@ -346,7 +346,7 @@ impl<'a> TriangleContext<'a> {
                 Some(function) if function.mode.is_linear() => Rule::Fog2,
                 Some(_) => Rule::Fog4,
             };
-            let factor = observer.settle(rule, L::value(i32::from(found.byte), ideal));
+            let factor = observer.observe(rule, L::value(i32::from(found.byte), ideal));
             if O::ON {
                 self.report_fog(sample, plane, found, factor, observer);
             }
@@ -533,7 +533,7 @@ impl<'a> TriangleContext<'a> {
                 observer.count(Work::BytesRead, u64::from(draw.surface.bytes()));
                 let stored = surface::read(draw.surface, fragment.stored);
                 let destination = match destination {
-                    Some(held) => held.map(|held| observer.settle(Rule::Rop5, held)),
+                    Some(held) => held.map(|held| observer.observe(Rule::Rop5, held)),
                     None => stored.map(L::byte),
                 };
                 if O::ON {

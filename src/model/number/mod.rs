@@ -9,7 +9,7 @@
 //! | `i32` | the definition | the scalar engine |
 //! | [`Paired`] | the definition and the ideal side by side; the definition takes every decision | traces |
 //! | `f64` | the ideal: the vendor's real-number text, nothing rounded | comparisons, the second half of [`Paired`] |
-//! | [`Paired`] of [`Strands`] | the definition and several ideals, which tell the errors of the rules apart | comparisons |
+//! | [`Paired`] of [`IdealTracks`] | the definition and several ideals, which tell the errors of the rules apart | comparisons |
 //! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | the fast engine |
 //! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | the fast engine |
 //! | [`Each`] of `i32` | sixteen of the definition side by side | sweeps of vectors |
@@ -20,19 +20,19 @@
 mod block;
 pub mod convert;
 mod each;
+mod ideal_tracks;
 pub mod light;
 mod paired;
 mod part;
 mod real;
 mod scalar;
-mod strands;
 
 pub use block::{Halved, Narrow, Quarter, Two, byte_product};
 pub use each::{EACH, Each};
+pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
 pub use paired::{Paired, PairedFactor, PairedSum};
 pub use part::Part;
 pub use scalar::{Halves, Quarters};
-pub use strands::{STRANDS, Strands};
 
 use crate::state::RegisterFloor;
 use std::ops::{Add, BitAnd, BitOr, Mul, Shl, Shr, Sub};
@@ -163,15 +163,15 @@ pub trait Lane: Blend + Register<Factor = <Self as Lane>::Mapped, Expanded = <Se
         self
     }
     /// A rule of `part` has yielded this value: its own error, in lanes that tell errors apart.
-    fn settle(self, _part: Part) -> (Self, f64) {
+    fn attributed(self, _part: Part) -> (Self, f64) {
         (self, 0.0)
     }
-    /// [`settle`](Self::settle) for a factor.
-    fn settle_factor(factor: Self::Mapped, _part: Part) -> (Self::Mapped, f64) {
+    /// [`attributed`](Self::attributed) for a factor.
+    fn attributed_factor(factor: Self::Mapped, _part: Part) -> (Self::Mapped, f64) {
         (factor, 0.0)
     }
-    /// [`settle`](Self::settle) for a weight, in 256ths.
-    fn settle_weight(weight: Self::Weight, _part: Part) -> (Self::Weight, f64) {
+    /// [`attributed`](Self::attributed) for a weight, in 256ths.
+    fn attributed_weight(weight: Self::Weight, _part: Part) -> (Self::Weight, f64) {
         (weight, 0.0)
     }
     /// The integer and, where the lane has one, the ideal, for observers.

@@ -156,17 +156,17 @@ impl<I: Ideal> Lane for Paired<I> {
     fn remember(self, memory: Self, signed: bool) -> Self {
         Paired { fixed: self.fixed, ideal: memory.ideal.remembered(self.fixed, signed) }
     }
-    fn settle(self, part: Part) -> (Self, f64) {
+    fn attributed(self, part: Part) -> (Self, f64) {
         let (ideal, error) = self.ideal.absorb(f64::from(self.fixed), part);
         (Paired { ideal, ..self }, error)
     }
     #[allow(clippy::float_arithmetic, reason = "the ideal half")]
-    fn settle_factor(factor: PairedFactor<I>, part: Part) -> (PairedFactor<I>, f64) {
+    fn attributed_factor(factor: PairedFactor<I>, part: Part) -> (PairedFactor<I>, f64) {
         let (ideal, error) = factor.ideal.absorb(f64::from(factor.fixed.0) / 2.0, part);
         (PairedFactor { ideal, ..factor }, error)
     }
-    fn settle_weight(weight: Self, part: Part) -> (Self, f64) {
-        weight.settle(part)
+    fn attributed_weight(weight: Self, part: Part) -> (Self, f64) {
+        weight.attributed(part)
     }
     fn truncated(self, shift: u32) -> Self {
         Paired { fixed: self.fixed.truncated(shift), ideal: self.ideal.truncated(shift) }

@@ -182,7 +182,7 @@ impl<L: Lane> Chain<'_, L> {
             }
             let v = at.sample.attribute(&attributes[n]).floor_times(4096).clamp(0, 4096);
             let value = L::value(i32::from(convert::factor_byte(v)), || real::pass_through(real[n]));
-            let value = observer.settle(Rule::Tsh9, value);
+            let value = observer.observe(Rule::Tsh9, value);
             if O::ON {
                 report::pass_through(index, n, &attributes[n], at.sample, v, value, observer);
             }
@@ -435,7 +435,7 @@ impl<L: Lane> Chain<'_, L> {
             }
             let v = shader::luminance(color[n].decision(), previous.bytes[0], luminance);
             let byte = i32::from(shader::luminance_byte(v));
-            let value = observer.settle(Rule::Tsh8, color[n].multiplied(byte, || real::luminance(red, luminance)));
+            let value = observer.observe(Rule::Tsh8, color[n].multiplied(byte, || real::luminance(red, luminance)));
             if O::ON {
                 report::luminance(index, n, (color[n], v, value), previous.bytes[0], luminance, observer);
             }

@@ -179,7 +179,7 @@ pub fn lanes<L: Lane, O: Observer>(
     let off = image.memory.is_some() || format::is_narrow(unit.format) || unit.format.is_compressed();
     if O::MEASURES && off && !unit.is_wide() {
         for channel in (0..4).filter(|n| !unit.state.signed[*n] && unit.live >> n & 1 != 0) {
-            lanes[channel] = observer.settle(rule, lanes[channel]);
+            lanes[channel] = observer.observe(rule, lanes[channel]);
         }
     }
     lanes

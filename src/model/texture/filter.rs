@@ -8,12 +8,12 @@ pub fn lerp<L: Blend>(a: L, b: L, w: L::Weight) -> L {
     (a.times(L::WHOLE - w) + b.times(w)).round8()
 }
 
-/// TEX-6: along u on both rows, then along v, eight bits between. `t` is the 2x2 footprint, row by row; `settle` is told what each
+/// TEX-6: along u on both rows, then along v, eight bits between. `t` is the 2x2 footprint, row by row; `observe` is told what each
 /// step yields and returns what goes on.
 #[inline(always)]
-pub fn bilinear<L: Blend>(t: [L; 4], u: L::Weight, v: L::Weight, mut settle: impl FnMut(L) -> L) -> L {
-    let rows = [settle(lerp(t[0], t[1], u)), settle(lerp(t[2], t[3], u))];
-    settle(lerp(rows[0], rows[1], v))
+pub fn bilinear<L: Blend>(t: [L; 4], u: L::Weight, v: L::Weight, mut observe: impl FnMut(L) -> L) -> L {
+    let rows = [observe(lerp(t[0], t[1], u)), observe(lerp(t[2], t[3], u))];
+    observe(lerp(rows[0], rows[1], v))
 }
 
 /// TEX-5: the texel at a coordinate in 1/256 texel.

@@ -151,7 +151,7 @@ fn choose<L: Lane, O: Observer>(unit: &PlannedUnit, place: &impl Place, observer
     let Some((_, fixed)) = choice.next else { return whole(choice) };
     #[allow(clippy::float_arithmetic, reason = "the ideal's weight, never the definition's")]
     let weight = L::weight(fixed, || (real() - f64::from(lod - fixed)).clamp(0.0, 256.0));
-    let weight = observer.settle_weight::<L>(Rule::Tex9, weight);
+    let weight = observer.observe_weight::<L>(Rule::Tex9, weight);
     if O::ON {
         report.lod_weight::<L, O>(lod, weight, observer);
     }
@@ -228,7 +228,7 @@ fn taps<L: Lane, O: Observer>(
             if L::DECIDES { wanted.map(floored) } else { [0, 1].map(|n| coordinates[n] + fixed.offsets[tap][n]) };
         let weight =
             L::weight(fixed.weights[tap], || ideal.map_or(f64::from(fixed.weights[tap]), |ideal| ideal.weights[tap]));
-        let weight = observer.settle_weight::<L>(Rule::Tex17, weight);
+        let weight = observer.observe_weight::<L>(Rule::Tex17, weight);
         if O::ON {
             report.tap((quad, limit, tap), (coordinates, at, wanted), L::observe_weight(weight), observer);
         }
@@ -244,7 +244,7 @@ fn taps<L: Lane, O: Observer>(
         if O::MEASURES && live >> lane & 1 == 0 {
             return L::ZERO;
         }
-        let value = settled_step(unit, lane, sum[lane].round8(), observer);
+        let value = observed_step(unit, lane, sum[lane].round8(), observer);
         if O::ON && live >> lane & 1 != 0 {
             Report { unit, prefix: "" }.taps(lane, filter, &mixed, value, observer);
         }
@@ -320,7 +320,7 @@ pub fn footprint_weights<L: Lane, O: Observer>(
         fraction
     };
     let weights = [L::weight(wu, || fraction(0, x)), L::weight(wv, || fraction(1, y))]
-        .map(|weight| observer.settle_weight::<L>(rule, weight));
+        .map(|weight| observer.observe_weight::<L>(rule, weight));
     if O::ON {
         report.linear::<L, O>([u, v], [x, y], weights, observer);
     }
@@ -343,7 +343,7 @@ pub fn mix<L: Lane, O: Observer>(
         if O::MEASURES && live >> lane & 1 == 0 {
             return L::ZERO;
         }
-        bilinear(texels.map(|texel| texel[lane]), weights[0], weights[1], |v| settled_step(unit, lane, v, observer))
+        bilinear(texels.map(|texel| texel[lane]), weights[0], weights[1], |v| observed_step(unit, lane, v, observer))
     });
     if O::ON {
         for lane in (0..4).filter(|c| live >> c & 1 != 0) {
@@ -368,7 +368,7 @@ fn trilinear<L: Lane, O: Observer>(
         if O::MEASURES && live >> lane & 1 == 0 {
             return L::ZERO;
         }
-        settled_step(unit, lane, lerp(first[lane], second[lane], weight), observer)
+        observed_step(unit, lane, lerp(first[lane], second[lane], weight), observer)
     });
     if O::ON {
         let report = Report { unit, prefix: "" };
@@ -381,8 +381,8 @@ fn trilinear<L: Lane, O: Observer>(
 
 /// A linear step has yielded a lane. A signed or wide one counts in another unit until it becomes a register (TEX-18).
 #[inline(always)]
-fn settled_step<L: Lane, O: Observer>(unit: &PlannedUnit, lane: usize, value: L, observer: &mut O) -> L {
-    if O::MEASURES && !unit.is_wide() && !unit.state.signed[lane] { observer.settle(Rule::Tex6, value) } else { value }
+fn observed_step<L: Lane, O: Observer>(unit: &PlannedUnit, lane: usize, value: L, observer: &mut O) -> L {
+    if O::MEASURES && !unit.is_wide() && !unit.state.signed[lane] { observer.observe(Rule::Tex6, value) } else { value }
 }
 
 /// What was sampled as the unit's register: signed channels are doubled (TEX-18), halves become bytes (TEX-1). Traces call what was
@@ -396,7 +396,7 @@ pub fn load<L: Lane, O: Observer>(unit: &PlannedUnit, value: [L; 4], from: &str,
     let mut register = value;
     for channel in 0..4 {
         if unit.state.signed[channel] {
-            register[channel] = observer.settle(Rule::Tex18, value[channel].signed_texel());
+            register[channel] = observer.observe(Rule::Tex18, value[channel].signed_texel());
         }
         if O::ON && unit.live >> channel & 1 != 0 {
             report.register(from, channel, value[channel], register[channel], observer);
@@ -415,7 +415,7 @@ fn load_halves<L: Lane, O: Observer>(halves: [L; 4], from: &str, report: &Report
             let signed = unit.signed_lane(lane);
             let byte = byte_of_half(halves[lane], high, signed);
             let rule = if high && signed { Rule::Tex18 } else { Rule::Tex1 };
-            register[channel] = observer.settle(rule, byte);
+            register[channel] = observer.observe(rule, byte);
             if O::ON {
                 report.byte_of_half(from, (channel, lane, high), halves[lane], register[channel], observer);
             }

@@ -24,15 +24,15 @@ pub trait Observer {
     /// One rule has been applied.
     fn step(&mut self, step: Step);
     /// A rule has yielded a value; what is returned goes on in its place. It may differ in the ideal only.
-    fn settle<L: Lane>(&mut self, _rule: Rule, value: L) -> L {
+    fn observe<L: Lane>(&mut self, _rule: Rule, value: L) -> L {
         value
     }
     /// A rule has yielded a factor.
-    fn settle_factor<L: Lane>(&mut self, _rule: Rule, factor: L::Mapped) -> L::Mapped {
+    fn observe_factor<L: Lane>(&mut self, _rule: Rule, factor: L::Mapped) -> L::Mapped {
         factor
     }
     /// A rule has yielded a weight.
-    fn settle_weight<L: Lane>(&mut self, _rule: Rule, weight: L::Weight) -> L::Weight {
+    fn observe_weight<L: Lane>(&mut self, _rule: Rule, weight: L::Weight) -> L::Weight {
         weight
     }
     /// A decision has been taken; `ideal` is what the ideal would have decided.

@@ -4,7 +4,7 @@ use super::draw::{Band, Images, Method};
 use super::meter::{Counts, Meter};
 use ninebit::engine::pixel::{DepthStencil, Fragment};
 use ninebit::engine::walk;
-use ninebit::number::{Ideal, Paired, STRANDS, Strands};
+use ninebit::number::{IDEAL_TRACKS, Ideal, IdealTracks, Paired};
 use ninebit::plan::{Plan, PlannedDraw};
 use ninebit::rop::surface;
 use ninebit::state::Named;
@@ -17,7 +17,7 @@ pub(super) struct Follow;
 pub(super) struct PerOp;
 
 impl Method for Follow {
-    type Lane = Paired<Strands<STRANDS>>;
+    type Lane = Paired<IdealTracks<IDEAL_TRACKS>>;
 
     fn draw(
         plan: &Plan,
@@ -36,7 +36,7 @@ impl Method for Follow {
 }
 
 impl Method for PerOp {
-    type Lane = Paired<Strands<1>>;
+    type Lane = Paired<IdealTracks<1>>;
 
     fn draw(
         plan: &Plan,
@@ -55,7 +55,7 @@ impl Method for PerOp {
 
 /// What a picture shows of a channel.
 fn shown_as<I: Ideal>(shown: u8, held: Paired<I>, observer: &mut impl Observer) -> Paired<I> {
-    observer.settle(Rule::Rop5, Paired { fixed: i32::from(shown), ..held })
+    observer.observe(Rule::Rop5, Paired { fixed: i32::from(shown), ..held })
 }
 
 fn draw<I: Ideal>(

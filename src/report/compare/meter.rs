@@ -51,20 +51,20 @@ impl<const RULES: bool> Observer for Meter<'_, RULES> {
     const MEASURES: bool = true;
     fn step(&mut self, _step: Step) {}
     #[inline]
-    fn settle<L: Lane>(&mut self, rule: Rule, value: L) -> L {
-        let (value, error) = value.settle(rule.part());
+    fn observe<L: Lane>(&mut self, rule: Rule, value: L) -> L {
+        let (value, error) = value.attributed(rule.part());
         self.note(rule, error);
         value
     }
     #[inline]
-    fn settle_factor<L: Lane>(&mut self, rule: Rule, factor: L::Mapped) -> L::Mapped {
-        let (factor, error) = L::settle_factor(factor, rule.part());
+    fn observe_factor<L: Lane>(&mut self, rule: Rule, factor: L::Mapped) -> L::Mapped {
+        let (factor, error) = L::attributed_factor(factor, rule.part());
         self.note(rule, error);
         factor
     }
     #[inline]
-    fn settle_weight<L: Lane>(&mut self, rule: Rule, weight: L::Weight) -> L::Weight {
-        let (weight, error) = L::settle_weight(weight, rule.part());
+    fn observe_weight<L: Lane>(&mut self, rule: Rule, weight: L::Weight) -> L::Weight {
+        let (weight, error) = L::attributed_weight(weight, rule.part());
         self.note(rule, error);
         weight
     }

@@ -261,7 +261,7 @@ impl Observer for Tap {
 
     fn step(&mut self, _: Step) {}
 
-    fn settle<L: Lane>(&mut self, rule: Rule, value: L) -> L {
+    fn observe<L: Lane>(&mut self, rule: Rule, value: L) -> L {
         self.settled.push((rule, value.observe().0));
         value
     }

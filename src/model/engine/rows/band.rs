@@ -1,15 +1,15 @@
-//! Triangles to pieces, pieces to blocks, blocks to the surface.
+//! Triangles to batches, batches to blocks, blocks to the surface.
 
+use super::boxes::{BoxCoverage, SIDE, boxes, is_box, is_small};
 use super::fetch::{self, Workspace};
 use super::isa::Text;
-use super::kernels::{self, LANES, Row};
+use super::kernels::{self, LANES, Lanes256};
 use super::levels::Reads;
-use super::patch::{Patch, SIDE, boxes, is_box, is_small};
 use super::quotient::{IOTA, Positions};
 use super::stages::{self, Workshop};
 use super::taps::Footprints;
-use super::triangle::{Piece, Planes, Setup, Varying, whole_steps};
-use super::{BLOCK, Compiled, Reasons, small, store};
+use super::triangle::{PixelBatch, Planes, Setup, Varying, whole_steps};
+use super::{BLOCK, CompiledDraw, Reasons, small, store};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{self, Band, Window};
 use crate::plan::{Plan, PlannedDraw};
@@ -30,11 +30,11 @@ pub(super) struct Run {
 /// What a thread works in, draw after draw.
 #[derive(Debug)]
 pub(crate) struct Block {
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<Lanes256>,
     pub(super) varying: Varying,
     pub(super) work: Workspace,
     pub(super) workshop: Workshop,
-    patch: Patch,
+    coverage: BoxCoverage,
     planes: Vec<Planes>,
     pub(super) runs: Vec<Run>,
     /// Lanes in use.
@@ -56,7 +56,7 @@ impl Default for Block {
             varying: Varying::default(),
             work: Workspace::default(),
             workshop: Workshop::default(),
-            patch: Patch::default(),
+            coverage: BoxCoverage::default(),
             planes: Vec::new(),
             runs: Vec::with_capacity(BLOCK),
             used: 0,
@@ -75,7 +75,7 @@ impl Default for Block {
 pub(crate) struct Job<'a> {
     pub(crate) plan: &'a Plan,
     pub(crate) draw: &'a PlannedDraw,
-    pub(crate) compiled: &'a Compiled,
+    pub(crate) compiled: &'a CompiledDraw,
     pub(crate) textures: &'a [Image<'a, i32>],
     /// The numbers of the triangles to look at, in order; `None`: all.
     pub(crate) triangles: Option<&'a [u32]>,
@@ -89,7 +89,7 @@ pub(super) fn run<T: Text>(job: Job<'_>, band: &mut Band<'_>, block: &mut Block)
     if walk::windows(draw, band.rows()).next().is_none() {
         return shaded;
     }
-    block.rows.resize(compiled.rows.len(), Row::of(0));
+    block.rows.resize(compiled.rows.len(), Lanes256::of(0));
     for (row, constant) in block.rows.iter_mut().zip(&compiled.rows) {
         row.fill(*constant);
     }
@@ -142,13 +142,13 @@ fn draw_window<T: Text>(
     let count = job.triangles.map_or(draw.assembly.triangles.len(), <[u32]>::len);
     for n in 0..count {
         let number = job.triangles.map_or(n, |numbers| numbers[n] as usize);
-        match T::enter(context, number, (rows, columns), &mut block.patch) {
+        match T::enter(context, number, (rows, columns), &mut block.coverage) {
             Entered::Nothing => {}
             Entered::Box => shaded += draw_patch::<T>(job, context, band, block),
             Entered::Boxes => {
                 for window in boxes(common(&context.triangle, (rows, columns))) {
-                    T::cover(&context.triangle, window, &mut block.patch);
-                    if block.patch.count > 0 {
+                    T::cover(&context.triangle, window, &mut block.coverage);
+                    if block.coverage.count > 0 {
                         shaded += draw_patch::<T>(job, context, band, block);
                     }
                 }
@@ -175,10 +175,10 @@ fn draw_window<T: Text>(
                         let lanes = whole_steps(count);
                         let last = count as i32 - 1;
                         let at = Positions { x: &IOTA[..lanes], y: &ZEROS[..lanes], last };
-                        let piece = Piece { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
-                        T::row(&setup, piece, job, block);
+                        let batch = PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
+                        T::row(&setup, batch, job, block);
                         if compiled.shader.is_some() {
-                            T::row_attributes(&setup, piece, job, block);
+                            T::row_attributes(&setup, batch, job, block);
                         }
                         block.append(band, (i, j), count, compiled.reads_surface);
                         shaded += count as u64;
@@ -201,20 +201,20 @@ fn finish<T: Text>(job: Job<'_>, block: &mut Block, band: &mut Band<'_>) {
     T::flush(job, block, band);
 }
 
-/// Draws the pixels that the patch has, one at least; how many they are.
+/// Draws the pixels that the coverage has, one at least; how many they are.
 #[inline(always)]
 fn draw_patch<T: Text>(job: Job<'_>, context: &mut TriangleContext<'_>, band: &mut Band<'_>, block: &mut Block) -> u64 {
     let compiled = job.compiled;
-    let count = block.patch.count;
+    let count = block.coverage.count;
     if count > BLOCK - block.used || (compiled.reads_surface && block.is_patch_taken(band)) {
         finish::<T>(job, block, band);
     }
     if !(compiled.plain && T::plain(context, compiled, block)) {
         context.complete();
-        T::patch(context, job, block);
+        T::coverage(context, job, block);
     }
-    for n in 0..block.patch.filled {
-        let (j, i, count) = block.patch.runs[n];
+    for n in 0..block.coverage.filled {
+        let (j, i, count) = block.coverage.runs[n];
         block.append(band, (i, j), count, compiled.reads_surface);
     }
     count as u64
@@ -225,7 +225,7 @@ fn draw_patch<T: Text>(job: Job<'_>, context: &mut TriangleContext<'_>, band: &m
 pub(super) enum Entered {
     #[default]
     Nothing,
-    /// The pixels that the patch has.
+    /// The pixels that the coverage has.
     Box,
     /// It is cut into boxes.
     Boxes,
@@ -248,7 +248,7 @@ pub(super) fn enter<const WIDE: bool>(
     context: &mut TriangleContext<'_>,
     number: usize,
     window: Window,
-    patch: &mut Patch,
+    coverage: &mut BoxCoverage,
 ) -> Entered {
     if !context.set_up(number, window.0) {
         return Entered::Nothing;
@@ -265,59 +265,64 @@ pub(super) fn enter<const WIDE: bool>(
     if !is_box(window) {
         return Entered::Boxes;
     }
-    patch.cover(triangle, window);
-    if patch.count > 0 { Entered::Box } else { Entered::Nothing }
+    coverage.cover(triangle, window);
+    if coverage.count > 0 { Entered::Box } else { Entered::Nothing }
 }
 
 /// The pixels of a box of a triangle that is cut into boxes.
 #[inline(always)]
-pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, patch: &mut Patch) {
-    patch.cover(triangle, window);
+pub(super) fn cover<const WIDE: bool>(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage) {
+    coverage.cover(triangle, window);
 }
 
-/// What varies across the small triangle whose patch the block has, if it is of a plain draw. `false`: not all could be estimated.
+/// What varies across the small triangle whose box the block has, if it is of a plain draw. `false`: not all could be estimated.
 #[inline(always)]
 pub(super) fn plain<const FMA: bool>(
     context: &mut TriangleContext<'_>,
-    compiled: &Compiled,
+    compiled: &CompiledDraw,
     block: &mut Block,
 ) -> bool {
-    let Block { varying, rows, patch, used, planes, .. } = block;
-    small::interpolate::<FMA>(context, compiled, piece(patch, *used), varying, rows, planes)
+    let Block { varying, rows, coverage, used, planes, .. } = block;
+    small::interpolate::<FMA>(context, compiled, batch(coverage, *used), varying, rows, planes)
 }
 
 /// The same for any draw.
 #[inline(always)]
-pub(super) fn patch<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
-    let Block { varying, rows, patch, used, planes, workshop, defined, .. } = block;
+pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+    let Block { varying, rows, coverage, used, planes, workshop, defined, .. } = block;
     let setup = Setup::new(context, job.compiled, std::mem::take(planes));
-    setup.interpolate::<FMA, false>(piece(patch, *used), job.compiled, job.textures, varying, rows);
+    setup.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
     if let Some(shader) = &job.compiled.shader {
-        setup.attributes::<FMA, false>(piece(patch, *used), shader, workshop);
+        setup.attributes::<FMA, false>(batch(coverage, *used), shader, workshop);
     }
     *planes = setup.given_back(defined);
 }
 
-/// The pixels of a patch.
+/// The pixels of a box.
 #[inline(always)]
-pub(super) fn piece(patch: &Patch, lane: usize) -> Piece<'_> {
-    let lanes = whole_steps(patch.count);
-    let at = Positions { x: &patch.x[..lanes], y: &patch.y[..lanes], last: i32::MAX };
-    Piece { first: patch.first, at, count: patch.count, lane, extent: (SIDE as i32, SIDE as i32) }
+pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
+    let lanes = whole_steps(coverage.count);
+    let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
+    PixelBatch { first: coverage.first, at, count: coverage.count, lane, extent: (SIDE as i32, SIDE as i32) }
 }
 
-/// What varies along a piece of a row.
+/// What varies along a batch of a row.
 #[inline(always)]
-pub(super) fn row<const FMA: bool>(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
+pub(super) fn row<const FMA: bool>(setup: &Setup<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block) {
     let Block { varying, rows, .. } = block;
-    setup.interpolate::<FMA, true>(piece, job.compiled, job.textures, varying, rows);
+    setup.interpolate::<FMA, true>(batch, job.compiled, job.textures, varying, rows);
 }
 
-/// What the vertices give a texture shader along a piece of a row.
+/// What the vertices give a texture shader along a batch of a row.
 #[inline(always)]
-pub(super) fn row_attributes<const FMA: bool>(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block) {
+pub(super) fn row_attributes<const FMA: bool>(
+    setup: &Setup<'_>,
+    batch: PixelBatch<'_>,
+    job: Job<'_>,
+    block: &mut Block,
+) {
     if let Some(shader) = &job.compiled.shader {
-        setup.attributes::<FMA, true>(piece, shader, &mut block.workshop);
+        setup.attributes::<FMA, true>(batch, shader, &mut block.workshop);
     }
 }
 
@@ -348,7 +353,7 @@ impl Block {
 
     #[inline(always)]
     fn is_patch_taken(&self, band: &Band<'_>) -> bool {
-        let runs = &self.patch.runs[..self.patch.filled];
+        let runs = &self.coverage.runs[..self.coverage.filled];
         runs.iter().any(|(j, i, count)| self.is_taken(band, (*i, *j), *count))
     }
 }

@@ -1,9 +1,9 @@
 //! INT-2 on rows: weights in 16 bits, and the colours that they make.
 
-use super::Compiled;
-use super::kernels::Row;
+use super::CompiledDraw;
+use super::kernels::Lanes256;
 use super::quotient::FEW;
-use super::triangle::{Piece, Varying};
+use super::triangle::{PixelBatch, Varying};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate;
 
@@ -23,32 +23,32 @@ pub(super) fn narrow(wide: &[i32], out: &mut [u16]) {
 
 /// Settled weights in 16 bits.
 #[inline(always)]
-pub(super) fn narrow_weights(piece: Piece<'_>, varying: &mut Varying) {
+pub(super) fn narrow_weights(batch: PixelBatch<'_>, varying: &mut Varying) {
     // Not a loop over both: it is not always taken apart.
     let ([w0, w2], [narrow0, narrow2]) = (&varying.weights, &mut varying.narrow);
-    narrow(&w0[piece.lanes()], &mut narrow0[piece.lanes()]);
-    narrow(&w2[piece.lanes()], &mut narrow2[piece.lanes()]);
+    narrow(&w0[batch.lanes()], &mut narrow0[batch.lanes()]);
+    narrow(&w2[batch.lanes()], &mut narrow2[batch.lanes()]);
 }
 
 /// INT-2 of all channels that are read.
 #[inline(always)]
 pub(super) fn colors(
     context: &TriangleContext<'_>,
-    compiled: &Compiled,
-    piece: Piece<'_>,
+    compiled: &CompiledDraw,
+    batch: PixelBatch<'_>,
     varying: &Varying,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
 ) {
     let [w0, w2] = &varying.narrow;
     for (slots, colors) in [(&compiled.primary, &context.primary), (&compiled.secondary, &context.secondary)] {
         for channel in 0..4 {
             let Some(slot) = slots[channel] else { continue };
-            let out = &mut rows[usize::from(slot)].0[piece.lanes()];
+            let out = &mut rows[usize::from(slot)].0[batch.lanes()];
             let corners = [u16::from(colors[0][channel]), u16::from(colors[1][channel]), u16::from(colors[2][channel])];
             if corners[0] == corners[1] && corners[1] == corners[2] {
                 out.fill(corners[0] as i16);
             } else {
-                color(corners, &w0[piece.lanes()], &w2[piece.lanes()], out);
+                color(corners, &w0[batch.lanes()], &w2[batch.lanes()], out);
             }
         }
     }

@@ -4,9 +4,9 @@
     reason = "whole numbers, and cuts at powers of two, of which docs/exactness.md gives account"
 )]
 
-use super::fetch::Numbers;
+use super::fetch::PerLane;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
-use super::triangle::Piece;
+use super::triangle::PixelBatch;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::depth::w_ratio;
 use crate::raster::interpolate::most_dominant;
@@ -42,23 +42,23 @@ struct Depths<'a> {
     format: DepthFormat,
 }
 
-/// Depth of the pixels of a piece.
+/// Depth of the pixels of a batch.
 #[inline(always)]
 pub(super) fn depths<const FMA: bool, const ROW: bool>(
     context: &TriangleContext<'_>,
-    piece: Piece<'_>,
-    out: &mut Numbers<u32>,
+    batch: PixelBatch<'_>,
+    out: &mut PerLane<u32>,
 ) {
     let (triangle, plane, draw) = (&context.triangle, &context.depth, context.draw);
     let Some(test) = &draw.depth_test else { return };
-    let e = triangle.edges(piece.first.0, piece.first.1);
+    let e = triangle.edges(batch.first.0, batch.first.1);
     let edge = |k: usize| Line { c: e[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
     let format = draw.depth_format;
     let offset = plane.offset.mantissa as f64 * power_of_two(plane.offset.exponent);
     let (z, full) = (plane.z.map(f64::from), f64::from(format.largest()));
     let range = test.range.as_ref();
     let depths = Depths { z, ratios: [1.0; 3], full, offset, range, format };
-    let out = &mut out[piece.lanes()];
+    let out = &mut out[batch.lanes()];
     let edges = [edge(0), edge(1), edge(2)];
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
     // Zero, or far from where binary32 or the steps between are at their ends.
@@ -72,25 +72,25 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
             let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
             let depths = Depths { z: w.map(f64::from), ratios, ..depths };
             if is_plain {
-                depths.along::<FMA, ROW, false, true>(piece.at, edges, out)
+                depths.along::<FMA, ROW, false, true>(batch.at, edges, out)
             } else {
-                depths.along::<FMA, ROW, true, true>(piece.at, edges, out)
+                depths.along::<FMA, ROW, true, true>(batch.at, edges, out)
             }
         } else {
             out.fill(UNKNOWN);
             true
         }
     } else if is_plain && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole)) {
-        depths.along::<FMA, ROW, false, false>(piece.at, edges, out)
+        depths.along::<FMA, ROW, false, false>(batch.at, edges, out)
     } else if exact_offset && plane.z.iter().all(moderate) {
-        depths.along::<FMA, ROW, true, false>(piece.at, edges, out)
+        depths.along::<FMA, ROW, true, false>(batch.at, edges, out)
     } else {
         out.fill(UNKNOWN);
         true
     };
     if unknown {
         for (n, depth) in out.iter_mut().enumerate().filter(|(_, depth)| **depth == UNKNOWN) {
-            *depth = context.depth_word(&piece.sample(n, triangle)).unwrap_or(OUTSIDE);
+            *depth = context.depth_word(&batch.sample(n, triangle)).unwrap_or(OUTSIDE);
         }
     }
 }

@@ -2,11 +2,11 @@
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::Sampler;
-use super::fetch::Numbers;
+use super::fetch::PerLane;
 use super::planes::Plane;
-use super::quotient::{Line, Positions, SLACK, Scaled, estimate_two, nearest, prove, whole};
+use super::quotient::{Line, Positions, QuotientEstimate, SLACK, estimate_two, nearest, prove, whole};
 use super::short::{Short, floors};
-use super::triangle::{Bounds, Piece, Setup};
+use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::raster::interpolate::COORDINATE_LIMIT;
 use crate::texture::cube::{Face, Signed};
 
@@ -45,7 +45,7 @@ pub(super) fn positive(mut g: [[i64; 3]; 3], sides: [u32; 2]) -> Option<([[i64; 
     (most < COORDINATE_LIMIT as f64).then_some((g, reach))
 }
 
-/// A direction across a piece, or s, t and q.
+/// A direction across a batch, or s, t and q.
 pub(super) struct Looking {
     /// x, y, z.
     pub(super) lines: [Line; 3],
@@ -112,39 +112,39 @@ impl Looking {
         (magnitudes[s.axis] < least && magnitudes[t.axis] < least).then_some(face)
     }
 
-    /// TEX-12 of a piece whose pixels look at several faces. No denominator: the perspective divide cancels. `false`: some pixel is too
+    /// TEX-12 of a batch whose pixels look at several faces. No denominator: the perspective divide cancels. `false`: some pixel is too
     /// close to call, and nothing is known.
     #[inline(always)]
     pub(super) fn directions<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         sampler: &Sampler,
-        numbers: &mut [Numbers<i32>; 2],
-        faces: &mut Numbers<u32>,
+        numbers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
     ) -> bool {
         let size = f64::from(sampler.sides[0]) * 128.0;
         let offset = f64::from(sampler.bias()) + 0.5;
-        let lanes = piece.lanes();
+        let lanes = batch.lanes();
         let [u, v] = numbers;
         let (u, v, faces) = (&mut u[lanes.clone()], &mut v[lanes.clone()], &mut faces[lanes]);
-        directions::<FMA, ROW>(piece.at, self.lines, (self.error, size, offset), u, v, faces)
+        directions::<FMA, ROW>(batch.at, self.lines, (self.error, size, offset), u, v, faces)
     }
 }
 
 impl Setup<'_> {
-    /// TEX-12 of a piece that looks at one face: two quotients like any others. `false`: nothing would be proved.
+    /// TEX-12 of a batch that looks at one face: two quotients like any others. `false`: nothing would be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     pub(super) fn on_face<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         sampler: &Sampler,
         planes: &[Plane; 3],
         face: Face,
         looking: &Looking,
         bounds: &Bounds,
-        numbers: &mut [Numbers<i32>; 2],
-        faces: &mut Numbers<u32>,
+        numbers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
     ) -> bool {
         let [s, t, major] = face.components();
         let m = looking.component(major);
@@ -154,25 +154,25 @@ impl Setup<'_> {
         // Twice the error of either component, once what is taken off, and as much again.
         let margin = 8.0 * looking.error * size * widest;
         let (along, down) = (looking.component(s).plus(m).times(size), looking.component(t).plus(m).times(size));
-        faces[piece.lanes()].fill(face as u32);
-        self.quotients::<FMA, ROW>(piece, sampler, [along, down, m], widest, margin, bounds, numbers, faces)
+        faces[batch.lanes()].fill(face as u32);
+        self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, bounds, numbers, faces)
     }
 
-    /// TEX-15 of a piece, s, t and a positive q: two more quotients, of what weights that fall short leave. `reach` is more than their magnitudes, in images. `false`: nothing would
+    /// TEX-15 of a batch, s, t and a positive q: two more quotients, of what weights that fall short leave. `reach` is more than their magnitudes, in images. `false`: nothing would
     /// be proved.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     pub(super) fn projected<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         sampler: &Sampler,
         planes: &[Plane; 3],
         reach: f64,
         looking: &Looking,
         bounds: &Bounds,
         short: &mut Short,
-        numbers: &mut [Numbers<i32>; 2],
-        faces: &mut Numbers<u32>,
+        numbers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
     ) -> bool {
         let [s, t, q] = looking.lines;
         let widest = 1.0 / self.least::<FMA, ROW>(q, &planes[2], bounds);
@@ -182,29 +182,29 @@ impl Setup<'_> {
         let margin = 8.0 * looking.error * most * (1.0 + reach) * widest;
         let lines = [s.times(width), t.times(height), q];
         if self.context.triangle.exact_reciprocal {
-            return self.quotients::<FMA, ROW>(piece, sampler, lines, widest, margin, bounds, numbers, faces);
+            return self.quotients::<FMA, ROW>(batch, sampler, lines, widest, margin, bounds, numbers, faces);
         }
         // Also refuses what is no number.
         let proves = margin < COARSEST;
         if !proves {
             return false;
         }
-        short.keep::<FMA, ROW>(piece.at, lines, self.losses_by_q(planes, [width, height]));
-        let (lanes, [u, v], Short { at, close, .. }) = (piece.at.x.len(), &mut *numbers, short);
+        short.keep::<FMA, ROW>(batch.at, lines, self.losses_by_q(planes, [width, height]));
+        let (lanes, [u, v], Short { at, close, .. }) = (batch.at.x.len(), &mut *numbers, short);
         close[..lanes].fill(0);
-        floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[piece.lanes()]);
-        floors(&at[1][..lanes], margin, sampler.bias(), close, &mut v[piece.lanes()]);
+        floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[batch.lanes()]);
+        floors(&at[1][..lanes], margin, sampler.bias(), close, &mut v[batch.lanes()]);
         let mut any = 0;
         for close in &close[..lanes] {
             any |= close;
         }
-        for n in (0..piece.count).filter(|n| any >> 63 != 0 && close[*n] >> 63 != 0) {
-            self.defined_lane(piece, n, sampler, numbers, faces);
+        for n in (0..batch.count).filter(|n| any >> 63 != 0 && close[*n] >> 63 != 0) {
+            self.defined_lane(batch, n, sampler, numbers, faces);
         }
         true
     }
 
-    /// What a linear function that is positive at all vertices is not below in a piece.
+    /// What a linear function that is positive at all vertices is not below in a batch.
     #[inline(always)]
     pub(super) fn least<const FMA: bool, const ROW: bool>(&self, line: Line, plane: &Plane, bounds: &Bounds) -> f64 {
         if ROW {
@@ -222,29 +222,29 @@ impl Setup<'_> {
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     fn quotients<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         sampler: &Sampler,
         [along, down, m]: [Line; 3],
         widest: f64,
         margin: f64,
         bounds: &Bounds,
-        numbers: &mut [Numbers<i32>; 2],
-        faces: &mut Numbers<u32>,
+        numbers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
     ) -> bool {
         let (extent, reciprocals) = ((bounds.columns, bounds.rows), (1.0 / m.c, widest));
         let (Some(along), Some(down)) = (
-            Scaled::new::<ROW>(along, m, extent, reciprocals, margin, sampler.bias()),
-            Scaled::new::<ROW>(down, m, extent, reciprocals, margin, sampler.bias()),
+            QuotientEstimate::new::<ROW>(along, m, extent, reciprocals, margin, sampler.bias()),
+            QuotientEstimate::new::<ROW>(down, m, extent, reciprocals, margin, sampler.bias()),
         ) else {
             return false;
         };
         let [u, v] = numbers;
-        let close = estimate_two::<FMA, ROW>(piece.at, m, &[along, down], &mut u[piece.lanes()], &mut v[piece.lanes()]);
+        let close = estimate_two::<FMA, ROW>(batch.at, m, &[along, down], &mut u[batch.lanes()], &mut v[batch.lanes()]);
         if close[0] | close[1] {
-            for n in 0..piece.count {
-                match prove::<ROW>(piece.at, n, m, &[along, down]) {
-                    Some([u, v]) => (numbers[0][piece.lane + n], numbers[1][piece.lane + n]) = (u, v),
-                    None => self.defined_lane(piece, n, sampler, numbers, faces),
+            for n in 0..batch.count {
+                match prove::<ROW>(batch.at, n, m, &[along, down]) {
+                    Some([u, v]) => (numbers[0][batch.lane + n], numbers[1][batch.lane + n]) = (u, v),
+                    None => self.defined_lane(batch, n, sampler, numbers, faces),
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! TEX-5 to TEX-8 on rows: entries of a table, texels, the filter.
 
 use super::BLOCK;
-use super::kernels::{LANES, Row};
+use super::kernels::{LANES, Lanes256};
 use super::levels::Reads;
 use super::store;
 use super::table::{Axis, Table, Texels};
@@ -10,7 +10,7 @@ use crate::number::{Lane, Two};
 use crate::texture::filter::{bilinear, lerp};
 
 /// One number for each pixel of a block.
-pub(super) type Numbers<T> = [T; LANES];
+pub(super) type PerLane<T> = [T; LANES];
 
 /// What a fetch works in.
 #[derive(Clone, Debug)]
@@ -42,8 +42,8 @@ impl Default for Workspace {
 #[inline(always)]
 pub(super) fn locate(
     table: &Table,
-    [u, v]: &mut [Numbers<i32>; 2],
-    faces: Option<&Numbers<u32>>,
+    [u, v]: &mut [PerLane<i32>; 2],
+    faces: Option<&PerLane<u32>>,
     work: &mut Workspace,
 ) {
     let (Some(u), Some(v)) = (u.first_chunk_mut::<BLOCK>(), v.first_chunk_mut::<BLOCK>()) else { return };
@@ -64,12 +64,12 @@ pub(super) fn locate(
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample(
     table: &Table,
-    at: &[Numbers<i32>; 2],
-    references: &Numbers<u32>,
+    at: &[PerLane<i32>; 2],
+    references: &PerLane<u32>,
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
 ) {
     if texels(table, at, references, signed, wanted, work, rows) {
         load(signed, wanted, rows);
@@ -81,12 +81,12 @@ pub(super) fn sample(
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 fn texels(
     table: &Table,
-    [u, v]: &[Numbers<i32>; 2],
-    references: &Numbers<u32>,
+    [u, v]: &[PerLane<i32>; 2],
+    references: &PerLane<u32>,
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
 ) -> bool {
     let Workspace { entries, texels: found, upper, lower, halves: [half, _], .. } = work;
     let (Some(u), Some(v)) = (u.first_chunk::<BLOCK>(), v.first_chunk::<BLOCK>()) else { return false };
@@ -155,12 +155,12 @@ fn texels(
 #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
 pub(super) fn sample_taps(
     table: &Table,
-    at: &[Numbers<i32>; 2],
+    at: &[PerLane<i32>; 2],
     pairs: &[Pair],
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
 ) {
     let mut sums = [[0_u16; BLOCK]; 4];
     for Pair { offsets, weights } in pairs {
@@ -193,7 +193,7 @@ pub(super) fn sample_taps(
 }
 
 /// Nothing is compared.
-static NO_REFERENCES: Numbers<u32> = [0; LANES];
+static NO_REFERENCES: PerLane<u32> = [0; LANES];
 
 /// KEY-1: drops lanes whose single texel, just sampled, is the key in the bits that are compared.
 #[inline(always)]
@@ -212,7 +212,7 @@ pub(super) fn sample_levels(
     signed: [bool; 4],
     wanted: [Option<u16>; 4],
     work: &mut Workspace,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
 ) {
     let (texels, is_wide) = match &table.texels {
         Texels::Levels(texels) => (texels, false),
@@ -223,7 +223,7 @@ pub(super) fn sample_levels(
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
-    let block = |of: &Numbers<i32>| -> [i32; BLOCK] { *of.first_chunk().unwrap_or(&[0; BLOCK]) };
+    let block = |of: &PerLane<i32>| -> [i32; BLOCK] { *of.first_chunk().unwrap_or(&[0; BLOCK]) };
     if is_wide {
         let weights = block(&reads.weights);
         for (lane, signed) in [(0, signed[3]), (1, signed[1])] {
@@ -285,7 +285,7 @@ fn mix(channel: &mut [i16; BLOCK], next: &[i16; BLOCK], weights: &[i32; BLOCK]) 
 
 /// TEX-18: the 128 that the table added is taken off again.
 #[inline(always)]
-fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Row]) {
+fn load(signed: [bool; 4], wanted: [Option<u16>; 4], rows: &mut [Lanes256]) {
     for (signed, wanted) in signed.into_iter().zip(wanted) {
         if let (true, Some(wanted)) = (signed, wanted) {
             for out in rows[usize::from(wanted)].block_mut() {

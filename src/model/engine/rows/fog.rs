@@ -6,8 +6,8 @@ use std::sync::LazyLock;
 use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, estimate_two, nearest, position, settle};
-use super::triangle::{Bounds, Piece, Setup};
+use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, nearest, position};
+use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::number::convert::factor_byte;
 use crate::raster::fog::{CENTRE, FACTOR_BITS, FogPlane, TABLE_END, exponential};
@@ -101,12 +101,12 @@ impl Fog {
 }
 
 impl Setup<'_> {
-    /// The fog factor of the pixels of a piece. `values` and `spare` are places to work in.
+    /// The fog factor of the pixels of a batch. `values` and `spare` are places to work in.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
     pub(super) fn fog_factors<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         e: &[i64; 3],
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
@@ -115,18 +115,18 @@ impl Setup<'_> {
         row: &mut [i16; LANES],
     ) {
         let Some(fog) = &self.fog else { return };
-        let out = &mut row[piece.lanes()];
+        let out = &mut row[batch.lanes()];
         let (values, spare) = (&mut values[..out.len()], &mut spare[..out.len()]);
         match &**fog {
             Fog::Same(factor) => out.fill(*factor),
             Fog::Factor(plane) => {
                 let planes = [*plane, *plane];
-                let Some(scaled) = self.scaled::<ROW>(&planes, 0, (real, denominator), bounds) else {
-                    return self.defined_factors(piece, |_| true, out);
+                let Some(estimates) = self.estimates::<ROW>(&planes, 0, (real, denominator), bounds) else {
+                    return self.defined_factors(batch, |_| true, out);
                 };
-                if estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, values, spare)[0] {
+                if estimate_two::<FMA, ROW>(batch.at, denominator, &estimates, values, spare)[0] {
                     let bottom = self.denominator.exact(e);
-                    settle::<ROW>(piece.at, plane.exact(e), bottom, plane.small(self.bits), values, spare);
+                    correct::<ROW>(batch.at, plane.exact(e), bottom, plane.small(self.bits), values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {
                     *out = i16::from(factor_byte(i64::from((*value).clamp(0, 4096))));
@@ -138,9 +138,9 @@ impl Setup<'_> {
                 // Also refuses what is no number.
                 let proves = off < COARSEST;
                 if !proves {
-                    return self.defined_factors(piece, |_| true, out);
+                    return self.defined_factors(batch, |_| true, out);
                 }
-                let (at, lines) = (piece.at, (line, denominator));
+                let (at, lines) = (batch.at, (line, denominator));
                 let close = match curve.kind {
                     Kind::Linear { start, sign } => {
                         let close = linear::<FMA, ROW>(at, lines, (start, off, sign), values, spare);
@@ -164,7 +164,7 @@ impl Setup<'_> {
                     }
                 };
                 if close {
-                    self.defined_factors(piece, |n| values[n] != spare[n], out);
+                    self.defined_factors(batch, |n| values[n] != spare[n], out);
                 }
             }
         }
@@ -172,11 +172,11 @@ impl Setup<'_> {
 
     /// Some of the factors by the definition.
     #[inline(never)]
-    fn defined_factors(&self, piece: Piece<'_>, wanted: impl Fn(usize) -> bool, out: &mut [i16]) {
+    fn defined_factors(&self, batch: PixelBatch<'_>, wanted: impl Fn(usize) -> bool, out: &mut [i16]) {
         let Some(fog) = &self.context.fog else { return };
-        for n in (0..piece.count).filter(|n| wanted(*n)) {
+        for n in (0..batch.count).filter(|n| wanted(*n)) {
             self.tell(Reason::Fog, 1);
-            out[n] = i16::from(fog.at(&self.sample(piece, n)).byte);
+            out[n] = i16::from(fog.at(&self.sample(batch, n)).byte);
         }
     }
 }

@@ -348,7 +348,7 @@ impl Algebra for Graph {
         }
         let (low, high) = self.range(x);
         let range = (kernels::scaled(low, bias, scale), kernels::scaled(high, bias, scale));
-        self.add(Node::Scaled(bias, scale, x), range)
+        self.add(Node::QuotientEstimate(bias, scale, x), range)
     }
 
     fn saturated(&mut self, x: Value) -> Value {
@@ -358,7 +358,7 @@ impl Algebra for Graph {
         let range = (saturated(low), saturated(high));
         // In one step with what it saturates.
         match self.node(x) {
-            Node::Scaled(bias, scale, v) => self.add(Node::Output(bias, scale, floor, v), range),
+            Node::QuotientEstimate(bias, scale, v) => self.add(Node::Output(bias, scale, floor, v), range),
             _ if range == (low, high) => x,
             _ => self.add(Node::Output(Bias::None, Scale::One, floor, x), range),
         }

@@ -1,9 +1,9 @@
 //! One text, compiled for several instruction sets, and the choice among them.
 
-use super::Compiled;
+use super::CompiledDraw;
 use super::band::{self, Block, Entered, Job};
-use super::patch::Patch;
-use super::triangle::{Piece, Setup};
+use super::boxes::BoxCoverage;
+use super::triangle::{PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::{Band, Window};
 use crate::raster::setup::Triangle;
@@ -107,17 +107,17 @@ text! {
         /// [`band::flush`].
         fn flush(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
         /// [`band::enter`].
-        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, patch: &mut Patch) -> Entered;
+        fn enter(context: &mut TriangleContext<'_>, number: usize, window: Window, coverage: &mut BoxCoverage) -> Entered;
         /// [`band::cover`].
-        fn cover(triangle: &Triangle, window: Window, patch: &mut Patch);
+        fn cover(triangle: &Triangle, window: Window, coverage: &mut BoxCoverage);
         /// [`band::plain`].
-        fn plain(context: &mut TriangleContext<'_>, compiled: &Compiled, block: &mut Block) -> bool;
-        /// [`band::patch`].
-        fn patch(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
+        fn plain(context: &mut TriangleContext<'_>, compiled: &CompiledDraw, block: &mut Block) -> bool;
+        /// [`band::coverage`].
+        fn coverage(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::row`].
-        fn row(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block);
+        fn row(setup: &Setup<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::row_attributes`].
-        fn row_attributes(setup: &Setup<'_>, piece: Piece<'_>, job: Job<'_>, block: &mut Block);
+        fn row_attributes(setup: &Setup<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::shade`].
         fn shade(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }

@@ -10,20 +10,20 @@ use crate::state::{
     Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, RegisterFloor, Scale,
 };
 
-/// Lanes that a piece may write past its end: pieces are handled in whole steps.
+/// Lanes that a batch may write past its end: batches are handled in whole steps.
 pub(super) const STEP: usize = 16;
 
-/// Lanes of a row: a block's, and what pieces write past its end; whole cache lines.
+/// Lanes of a row: a block's, and what batches write past its end; whole cache lines.
 pub(super) const LANES: usize = BLOCK + 2 * STEP;
 
 /// One number for each pixel of a block.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-pub(super) struct Row(pub(super) [i16; LANES]);
+pub(super) struct Lanes256(pub(super) [i16; LANES]);
 
-impl Row {
-    pub(super) fn of(value: i16) -> Row {
-        Row([value; LANES])
+impl Lanes256 {
+    pub(super) fn of(value: i16) -> Lanes256 {
+        Lanes256([value; LANES])
     }
 
     pub(super) fn fill(&mut self, value: i16) {
@@ -145,7 +145,7 @@ fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK])
 
 /// What becomes of the sums of the products of rows.
 #[inline(always)]
-fn sum_row(pairs: &Pairs, before: &[Row], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
+fn sum_row(pairs: &Pairs, before: &[Lanes256], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
     // Past the last pair nothing is added, whatever the rows hold that nobody reads.
     let mut all: [&[i16; BLOCK]; 2 * MOST] = [&ZEROS; 2 * MOST];
     for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
@@ -169,7 +169,7 @@ fn finish_row(bias: Bias, scale: Scale, floor: RegisterFloor, v: &[i16; BLOCK], 
 
 /// Computes the row of a node from rows before it.
 #[inline(always)]
-pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
+pub(super) fn run(node: &Node, at: usize, rows: &mut [Lanes256]) {
     let (before, after) = rows.split_at_mut(at);
     let Some(out) = after.first_mut() else { return };
     let out = out.block_mut();
@@ -221,7 +221,7 @@ pub(super) fn run(node: &Node, at: usize, rows: &mut [Row]) {
             let [a, b, c, d, e, f] = [row(v[0]), row(v[1]), row(v[2]), row(v[3]), row(v[4]), row(v[5])];
             each(out, |n| unsigned_dot([a[n], c[n], e[n]], [b[n], d[n], f[n]]));
         }
-        Node::Scaled(bias, scale, v) => {
+        Node::QuotientEstimate(bias, scale, v) => {
             let v = row(v);
             each(out, |n| scaled(v[n], bias, scale));
         }
@@ -290,18 +290,18 @@ mod tests {
     #[test]
     fn sums_have_as_many_products_as_they_say() {
         for count in 1..=MOST {
-            let mut rows = vec![Row::of(99); 4];
+            let mut rows = vec![Lanes256::of(99); 4];
             let mut values = [Value(0); 2 * MOST];
             let mut wanted = 0;
             for (n, value) in values[..2 * count].iter_mut().enumerate() {
                 *value = Value(rows.len() as u16);
-                rows.push(Row::of(17 * n as i16 - 40));
+                rows.push(Lanes256::of(17 * n as i16 - 40));
             }
             for pair in 0..count as i32 {
                 wanted += (34 * pair - 40) * (34 * pair - 23);
             }
             let at = rows.len();
-            rows.push(Row::of(0));
+            rows.push(Lanes256::of(0));
             run(&Node::Sum(Pairs { count, values }), at, &mut rows);
             assert_eq!(rows[at].block(), &[wanted.rounded(); BLOCK], "{count}");
         }

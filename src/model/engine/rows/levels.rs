@@ -1,14 +1,14 @@
 //! TEX-9 to TEX-11 on rows: the lod of each pixel, and where it is read on which levels.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::fetch::{Numbers, entry};
+use super::fetch::{PerLane, entry};
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
 use super::quads::{AtQuads, Known, Measure, Quads, floor};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::short::Short;
 use super::table::{Placed, Table};
-use super::triangle::{Bounds, Piece, Planes, Setup};
+use super::triangle::{Bounds, PixelBatch, Planes, Setup};
 use super::{Reason, Sampler};
 use crate::state::Filter;
 use crate::texture::lod::{self, Quad};
@@ -19,11 +19,11 @@ use crate::texture::unit::PlannedUnit;
 #[derive(Clone, Debug)]
 pub(super) struct Reads {
     /// Entries of the table: of the nearer level, and of the next one.
-    pub(super) entries: [Numbers<i32>; 2],
+    pub(super) entries: [PerLane<i32>; 2],
     /// u and v there, of which the fraction of a texel counts.
-    pub(super) coordinates: [[Numbers<i32>; 2]; 2],
+    pub(super) coordinates: [[PerLane<i32>; 2]; 2],
     /// Weight of the next level, 0..=255.
-    pub(super) weights: Numbers<i32>,
+    pub(super) weights: PerLane<i32>,
     /// Lods of quads.
     pub(super) known: Known<i32>,
 }
@@ -43,15 +43,15 @@ impl Default for Reads {
 #[derive(Clone, Debug)]
 pub(super) struct Placing {
     /// u and v of the lanes on level 0, 1/256 texel, with their fractions.
-    at: [Numbers<f64>; 2],
-    lods: Numbers<i32>,
-    levels: [Numbers<i32>; 2],
+    at: [PerLane<f64>; 2],
+    lods: PerLane<i32>,
+    levels: [PerLane<i32>; 2],
     /// What is read of one level.
-    read: [Numbers<i32>; 3],
+    read: [PerLane<i32>; 3],
     /// Negative, as the bits of doubles: the lane's coordinate on one level is not proved.
-    close: [Numbers<u64>; 2],
+    close: [PerLane<u64>; 2],
     /// The lane is the definition's.
-    open: Numbers<bool>,
+    open: PerLane<bool>,
 }
 
 impl Default for Placing {
@@ -74,12 +74,12 @@ const FARTHEST: f64 = (1 << 26) as f64;
 const CLOSE: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Setup<'_> {
-    /// Everything that a unit whose levels count reads in a piece.
+    /// Everything that a unit whose levels count reads in a batch.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
     pub(super) fn levels<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &Planes),
         e: &[i64; 3],
         (real, denominator): (&[f64; 3], Line),
@@ -91,17 +91,17 @@ impl Setup<'_> {
         let Some(table) = &sampler.table else { return };
         let unit = &self.context.draw.units[sampler.index];
         let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, (real, denominator), bounds) else {
-            for n in 0..piece.count {
-                self.defined_reads(piece, n, sampler, table, reads);
+            for n in 0..batch.count {
+                self.defined_reads(batch, n, sampler, table, reads);
             }
             return;
         };
-        let lanes = piece.at.x.len();
-        let spread = self.of_quads::<FMA, ROW, i32>(piece, (unit, &ground), e, quads, &mut reads.known);
+        let lanes = batch.at.x.len();
+        let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &ground), e, quads, &mut reads.known);
         for n in 0..lanes {
             placing.lods[n] = reads.known.each[spread.quad(n)];
         }
-        let (at, denominator) = (piece.at, ground.denominator);
+        let (at, denominator) = (batch.at, ground.denominator);
         let [at_u, at_v] = &mut placing.at;
         let (lines, (u, v)) = ([ground.along, ground.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
         match ground.losses {
@@ -110,11 +110,11 @@ impl Setup<'_> {
         }
         placing.open[..lanes].fill(false);
         let [low, high] =
-            choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[piece.lanes()]);
+            choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[batch.lanes()]);
         for which in 0..2 {
-            reads.entries[which][piece.lanes()].fill(0);
-            reads.coordinates[which][0][piece.lanes()].fill(0);
-            reads.coordinates[which][1][piece.lanes()].fill(0);
+            reads.entries[which][batch.lanes()].fill(0);
+            reads.coordinates[which][0][batch.lanes()].fill(0);
+            reads.coordinates[which][1][batch.lanes()].fill(0);
         }
         let mut opens = false;
         for level in low..=high {
@@ -129,7 +129,7 @@ impl Setup<'_> {
             for n in 0..lanes {
                 any |= close[0][n] | close[1][n];
             }
-            for n in (0..piece.count).filter(|n| any >> 63 != 0 && (close[0][*n] | close[1][*n]) >> 63 != 0) {
+            for n in (0..batch.count).filter(|n| any >> 63 != 0 && (close[0][*n] | close[1][*n]) >> 63 != 0) {
                 if levels[0][n] != level && levels[1][n] != level {
                     continue;
                 }
@@ -139,7 +139,7 @@ impl Setup<'_> {
                 };
                 let planes = self.planes_of(unit, planes, level as usize);
                 for axis in 0..2 {
-                    read[axis][n] = self.settled(piece, n, &planes[axis], e, read[axis][n]);
+                    read[axis][n] = self.settled(batch, n, &planes[axis], e, read[axis][n]);
                 }
             }
             let [u, v, entries] = read;
@@ -150,22 +150,22 @@ impl Setup<'_> {
             for which in 0..2 {
                 let levels = &levels[which][..lanes];
                 let [to_u, to_v] = &mut reads.coordinates[which];
-                put(level, levels, entries, &mut reads.entries[which][piece.lanes()]);
-                put(level, levels, u, &mut to_u[piece.lanes()]);
-                put(level, levels, v, &mut to_v[piece.lanes()]);
+                put(level, levels, entries, &mut reads.entries[which][batch.lanes()]);
+                put(level, levels, u, &mut to_u[batch.lanes()]);
+                put(level, levels, v, &mut to_v[batch.lanes()]);
             }
         }
-        for n in (0..piece.count).filter(|n| opens && placing.open[*n]) {
-            self.defined_reads(piece, n, sampler, table, reads);
+        for n in (0..batch.count).filter(|n| opens && placing.open[*n]) {
+            self.defined_reads(batch, n, sampler, table, reads);
         }
     }
 
     /// The floor that an estimate less than one off stands for, by INT-4 and INT-4t.
-    fn settled(&self, piece: Piece<'_>, n: usize, plane: &Plane, e: &[i64; 3], value: i32) -> i32 {
-        let (x, y) = (i64::from(piece.at.x[n].min(piece.at.last)), i64::from(piece.at.y[n]));
+    fn settled(&self, batch: PixelBatch<'_>, n: usize, plane: &Plane, e: &[i64; 3], value: i32) -> i32 {
+        let (x, y) = (i64::from(batch.at.x[n].min(batch.at.last)), i64::from(batch.at.y[n]));
         let (floor, exact) = floor(plane.exact(e).at(x, y), self.denominator.exact(e).at(x, y), i64::from(value));
         let ties = exact && plane.lowers(&self.context.triangle);
-        floor as i32 - i32::from(ties && self.sample(piece, n).shortfall(&plane.g) > 0)
+        floor as i32 - i32::from(ties && self.sample(batch, n).shortfall(&plane.g) > 0)
     }
 
     /// The planes of a level.
@@ -185,7 +185,7 @@ impl Setup<'_> {
     #[inline(never)]
     pub(super) fn defined_reads(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         n: usize,
         sampler: &Sampler,
         table: &Table,
@@ -193,8 +193,8 @@ impl Setup<'_> {
     ) {
         let unit = &self.context.draw.units[sampler.index];
         self.tell(Reason::Levels, 1);
-        let (sample, lane) = (self.sample(piece, n), piece.lane + n);
-        let Some(place) = self.context.place(unit, &sample, piece.pixel(n)) else { return };
+        let (sample, lane) = (self.sample(batch, n), batch.lane + n);
+        let Some(place) = self.context.place(unit, &sample, batch.pixel(n)) else { return };
         let lod = lod::biased(unit, lod::log2_ratio(place.quad()));
         let (level, next, weight) = lod::levels(unit, lod.max(0));
         let filter = if lod <= 0 { unit.state.mag_filter } else { unit.state.min_filter };
@@ -273,7 +273,7 @@ pub(super) fn quotients<const FMA: bool, const ROW: bool>(
 
 /// Floors of coordinates on a level, and as sign bits which are not proved.
 #[inline(always)]
-fn on_level(at: &[f64], scale: f64, off: f64, out: &mut Numbers<i32>, close: &mut Numbers<u64>) {
+fn on_level(at: &[f64], scale: f64, off: f64, out: &mut PerLane<i32>, close: &mut PerLane<u64>) {
     let (out, close) = (&mut out[..at.len()], &mut close[..at.len()]);
     for n in 0..at.len() {
         let t = at[n] * scale - 0.5;
@@ -287,8 +287,8 @@ fn on_level(at: &[f64], scale: f64, off: f64, out: &mut Numbers<i32>, close: &mu
 fn choose(
     unit: &PlannedUnit,
     lanes: usize,
-    lods: &mut Numbers<i32>,
-    [levels, nexts]: &mut [Numbers<i32>; 2],
+    lods: &mut PerLane<i32>,
+    [levels, nexts]: &mut [PerLane<i32>; 2],
     weights: &mut [i32],
 ) -> [i32; 2] {
     let (mut low, mut high) = (i32::MAX, 0);

@@ -8,25 +8,27 @@
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q or moved |
 //! | `third.rs` | layers of volumes, depths to compare with |
 //! | `small.rs` | the same for small triangles, four functions at a time |
-//! | `steady.rs` | rows with one denominator: quotients by steps, exact |
+//! | `dda.rs` | rows with one denominator: quotients by steps, exact |
 //! | `table.rs`, `fetch.rs` | textures laid out for rows; address, fetch, filter |
 //! | `quads.rs`, `levels.rs`, `taps.rs` | coordinates at quads; lods and levels; the taps of anisotropy |
 //! | `shader.rs`, `stages.rs`, `dot.rs` | texture shaders, compiled; run stage by stage; the dot unit in single precision |
 //! | `store.rs` | surfaces: what blending reads, the tests, the store |
-//! | `patch.rs`, `band.rs` | triangles to pieces to blocks |
+//! | `boxes.rs`, `band.rs` | triangles to batches to blocks |
 //! | `isa.rs` | the same text for several instruction sets |
 //!
 //! The bytes are the scalar engine's: a rule is the same text in both, and what is computed otherwise (quotients) is proved to be the same
 //! integer. What rows do not cover is computed by the definition, pixel by pixel, within the same blocks.
 
 mod band;
+mod boxes;
 mod build;
 mod color;
-#[cfg(test)]
-mod dense;
+mod dda;
 mod depth;
 mod direction;
 mod dot;
+#[cfg(test)]
+mod equivalence_tests;
 mod fetch;
 mod fog;
 mod graph;
@@ -34,7 +36,6 @@ pub(crate) mod isa;
 mod kernels;
 mod levels;
 mod node;
-mod patch;
 mod planes;
 mod quads;
 mod quotient;
@@ -42,7 +43,6 @@ mod shader;
 mod short;
 mod small;
 mod stages;
-mod steady;
 mod store;
 mod table;
 mod taps;
@@ -144,7 +144,7 @@ impl Sampler {
 
 /// A draw compiled to rows.
 #[derive(Clone, Debug)]
-pub(crate) struct Compiled {
+pub(crate) struct CompiledDraw {
     /// What is computed, and into which row.
     operations: Vec<(Node, usize)>,
     /// Each row's constant; 0 where it is computed.
@@ -177,7 +177,7 @@ pub(crate) struct Compiled {
     merges: bool,
 }
 
-impl Compiled {
+impl CompiledDraw {
     /// Whether a colour that is read varies on a triangle.
     #[inline(always)]
     fn varies(&self, context: &TriangleContext<'_>) -> bool {
@@ -192,7 +192,7 @@ impl Compiled {
 /// A plan compiled to rows.
 #[derive(Clone, Debug)]
 pub(crate) struct Rows {
-    draws: Vec<Compiled>,
+    draws: Vec<CompiledDraw>,
 }
 
 impl Rows {
@@ -203,7 +203,7 @@ impl Rows {
     }
 
     /// A draw with the tables of images that were drawn before it.
-    pub(crate) fn draw(&self, plan: &Plan, index: usize, surfaces: &[Surface]) -> Cow<'_, Compiled> {
+    pub(crate) fn draw(&self, plan: &Plan, index: usize, surfaces: &[Surface]) -> Cow<'_, CompiledDraw> {
         let compiled = &self.draws[index];
         if compiled.samplers.iter().all(|sampler| sampler.table.is_some()) {
             return Cow::Borrowed(compiled);
@@ -233,13 +233,13 @@ fn pixels(draw: &PlannedDraw) -> u64 {
     draw.assembly.triangles.iter().map(|t| area(t).min(window)).sum()
 }
 
-fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Compiled {
+fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> CompiledDraw {
     let samplers = samplers(plan, draw, tables);
     // What stages of a shader read of one another is not known of the texels alone.
     let built = build::build(draw, plan.policies, samplers.as_deref().filter(|_| draw.shader.is_none()));
     let mut samples_pixels = samplers.is_none();
     let samplers = samplers.unwrap_or_default();
-    let mut compiled = Compiled {
+    let mut compiled = CompiledDraw {
         operations: Vec::new(),
         rows: Vec::new(),
         primary: [None; 4],
@@ -379,7 +379,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
 }
 
 /// The rows of what reaches the surface, in order; nothing else of the graph.
-fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut Compiled) {
+fn emit(built: &build::Built, draw: &PlannedDraw, compiled: &mut CompiledDraw) {
     let wanted = |channel: usize| draw.written >> channel & 1 != 0;
     let mut outputs: Vec<Value> = (0..4).filter(|c| wanted(*c)).map(|c| built.stored[c]).collect();
     if draw.alpha_test.is_some() {

@@ -109,7 +109,7 @@ pub(super) enum Node {
     /// CMB-8 of two vectors that are still to be expanded (CMB-3), read as unsigned.
     UnsignedDot([Value; 6]),
     /// CMB-9, not saturated.
-    Scaled(Bias, Scale, Value),
+    QuotientEstimate(Bias, Scale, Value),
     /// CMB-9 and NUM-3.
     Output(Bias, Scale, RegisterFloor, Value),
     /// CMB-10: by the first; the second where it takes CD, otherwise the third.
@@ -136,7 +136,7 @@ impl Node {
         match self {
             Node::Constant(_) | Node::Input(_) => Vec::new(),
             Node::Map(_, v)
-            | Node::Scaled(_, _, v)
+            | Node::QuotientEstimate(_, _, v)
             | Node::Output(_, _, _, v)
             | Node::Clamp(v)
             | Node::Truncate(_, v)
@@ -163,7 +163,7 @@ impl Node {
             Node::After(bias, scale, halves, pairs) => Node::After(bias, scale, halves, pairs.renamed(name)),
             Node::Difference(v) => Node::Difference(v.map(name)),
             Node::UnsignedDot(v) => Node::UnsignedDot(v.map(name)),
-            Node::Scaled(bias, scale, v) => Node::Scaled(bias, scale, name(v)),
+            Node::QuotientEstimate(bias, scale, v) => Node::QuotientEstimate(bias, scale, name(v)),
             Node::Output(bias, scale, floor, v) => Node::Output(bias, scale, floor, name(v)),
             Node::Select(mux, v) => Node::Select(mux, v.map(name)),
             Node::Bytes(a, b) => Node::Bytes(name(a), name(b)),

@@ -1,13 +1,13 @@
-//! TEX-11 on rows: coordinates at the quads of a piece, exact, and what units take of them: a lod, or the taps of a footprint.
+//! TEX-11 on rows: coordinates at the quads of a batch, exact, and what units take of them: a lod, or the taps of a footprint.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::direction::Looking;
-use super::fetch::Numbers;
+use super::fetch::PerLane;
 use super::kernels::LANES;
 use super::planes::Plane;
 use super::quotient::{Line, SLACK, whole};
 use super::short::Losses;
-use super::triangle::{Bounds, Piece, Planes, Setup, whole_steps};
+use super::triangle::{Bounds, PixelBatch, Planes, Setup, whole_steps};
 use super::{BLOCK, Reason, Sampler};
 use crate::texture::cube::Face;
 use crate::texture::lod::Quad;
@@ -16,7 +16,7 @@ use crate::texture::unit::PlannedUnit;
 use std::ops::Range;
 
 /// Coordinates of the three pixels of quads: u and v of each, 1/65536 texel, whole numbers.
-pub(super) type AtQuads = [[Numbers<f64>; 2]; 3];
+pub(super) type AtQuads = [[PerLane<f64>; 2]; 3];
 
 /// What a unit takes of a quad.
 pub(super) trait Measure: Copy {
@@ -33,11 +33,11 @@ pub(super) trait Measure: Copy {
 /// What coordinates at quads are computed in.
 #[derive(Clone, Debug)]
 pub(super) struct Quads {
-    /// Where the upper left pixels of the quads lie, from the piece's first.
-    origins: [Numbers<f64>; 2],
+    /// Where the upper left pixels of the quads lie, from the batch's first.
+    origins: [PerLane<f64>; 2],
     coordinates: AtQuads,
     /// Of quads: negative, as the bits of doubles, where nothing is known.
-    unknown: Numbers<u64>,
+    unknown: PerLane<u64>,
 }
 
 impl Default for Quads {
@@ -63,7 +63,7 @@ impl<T> Default for Known<T> {
     }
 }
 
-/// Which of the [known](Known) quads the lanes of a piece belong to.
+/// Which of the [known](Known) quads the lanes of a batch belong to.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Spread {
     first: usize,
@@ -86,7 +86,7 @@ const MOST: f64 = (1_u64 << 36) as f64;
 /// What an estimate of a coordinate may be off by, its own steps.
 const COARSEST: f64 = 0.125;
 
-/// Coordinates of level 0 around a piece: two quotients.
+/// Coordinates of level 0 around a batch: two quotients.
 pub(super) struct Ground<'p> {
     pub(super) along: Line,
     pub(super) down: Line,
@@ -105,7 +105,7 @@ pub(super) struct Ground<'p> {
 }
 
 impl Setup<'_> {
-    /// The coordinates of level 0 around a piece. `None`: nothing would be proved.
+    /// The coordinates of level 0 around a batch. `None`: nothing would be proved.
     #[inline(always)]
     pub(super) fn ground<'p, const FMA: bool, const ROW: bool>(
         &self,
@@ -114,9 +114,9 @@ impl Setup<'_> {
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
     ) -> Option<Ground<'p>> {
-        // Pixels of a quad lie up to one outside of the piece.
+        // Pixels of a quad lie up to one outside of the batch.
         let (columns, rows) = (bounds.columns + 1.0, bounds.rows + 1.0);
-        // None of them lies further to the left of a row's first pixel, or above a piece's.
+        // None of them lies further to the left of a row's first pixel, or above a batch's.
         let left = if ROW { 1.0 } else { columns };
         let falls = |slope: f64, back: f64, ahead: f64| if slope > 0.0 { slope * back } else { -slope * ahead };
         let least = |line: Line| line.c - falls(line.x, left, columns) - falls(line.y, 1.0, rows);
@@ -192,18 +192,18 @@ impl Setup<'_> {
         proves.then_some(ground)
     }
 
-    /// What a unit takes of the quads of a piece, and which lanes belong to which.
+    /// What a unit takes of the quads of a batch, and which lanes belong to which.
     #[inline(always)]
     pub(super) fn of_quads<const FMA: bool, const ROW: bool, T: Measure>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         (unit, ground): (&PlannedUnit, &Ground<'_>),
         e: &[i64; 3],
         quads: &mut Quads,
         known: &mut Known<T>,
     ) -> Spread {
-        let (i, j) = piece.first;
-        let lanes = piece.at.x.len();
+        let (i, j) = batch.first;
+        let lanes = batch.at.x.len();
         let above = (j & !1) - j;
         let room = |known: &mut Known<T>, count: usize| known.each.resize(known.each.len().max(count), T::behind());
         if ground.behind {
@@ -214,15 +214,15 @@ impl Setup<'_> {
         if !ROW {
             let [xs, ys] = &mut quads.origins;
             for n in 0..lanes {
-                let (x, y) = (i64::from(piece.at.x[n]), i64::from(piece.at.y[n]));
+                let (x, y) = (i64::from(batch.at.x[n]), i64::from(batch.at.y[n]));
                 (xs[n], ys[n]) = ((((i + x) & !1) - i) as f64, (((j + y) & !1) - j) as f64);
             }
             room(known, LANES);
             known.of = None;
-            self.measured::<FMA, T>(piece, (unit, ground), e, piece.count, quads, &mut known.each);
+            self.measured::<FMA, T>(batch, (unit, ground), e, batch.count, quads, &mut known.each);
             return Spread { last: lanes - 1, ..Spread::default() };
         }
-        let wanted = (i >> 1)..((i + piece.count as i64 - 1) >> 1) + 1;
+        let wanted = (i >> 1)..((i + batch.count as i64 - 1) >> 1) + 1;
         let row = Some((self.context.number, j >> 1));
         let follows = wanted.start >= known.columns.start && wanted.start <= known.columns.end;
         if known.of != row || !follows {
@@ -237,18 +237,18 @@ impl Setup<'_> {
             }
             let first = (next - known.columns.start) as usize;
             room(known, first + LANES);
-            self.measured::<FMA, T>(piece, (unit, ground), e, count, quads, &mut known.each[first..]);
+            self.measured::<FMA, T>(batch, (unit, ground), e, count, quads, &mut known.each[first..]);
             known.columns.end += count as i64;
         }
         let (first, odd) = ((wanted.start - known.columns.start) as usize, (i & 1) as usize);
-        Spread { first, odd, shift: 1, last: (piece.count - 1 + odd) >> 1 }
+        Spread { first, odd, shift: 1, last: (batch.count - 1 + odd) >> 1 }
     }
 
     /// That of some quads, whose first pixels are [known](Quads::origins).
     #[inline(always)]
     fn measured<const FMA: bool, T: Measure>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         (unit, ground): (&PlannedUnit, &Ground<'_>),
         e: &[i64; 3],
         count: usize,
@@ -277,16 +277,16 @@ impl Setup<'_> {
         }
         T::measure(unit, coordinates, count, &mut out[..rounded], unknown);
         for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
-            let pixel = (piece.first.0 + xs[n] as i64, piece.first.1 + ys[n] as i64);
-            out[n] = self.defined_quad(piece, unit, pixel);
+            let pixel = (batch.first.0 + xs[n] as i64, batch.first.1 + ys[n] as i64);
+            out[n] = self.defined_quad(batch, unit, pixel);
         }
     }
 
     /// That of a quad of which estimates do not tell it.
     #[inline(never)]
-    pub(super) fn defined_quad<T: Measure>(&self, piece: Piece<'_>, unit: &PlannedUnit, pixel: (i64, i64)) -> T {
+    pub(super) fn defined_quad<T: Measure>(&self, batch: PixelBatch<'_>, unit: &PlannedUnit, pixel: (i64, i64)) -> T {
         self.tell(Reason::Levels, 1);
-        let sample = self.sample(piece, 0);
+        let sample = self.sample(batch, 0);
         T::defined(unit, self.context.place(unit, &sample, pixel).and_then(|place| place.quad()))
     }
 }

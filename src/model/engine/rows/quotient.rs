@@ -45,10 +45,10 @@ pub(super) static IOTA_REAL: [f64; LANES] = {
     all
 };
 
-/// Lanes of a piece of few pixels: fewer than a whole step. Code of its own for them has no loops.
+/// Lanes of a batch of few pixels: fewer than a whole step. Code of its own for them has no loops.
 pub(super) const FEW: usize = 8;
 
-/// Where the pixels of a piece lie, relative to its first: columns and, unless all are on one row, rows.
+/// Where the pixels of a batch lie, relative to its first: columns and, unless all are on one row, rows.
 #[derive(Clone, Copy)]
 pub(super) struct Positions<'a> {
     /// Columns.
@@ -102,7 +102,7 @@ impl Line {
 /// How a quotient is estimated: what is computed for a lane is the quotient less `base`, in steps of 2^-`shift`, and less what it can be
 /// off by, so that a lane whose fraction is not above `limit` is proved.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Scaled {
+pub(super) struct QuotientEstimate {
     /// The numerator, over the denominator that all share.
     pub(super) line: Line,
     pub(super) base: i32,
@@ -118,7 +118,7 @@ fn power(n: i32) -> f64 {
     f64::from_bits(((1023 + n) as u64) << 52)
 }
 
-impl Scaled {
+impl QuotientEstimate {
     /// A quotient less `bias`. `margin` is what an estimate of it can be off by, and the pixels lie within so many columns and rows of the
     /// first, whose denominator has this reciprocal; `widest` is that of the smallest one. `None`: too coarse to prove anything.
     #[inline(always)]
@@ -129,9 +129,10 @@ impl Scaled {
         reciprocals: (f64, f64),
         margin: f64,
         bias: i32,
-    ) -> Option<Scaled> {
-        let (scaled, proves) = Scaled::with_proof::<ROW>(numerator, denominator, extent, reciprocals, margin, bias);
-        proves.then_some(scaled)
+    ) -> Option<QuotientEstimate> {
+        let (estimate, proves) =
+            QuotientEstimate::with_proof::<ROW>(numerator, denominator, extent, reciprocals, margin, bias);
+        proves.then_some(estimate)
     }
 
     /// The same, and whether it can prove anything. Without branches: compilers set up several at once.
@@ -143,7 +144,7 @@ impl Scaled {
         (reciprocal, widest): (f64, f64),
         margin: f64,
         bias: i32,
-    ) -> (Scaled, bool) {
+    ) -> (QuotientEstimate, bool) {
         let first = numerator.c * reciprocal;
         let base = whole(first);
         let rest = numerator.less(base, denominator);
@@ -160,7 +161,7 @@ impl Scaled {
         // Also refuses what is no number.
         let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & (off * 8.0 < scale);
         let shift = shift as u32;
-        (Scaled { line, base: nearest(first).wrapping_sub(bias), shift, limit, least: i32::MIN }, proves)
+        (QuotientEstimate { line, base: nearest(first).wrapping_sub(bias), shift, limit, least: i32::MIN }, proves)
     }
 
     /// The floor that a step stands for, and as its sign bit whether it is not proved.
@@ -171,7 +172,7 @@ impl Scaled {
 
     /// Of a quotient that is not negative: one that seems to be is 0, proved.
     #[inline(always)]
-    pub(super) fn not_negative(mut self) -> Scaled {
+    pub(super) fn not_negative(mut self) -> QuotientEstimate {
         self.least = self.base.wrapping_neg().wrapping_shl(self.shift);
         self
     }
@@ -194,11 +195,11 @@ pub(super) fn prove<const ROW: bool>(
     at: Positions<'_>,
     n: usize,
     denominator: Line,
-    numerators: &[Scaled; 2],
+    numerators: &[QuotientEstimate; 2],
 ) -> Option<[i32; 2]> {
     let (x, y) = position::<ROW>(n, f64::from(at.last), at.x, at.y, &IOTA_REAL);
     let r = 1.0 / denominator.at::<false, ROW>(x, y);
-    let floor = |numerator: &Scaled| {
+    let floor = |numerator: &QuotientEstimate| {
         let (value, close) = numerator.at::<false, ROW>(x, y, r);
         (close >= 0).then_some(value)
     };
@@ -228,7 +229,7 @@ pub(super) fn nearest_32(q: f32) -> i32 {
 pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
     denominator: Line,
-    numerators: &[Scaled; 2],
+    numerators: &[QuotientEstimate; 2],
     first: &mut [i32],
     second: &mut [i32],
 ) -> [bool; 2] {
@@ -248,7 +249,7 @@ pub(super) fn estimate_two<const FMA: bool, const ROW: bool>(
     [close[0] < 0, close[1] < 0]
 }
 
-/// Positions of a piece, and the reciprocals of its denominators. Aligned: what is stored as a vector is loaded as one soon.
+/// Positions of a batch, and the reciprocals of its denominators. Aligned: what is stored as a vector is loaded as one soon.
 #[derive(Clone, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Reciprocals {
@@ -292,7 +293,7 @@ impl Reciprocals {
     #[inline(always)]
     pub(super) fn estimate<const FMA: bool>(
         &self,
-        [one, other]: [Scaled; 2],
+        [one, other]: [QuotientEstimate; 2],
         first: &mut [i32],
         second: &mut [i32],
     ) -> [bool; 2] {
@@ -315,7 +316,7 @@ impl Reciprocals {
     }
 
     #[inline(always)]
-    fn few<const FMA: bool>(&self, numerator: Scaled, out: &mut [i32; FEW]) -> bool {
+    fn few<const FMA: bool>(&self, numerator: QuotientEstimate, out: &mut [i32; FEW]) -> bool {
         let (mut steps, mut close) = ([0; FEW], 0);
         // Loops of their own: compilers take one apart that does both.
         for n in 0..FEW {
@@ -330,9 +331,9 @@ impl Reciprocals {
     }
 }
 
-/// [`Scaled`] in single precision, for weights on a row: twice the lanes, a wider margin.
+/// [`QuotientEstimate`] in single precision, for weights on a row: twice the lanes, a wider margin.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Weighed {
+pub(super) struct WeightEstimate {
     /// Constant and slope of the numerator, less half a denominator, so that the nearest whole number is the floor.
     line: (f32, f32),
     base: i32,
@@ -340,8 +341,8 @@ pub(super) struct Weighed {
     limit: f32,
 }
 
-impl Weighed {
-    /// As [`Scaled::new`], on a row; `ratio` is the largest denominator over the smallest.
+impl WeightEstimate {
+    /// As [`QuotientEstimate::new`], on a row; `ratio` is the largest denominator over the smallest.
     #[inline(always)]
     pub(super) fn new(
         numerator: Line,
@@ -349,7 +350,7 @@ impl Weighed {
         columns: f64,
         (reciprocal, widest): (f64, f64),
         ratio: f64,
-    ) -> Option<Weighed> {
+    ) -> Option<WeightEstimate> {
         let base = whole(numerator.c * reciprocal);
         let line = numerator.less(base + 0.5, denominator);
         let margin = ((line.c.abs() + line.x.abs() * columns) * widest + 1.0) * ratio * SLACK_32;
@@ -358,7 +359,7 @@ impl Weighed {
         if !proves {
             return None;
         }
-        Some(Weighed { line: (line.c as f32, line.x as f32), base: base as i32, limit: (0.5 - margin) as f32 })
+        Some(WeightEstimate { line: (line.c as f32, line.x as f32), base: base as i32, limit: (0.5 - margin) as f32 })
     }
 
     /// The floor of a lane, and as its sign bit whether it is not proved.
@@ -381,7 +382,7 @@ fn line_32<const FMA: bool>((c, slope): (f32, f32), x: f32) -> f32 {
 pub(super) fn estimate_weights<const FMA: bool>(
     last: i32,
     denominator: Line,
-    numerators: &[Weighed; 2],
+    numerators: &[WeightEstimate; 2],
     first: &mut [i32],
     second: &mut [i32],
 ) -> bool {
@@ -450,7 +451,7 @@ impl Exact {
 /// The remainder lies within 1.25 denominators of 0, so it is known although numerators are known modulo 2^64 only. `small` says by how
 /// many bits both functions can be divided, if denominators are below 2^30 then: 32 bits suffice.
 #[inline(always)]
-pub(super) fn settle<const ROW: bool>(
+pub(super) fn correct<const ROW: bool>(
     at: Positions<'_>,
     numerator: Exact,
     denominator: Exact,

@@ -1,11 +1,11 @@
 //! INT-4t on rows: quotients of numbers that lose something because weights fall short (TEX-15, TSH-7). `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
-use super::fetch::Numbers;
+use super::fetch::PerLane;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
-use super::triangle::{Bounds, Piece, Setup};
+use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::raster::interpolate::{SHORT_BITS, most_dominant};
 
 /// How much of a weight is missing.
@@ -14,15 +14,15 @@ const PART: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 /// What a linear function loses of each unit of N_0 and of N_2, where those fall short.
 pub(super) type Losses = [f64; 2];
 
-/// N_0 and N_2 of the lanes of a piece, 0 where they do not fall short.
+/// N_0 and N_2 of the lanes of a batch, 0 where they do not fall short.
 #[derive(Clone, Debug)]
 pub(super) struct Short {
-    first: Numbers<f64>,
-    third: Numbers<f64>,
+    first: PerLane<f64>,
+    third: PerLane<f64>,
     /// As sign bits: which weight dominates is too close to call, for an estimate; then, what is not proved of something else.
-    pub(super) close: Numbers<u64>,
+    pub(super) close: PerLane<u64>,
     /// Two quotients.
-    pub(super) at: [Numbers<f64>; 2],
+    pub(super) at: [PerLane<f64>; 2],
 }
 
 impl Default for Short {
@@ -53,18 +53,18 @@ impl Setup<'_> {
         [[s0 * width, s2 * width], [t0 * height, t2 * height], q]
     }
 
-    /// INT-3's dominance at the pixels of a piece. Weights are classed by whether they are above a half, a quarter or neither, for the largest is
+    /// INT-3's dominance at the pixels of a batch. Weights are classed by whether they are above a half, a quarter or neither, for the largest is
     /// never below a third.
     #[inline(always)]
     pub(super) fn fall_short<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         (e, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
         short: &mut Short,
     ) {
         let triangle = &self.context.triangle;
-        let lanes = piece.at.x.len();
+        let lanes = batch.at.x.len();
         if triangle.exact_reciprocal {
             short.first[..lanes].fill(0.0);
             short.third[..lanes].fill(0.0);
@@ -77,20 +77,20 @@ impl Setup<'_> {
             terms += lines[k].c.abs() + lines[k].x.abs() * bounds.columns + lines[k].y.abs() * bounds.rows;
         }
         let mut any = 0;
-        dominance::<FMA, ROW>(piece.at, [lines[0], lines[2], denominator], 4.0 * SLACK * terms, short, lanes);
+        dominance::<FMA, ROW>(batch.at, [lines[0], lines[2], denominator], 4.0 * SLACK * terms, short, lanes);
         for close in &short.close[..lanes] {
             any |= close;
         }
         if any >> 63 != 0 {
-            self.settle_dominance(piece, short);
+            self.find_dominance(batch, short);
         }
     }
 
     /// Lanes that are too close to call: whole numbers tell.
     #[inline(never)]
-    fn settle_dominance(&self, piece: Piece<'_>, short: &mut Short) {
-        for n in (0..piece.at.x.len()).filter(|n| short.close[*n] >> 63 != 0) {
-            let sample = self.sample(piece, n.min(piece.count - 1));
+    fn find_dominance(&self, batch: PixelBatch<'_>, short: &mut Short) {
+        for n in (0..batch.at.x.len()).filter(|n| short.close[*n] >> 63 != 0) {
+            let sample = self.sample(batch, n.min(batch.count - 1));
             let [first, third] = sample.short();
             short.first[n] = if first { sample.n[0] as f64 } else { 0.0 };
             short.third[n] = if third { sample.n[2] as f64 } else { 0.0 };
@@ -163,7 +163,7 @@ fn lost(losses: Losses, weights: [f64; 2]) -> f64 {
 }
 
 impl Short {
-    /// [`quotients`] of the lanes of a piece.
+    /// [`quotients`] of the lanes of a batch.
     #[inline(always)]
     pub(super) fn divide<const FMA: bool, const ROW: bool>(
         &self,

@@ -2,14 +2,14 @@
 //! a pixel share one reciprocal. `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::boxes::SIDE;
 use super::color::{colors, narrow_weights};
 use super::depth::depths;
-use super::kernels::Row;
-use super::patch::SIDE;
+use super::kernels::Lanes256;
 use super::planes::inverse;
-use super::quotient::{FEW, Line, Positions, SLACK, Scaled, multiply_add};
-use super::triangle::{Piece, Planes, Setup, Varying};
-use super::{Compiled, Reasons};
+use super::quotient::{FEW, Line, Positions, QuotientEstimate, SLACK, multiply_add};
+use super::triangle::{PixelBatch, Planes, Setup, Varying};
+use super::{CompiledDraw, Reasons};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
@@ -51,8 +51,8 @@ struct Ground {
 
 impl Ground {
     #[inline(always)]
-    fn new<const FMA: bool>(triangle: &Triangle, piece: Piece<'_>) -> Ground {
-        let e = real(&triangle.edges(piece.first.0, piece.first.1));
+    fn new<const FMA: bool>(triangle: &Triangle, batch: PixelBatch<'_>) -> Ground {
+        let e = real(&triangle.edges(batch.first.0, batch.first.1));
         let (a, b, p) = (real(&triangle.a), real(&triangle.b), real(&triangle.p));
         let mut terms = [0.0; 3];
         for k in 0..3 {
@@ -81,7 +81,7 @@ impl Ground {
 
     /// How four quotients are estimated. `g`: their numerators, by vertex, before they are floored.
     #[inline(always)]
-    fn scaled<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Four {
+    fn estimates<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Four {
         let mut all = Four::default();
         // Not a struct for each: compilers leave the loop as it is then.
         for n in 0..FOUR {
@@ -92,17 +92,17 @@ impl Ground {
             let most = sum::<FMA>(&size, &self.inverse) + 260.0;
             let margin = (sum::<FMA>(&size, &self.terms) * self.widest + 2.0 * most * self.ratio) * SLACK + self.floors;
             let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (self.reciprocal, self.widest));
-            let (scaled, is) =
-                Scaled::with_proof::<false>(line, self.denominator, extent, reciprocals, margin, bias[n]);
-            (all.c[n], all.x[n], all.y[n]) = (scaled.line.c, scaled.line.x, scaled.line.y);
-            (all.base[n], all.shift[n], all.limit[n]) = (scaled.base, scaled.shift, scaled.limit);
+            let (one, is) =
+                QuotientEstimate::with_proof::<false>(line, self.denominator, extent, reciprocals, margin, bias[n]);
+            (all.c[n], all.x[n], all.y[n]) = (one.line.c, one.line.x, one.line.y);
+            (all.base[n], all.shift[n], all.limit[n]) = (one.base, one.shift, one.limit);
             all.proves[n] = i32::from(is);
         }
         all
     }
 }
 
-/// [`Scaled`] of four quotients.
+/// [`QuotientEstimate`] of four quotients.
 #[derive(Default)]
 struct Four {
     c: [f64; FOUR],
@@ -117,9 +117,9 @@ struct Four {
 
 impl Four {
     #[inline(always)]
-    fn of(&self, n: usize) -> Scaled {
+    fn of(&self, n: usize) -> QuotientEstimate {
         let line = Line { c: self.c[n], x: self.x[n], y: self.y[n] };
-        Scaled { line, base: self.base[n], shift: self.shift[n], limit: self.limit[n], least: i32::MIN }
+        QuotientEstimate { line, base: self.base[n], shift: self.shift[n], limit: self.limit[n], least: i32::MIN }
     }
 }
 
@@ -129,15 +129,15 @@ impl Four {
 #[inline(always)]
 pub(super) fn interpolate<const FMA: bool>(
     context: &mut TriangleContext<'_>,
-    compiled: &Compiled,
-    piece: Piece<'_>,
+    compiled: &CompiledDraw,
+    batch: PixelBatch<'_>,
     varying: &mut Varying,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
     planes: &mut Vec<Planes>,
 ) -> bool {
-    let Positions { x, y, .. } = piece.at;
-    let few = Piece { at: Positions { x: &x[..FEW], y: &y[..FEW], ..piece.at }, ..piece };
-    let piece = if piece.count <= FEW { few } else { piece };
+    let Positions { x, y, .. } = batch.at;
+    let few = PixelBatch { at: Positions { x: &x[..FEW], y: &y[..FEW], ..batch.at }, ..batch };
+    let batch = if batch.count <= FEW { few } else { batch };
     let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];
     let mut count = 0;
     for (n, sampler) in compiled.samplers.iter().enumerate() {
@@ -155,16 +155,16 @@ pub(super) fn interpolate<const FMA: bool>(
         pairs[count] = Pair::Weights;
         count += 1;
     }
-    if count > 0 && !divide::<FMA>(context, compiled, piece, (&pairs, count), varying, planes) {
+    if count > 0 && !divide::<FMA>(context, compiled, batch, (&pairs, count), varying, planes) {
         return false;
     }
     if context.draw.depth_test.is_some() {
-        depths::<FMA, false>(context, piece, &mut varying.depth);
+        depths::<FMA, false>(context, batch, &mut varying.depth);
     }
     if weighted {
-        narrow_weights(piece, varying);
+        narrow_weights(batch, varying);
     }
-    colors(context, compiled, piece, varying, rows);
+    colors(context, compiled, batch, varying, rows);
     true
 }
 
@@ -172,14 +172,14 @@ pub(super) fn interpolate<const FMA: bool>(
 #[inline(always)]
 fn divide<const FMA: bool>(
     context: &mut TriangleContext<'_>,
-    compiled: &Compiled,
-    piece: Piece<'_>,
+    compiled: &CompiledDraw,
+    batch: PixelBatch<'_>,
     (pairs, count): (&[Pair; 2 * TEXTURE_UNITS], usize),
     varying: &mut Varying,
     planes: &mut Vec<Planes>,
 ) -> bool {
-    let ground = Ground::new::<FMA>(&context.triangle, piece);
-    varying.reciprocals.set::<FMA>(piece.at, ground.denominator);
+    let ground = Ground::new::<FMA>(&context.triangle, batch);
+    varying.reciprocals.set::<FMA>(batch.at, ground.denominator);
     // Whether anything is close, apart: looking for it among them would wait until they are stored.
     let (mut close, mut settles) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
     for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)
@@ -202,14 +202,14 @@ fn divide<const FMA: bool>(
                 Pair::Weights => (g[0][u], g[2][v]) = (256.0 * ground.p[0], 256.0 * ground.p[2]),
             }
         }
-        let scaled = ground.scaled::<FMA>(&g, &bias);
-        if scaled.proves != [1; FOUR] {
+        let estimates = ground.estimates::<FMA>(&g, &bias);
+        if estimates.proves != [1; FOUR] {
             return false;
         }
         let Varying { coordinates, weights: [w0, w2], reciprocals, .. } = &mut *varying;
         for (half, (pair, close)) in pairs.iter().zip(close).enumerate() {
-            let (along, down) = (scaled.of(2 * half), scaled.of(2 * half + 1));
-            let at = piece.lanes();
+            let (along, down) = (estimates.of(2 * half), estimates.of(2 * half + 1));
+            let at = batch.lanes();
             match *pair {
                 Pair::None => {}
                 Pair::Sampler(n) => {
@@ -217,32 +217,32 @@ fn divide<const FMA: bool>(
                     *close = reciprocals.estimate::<FMA>([along, down], &mut u[at.clone()], &mut v[at]);
                 }
                 Pair::Weights => {
-                    let scaled = [along.not_negative(), down.not_negative()];
-                    *close = reciprocals.estimate::<FMA>(scaled, &mut w0[at.clone()], &mut w2[at]);
+                    let estimates = [along.not_negative(), down.not_negative()];
+                    *close = reciprocals.estimate::<FMA>(estimates, &mut w0[at.clone()], &mut w2[at]);
                 }
             }
             settles |= close[0] | close[1];
         }
     }
     if settles {
-        settle(context, compiled, piece, pairs, &close, varying, planes);
+        correct(context, compiled, batch, pairs, &close, varying, planes);
     }
     true
 }
 
 /// Settles the pairs of which some lane is not proved.
 #[inline(never)]
-fn settle(
+fn correct(
     context: &mut TriangleContext<'_>,
-    compiled: &Compiled,
-    piece: Piece<'_>,
+    compiled: &CompiledDraw,
+    batch: PixelBatch<'_>,
     pairs: &[Pair],
     close: &[[bool; 2]],
     varying: &mut Varying,
     planes: &mut Vec<Planes>,
 ) {
     context.complete();
-    let e = context.triangle.edges(piece.first.0, piece.first.1);
+    let e = context.triangle.edges(batch.first.0, batch.first.1);
     let setup = Setup::new(context, compiled, std::mem::take(planes));
     for (pair, close) in pairs.iter().zip(close).filter(|(_, close)| close[0] | close[1]) {
         let Varying { coordinates, weights: [w0, w2], whole, .. } = &mut *varying;
@@ -250,15 +250,15 @@ fn settle(
             Pair::None => {}
             Pair::Sampler(n) => {
                 let ([u, v], bias) = (&mut coordinates[n], compiled.samplers[n].bias());
-                let (u, v) = (&mut u[piece.lanes()], &mut v[piece.lanes()]);
+                let (u, v) = (&mut u[batch.lanes()], &mut v[batch.lanes()]);
                 if let Planes::Plane(planes) = &setup.samplers[n] {
-                    setup.settle_coordinates::<false>(piece, bias, planes, *close, &e, u, v, &mut whole[0]);
+                    setup.correct_coordinates::<false>(batch, bias, planes, *close, &e, u, v, &mut whole[0]);
                 }
             }
             Pair::Weights => {
-                let (w0, w2) = (&mut w0[piece.lanes()], &mut w2[piece.lanes()]);
+                let (w0, w2) = (&mut w0[batch.lanes()], &mut w2[batch.lanes()]);
                 if let Some(planes) = &setup.weights {
-                    setup.settle_weights::<false>(piece, planes, &e, w0, w2, whole);
+                    setup.correct_weights::<false>(batch, planes, &e, w0, w2, whole);
                 }
             }
         }

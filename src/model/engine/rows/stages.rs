@@ -1,19 +1,19 @@
 //! The stages of a texture shader, one after the other, each for a whole block.
 //!
-//! What the vertices give a stage is interpolated piece by piece: numbers, which are rounded to single precision, and coordinates that a bump
+//! What the vertices give a stage is interpolated batch by batch: numbers, which are rounded to single precision, and coordinates that a bump
 //! stage moves, which keep their fraction. A lane that is not proved is left open, and the definition runs its stages in the end.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::band::{Block, Run};
 use super::dot::{self, Floats};
 use super::fetch;
-use super::kernels::{LANES, Row};
+use super::kernels::{LANES, Lanes256};
 use super::planes::{Plane, inverse};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, nearest_32, position};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::Short;
-use super::triangle::{Bounds, Piece, Setup};
-use super::{BLOCK, Compiled, Job, Reason, Sampler};
+use super::triangle::{Bounds, PixelBatch, Setup};
+use super::{BLOCK, CompiledDraw, Job, Reason, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Band;
@@ -134,39 +134,39 @@ const OFFSET: f64 = 1.0 / (1 << 23) as f64;
 const FARTHEST: f64 = (COORDINATE_LIMIT - 1) as f64;
 
 impl Setup<'_> {
-    /// What the vertices give the stages of a texture shader, for a piece.
+    /// What the vertices give the stages of a texture shader, for a batch.
     #[inline(always)]
     pub(super) fn attributes<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         shader: &Shader,
         work: &mut Workshop,
     ) {
         let Some(attributes) = &self.attributes else { return };
-        let e = self.context.triangle.edges(piece.first.0, piece.first.1);
+        let e = self.context.triangle.edges(batch.first.0, batch.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = self.denominator.line(&real);
-        let bounds: Bounds = self.bounds::<FMA, ROW>(piece, &real, denominator);
-        work.triangles.push((piece.lane, self.context.number));
-        let open = &mut work.open.narrow[piece.lanes()];
+        let bounds: Bounds = self.bounds::<FMA, ROW>(batch, &real, denominator);
+        work.triangles.push((batch.lane, self.context.number));
+        let open = &mut work.open.narrow[batch.lanes()];
         open.fill(0);
-        work.open.wide[piece.lanes()].fill(0);
+        work.open.wide[batch.lanes()].fill(0);
         for ((number, out), (_, _, purpose)) in attributes.numbers.iter().zip(&mut work.numbers).zip(&shader.varying) {
-            let out = &mut out[piece.lanes()];
+            let out = &mut out[batch.lanes()];
             match number {
                 Function::Same(value) => out.fill(*value),
                 Function::Plane(plane, scale) => {
                     let lines = (plane.line(&real).times(*scale), denominator);
                     let off = self.margin::<ROW>(plane, &real, &bounds) * scale;
                     match purpose {
-                        Purpose::Float | Purpose::Sign => rounded::<FMA, ROW, false>(piece.at, lines, off, out, open),
-                        Purpose::Byte => rounded::<FMA, ROW, true>(piece.at, lines, off, out, open),
+                        Purpose::Float | Purpose::Sign => rounded::<FMA, ROW, false>(batch.at, lines, off, out, open),
+                        Purpose::Byte => rounded::<FMA, ROW, true>(batch.at, lines, off, out, open),
                     }
                 }
             }
         }
         if !attributes.moved.is_empty() {
-            self.fall_short::<FMA, ROW>(piece, (&real, denominator), &bounds, &mut work.short);
+            self.fall_short::<FMA, ROW>(batch, (&real, denominator), &bounds, &mut work.short);
         }
         for (planes, moved) in attributes.moved.iter().zip(&mut work.moved) {
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
@@ -178,9 +178,9 @@ impl Setup<'_> {
                 open.fill(1);
             }
             let losses = [planes[0].losses(self), planes[1].losses(self), [0.0; 2]];
-            moved.off[piece.lanes()].fill(if proves { off } else { 0.0 });
-            let at = [&mut moved.u[piece.lanes()], &mut moved.v[piece.lanes()]];
-            work.short.divide::<FMA, ROW>(piece.at, lines, losses, at);
+            moved.off[batch.lanes()].fill(if proves { off } else { 0.0 });
+            let at = [&mut moved.u[batch.lanes()], &mut moved.v[batch.lanes()]];
+            work.short.divide::<FMA, ROW>(batch.at, lines, losses, at);
         }
     }
 }
@@ -392,12 +392,12 @@ impl Workshop {
 /// TSH-4: the dot product of a stage, once.
 #[inline(always)]
 fn dot_product(
-    compiled: &Compiled,
+    compiled: &CompiledDraw,
     shader: &Shader,
     index: usize,
     dotted: &mut [bool; TEXTURE_UNITS],
     work: &mut Workshop,
-    rows: &[Row],
+    rows: &[Lanes256],
 ) {
     let stage = &shader.stages[index];
     if std::mem::replace(&mut dotted[index], true) {
@@ -425,7 +425,7 @@ fn bump(
     blue: (&[i16; BLOCK], bool),
     green: (&[i16; BLOCK], bool),
     moved: &Moved,
-    [u, v]: &mut [fetch::Numbers<i32>; 2],
+    [u, v]: &mut [fetch::PerLane<i32>; 2],
     open: &mut Open,
 ) {
     let (Some(u), Some(v)) = (u.first_chunk_mut(), v.first_chunk_mut()) else { return };
@@ -495,7 +495,7 @@ fn define(
     runs: &[Run],
     alive: &mut [bool],
     work: &mut Workshop,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
     band: &Band<'_>,
 ) -> u64 {
     let mut count = 0;

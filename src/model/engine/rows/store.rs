@@ -1,8 +1,8 @@
 //! ROP-1, ROP-5, ROP-6, STN-1 and DEP-2 on rows.
 
 use super::depth::OUTSIDE;
-use super::kernels::Row;
-use super::{BLOCK, Compiled};
+use super::kernels::Lanes256;
+use super::{BLOCK, CompiledDraw};
 use crate::plan::PlannedDraw;
 use crate::rop::{stencil, surface};
 use crate::state::{
@@ -11,7 +11,7 @@ use crate::state::{
 
 /// What blending reads of the surface's words, into the rows that want it.
 #[inline(always)]
-pub(super) fn read(draw: &PlannedDraw, compiled: &Compiled, words: &[u32; BLOCK], rows: &mut [Row]) {
+pub(super) fn read(draw: &PlannedDraw, compiled: &CompiledDraw, words: &[u32; BLOCK], rows: &mut [Lanes256]) {
     for channel in 0..4 {
         let Some(row) = compiled.destination[channel] else { continue };
         let out = rows[usize::from(row)].block_mut();
@@ -43,7 +43,7 @@ fn read_as<const CHANNEL: usize>(format: SurfaceFormat, words: &[u32; BLOCK], ou
 
 /// The stored rows as words, from a lane on.
 #[inline(always)]
-pub(super) fn pack(draw: &PlannedDraw, compiled: &Compiled, rows: &[Row], lane: usize, words: &mut [u32]) {
+pub(super) fn pack(draw: &PlannedDraw, compiled: &CompiledDraw, rows: &[Lanes256], lane: usize, words: &mut [u32]) {
     let row = |channel: usize| &rows[usize::from(compiled.stored[channel])].0[lane..lane + words.len()];
     let (r, g, b, a) = (row(0), row(1), row(2), row(3));
     match draw.surface {

@@ -1,11 +1,11 @@
 //! TEX-17 on rows: the taps of each pixel, two and two to both sides of it.
 
 use super::Sampler;
-use super::fetch::Numbers;
+use super::fetch::PerLane;
 use super::kernels::LANES;
 use super::quads::{AtQuads, Known, Measure, Quads};
 use super::quotient::Line;
-use super::triangle::{Bounds, Piece, Planes, Setup};
+use super::triangle::{Bounds, PixelBatch, Planes, Setup};
 use crate::texture::anisotropy;
 use crate::texture::lod::Quad;
 use crate::texture::unit::PlannedUnit;
@@ -17,9 +17,9 @@ pub(super) type Taps = anisotropy::Taps<i64, i32>;
 #[derive(Clone, Debug)]
 pub(super) struct Pair {
     /// Where one lies from u and v, 1/256 texel; the other lies as far to the other side.
-    pub(super) offsets: [Numbers<i32>; 2],
+    pub(super) offsets: [PerLane<i32>; 2],
     /// What either weighs, of 256; 0: nothing.
-    pub(super) weights: Numbers<u16>,
+    pub(super) weights: PerLane<u16>,
 }
 
 /// The taps of the lanes of a block.
@@ -84,12 +84,12 @@ impl Measure for Taps {
 }
 
 impl Setup<'_> {
-    /// The taps of a piece.
+    /// The taps of a batch.
     #[inline(always)]
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     pub(super) fn taps<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         (sampler, planes): (&Sampler, &Planes),
         e: &[i64; 3],
         lines: (&[f64; 3], Line),
@@ -101,15 +101,15 @@ impl Setup<'_> {
         let sides = [unit.levels[0].width, unit.levels[0].height];
         let Footprints { pairs, known } = footprints;
         let Some(ground) = self.ground::<FMA, ROW>(sampler, planes, lines, bounds) else {
-            for n in 0..piece.count {
-                let taps = self.defined_quad::<Taps>(piece, unit, piece.pixel(n));
-                Footprints::set(pairs, piece.lane + n, &taps, sides);
+            for n in 0..batch.count {
+                let taps = self.defined_quad::<Taps>(batch, unit, batch.pixel(n));
+                Footprints::set(pairs, batch.lane + n, &taps, sides);
             }
             return;
         };
-        let spread = self.of_quads::<FMA, ROW, Taps>(piece, (unit, &ground), e, quads, known);
-        for n in 0..piece.count {
-            Footprints::set(pairs, piece.lane + n, &known.each[spread.quad(n)], sides);
+        let spread = self.of_quads::<FMA, ROW, Taps>(batch, (unit, &ground), e, quads, known);
+        for n in 0..batch.count {
+            Footprints::set(pairs, batch.lane + n, &known.each[spread.quad(n)], sides);
         }
     }
 }

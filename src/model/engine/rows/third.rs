@@ -3,13 +3,13 @@
 
 use super::depth::{UNKNOWN, floor, word};
 use super::direction::{Looking, positive};
-use super::fetch::{Numbers, entry};
+use super::fetch::{PerLane, entry};
 use super::planes::Plane;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::short::Short;
 use super::table::{self, Axis};
-use super::triangle::{Bounds, Piece, Planes, Setup, Varying};
-use super::{Compiled, Reason, Sampler};
+use super::triangle::{Bounds, PixelBatch, Planes, Setup, Varying};
+use super::{CompiledDraw, Reason, Sampler};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::depth;
 use crate::raster::interpolate::Sample;
@@ -67,7 +67,7 @@ pub(super) enum Reference {
 
 /// Those of a draw's samplers; none if no sampler has any.
 #[inline(always)]
-pub(super) fn thirds(context: &TriangleContext<'_>, compiled: &Compiled, inverse: &[f64; 3]) -> Vec<ThirdPlanes> {
+pub(super) fn thirds(context: &TriangleContext<'_>, compiled: &CompiledDraw, inverse: &[f64; 3]) -> Vec<ThirdPlanes> {
     if !compiled.estimates {
         return Vec::new();
     }
@@ -123,12 +123,12 @@ fn defined(
 }
 
 impl Setup<'_> {
-    /// Layers and references of a piece.
+    /// Layers and references of a batch.
     #[inline(always)]
     pub(super) fn thirds<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
-        compiled: &Compiled,
+        batch: PixelBatch<'_>,
+        compiled: &CompiledDraw,
         e: &[i64; 3],
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
@@ -141,18 +141,18 @@ impl Setup<'_> {
                 (Some(Third::Layer(counts, axis)), ThirdPlanes::Layer(planes)) => {
                     let lines = (real, denominator);
                     let work = (&mut **short, &mut whole[0]);
-                    self.layers::<FMA, ROW>(piece, counts, planes, e, lines, bounds, layers, faces, work);
-                    let (layers, faces) = (&mut layers[0][piece.lanes()], &mut faces[piece.lanes()]);
+                    self.layers::<FMA, ROW>(batch, counts, planes, e, lines, bounds, layers, faces, work);
+                    let (layers, faces) = (&mut layers[0][batch.lanes()], &mut faces[batch.lanes()]);
                     axis.reduce(layers);
                     for (face, layer) in faces.iter_mut().zip(layers) {
                         *face = entry(axis, (*layer).max(axis.low).min(axis.high)) as u32;
                     }
                 }
                 (Some(Third::Reference(format)), ThirdPlanes::Reference(reference)) => {
-                    let out = &mut references[piece.lanes()];
+                    let out = &mut references[batch.lanes()];
                     let lines = (real, denominator);
-                    if self.references::<FMA, ROW>(piece.at, *format, reference, lines, bounds, out) {
-                        self.defined_references(piece, sampler, *format, out);
+                    if self.references::<FMA, ROW>(batch.at, *format, reference, lines, bounds, out) {
+                        self.defined_references(batch, sampler, *format, out);
                     }
                 }
                 _ => {}
@@ -165,32 +165,32 @@ impl Setup<'_> {
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed")]
     fn layers<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         counts: &Sampler,
         planes: &Planes,
         e: &[i64; 3],
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
-        layers: &mut [Numbers<i32>; 2],
-        faces: &mut Numbers<u32>,
-        (short, whole): (&mut Short, &mut Numbers<i32>),
+        layers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
+        (short, whole): (&mut Short, &mut PerLane<i32>),
     ) {
         let done = match planes {
             Planes::Plane(planes) => {
                 let [first, second] = layers;
-                let (first, second) = (&mut first[piece.lanes()], &mut second[piece.lanes()]);
+                let (first, second) = (&mut first[batch.lanes()], &mut second[batch.lanes()]);
                 let lines = (real, denominator);
-                self.on_planes::<FMA, ROW>(piece, planes, 0, e, lines, bounds, first, second, whole);
+                self.on_planes::<FMA, ROW>(batch, planes, 0, e, lines, bounds, first, second, whole);
                 true
             }
             Planes::Ratio(planes, reach) => {
                 let looking = Looking::new(planes, real, bounds);
-                self.projected::<FMA, ROW>(piece, counts, planes, *reach, &looking, bounds, short, layers, faces)
+                self.projected::<FMA, ROW>(batch, counts, planes, *reach, &looking, bounds, short, layers, faces)
             }
             _ => false,
         };
         if !done {
-            self.defined(piece, counts, layers, faces);
+            self.defined(batch, counts, layers, faces);
         }
     }
 
@@ -232,8 +232,8 @@ impl Setup<'_> {
             return words::<FMA, ROW, true>(at, lines, off, format, out);
         }
         if ROW && within::<FMA>(at, lines, off, f64::from(format.largest())) {
-            let steady = lines.1.x == 0.0;
-            let proved = if steady {
+            let level = lines.1.x == 0.0;
+            let proved = if level {
                 floors::<FMA, false>(at, (lines.0.times(1.0 / lines.1.c), lines.1), off, out)
             } else {
                 floors::<FMA, true>(at, lines, off, out)
@@ -247,12 +247,12 @@ impl Setup<'_> {
 
     /// The unknown ones, by the definition.
     #[inline(never)]
-    fn defined_references(&self, piece: Piece<'_>, sampler: &Sampler, format: DepthFormat, out: &mut [u32]) {
+    fn defined_references(&self, batch: PixelBatch<'_>, sampler: &Sampler, format: DepthFormat, out: &mut [u32]) {
         let unit = &self.context.draw.units[sampler.index];
-        let unknown = out[..piece.count].iter_mut().enumerate().filter(|(_, word)| **word == UNKNOWN);
+        let unknown = out[..batch.count].iter_mut().enumerate().filter(|(_, word)| **word == UNKNOWN);
         for (n, word) in unknown {
             self.tell(Reason::References, 1);
-            *word = defined(self.context, unit, format, &self.sample(piece, n), piece.pixel(n));
+            *word = defined(self.context, unit, format, &self.sample(batch, n), batch.pixel(n));
         }
     }
 }

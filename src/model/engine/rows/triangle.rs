@@ -1,24 +1,25 @@
-//! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a piece.
+//! INT-1 to INT-4t and everything else that varies across a triangle, for the pixels of a batch.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
 use super::color::{colors, narrow_weights};
+use super::dda::DdaRow;
 use super::depth::depths;
 use super::direction::{Looking, only_face, positive};
-use super::fetch::Numbers;
+use super::fetch::PerLane;
 use super::fog::Fog;
-use super::kernels::{LANES, Row, STEP};
+use super::kernels::{LANES, Lanes256, STEP};
 use super::levels::{Placing, Reads};
 use super::planes::{Plane, inverse};
 use super::quads::Quads;
 use super::quotient::{
-    Line, Positions, Reciprocals, SLACK, Scaled, Weighed, break_ties, estimate_two, estimate_weights, settle,
+    Line, Positions, QuotientEstimate, Reciprocals, SLACK, WeightEstimate, break_ties, correct, estimate_two,
+    estimate_weights,
 };
 use super::short::Short;
 use super::stages::Attributes;
-use super::steady::SteadyRow;
 use super::taps::Footprints;
 use super::third::{Third, ThirdPlanes, thirds};
-use super::{Compiled, Reason, Reasons, Sampler};
+use super::{CompiledDraw, Reason, Reasons, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::Sample;
@@ -48,7 +49,7 @@ pub(super) enum Planes {
     Shared,
 }
 
-/// A triangle with what its pieces need.
+/// A triangle with what its batches need.
 pub(super) struct Setup<'a> {
     pub(super) context: &'a TriangleContext<'a>,
     pub(super) denominator: Plane,
@@ -68,36 +69,36 @@ pub(super) struct Setup<'a> {
     pub(super) attributes: Option<Box<Attributes>>,
 }
 
-/// What the pieces of a block leave in their lanes.
+/// What the batches of a block leave in their lanes.
 #[derive(Clone, Debug)]
 pub(super) struct Varying {
     /// u and v of each sampler, 1/256 texel, less half a texel where it filters.
-    pub(super) coordinates: [[Numbers<i32>; 2]; TEXTURE_UNITS],
+    pub(super) coordinates: [[PerLane<i32>; 2]; TEXTURE_UNITS],
     /// Faces of cube maps, layers of volumes.
-    pub(super) faces: [Numbers<u32>; TEXTURE_UNITS],
+    pub(super) faces: [PerLane<u32>; TEXTURE_UNITS],
     /// What depths are compared with.
-    pub(super) references: [Numbers<u32>; TEXTURE_UNITS],
+    pub(super) references: [PerLane<u32>; TEXTURE_UNITS],
     /// Places among layers, 1/256 layer, twice.
-    pub(super) layers: [Numbers<i32>; 2],
+    pub(super) layers: [PerLane<i32>; 2],
     /// Depth, where it is tested.
-    pub(super) depth: Numbers<u32>,
+    pub(super) depth: PerLane<u32>,
     /// The texture shader lets the pixel live.
-    pub(super) alive: Numbers<bool>,
+    pub(super) alive: PerLane<bool>,
     /// What samplers read whose levels count; as many as are wanted.
     pub(super) reads: Vec<Reads>,
     pub(super) quads: Box<Quads>,
     pub(super) placing: Box<Placing>,
     /// The taps of samplers that have several; as many as are wanted.
     pub(super) footprints: Vec<Footprints>,
-    /// Of the row whose pieces come now.
-    pub(super) steady: SteadyRow,
+    /// Of the row whose batches come now.
+    pub(super) dda: DdaRow,
     /// W0 and W2 while they are settled.
-    pub(super) weights: [Numbers<i32>; 2],
+    pub(super) weights: [PerLane<i32>; 2],
     /// The same in 16 bits.
-    pub(super) narrow: [Numbers<u16>; 2],
+    pub(super) narrow: [PerLane<u16>; 2],
     /// Of a small triangle.
     pub(super) reciprocals: Reciprocals,
-    pub(super) whole: [Numbers<i32>; 2],
+    pub(super) whole: [PerLane<i32>; 2],
     /// Where something is divided by q.
     pub(super) short: Box<Short>,
 }
@@ -115,7 +116,7 @@ impl Default for Varying {
             quads: Box::default(),
             placing: Box::default(),
             footprints: Vec::new(),
-            steady: SteadyRow::default(),
+            dda: DdaRow::default(),
             weights: [[0; LANES]; 2],
             narrow: [[0; LANES]; 2],
             reciprocals: Reciprocals::default(),
@@ -127,7 +128,7 @@ impl Default for Varying {
 
 /// Some pixels of a triangle that become lanes of a block.
 #[derive(Clone, Copy)]
-pub(super) struct Piece<'a> {
+pub(super) struct PixelBatch<'a> {
     /// Column and row of its first pixel.
     pub(super) first: (i64, i64),
     /// Where the others lie; whole steps of lanes.
@@ -140,7 +141,7 @@ pub(super) struct Piece<'a> {
     pub(super) extent: (i32, i32),
 }
 
-impl Piece<'_> {
+impl PixelBatch<'_> {
     /// Column and row of one of its pixels.
     pub(super) fn pixel(&self, n: usize) -> (i64, i64) {
         (self.first.0 + i64::from(self.at.x[n]), self.first.1 + i64::from(self.at.y[n]))
@@ -166,7 +167,11 @@ pub(super) fn whole_steps(count: usize) -> usize {
 impl<'a> Setup<'a> {
     /// `samplers` is a place to put things; [`given_back`](Self::given_back) returns it.
     #[inline(always)]
-    pub(super) fn new(context: &'a TriangleContext<'a>, compiled: &Compiled, mut samplers: Vec<Planes>) -> Setup<'a> {
+    pub(super) fn new(
+        context: &'a TriangleContext<'a>,
+        compiled: &CompiledDraw,
+        mut samplers: Vec<Planes>,
+    ) -> Setup<'a> {
         let triangle = &context.triangle;
         let p = triangle.p;
         let weighted = compiled.varies(context);
@@ -217,25 +222,25 @@ impl<'a> Setup<'a> {
         count.set(count.get() + pixels as u64);
     }
 
-    /// Everything that varies, for a piece. `ROW`: its pixels are on one row, one beside the other.
+    /// Everything that varies, for a batch. `ROW`: its pixels are on one row, one beside the other.
     #[inline(always)]
     pub(super) fn interpolate<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
-        compiled: &Compiled,
+        batch: PixelBatch<'_>,
+        compiled: &CompiledDraw,
         textures: &[Image<'_, i32>],
         varying: &mut Varying,
-        rows: &mut [Row],
+        rows: &mut [Lanes256],
     ) {
         if ROW {
-            self.steady(piece, compiled, varying);
+            self.dda(batch, compiled, varying);
         }
-        if !(ROW && varying.steady.complete) {
-            self.estimated::<FMA, ROW>(piece, compiled, varying, rows);
+        if !(ROW && varying.dda.complete) {
+            self.estimated::<FMA, ROW>(batch, compiled, varying, rows);
         }
-        colors(self.context, compiled, piece, varying, rows);
+        colors(self.context, compiled, batch, varying, rows);
         if compiled.samples_pixels {
-            self.pixel_by_pixel(piece, compiled, textures, varying, rows);
+            self.pixel_by_pixel(batch, compiled, textures, varying, rows);
         }
     }
 
@@ -243,41 +248,41 @@ impl<'a> Setup<'a> {
     #[inline(always)]
     fn estimated<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
-        compiled: &Compiled,
+        batch: PixelBatch<'_>,
+        compiled: &CompiledDraw,
         varying: &mut Varying,
-        rows: &mut [Row],
+        rows: &mut [Lanes256],
     ) {
-        let e = self.context.triangle.edges(piece.first.0, piece.first.1);
+        let e = self.context.triangle.edges(batch.first.0, batch.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
         let denominator = self.denominator.line(&real);
-        let bounds = if ROW && varying.steady.undivided {
-            Bounds { columns: f64::from(piece.at.last), ..Bounds::default() }
+        let bounds = if ROW && varying.dda.undivided {
+            Bounds { columns: f64::from(batch.at.last), ..Bounds::default() }
         } else {
-            self.bounds::<FMA, ROW>(piece, &real, denominator)
+            self.bounds::<FMA, ROW>(batch, &real, denominator)
         };
         let by_q = |planes: &Planes| matches!(planes, Planes::Ratio(..));
         if self.samplers.iter().any(by_q)
             || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if by_q(of)))
         {
-            self.fall_short::<FMA, ROW>(piece, (&real, denominator), &bounds, &mut varying.short);
+            self.fall_short::<FMA, ROW>(batch, (&real, denominator), &bounds, &mut varying.short);
         }
         // In a loop of its own: what compilers compute before it is left out where nothing is divided by D.
-        let divided = if ROW && varying.steady.undivided { 0 } else { self.samplers.len() };
+        let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers[..divided]).enumerate() {
             if sampler.mixes {
                 let Varying { reads, quads, placing, short, .. } = &mut *varying;
                 let work = (&mut **quads, &mut **placing);
                 let Some(reads) = reads.get_mut(n) else { continue };
                 let lines = (&real, denominator);
-                self.levels::<FMA, ROW>(piece, (sampler, planes), &e, lines, &bounds, short, work, reads);
-            } else if let (Planes::Plane(planes), false) = (planes, ROW && varying.steady.samplers[n].1) {
+                self.levels::<FMA, ROW>(batch, (sampler, planes), &e, lines, &bounds, short, work, reads);
+            } else if let (Planes::Plane(planes), false) = (planes, ROW && varying.dda.samplers[n].1) {
                 let Varying { coordinates, whole, .. } = &mut *varying;
-                let lanes = piece.lanes();
+                let lanes = batch.lanes();
                 let [u, v] = &mut coordinates[n];
                 let (u, v) = (&mut u[lanes.clone()], &mut v[lanes]);
                 let (e, lines) = (&e, (&real, denominator));
-                self.on_planes::<FMA, ROW>(piece, planes, sampler.bias(), e, lines, &bounds, u, v, &mut whole[0]);
+                self.on_planes::<FMA, ROW>(batch, planes, sampler.bias(), e, lines, &bounds, u, v, &mut whole[0]);
             }
         }
         for (n, (sampler, planes)) in compiled.samplers.iter().zip(&self.samplers).enumerate() {
@@ -292,12 +297,12 @@ impl<'a> Setup<'a> {
                     let face = if ROW && face.is_none() { looking.face::<FMA>(bounds.columns) } else { *face };
                     let done = match face {
                         Some(face) => {
-                            self.on_face::<FMA, ROW>(piece, sampler, planes, face, &looking, &bounds, numbers, faces)
+                            self.on_face::<FMA, ROW>(batch, sampler, planes, face, &looking, &bounds, numbers, faces)
                         }
-                        None => looking.directions::<FMA, ROW>(piece, sampler, numbers, faces),
+                        None => looking.directions::<FMA, ROW>(batch, sampler, numbers, faces),
                     };
                     if !done {
-                        self.defined(piece, sampler, numbers, faces);
+                        self.defined(batch, sampler, numbers, faces);
                     }
                 }
                 Planes::Ratio(planes, reach) => {
@@ -305,14 +310,14 @@ impl<'a> Setup<'a> {
                     let looking = Looking::new(planes, &real, &bounds);
                     let short = &mut varying.short;
                     let done = self.projected::<FMA, ROW>(
-                        piece, sampler, planes, *reach, &looking, &bounds, short, numbers, faces,
+                        batch, sampler, planes, *reach, &looking, &bounds, short, numbers, faces,
                     );
                     if !done {
-                        self.defined(piece, sampler, numbers, faces);
+                        self.defined(batch, sampler, numbers, faces);
                     }
                 }
                 Planes::Other => {
-                    self.defined(piece, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
+                    self.defined(batch, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
                 }
             }
         }
@@ -320,63 +325,64 @@ impl<'a> Setup<'a> {
             let Varying { quads, footprints, .. } = &mut *varying;
             for ((sampler, planes), taps) in compiled.samplers.iter().zip(&self.samplers).zip(footprints) {
                 if sampler.pairs > 0 {
-                    self.taps::<FMA, ROW>(piece, (sampler, planes), &e, (&real, denominator), &bounds, quads, taps);
+                    self.taps::<FMA, ROW>(batch, (sampler, planes), &e, (&real, denominator), &bounds, quads, taps);
                 }
             }
-            self.thirds::<FMA, ROW>(piece, compiled, &e, (&real, denominator), &bounds, varying);
+            self.thirds::<FMA, ROW>(batch, compiled, &e, (&real, denominator), &bounds, varying);
         }
         if let Some(planes) = &self.weights
-            && !(ROW && varying.steady.weights.1)
+            && !(ROW && varying.dda.weights.1)
         {
             let Varying { weights: [w0, w2], whole, .. } = &mut *varying;
-            let (w0, w2) = (&mut w0[piece.lanes()], &mut w2[piece.lanes()]);
-            let weighed = if ROW { self.weighed(planes, (&real, denominator), &bounds) } else { None };
-            let close = if let Some(weighed) = weighed {
-                estimate_weights::<FMA>(piece.at.last, denominator, &weighed, w0, w2)
-            } else if let Some(scaled) = self.scaled::<ROW>(planes, 0, (&real, denominator), &bounds) {
-                let scaled = [scaled[0].not_negative(), scaled[1].not_negative()];
-                let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, w0, w2);
+            let (w0, w2) = (&mut w0[batch.lanes()], &mut w2[batch.lanes()]);
+            let weight_estimates =
+                if ROW { self.weight_estimates(planes, (&real, denominator), &bounds) } else { None };
+            let close = if let Some(weight_estimates) = weight_estimates {
+                estimate_weights::<FMA>(batch.at.last, denominator, &weight_estimates, w0, w2)
+            } else if let Some(estimates) = self.estimates::<ROW>(planes, 0, (&real, denominator), &bounds) {
+                let estimates = [estimates[0].not_negative(), estimates[1].not_negative()];
+                let close = estimate_two::<FMA, ROW>(batch.at, denominator, &estimates, w0, w2);
                 close[0] | close[1]
             } else {
-                self.tell(Reason::Weights, piece.count);
-                for n in 0..piece.count {
-                    let [first, third] = self.sample(piece, n).weights();
+                self.tell(Reason::Weights, batch.count);
+                for n in 0..batch.count {
+                    let [first, third] = self.sample(batch, n).weights();
                     (w0[n], w2[n]) = (first.value as i32, third.value as i32);
                 }
                 false
             };
             if close {
-                self.settle_weights::<ROW>(piece, planes, &e, w0, w2, whole);
+                self.correct_weights::<ROW>(batch, planes, &e, w0, w2, whole);
             }
-            narrow_weights(piece, varying);
+            narrow_weights(batch, varying);
         }
         if self.context.draw.depth_test.is_some() {
-            depths::<FMA, ROW>(self.context, piece, &mut varying.depth);
+            depths::<FMA, ROW>(self.context, batch, &mut varying.depth);
         }
         if let Some(slot) = compiled.fog {
             let Varying { whole: [values, spare], .. } = &mut *varying;
             let row = &mut rows[usize::from(slot)].0;
-            self.fog_factors::<FMA, ROW>(piece, &e, (&real, denominator), &bounds, values, spare, row);
+            self.fog_factors::<FMA, ROW>(batch, &e, (&real, denominator), &bounds, values, spare, row);
         }
     }
 
-    /// The denominators of a piece, as far as is known, and how far its pixels are apart.
+    /// The denominators of a batch, as far as is known, and how far its pixels are apart.
     #[inline(always)]
     pub(super) fn bounds<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         e: &[f64; 3],
         denominator: Line,
     ) -> Bounds {
         let reciprocal = 1.0 / denominator.c;
         if ROW {
-            let end = denominator.at::<FMA, true>(f64::from(piece.at.last), 0.0);
+            let end = denominator.at::<FMA, true>(f64::from(batch.at.last), 0.0);
             let (low, high) = if denominator.c < end { (denominator.c, end) } else { (end, denominator.c) };
             let widest = 1.0 / low;
-            let columns = f64::from(piece.at.last);
+            let columns = f64::from(batch.at.last);
             return Bounds { ratio: high * widest, reciprocal, widest, columns, rows: 0.0 };
         }
-        let (columns, rows) = (f64::from(piece.extent.0), f64::from(piece.extent.1));
+        let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
         let ratio = self.denominator.terms(e, columns, rows) * self.widest;
         Bounds { ratio, reciprocal, widest: self.widest, columns, rows }
     }
@@ -394,46 +400,46 @@ impl<'a> Setup<'a> {
 
     /// Two quotients to be estimated, less a bias. `None`: some estimate would prove nothing.
     #[inline(always)]
-    pub(super) fn scaled<const ROW: bool>(
+    pub(super) fn estimates<const ROW: bool>(
         &self,
         planes: &[Plane; 2],
         bias: i32,
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
-    ) -> Option<[Scaled; 2]> {
+    ) -> Option<[QuotientEstimate; 2]> {
         // Not a closure: one that is called twice is not inlined.
         Some([
-            self.scaled_one::<ROW>(&planes[0], bias, (real, denominator), bounds)?,
-            self.scaled_one::<ROW>(&planes[1], bias, (real, denominator), bounds)?,
+            self.estimate_of::<ROW>(&planes[0], bias, (real, denominator), bounds)?,
+            self.estimate_of::<ROW>(&planes[1], bias, (real, denominator), bounds)?,
         ])
     }
 
     /// Weights on a row to be estimated, in single precision.
     #[inline(always)]
-    fn weighed(
+    fn weight_estimates(
         &self,
         planes: &[Plane; 2],
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
-    ) -> Option<[Weighed; 2]> {
+    ) -> Option<[WeightEstimate; 2]> {
         let (columns, reciprocals) = (bounds.columns, (bounds.reciprocal, bounds.widest));
         Some([
-            Weighed::new(planes[0].line(real), denominator, columns, reciprocals, bounds.ratio)?,
-            Weighed::new(planes[1].line(real), denominator, columns, reciprocals, bounds.ratio)?,
+            WeightEstimate::new(planes[0].line(real), denominator, columns, reciprocals, bounds.ratio)?,
+            WeightEstimate::new(planes[1].line(real), denominator, columns, reciprocals, bounds.ratio)?,
         ])
     }
 
     #[inline(always)]
-    fn scaled_one<const ROW: bool>(
+    fn estimate_of<const ROW: bool>(
         &self,
         plane: &Plane,
         bias: i32,
         (real, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
-    ) -> Option<Scaled> {
+    ) -> Option<QuotientEstimate> {
         let margin = self.margin::<ROW>(plane, real, bounds);
         let (extent, reciprocals) = ((bounds.columns, bounds.rows), (bounds.reciprocal, bounds.widest));
-        Scaled::new::<ROW>(plane.line(real), denominator, extent, reciprocals, margin, bias)
+        QuotientEstimate::new::<ROW>(plane.line(real), denominator, extent, reciprocals, margin, bias)
     }
 
     /// INT-4, INT-4t, less a bias.
@@ -441,7 +447,7 @@ impl<'a> Setup<'a> {
     #[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
     pub(super) fn on_planes<const FMA: bool, const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         planes: &[Plane; 2],
         bias: i32,
         e: &[i64; 3],
@@ -449,17 +455,17 @@ impl<'a> Setup<'a> {
         bounds: &Bounds,
         u: &mut [i32],
         v: &mut [i32],
-        whole: &mut Numbers<i32>,
+        whole: &mut PerLane<i32>,
     ) {
-        if let Some(scaled) = self.scaled::<ROW>(planes, bias, (real, denominator), bounds) {
-            let close = estimate_two::<FMA, ROW>(piece.at, denominator, &scaled, u, v);
+        if let Some(estimates) = self.estimates::<ROW>(planes, bias, (real, denominator), bounds) {
+            let close = estimate_two::<FMA, ROW>(batch.at, denominator, &estimates, u, v);
             if close[0] | close[1] {
-                self.settle_coordinates::<ROW>(piece, bias, planes, close, e, u, v, whole);
+                self.correct_coordinates::<ROW>(batch, bias, planes, close, e, u, v, whole);
             }
         } else {
-            self.tell(Reason::Coordinates, piece.count);
-            for k in 0..piece.count {
-                let sample = self.sample(piece, k);
+            self.tell(Reason::Coordinates, batch.count);
+            for k in 0..batch.count {
+                let sample = self.sample(batch, k);
                 (u[k], v[k]) =
                     (defined_coordinate(&sample, &planes[0], bias), defined_coordinate(&sample, &planes[1], bias));
             }
@@ -472,16 +478,16 @@ impl<'a> Setup<'a> {
         clippy::too_many_arguments,
         reason = "each result apart, so that the compiler sees that none overlaps another"
     )]
-    pub(super) fn settle_coordinates<const ROW: bool>(
+    pub(super) fn correct_coordinates<const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         bias: i32,
         planes: &[Plane; 2],
         close: [bool; 2],
         e: &[i64; 3],
         u: &mut [i32],
         v: &mut [i32],
-        whole: &mut Numbers<i32>,
+        whole: &mut PerLane<i32>,
     ) {
         for (n, values) in [(0, u), (1, v)] {
             if !close[n] {
@@ -491,10 +497,10 @@ impl<'a> Setup<'a> {
             let bottom = self.denominator.exact(e);
             let top = plane.exact(e).less(i64::from(bias), bottom);
             let whole = &mut whole[..values.len()];
-            settle::<ROW>(piece.at, top, bottom, plane.small(self.bits), values, whole);
+            correct::<ROW>(batch.at, top, bottom, plane.small(self.bits), values, whole);
             if plane.lowers(&self.context.triangle) {
-                for k in (0..piece.count).filter(|k| whole[*k] != 0) {
-                    values[k] -= i32::from(self.sample(piece, k).shortfall(&plane.g) > 0);
+                for k in (0..batch.count).filter(|k| whole[*k] != 0) {
+                    values[k] -= i32::from(self.sample(batch, k).shortfall(&plane.g) > 0);
                 }
             }
         }
@@ -502,59 +508,59 @@ impl<'a> Setup<'a> {
 
     /// INT-2, INT-3 likewise.
     #[inline(always)]
-    pub(super) fn settle_weights<const ROW: bool>(
+    pub(super) fn correct_weights<const ROW: bool>(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         planes: &[Plane; 2],
         e: &[i64; 3],
         w0: &mut [i32],
         w2: &mut [i32],
-        whole: &mut [Numbers<i32>; 2],
+        whole: &mut [PerLane<i32>; 2],
     ) {
         let [whole0, whole2] = whole;
         let (whole0, whole2) = (&mut whole0[..w0.len()], &mut whole2[..w2.len()]);
         let bottom = self.denominator.exact(e);
-        settle::<ROW>(piece.at, planes[0].exact(e), bottom, planes[0].small(self.bits), w0, whole0);
-        settle::<ROW>(piece.at, planes[1].exact(e), bottom, planes[1].small(self.bits), w2, whole2);
+        correct::<ROW>(batch.at, planes[0].exact(e), bottom, planes[0].small(self.bits), w0, whole0);
+        correct::<ROW>(batch.at, planes[1].exact(e), bottom, planes[1].small(self.bits), w2, whole2);
         if !self.context.triangle.exact_reciprocal {
             break_ties(w0, w2, whole0, whole2);
         }
     }
 
-    pub(super) fn sample(&self, piece: Piece<'_>, n: usize) -> Sample<'_> {
-        piece.sample(n, &self.context.triangle)
+    pub(super) fn sample(&self, batch: PixelBatch<'_>, n: usize) -> Sample<'_> {
+        batch.sample(n, &self.context.triangle)
     }
 
     /// Coordinates by the definition, pixel by pixel.
     pub(super) fn defined(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         sampler: &Sampler,
-        numbers: &mut [Numbers<i32>; 2],
-        faces: &mut Numbers<u32>,
+        numbers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
     ) {
-        for n in 0..piece.count {
-            self.defined_lane(piece, n, sampler, numbers, faces);
+        for n in 0..batch.count {
+            self.defined_lane(batch, n, sampler, numbers, faces);
         }
     }
 
     pub(super) fn defined_lane(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         n: usize,
         sampler: &Sampler,
-        numbers: &mut [Numbers<i32>; 2],
-        faces: &mut Numbers<u32>,
+        numbers: &mut [PerLane<i32>; 2],
+        faces: &mut PerLane<u32>,
     ) {
         self.tell(Reason::Coordinates, 1);
         let unit = &self.context.draw.units[sampler.index];
-        let sample = self.sample(piece, n);
-        let Some(place) = self.context.place(unit, &sample, piece.pixel(n)) else { return };
+        let sample = self.sample(batch, n);
+        let Some(place) = self.context.place(unit, &sample, batch.pixel(n)) else { return };
         let [u, v] = match sampler.third {
             Some(Third::Counts) => [place.layer(unit.layers); 2],
             _ => place.on(&unit.levels[0]),
         };
-        let lane = piece.lane + n;
+        let lane = batch.lane + n;
         (numbers[0][lane], numbers[1][lane]) = (u.value as i32 - sampler.bias(), v.value as i32 - sampler.bias());
         faces[lane] = place.face() as u32;
     }
@@ -562,19 +568,19 @@ impl<'a> Setup<'a> {
     /// Texture units that rows do not sample.
     fn pixel_by_pixel(
         &self,
-        piece: Piece<'_>,
-        compiled: &Compiled,
+        batch: PixelBatch<'_>,
+        compiled: &CompiledDraw,
         textures: &[Image<'_, i32>],
         varying: &mut Varying,
-        rows: &mut [Row],
+        rows: &mut [Lanes256],
     ) {
         const UNITS: [Register; TEXTURE_UNITS] =
             [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        self.tell(Reason::Textures, piece.count);
-        for n in 0..piece.count {
-            let (sample, lane) = (self.sample(piece, n), piece.lane + n);
+        self.tell(Reason::Textures, batch.count);
+        for n in 0..batch.count {
+            let (sample, lane) = (self.sample(batch, n), batch.lane + n);
             let mut registers = Registers::<i32>::new();
-            let lives = self.context.sample_textures(&sample, piece.pixel(n), &mut registers, textures, &mut Silent);
+            let lives = self.context.sample_textures(&sample, batch.pixel(n), &mut registers, textures, &mut Silent);
             varying.alive[lane] = lives.is_some();
             for (unit, register) in UNITS.into_iter().enumerate() {
                 for channel in 0..4 {
@@ -587,7 +593,7 @@ impl<'a> Setup<'a> {
     }
 }
 
-/// How the denominators of a piece vary.
+/// How the denominators of a batch vary.
 #[derive(Default)]
 pub(super) struct Bounds {
     /// No term that goes into one is larger than this many of the smallest.

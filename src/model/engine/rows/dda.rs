@@ -3,12 +3,12 @@
 #![allow(clippy::float_arithmetic, reason = "an estimate of a quotient, which its remainder corrects")]
 
 use super::color::narrow;
-use super::fetch::Numbers;
+use super::fetch::PerLane;
 use super::kernels::STEP;
 use super::planes::Plane;
 use super::quotient::{IOTA_REAL, break_ties, nearest};
-use super::triangle::{Piece, Planes, Setup, Varying};
-use super::{BLOCK, Compiled};
+use super::triangle::{PixelBatch, Planes, Setup, Varying};
+use super::{BLOCK, CompiledDraw};
 use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
 
@@ -67,8 +67,8 @@ impl Divided {
 
 /// A quotient along a row: that of a pixel, and what the next pixels add to it.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Steady {
-    /// Of the next piece's first pixel.
+pub(super) struct Dda {
+    /// Of the next batch's first pixel.
     here: Divided,
     divisor: i64,
     slope: i64,
@@ -79,14 +79,14 @@ pub(super) struct Steady {
     /// So many slopes as the lane says: the floors, and what lanes look at of the remainders.
     quotients: [i32; STEP],
     remainders: [i32; STEP],
-    /// The same of the first lanes of a piece's steps.
+    /// The same of the first lanes of a batch's steps.
     starts: [[i32; 2]; STEPS],
 }
 
-/// Steps of a piece.
+/// Steps of a batch.
 const STEPS: usize = BLOCK / STEP;
 
-impl Steady {
+impl Dda {
     /// Becomes that of a plane over D, less a bias, from a pixel with edge functions `e` on, of which as many columns follow as are said.
     /// `false`: it has too many bits.
     #[inline(always)]
@@ -168,7 +168,7 @@ impl Steady {
         found
     }
 
-    /// Where nothing remains in a step of the piece that [`run`](Self::run) went over.
+    /// Where nothing remains in a step of the batch that [`run`](Self::run) went over.
     #[inline(always)]
     pub(super) fn whole(&self, step: usize) -> [i32; STEP] {
         let mut whole = [i32::from(self.here.remainder == 0); STEP];
@@ -222,7 +222,7 @@ fn floors<T: Written + Default>(
     least
 }
 
-/// Lanes past the end of a piece become what its last one is.
+/// Lanes past the end of a batch become what its last one is.
 #[inline(always)]
 pub(super) fn repeat<T: Copy>(count: usize, steps: &mut [[T; STEP]]) {
     if let (Some(step), left @ 1..) = (steps.last_mut(), count % STEP) {
@@ -233,13 +233,13 @@ pub(super) fn repeat<T: Copy>(count: usize, steps: &mut [[T; STEP]]) {
     }
 }
 
-/// What of a row is known before its pieces.
+/// What of a row is known before its batches.
 #[derive(Clone, Debug, Default)]
-pub(super) struct SteadyRow {
+pub(super) struct DdaRow {
     /// u and v of each sampler, and whether its quotients are these.
-    pub(super) samplers: [([Steady; 2], bool); TEXTURE_UNITS],
+    pub(super) samplers: [([Dda; 2], bool); TEXTURE_UNITS],
     /// Weights 0 and 2, and whether they are these.
-    pub(super) weights: ([Steady; 2], bool),
+    pub(super) weights: ([Dda; 2], bool),
     /// Nothing else varies.
     pub(super) complete: bool,
     /// Nothing else is divided by D.
@@ -247,10 +247,10 @@ pub(super) struct SteadyRow {
 }
 
 impl Setup<'_> {
-    /// What is known of a row before its pieces, from its first pixel on. Without it none of them is steady.
+    /// What is known of a row before its batches, from its first pixel on. Batches use the DDAs only after this has been called.
     #[inline(always)]
-    pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &Compiled, varying: &mut Varying) {
-        let SteadyRow { samplers, weights, complete, undivided } = &mut varying.steady;
+    pub(super) fn begin_row(&self, (i, j): (i64, i64), columns: i64, compiled: &CompiledDraw, varying: &mut Varying) {
+        let DdaRow { samplers, weights, complete, undivided } = &mut varying.dda;
         (*complete, *undivided) = (false, false);
         weights.1 = false;
         for sampler in samplers.iter_mut() {
@@ -281,35 +281,35 @@ impl Setup<'_> {
         }
     }
 
-    /// What of a row is known before its pieces, for one of them.
+    /// What of a row is known before its batches, for one of them.
     #[inline(always)]
-    pub(super) fn steady(&self, piece: Piece<'_>, compiled: &Compiled, varying: &mut Varying) {
-        let Varying { coordinates, weights: [w0, w2], narrow: [narrow0, narrow2], whole, steady, .. } = &mut *varying;
-        let (lanes, triangle) = (piece.lanes(), &self.context.triangle);
+    pub(super) fn dda(&self, batch: PixelBatch<'_>, compiled: &CompiledDraw, varying: &mut Varying) {
+        let Varying { coordinates, weights: [w0, w2], narrow: [narrow0, narrow2], whole, dda, .. } = &mut *varying;
+        let (lanes, triangle) = (batch.lanes(), &self.context.triangle);
         for (n, planes) in self.samplers.iter().enumerate() {
-            let (([along, down], true), Planes::Plane(planes)) = (&mut steady.samplers[n], planes) else { continue };
+            let (([along, down], true), Planes::Plane(planes)) = (&mut dda.samplers[n], planes) else { continue };
             let [u, v] = &mut coordinates[n];
             let (u, v) = (&mut u[lanes.clone()], &mut v[lanes.clone()]);
-            let found = [along.run(piece.count, u), down.run(piece.count, v)];
+            let found = [along.run(batch.count, u), down.run(batch.count, v)];
             if found[0] | found[1] {
                 let bias = compiled.samplers[n].bias();
                 let exact = [along.is_exact(), down.is_exact()];
-                self.settle_steady(piece, planes, bias, found, exact, u, v, &mut whole[0]);
+                self.correct_dda(batch, planes, bias, found, exact, u, v, &mut whole[0]);
             }
         }
-        if let (([first, third], true), Some(planes)) = (&mut steady.weights, &self.weights) {
+        if let (([first, third], true), Some(planes)) = (&mut dda.weights, &self.weights) {
             let (narrow0, narrow2) = (&mut narrow0[lanes.clone()], &mut narrow2[lanes.clone()]);
-            let found = first.run(piece.count, narrow0) | third.run(piece.count, narrow2);
+            let found = first.run(batch.count, narrow0) | third.run(batch.count, narrow2);
             if found && !first.is_exact() {
                 let (w0, w2) = (&mut w0[lanes.clone()], &mut w2[lanes]);
                 widen(narrow0, w0);
                 widen(narrow2, w2);
-                let e = triangle.edges(piece.first.0, piece.first.1);
-                self.settle_weights::<true>(piece, planes, &e, w0, w2, whole);
+                let e = triangle.edges(batch.first.0, batch.first.1);
+                self.correct_weights::<true>(batch, planes, &e, w0, w2, whole);
                 narrow(w0, narrow0);
                 narrow(w2, narrow2);
             } else if found && !triangle.exact_reciprocal {
-                steady_ties([first, third], piece.count, narrow0, narrow2);
+                steady_ties([first, third], batch.count, narrow0, narrow2);
             }
         }
     }
@@ -319,27 +319,27 @@ impl Setup<'_> {
         clippy::too_many_arguments,
         reason = "each result apart, so that the compiler sees that none overlaps another"
     )]
-    fn settle_steady(
+    fn correct_dda(
         &self,
-        piece: Piece<'_>,
+        batch: PixelBatch<'_>,
         planes: &[Plane; 2],
         bias: i32,
         found: [bool; 2],
         exact: [bool; 2],
         u: &mut [i32],
         v: &mut [i32],
-        whole: &mut Numbers<i32>,
+        whole: &mut PerLane<i32>,
     ) {
         let triangle = &self.context.triangle;
         let found = [0, 1].map(|n| found[n] && (!exact[n] || planes[n].lowers(triangle)));
-        let e = triangle.edges(piece.first.0, piece.first.1);
-        self.settle_coordinates::<true>(piece, bias, planes, found, &e, u, v, whole);
+        let e = triangle.edges(batch.first.0, batch.first.1);
+        self.correct_coordinates::<true>(batch, bias, planes, found, &e, u, v, whole);
     }
 }
 
 /// INT-3 of weights that are exact where something is tied.
 #[inline(always)]
-fn steady_ties([first, third]: [&Steady; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
+fn steady_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
     let ((w0, _), (w2, _)) = (w0.as_chunks_mut::<STEP>(), w2.as_chunks_mut::<STEP>());
     for (step, (w0, w2)) in w0.iter_mut().zip(w2.iter_mut()).enumerate() {
         let (whole0, whole2) = (first.whole(step), third.whole(step));
@@ -389,27 +389,27 @@ mod tests {
                 slope = slope / divisor * divisor / every;
                 numerator = numerator / divisor * divisor - slope * random(5);
             }
-            let mut steady = Steady::default();
-            if !steady.set(numerator, slope, divisor, 600, 0) {
+            let mut dda = Dda::default();
+            if !dda.set(numerator, slope, divisor, 600, 0) {
                 continue;
             }
             let mut first = 0;
             for count in [256, 16, 17 + random(7) as usize] {
                 let mut out = vec![0_i32; count.next_multiple_of(STEP)];
-                let found = steady.run(count, &mut out);
+                let found = dda.run(count, &mut out);
                 for (k, got) in out.iter().enumerate() {
                     let at = i128::from(numerator) + i128::from(slope) * (first + k.min(count - 1)) as i128;
                     let (floor, rest) = (at.div_euclid(i128::from(divisor)), at.rem_euclid(i128::from(divisor)));
-                    if steady.is_exact() || !found {
+                    if dda.is_exact() || !found {
                         assert_eq!(i128::from(*got), floor, "{numerator} + {k} {slope} over {divisor}");
                     } else {
                         assert!((0..=1).contains(&(i128::from(*got) - floor)));
                     }
                     assert!(found || rest != 0);
-                    if steady.is_exact() && k < count {
-                        assert_eq!(steady.whole(k / STEP)[k % STEP], i32::from(rest == 0));
+                    if dda.is_exact() && k < count {
+                        assert_eq!(dda.whole(k / STEP)[k % STEP], i32::from(rest == 0));
                     }
-                    (exact, close) = (exact + u64::from(rest == 0), close + u64::from(found && !steady.is_exact()));
+                    (exact, close) = (exact + u64::from(rest == 0), close + u64::from(found && !dda.is_exact()));
                 }
                 first += count;
             }

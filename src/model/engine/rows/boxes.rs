@@ -42,7 +42,7 @@ pub(super) fn boxes((rows, columns): Window) -> impl Iterator<Item = Window> {
 
 /// The pixels of a small triangle in a box.
 #[derive(Debug)]
-pub(super) struct Patch {
+pub(super) struct BoxCoverage {
     /// Column and row of the first pixel.
     pub(super) first: (i64, i64),
     /// Where the others lie from it; past the end the last one again.
@@ -54,13 +54,13 @@ pub(super) struct Patch {
     pub(super) filled: usize,
 }
 
-impl Default for Patch {
+impl Default for BoxCoverage {
     fn default() -> Self {
-        Patch { first: (0, 0), x: [0; MOST], y: [0; MOST], count: 0, runs: [(0, 0, 0); SIDE as usize], filled: 0 }
+        BoxCoverage { first: (0, 0), x: [0; MOST], y: [0; MOST], count: 0, runs: [(0, 0, 0); SIDE as usize], filled: 0 }
     }
 }
 
-impl Patch {
+impl BoxCoverage {
     /// RAS-3 for [a box](is_box) of pixels of a [small](is_small) triangle, all rows at once.
     #[inline(always)]
     pub(super) fn cover(&mut self, triangle: &Triangle, window: Window) {
@@ -145,7 +145,7 @@ mod tests {
     fn boxes_hold_the_spans() {
         let mut sequence = Random::seeded(0x1234_5678);
         let mut random = |n: i64| sequence.below(n as u128) as i64;
-        let (mut patch, mut triangle, mut drawn) = (Patch::default(), Triangle::default(), 0);
+        let (mut coverage, mut triangle, mut drawn) = (BoxCoverage::default(), Triangle::default(), 0);
         for round in 0..40_000 {
             // 1/16 pixel; every third is a sliver.
             let (size, thin) = (1 + random(16 * WIDEST), if round % 3 == 0 { 1 + random(40) } else { 16 * WIDEST });
@@ -162,15 +162,15 @@ mod tests {
             drawn += 1;
             for (rows, columns) in boxes((triangle.rows, triangle.columns)) {
                 assert!(is_box((rows, columns)));
-                patch.cover(&triangle, (rows, columns));
+                coverage.cover(&triangle, (rows, columns));
                 let spans = (rows.0..rows.1).map(|j| (j, triangle.span(j, columns)));
                 let wanted: Vec<_> =
                     spans.filter(|(_, s)| s.0 < s.1).map(|(j, s)| (j, s.0, (s.1 - s.0) as usize)).collect();
-                assert_eq!(patch.runs[..patch.filled], wanted, "{triangle:?} {rows:?} {columns:?}");
+                assert_eq!(coverage.runs[..coverage.filled], wanted, "{triangle:?} {rows:?} {columns:?}");
                 let mut pixels =
                     wanted.iter().flat_map(|(j, first, count)| (0..*count).map(move |n| (first + n as i64, *j)));
-                for n in 0..patch.count {
-                    let at = (patch.first.0 + i64::from(patch.x[n]), patch.first.1 + i64::from(patch.y[n]));
+                for n in 0..coverage.count {
+                    let at = (coverage.first.0 + i64::from(coverage.x[n]), coverage.first.1 + i64::from(coverage.y[n]));
                     assert_eq!(Some(at), pixels.next());
                 }
                 assert_eq!(pixels.next(), None);

@@ -5,8 +5,8 @@ use super::{Blend, Factor, Ideal, Lane, Part, Register, Sum};
 use crate::state::{Named, RegisterFloor};
 use std::ops::{Add, Sub};
 
-/// Number of [`Strands`] that tell everything apart: the ideal, and one for each part up to which errors are let in.
-pub const STRANDS: usize = 1 + Part::ALL.len();
+/// Number of [`IdealTracks`] that tell everything apart: the ideal, and one for each part up to which errors are let in.
+pub const IDEAL_TRACKS: usize = 1 + Part::ALL.len();
 
 /// Real-number evaluations side by side, each in steps of 1/255.
 ///
@@ -15,33 +15,33 @@ pub const STRANDS: usize = 1 + Part::ALL.len();
 ///   The differences of neighbours add up to the whole error.
 /// * The last strand therefore starts from the definition's integers at each rule: what it is off by is the error of that rule alone.
 ///
-/// `Strands<1>` is the last one alone.
+/// `IdealTracks<1>` is the last one alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Strands<const N: usize>(pub [f64; N]);
+pub struct IdealTracks<const N: usize>(pub [f64; N]);
 
-impl<const N: usize> Strands<N> {
+impl<const N: usize> IdealTracks<N> {
     #[inline(always)]
     fn each(self, f: impl Fn(f64) -> f64) -> Self {
-        Strands(std::array::from_fn(|n| f(self.0[n])))
+        IdealTracks(std::array::from_fn(|n| f(self.0[n])))
     }
 
     #[inline(always)]
     fn both(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        Strands(std::array::from_fn(|n| f(self.0[n], other.0[n])))
+        IdealTracks(std::array::from_fn(|n| f(self.0[n], other.0[n])))
     }
 }
 
-impl Strands<STRANDS> {
+impl IdealTracks<IDEAL_TRACKS> {
     /// What each part adds to the error of a value, in the order of `Part::ALL`.
     pub fn parts(self) -> [f64; Part::ALL.len()] {
         std::array::from_fn(|n| self.0[n + 1] - self.0[n])
     }
 }
 
-impl<const N: usize> Ideal for Strands<N> {
+impl<const N: usize> Ideal for IdealTracks<N> {
     #[inline(always)]
     fn of(real: f64) -> Self {
-        Strands([real; N])
+        IdealTracks([real; N])
     }
     #[inline(always)]
     fn real(self) -> f64 {
@@ -64,7 +64,7 @@ impl<const N: usize> Ideal for Strands<N> {
     }
 }
 
-impl<const N: usize> Add for Strands<N> {
+impl<const N: usize> Add for IdealTracks<N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -72,7 +72,7 @@ impl<const N: usize> Add for Strands<N> {
     }
 }
 
-impl<const N: usize> Sub for Strands<N> {
+impl<const N: usize> Sub for IdealTracks<N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -80,9 +80,9 @@ impl<const N: usize> Sub for Strands<N> {
     }
 }
 
-impl<const N: usize> Blend for Strands<N> {
+impl<const N: usize> Blend for IdealTracks<N> {
     type Weight = Self;
-    const WHOLE: Self = Strands([f64::WHOLE; N]);
+    const WHOLE: Self = IdealTracks([f64::WHOLE; N]);
     #[inline(always)]
     fn times(self, weight: Self) -> Self {
         self.both(weight, f64::times)
@@ -93,12 +93,12 @@ impl<const N: usize> Blend for Strands<N> {
     }
 }
 
-impl<const N: usize> Register for Strands<N> {
+impl<const N: usize> Register for IdealTracks<N> {
     type Factor = Self;
     type Expanded = Self;
-    const ZERO: Self = Strands([0.0; N]);
-    const ONE: Self = Strands([f64::ONE; N]);
-    const HALF: Self = Strands([f64::HALF; N]);
+    const ZERO: Self = IdealTracks([0.0; N]);
+    const ONE: Self = IdealTracks([f64::ONE; N]);
+    const HALF: Self = IdealTracks([f64::HALF; N]);
     #[inline(always)]
     fn max0(self) -> Self {
         self.each(Register::max0)
@@ -121,7 +121,7 @@ impl<const N: usize> Register for Strands<N> {
     }
 }
 
-impl<const N: usize> Factor for Strands<N> {
+impl<const N: usize> Factor for IdealTracks<N> {
     type Sum = Self;
     type Register = Self;
     #[inline(always)]
@@ -130,7 +130,7 @@ impl<const N: usize> Factor for Strands<N> {
     }
 }
 
-impl<const N: usize> Sum for Strands<N> {
+impl<const N: usize> Sum for IdealTracks<N> {
     type Register = Self;
     #[inline(always)]
     fn rounded(self) -> Self {
@@ -138,10 +138,10 @@ impl<const N: usize> Sum for Strands<N> {
     }
 }
 
-impl<const N: usize> Lane for Strands<N> {
+impl<const N: usize> Lane for IdealTracks<N> {
     type Mapped = Self;
     type Full = Self;
-    const STEP: Self = Strands([f64::STEP; N]);
+    const STEP: Self = IdealTracks([f64::STEP; N]);
     #[inline(always)]
     fn byte(value: u8) -> Self {
         Self::of(f64::from(value))

@@ -1,16 +1,16 @@
 //! Weights, coordinates and faces of the rows against the definition, by the million.
 //!
-//! `NINEBIT_DENSE_PIXELS=250000000 cargo test --release --lib rows::dense` compares 10^9 quotients of 2D coordinates and weights; without
+//! `NINEBIT_EQUIVALENCE_PIXELS=250000000 cargo test --release --lib rows::equivalence_tests` compares 10^9 quotients of 2D coordinates and weights; without
 //! the variable a small part of it runs.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::band::{common, piece};
-use super::kernels::Row;
+use super::band::{batch, common};
+use super::boxes::{BoxCoverage, boxes, is_small};
+use super::kernels::Lanes256;
 use super::levels::Reads;
-use super::patch::{Patch, boxes, is_small};
 use super::quotient::{self, IOTA};
 use super::taps::{Footprints, Pair};
-use super::triangle::{Piece, Setup, Varying, whole_steps};
+use super::triangle::{PixelBatch, Setup, Varying, whole_steps};
 use super::{BLOCK, Reasons, Rows};
 use crate::engine::pixel::TriangleContext;
 use crate::plan::{Plan, PlanOptions};
@@ -274,48 +274,48 @@ fn scene(
 /// Compares the units on planes and the weights of a small triangle, set up four at a time, with the definition.
 fn compare_small<const FMA: bool>(
     context: &mut TriangleContext<'_>,
-    plain: &super::Compiled,
-    piece: Piece<'_>,
+    plain: &super::CompiledDraw,
+    batch: PixelBatch<'_>,
     varying: &mut Varying,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
 ) -> bool {
-    let done = super::small::interpolate::<FMA>(context, plain, piece, varying, rows, &mut Vec::new());
-    for n in (0..piece.count).filter(|_| done) {
-        let (sample, lane) = (piece.sample(n, &context.triangle), piece.lane + n);
+    let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows, &mut Vec::new());
+    for n in (0..batch.count).filter(|_| done) {
+        let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
         for (index, sampler) in plain.samplers.iter().enumerate() {
             let unit = &context.draw.units[sampler.index];
-            let place = context.place(unit, &sample, piece.pixel(n)).unwrap();
+            let place = context.place(unit, &sample, batch.pixel(n)).unwrap();
             let wanted = place.on(&unit.levels[0]).map(|c| c.value as i32 - sampler.bias());
             let got = varying.coordinates[index].each_ref().map(|c| c[lane]);
-            assert_eq!(got, wanted, "unit {index} {:?} of {:?}", piece.pixel(n), context.vertices());
+            assert_eq!(got, wanted, "unit {index} {:?} of {:?}", batch.pixel(n), context.vertices());
         }
         if plain.varies(context) {
             let weights = sample.weights().map(|w| w.value as u16);
             let got = varying.narrow.each_ref().map(|w| w[lane]);
-            assert_eq!(got, weights, "{:?} of {:?}", piece.pixel(n), context.vertices());
+            assert_eq!(got, weights, "{:?} of {:?}", batch.pixel(n), context.vertices());
         }
         let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
-        assert_eq!(varying.depth[lane], depth, "{:?} of {:?}", piece.pixel(n), context.vertices());
+        assert_eq!(varying.depth[lane], depth, "{:?} of {:?}", batch.pixel(n), context.vertices());
     }
     done
 }
 
-/// Compares a piece with the definition, pixel by pixel.
+/// Compares a batch with the definition, pixel by pixel.
 fn compare<const FMA: bool, const ROW: bool>(
     setup: &Setup<'_>,
-    compiled: &super::Compiled,
-    piece: Piece<'_>,
+    compiled: &super::CompiledDraw,
+    batch: PixelBatch<'_>,
     varying: &mut Varying,
-    rows: &mut [Row],
+    rows: &mut [Lanes256],
 ) {
-    // What an earlier piece left must not pass for this one's.
+    // What an earlier batch left must not pass for this one's.
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
-    setup.interpolate::<FMA, ROW>(piece, compiled, &[], varying, rows);
+    setup.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
     let (context, mut wanted, mut taps) = (&setup.context, Reads::default(), Footprints::default());
-    for n in 0..piece.count {
-        let (i, j) = (piece.first.0 + i64::from(piece.at.x[n]), piece.first.1 + i64::from(piece.at.y[n]));
+    for n in 0..batch.count {
+        let (i, j) = (batch.first.0 + i64::from(batch.at.x[n]), batch.first.1 + i64::from(batch.at.y[n]));
         let sample = Sample::new(&context.triangle, context.triangle.edges(i, j));
-        let lane = piece.lane + n;
+        let lane = batch.lane + n;
         let weights = sample.weights().map(|w| w.value as u16);
         let depth = context.depth_word(&sample).unwrap_or(super::depth::OUTSIDE);
         assert_eq!(varying.depth[lane], depth, "({i}, {j}) of {:?}", context.vertices());
@@ -327,7 +327,7 @@ fn compare<const FMA: bool, const ROW: bool>(
             let place = context.place(unit, &sample, (i, j)).unwrap();
             let sampler = &compiled.samplers[index];
             if sampler.mixes {
-                setup.defined_reads(piece, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
+                setup.defined_reads(batch, n, sampler, sampler.table.as_ref().unwrap(), &mut wanted);
                 let of = |reads: &Reads| {
                     let coordinates = reads.coordinates.each_ref().map(|at| at.each_ref().map(|c| c[lane]));
                     (reads.entries.each_ref().map(|e| e[lane]), coordinates, reads.weights[lane])
@@ -375,11 +375,11 @@ fn compare<const FMA: bool, const ROW: bool>(
 
 #[test]
 fn rows_interpolate_what_the_definition_does() {
-    let wanted = std::env::var("NINEBIT_DENSE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
+    let wanted = std::env::var("NINEBIT_EQUIVALENCE_PIXELS").ok().and_then(|n| n.parse().ok()).unwrap_or(3_000_000_u64);
     let mut random = Random(crate::random::Random::seeded(0x9e37_79b9_7f4a_7c15));
-    let (mut pixels, mut patches, mut fours, mut round) = (0, 0, 0, 0_u64);
-    let (mut patch, mut reasons) = (Patch::default(), Reasons::default());
-    while pixels < wanted || patches < 20_000 {
+    let (mut pixels, mut drawn, mut fours, mut round) = (0, 0, 0, 0_u64);
+    let (mut coverage, mut reasons) = (BoxCoverage::default(), Reasons::default());
+    while pixels < wanted || drawn < 20_000 {
         round += 1;
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);
         let depth = random.of(DepthFormat::ALL);
@@ -409,9 +409,9 @@ fn rows_interpolate_what_the_definition_does() {
         assert_eq!(compiled.samplers.len(), 4);
         // The first one, in every place that a sampler can have.
         let on_planes = vec![compiled.samplers[0].clone(); 1 + round as usize % 4];
-        let plain = super::Compiled { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
+        let plain = super::CompiledDraw { samplers: on_planes, fog: None, ..compiled.clone().into_owned() };
         let draw = &plan.draws[0];
-        let (mut varying, mut rows) = (Varying::default(), vec![Row::of(0); compiled.rows.len()]);
+        let (mut varying, mut rows) = (Varying::default(), vec![Lanes256::of(0); compiled.rows.len()]);
         varying.reads.resize(compiled.samplers.len(), Reads::default());
         varying.footprints.resize(compiled.samplers.len(), Footprints::default());
         varying.footprints.iter_mut().zip(&compiled.samplers).for_each(|(taps, sampler)| taps.begin(sampler));
@@ -425,24 +425,24 @@ fn rows_interpolate_what_the_definition_does() {
             if is_small(triangle) {
                 let mut covered = 0;
                 for window in boxes(common(triangle, (whole, columns))) {
-                    patch.cover(triangle, window);
-                    if patch.count == 0 {
+                    coverage.cover(triangle, window);
+                    if coverage.count == 0 {
                         continue;
                     }
-                    let piece = piece(&patch, 0);
+                    let batch = batch(&coverage, 0);
                     let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
                     let four = if round.is_multiple_of(4) {
-                        compare_small::<true>(&mut alone, &plain, piece, &mut varying, &mut rows)
+                        compare_small::<true>(&mut alone, &plain, batch, &mut varying, &mut rows)
                     } else {
-                        compare_small::<false>(&mut alone, &plain, piece, &mut varying, &mut rows)
+                        compare_small::<false>(&mut alone, &plain, batch, &mut varying, &mut rows)
                     };
                     fours += u64::from(four);
                     if round.is_multiple_of(4) {
-                        compare::<true, false>(&setup, &compiled, piece, &mut varying, &mut rows);
+                        compare::<true, false>(&setup, &compiled, batch, &mut varying, &mut rows);
                     } else {
-                        compare::<false, false>(&setup, &compiled, piece, &mut varying, &mut rows);
+                        compare::<false, false>(&setup, &compiled, batch, &mut varying, &mut rows);
                     }
-                    (covered, patches) = (covered + patch.count, patches + 1);
+                    (covered, drawn) = (covered + coverage.count, drawn + 1);
                 }
                 let spans = (window.0..window.1).map(|j| triangle.span(j, columns)).map(|(a, b)| (b - a) as usize);
                 assert_eq!(covered, spans.sum::<usize>());
@@ -459,11 +459,11 @@ fn rows_interpolate_what_the_definition_does() {
                         let lanes = whole_steps(count);
                         let (last, zeros) = (count as i32 - 1, [0; super::kernels::LANES]);
                         let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };
-                        let piece = Piece { first: (i, j), at, count, lane: 0, extent: (last, 0) };
+                        let batch = PixelBatch { first: (i, j), at, count, lane: 0, extent: (last, 0) };
                         if round.is_multiple_of(4) {
-                            compare::<true, true>(&setup, &compiled, piece, &mut varying, &mut rows);
+                            compare::<true, true>(&setup, &compiled, batch, &mut varying, &mut rows);
                         } else {
-                            compare::<false, true>(&setup, &compiled, piece, &mut varying, &mut rows);
+                            compare::<false, true>(&setup, &compiled, batch, &mut varying, &mut rows);
                         }
                         i += count as i64;
                         pixels += count as u64;
@@ -473,8 +473,8 @@ fn rows_interpolate_what_the_definition_does() {
             planes = setup.given_back(&mut reasons);
         }
     }
-    assert!(fours > patches / 2);
+    assert!(fours > drawn / 2);
     println!(
-        "{pixels} pixels, {patches} boxes of small triangles, {fours} of them set up four quotients at a time; definition: {reasons:?}"
+        "{pixels} pixels, {drawn} boxes of small triangles, {fours} of them set up four quotients at a time; definition: {reasons:?}"
     );
 }
