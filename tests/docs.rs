@@ -89,7 +89,7 @@ fn variables_of_tests_are_listed() {
 }
 
 /// Words that people may have to read and keep up to date in all documents together: what is neither written by a program nor held row by row.
-const MOST_WORDS: usize = 53_000;
+const MOST_WORDS: usize = 45_000;
 
 /// Pages whose console blocks are run: what follows a command in them is its output.
 const RUN: [&str; 5] = ["docs/answers.md", "docs/commands.md", "docs/compare.md", "docs/diff.md", "docs/op.md"];
@@ -145,7 +145,7 @@ impl Words {
             let output = console && !line.starts_with("```") && !line.starts_with("$ ");
             let written = page == "docs/numerics.md" && line.starts_with("- Example: ");
             let checked = match page {
-                "docs/numerics.md" => &["- Code: ", "- Pinned by: "][..],
+                "docs/numerics.md" => &["- Code: ", "- Pinned by: ", "- Policy: "][..],
                 "docs/answers.md" => &["- Rules: ", "- Vectors: "],
                 "docs/scene-format.md" => &["| "],
                 _ => &[],
