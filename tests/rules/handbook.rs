@@ -1,6 +1,6 @@
 //! `docs/numerics.md`, read: its entries, its examples, and whatever else is found in files by its shape.
 //!
-//! A rule's entry is a heading `### ID title` followed by a list of fields, one a line: `- Grade: ...`.
+//! A rule's entry is a heading `### ID title`, a block of text with its formula, and a list of fields, one a line: `- Grade: ...`.
 
 use crate::pages;
 use crate::settings::bless;
@@ -66,7 +66,7 @@ impl Entry {
 
 fn entries() -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
-    let (mut built, mut open) = (true, false);
+    let (mut built, mut open, mut formula) = (true, false, None::<String>);
     for line in read(PAGE).lines() {
         if let Some(title) = line.strip_prefix("## ") {
             built &= title != "Known, not built yet";
@@ -75,6 +75,14 @@ fn entries() -> Vec<Entry> {
             let (id, title) = title.split_once(' ').unwrap();
             entries.push(Entry { id: id.to_string(), title: title.to_string(), built, fields: Vec::new() });
             open = true;
+        } else if line == "```text" && open {
+            formula = Some(String::new());
+        } else if let ("```", Some(text)) = (line, &formula) {
+            entries.last_mut().unwrap().fields.push(("Formula".to_string(), text.clone()));
+            formula = None;
+        } else if let Some(text) = &mut formula {
+            *text += line;
+            text.push('\n');
         } else if let (true, Some((label, text))) = (open, line.strip_prefix("- ").and_then(|l| l.split_once(": "))) {
             entries.last_mut().unwrap().fields.push((label.to_string(), text.to_string()));
         }
