@@ -97,10 +97,9 @@ const RUN: [&str; 5] = ["docs/answers.md", "docs/commands.md", "docs/compare.md"
 /// Texts that programs fill in, which are documents by hand all the same.
 const TEMPLATES: [&str; 2] = ["src/lab/chart/page.md", "src/lab/experiments/page.md"];
 
-/// The documents, by their path.
-fn documents() -> Vec<String> {
-    let mut found: Vec<String> = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"].map(Into::into).into();
-    let mut folders = vec![Path::new("docs").to_path_buf()];
+/// The pages in a folder and below it.
+fn pages_below(folder: &str) -> Vec<String> {
+    let (mut found, mut folders) = (Vec::new(), vec![Path::new(folder).to_path_buf()]);
     while let Some(folder) = folders.pop() {
         for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
             if path.is_dir() {
@@ -112,6 +111,12 @@ fn documents() -> Vec<String> {
     }
     found.sort();
     found
+}
+
+/// The documents, by their path.
+fn documents() -> Vec<String> {
+    let top = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md"].map(Into::into);
+    top.into_iter().chain(pages_below("docs")).collect()
 }
 
 /// Words of a document as `wc -w` counts them: by hand, in tables that a test holds row by row, and written by a program.
@@ -198,11 +203,12 @@ fn anchors(text: &str) -> BTreeSet<String> {
     found
 }
 
-/// Every link of a document leads to a file, and to a heading of it.
+/// Every link of a document, and of the pages beside vectors and fuzz targets, leads to a file, and to a heading of it.
 #[test]
 fn links_lead_somewhere() {
     let mut broken = Vec::new();
-    for page in documents() {
+    let others = ["vectors", "fuzz", "benches"].into_iter().flat_map(pages_below);
+    for page in documents().into_iter().chain(others).filter(|page| !page.contains("/target/")) {
         let text = fs::read_to_string(&page).unwrap();
         let folder = Path::new(&page).parent().unwrap();
         let mut code = false;

@@ -27,6 +27,10 @@ pub fn hold(page: &str, writer: &str, made: &str) {
         fs::write(&path, format!("{}{made}{}", &text[..from], &text[to..])).unwrap();
         return;
     }
-    let differs = text[from..to].lines().zip(made.lines()).find(|(page, made)| page != made);
-    assert!(text[from..to] == *made, "{page}, {writer}: BLESS=1 writes it; the first line that differs: {differs:?}");
+    let differs =
+        made.lines().zip(text[from..to].lines().chain(std::iter::repeat(""))).find(|(made, page)| made != page);
+    assert!(
+        text[from..to] == *made,
+        "{page}, {writer}: BLESS=1 writes it; the first line made that the page does not have there: {differs:?}"
+    );
 }
