@@ -120,15 +120,42 @@ fn pixel_shader_instructions() {
     hold("docs/pixel-shader.md", "tests/api_programs (arithmetic)", &table);
 }
 
-/// The table of texture instructions has each of them, in their order.
+/// A shader that ends with a texture instruction, and the register that this loads.
+fn texture_shader(name: &str) -> (String, usize) {
+    let (before, operands, register) = match name {
+        "tex" | "texcoord" | "texkill" => ("", "t0", 0),
+        "texbem" | "texbeml" | "texreg2ar" | "texreg2gb" => ("tex t0", "t1, t0", 1),
+        "texm3x2pad" | "texm3x3pad" => ("tex t0", "t1, t0", 1),
+        "texm3x2tex" => ("tex t0\ntexm3x2pad t1, t0", "t2, t0", 2),
+        "texm3x3spec" => ("tex t0\ntexm3x3pad t1, t0\ntexm3x3pad t2, t0", "t3, t0, c0", 3),
+        _ => ("tex t0\ntexm3x3pad t1, t0\ntexm3x3pad t2, t0", "t3, t0", 3),
+    };
+    let after = match name {
+        "texm3x2pad" => "texm3x2tex t2, t0\n",
+        "texm3x3pad" => "texm3x3pad t2, t0\ntexm3x3tex t3, t0\n",
+        _ => "",
+    };
+    (format!("ps.1.1\n{before}\n{name} {operands}\n{after}mov r0, v0\n"), register)
+}
+
 #[test]
-fn texture_instructions_are_listed() {
-    let page = fs::read_to_string("docs/pixel-shader.md").unwrap();
-    let table = page.split("<!-- held by tests/api_programs: begin -->").nth(1).unwrap();
-    let rows = table.split("<!-- held").next().unwrap().lines().filter_map(|line| line.strip_prefix("| `"));
-    let named: Vec<&str> = rows.map(|row| row.split(' ').next().unwrap()).collect();
-    let all: Vec<&str> = pixel_shader::TextureOperation::ALL.iter().map(|operation| operation.name()).collect();
-    assert_eq!(named, all);
+fn texture_instructions() {
+    let meanings = comments("src/program/pixel_shader/mod.rs", "TextureOperation");
+    let mut context = pixel_shader::Context::new(Profile::Nv2a);
+    for bump in &mut context.bumps {
+        *bump = pixel_shader::Bump { matrix: Some([1.0, 0.0, 0.0, 1.0]), luminance: Some([1.0, 0.0]) };
+    }
+    let mut table = "| instruction | operation of the unit | meaning |\n|---|---|---|\n".to_owned();
+    for (operation, meaning) in pixel_shader::TextureOperation::ALL.iter().zip(meanings) {
+        let (text, register) = texture_shader(operation.name());
+        let shader = pixel_shader::parse(&text).unwrap_or_else(|error| panic!("{text}{error:?}")).program;
+        let lowered = pixel_shader::lower(&shader, &context).unwrap_or_else(|error| panic!("{text}{error:?}"));
+        let does = format!("{:?}", lowered.units[register].as_ref().unwrap().operation);
+        let does = does.split(|c: char| !c.is_ascii_alphanumeric()).next().unwrap();
+        let written = text.lines().find(|line| line.split(' ').next() == Some(operation.name())).unwrap();
+        table += &format!("| `{written}` | `{does}` | {meaning} |\n");
+    }
+    hold("docs/pixel-shader.md", "tests/api_programs (textures)", &table);
 }
 
 /// What a unit of a mode that is older than combining computes, of colour and alpha; the environment colour is const0.
