@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use crate::bench::Bench;
+use crate::settings::bless;
 use std::path::Path;
 
 fn read(path: &str) -> String {
@@ -18,14 +19,25 @@ fn grade(rule: &str, handbook: &str) -> String {
 fn grades_are_those_of_the_handbook() {
     let (page, handbook) = (read("docs/answers.md"), read("docs/numerics.md"));
     let mut held = 0;
-    for line in page.lines().filter_map(|line| line.strip_prefix("- Rules: ")) {
-        for part in line.trim_end_matches('.').split("; ") {
-            let (rule, said) = part.split_once(' ').unwrap_or_else(|| panic!("{part}"));
-            assert_eq!(said, grade(rule, &handbook), "{rule}");
-            held += 1;
-        }
-    }
+    let graded: Vec<String> = page
+        .lines()
+        .map(|line| {
+            let Some(rules) = line.strip_prefix("- Rules: ") else { return line.to_owned() };
+            let rules = rules.trim_end_matches('.').split("; ").map(|part| {
+                held += 1;
+                let rule = part.split(' ').next().unwrap();
+                format!("{rule} {}", grade(rule, &handbook))
+            });
+            format!("- Rules: {}.", rules.collect::<Vec<_>>().join("; "))
+        })
+        .collect();
     assert!(held > 15, "{held} rules");
+    if bless() {
+        return std::fs::write("docs/answers.md", graded.join("\n") + "\n").unwrap();
+    }
+    for (line, graded) in page.lines().zip(&graded) {
+        assert_eq!(line, graded, "BLESS=1 writes the grades");
+    }
 }
 
 /// Every command of the page; the line below it is the last one that it prints.

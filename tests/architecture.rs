@@ -1,6 +1,7 @@
 //! What `docs/architecture.md` says of the modules' dependencies holds in the sources.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use crate::pages;
 use std::path::{Path, PathBuf};
 
 /// Modules that use one another and the standard library, nothing else.
@@ -140,4 +141,32 @@ fn files_are_read_in_one_place() {
             assert!(!text.contains(call), "{file} has {call}");
         }
     }
+}
+
+/// The page's table of crates is made of their manifests.
+#[test]
+fn crates_are_listed() {
+    let mut table = "| folder | crate | what it is for | uses |\n|---|---|---|---|\n".to_owned();
+    let folders = std::fs::read_dir("src").unwrap().map(|entry| entry.unwrap().path());
+    let mut folders: Vec<PathBuf> = folders.filter(|folder| folder.join("Cargo.toml").exists()).collect();
+    folders.sort();
+    for folder in folders.into_iter().chain([PathBuf::from(".")]) {
+        let manifest = std::fs::read_to_string(folder.join("Cargo.toml")).unwrap();
+        let package = manifest.split("[package]\n").nth(1).unwrap();
+        let field = |name: &str| {
+            let start = format!("{name} = \"");
+            package.lines().find_map(|line| Some(line.strip_prefix(&start)?.trim_end_matches('"').to_owned())).unwrap()
+        };
+        let dependencies = package.split("\n[dependencies]\n").nth(1).unwrap_or("").split("\n[").next().unwrap();
+        let own = dependencies.lines().filter(|line| line.starts_with("ninebit"));
+        let named = own.map(|line| format!("`{}`", line.split([' ', '.', '=']).next().unwrap()));
+        let folder = if folder == Path::new(".") {
+            "top level, `src/cli`".to_owned()
+        } else {
+            format!("`{}`", folder.display())
+        };
+        let uses = named.collect::<Vec<_>>().join(", ");
+        table += &format!("| {folder} | `{}` | {} | {uses} |\n", field("name"), field("description"));
+    }
+    pages::hold("docs/architecture.md", "tests/architecture.rs", &table);
 }

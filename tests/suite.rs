@@ -15,6 +15,10 @@
 mod bench;
 #[path = "common/dds.rs"]
 mod dds;
+#[path = "common/operations.rs"]
+mod operations;
+#[path = "common/pages.rs"]
+mod pages;
 #[path = "common/random_program.rs"]
 mod random_program;
 #[path = "common/random_scene.rs"]

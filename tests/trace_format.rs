@@ -1,7 +1,8 @@
-//! `docs/trace-format.md` and the traces say the same: fields, names and operations, in both directions; and what the page says
-//! of the operations is enough to recompute a trace under any policy.
+//! The vocabulary, which `docs/trace-format.md` shows, and the traces have the same fields, names and operations, in both directions; and what
+//! it says of the operations is enough to recompute a trace under any policy.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
+use crate::pages;
 use crate::random_scene;
 use crate::recompute;
 use crate::scene_files;
@@ -12,6 +13,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{POLICIES, Policies};
 use ninebit_report::trace_json;
+use ninebit_report::vocabulary;
 use ninebit_scene as scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -24,7 +26,7 @@ const SCENES: usize = 1000;
 
 type Words = BTreeSet<String>;
 
-/// What the page says.
+/// What the page says: its text, and the vocabulary that its tables show.
 struct Page {
     text: String,
     document: Words,
@@ -46,22 +48,16 @@ fn quoted(cell: &str) -> Vec<String> {
 impl Page {
     fn read() -> Page {
         let text = std::fs::read_to_string("docs/trace-format.md").unwrap();
-        // Rows of the tables by the heading above them: the words in backticks of their first two cells.
-        let mut rows: BTreeMap<&str, Vec<[Vec<String>; 2]>> = BTreeMap::new();
-        let (mut heading, mut chapter) = ("", "");
-        for line in text.lines() {
-            if let Some(title) = line.strip_prefix("## ") {
-                (heading, chapter) = (title, title);
-            } else if let Some(title) = line.strip_prefix("### ") {
-                heading = if chapter == "Operations" { chapter } else { title };
-            } else if line.starts_with("| `") {
-                let cells: Vec<&str> = line.split('|').collect();
-                rows.entry(heading).or_default().push([quoted(cells[1]), quoted(cells[2])]);
-            }
-        }
-        let first = |heading: &str| -> Words { rows[heading].iter().flat_map(|row| row[0].clone()).collect() };
-        let (parts, names): (Vec<_>, Vec<_>) =
-            rows["Names"].iter().cloned().partition(|[first, _]| first[0].starts_with('{'));
+        // The words in backticks of the first two cells of each row.
+        let rows = |name: &str| -> Vec<[Vec<String>; 2]> {
+            let tables = vocabulary::tables().into_iter().filter(|table| table.name.starts_with(name));
+            let rows: Vec<_> =
+                tables.flat_map(|table| table.rows).map(|row| [quoted(row[0]), quoted(row[1])]).collect();
+            assert!(!rows.is_empty(), "{name}");
+            rows
+        };
+        let first = |name: &str| -> Words { rows(name).into_iter().flat_map(|[first, _]| first).collect() };
+        let (parts, names) = (rows("Parts of names"), rows("Names"));
         Page {
             document: first("The document"),
             fragment: first("A fragment"),
@@ -194,6 +190,18 @@ fn files_under(folder: &Path, files: &mut Vec<PathBuf>) {
 
 fn plan_of(path: &Path) -> Plan {
     scene::load(path, &Limits::default()).unwrap_or_else(|error| panic!("{}", error.render(false))).plan
+}
+
+#[test]
+fn the_page_shows_the_vocabulary() {
+    for table in vocabulary::tables() {
+        let line = |cells: &[&str]| format!("| {} |\n", cells.join(" | "));
+        let made: String = [line(&table.columns), format!("|{}\n", "---|".repeat(table.columns.len()))]
+            .into_iter()
+            .chain(table.rows.iter().map(|row| line(row)))
+            .collect();
+        pages::hold("docs/trace-format.md", &format!("tests/trace_format.rs ({})", table.name), &made);
+    }
 }
 
 #[test]

@@ -1,7 +1,9 @@
-//! `docs/operations.md` names every operation of every unit, and every operation of up to 2^32 inputs has its digest tree; what the page takes
-//! apart may be taken apart.
+//! The table of operations has every operation of every unit, and every operation of up to 2^32 inputs has its digest tree; what the table takes apart
+//! may be taken apart. `docs/operations.md` shows the table.
 #![allow(clippy::unwrap_used, missing_docs, reason = "a test fails by panicking")]
 
+use crate::operations::OPERATIONS;
+use crate::pages;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -14,7 +16,7 @@ use ninebit_vectors::tree::Tree;
 use ninebit_vectors::unit::{Conditions, Unit};
 use ninebit_vectors::units;
 
-/// A row of the table.
+/// An operation of a unit.
 struct Row {
     unit: String,
     operation: String,
@@ -36,22 +38,30 @@ fn trees() -> BTreeMap<String, Sweep> {
     named.collect()
 }
 
-/// The rows of the table, `FOLDER/*` as the trees of that folder.
+/// The operations with the names of their trees.
 fn table(trees: &BTreeMap<String, Sweep>) -> Vec<Row> {
-    let text = std::fs::read_to_string("docs/operations.md").unwrap();
-    let rows = text.lines().filter(|line| line.starts_with("| `"));
-    let row = |line: &str| {
-        let cells: Vec<&str> = line.trim_matches('|').split('|').map(str::trim).collect();
-        let [unit, operation, bits, named] = cells[..] else { panic!("{line}") };
-        let names = named.split(", ").filter(|name| *name != "none").map(|name| name.trim_matches('`'));
-        let trees = names.flat_map(|name| match name.strip_suffix('*') {
-            Some(folder) => trees.keys().filter(|tree| tree.starts_with(folder)).cloned().collect(),
-            None => vec![name.to_owned()],
-        });
-        let [unit, operation] = [unit.trim_matches('`'), operation].map(str::to_owned);
-        Row { unit, operation, bits: bits.parse().unwrap(), trees: trees.collect() }
+    let named = |name: &&str| match name.strip_suffix('*') {
+        Some(folder) => trees.keys().filter(|tree| tree.starts_with(folder)).cloned().collect(),
+        None => vec![(*name).to_owned()],
     };
-    rows.map(row).collect()
+    let row = |(unit, operation, bits, own): &(&str, &str, u32, &[&str])| Row {
+        unit: (*unit).to_owned(),
+        operation: (*operation).to_owned(),
+        bits: *bits,
+        trees: own.iter().flat_map(named).collect(),
+    };
+    OPERATIONS.iter().map(row).collect()
+}
+
+#[test]
+fn the_page_has_the_table() {
+    let mut table = "| unit | operation | bits | trees |\n|---|---|---:|---|\n".to_owned();
+    for (unit, operation, bits, trees) in OPERATIONS {
+        let named: Vec<String> = trees.iter().map(|tree| format!("`{tree}`")).collect();
+        let named = if named.is_empty() { "none".to_owned() } else { named.join(", ") };
+        table += &format!("| `{unit}` | {operation} | {bits} | {named} |\n");
+    }
+    pages::hold("docs/operations.md", "tests/vectors_operations.rs", &table);
 }
 
 /// How many bits the inputs of these columns take, rounded up, configuration not among them.
@@ -81,10 +91,10 @@ fn every_operation_of_up_to_32_bits_has_its_tree() {
         assert!(most.max().is_none_or(|most| most == *said), "{unit}: {operation}");
     }
     let unnamed: Vec<&String> = trees.keys().filter(|name| !named.contains(name)).collect();
-    assert!(unnamed.is_empty(), "not in docs/operations.md: {unnamed:?}");
+    assert!(unnamed.is_empty(), "no operation has {unnamed:?}");
     for unit in units::all() {
         let own: Vec<&Row> = rows.iter().filter(|row| row.unit == unit.name()).collect();
-        assert!(!own.is_empty(), "docs/operations.md lacks {}", unit.name());
+        assert!(!own.is_empty(), "{} has no operation", unit.name());
         let whole = bits(&unit.inputs());
         let above = own.iter().filter(|row| row.trees.is_empty());
         let swept: Vec<&Sweep> = own.iter().flat_map(|row| &row.trees).map(|name| &trees[name]).collect();

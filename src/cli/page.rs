@@ -79,12 +79,13 @@ pub(crate) fn rules() -> Value {
     for section in NUMERICS.split("\n### ").skip(1) {
         let mut lines = section.lines();
         let Some((id, title)) = lines.next().and_then(|heading| heading.split_once(' ')) else { continue };
-        let said: Vec<[&str; 2]> = lines
+        let formula = section.split("\n```text\n").nth(1).and_then(|rest| rest.split("```").next()).map(str::trim_end);
+        let said = lines
             .take_while(|line| !line.starts_with("## "))
             .filter_map(|line| line.strip_prefix("- ")?.split_once(": "))
             .filter(|(term, _)| !["Code", "Pinned by", "Vectors"].contains(term))
-            .map(|(term, text)| [term, text])
-            .collect();
+            .map(|(term, text)| [term, text]);
+        let said: Vec<[&str; 2]> = formula.map(|text| ["Formula", text]).into_iter().chain(said).collect();
         let Some([_, grade]) = said.iter().find(|[term, _]| *term == "Grade") else { continue };
         let grade = grade.split(|c: char| !c.is_ascii_uppercase()).next().unwrap_or_default();
         rules.insert(id.to_owned(), json!({ "title": title, "grade": grade, "lines": said }));
@@ -110,6 +111,10 @@ mod tests {
             assert!(["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"].contains(&grade), "{id}: {grade}");
         }
         assert!(rules["CMB-3"]["lines"].as_array().is_some_and(|lines| lines.len() > 2));
+        assert_eq!(
+            rules["FIN-4"]["lines"][0],
+            json!(["Formula", "E*F = rnd255(E F) in R, G and B\nalpha = G, identity or invert"])
+        );
     }
 
     #[test]

@@ -23,6 +23,7 @@ mod render;
 mod source;
 pub mod truth;
 pub mod vector;
+pub mod ways_out;
 mod wording;
 mod written;
 

@@ -9,11 +9,16 @@
 
 mod calls;
 mod direct3d;
+#[path = "../common/pages.rs"]
+mod markers;
 mod opengl;
+mod pages;
 mod pasted;
 mod pixel_shader;
 mod run;
 mod scenes;
+#[path = "../common/settings.rs"]
+mod settings;
 
 use ninebit::random::Random;
 

@@ -1,6 +1,7 @@
 //! The handbook against the sources: ids, grades, counts, policies, files, tests and vectors.
 
-use crate::handbook::{ENTRIES, Entry, built, declares, files, id_literals, ids, read, root};
+use crate::handbook::{ENTRIES, Entry, PAGE, built, declares, files, id_literals, ids, read, root};
+use crate::pages;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Named, POLICIES, Profile, Scene};
 use ninebit::trace::Rule;
@@ -8,7 +9,8 @@ use ninebit_report::compare::bound;
 use std::collections::{BTreeMap, BTreeSet};
 
 const GRADES: [&str; 4] = ["SILICON", "DOCUMENT", "INFERRED", "CHOSEN"];
-const FIELDS: [&str; 6] = ["Grade", "Formula", "Range", "Source", "Example", "Error"];
+/// The fields of a built rule; *Range* and *Error* are left out where there is nothing to say.
+const FIELDS: [&str; 4] = ["Grade", "Formula", "Source", "Example"];
 
 /// Tests that hold ids of rules that do not exist.
 const INVENTED: [&str; 2] = ["tests/cli.rs", "tests/rules/handbook.rs"];
@@ -85,11 +87,9 @@ fn code_of_built_rules_exists_and_names_them() {
 }
 
 #[test]
-fn built_rules_are_pinned() {
+fn pins_exist() {
     for entry in built() {
-        let pinned = entry.references("Pinned by");
-        assert!(!pinned.is_empty(), "nothing pins {}", entry.id);
-        for (file, test) in pinned {
+        for (file, test) in entry.references("Pinned by") {
             let source = read(&file);
             if let Some(test) = &test {
                 assert!(source.contains(&format!("fn {test}(")), "{}: {file} has no test {test}", entry.id);
@@ -98,26 +98,49 @@ fn built_rules_are_pinned() {
     }
 }
 
-/// Exactly one test opens the example of a rule, and the rule says where that is.
+/// The file of `tests/rules` whose test opens the example of a rule: exactly one does.
+fn computed(entry: &Entry, examples: &[(String, String)]) -> String {
+    let opens = |source: &str| {
+        let literals = id_literals(source);
+        literals.iter().filter(|(before, id)| *id == entry.id && before.trim_end().ends_with("example(")).count()
+    };
+    let computed: Vec<&str> =
+        examples.iter().flat_map(|(file, source)| std::iter::repeat_n(file.as_str(), opens(source))).collect();
+    let [file] = computed[..] else { panic!("{}: its example is computed in {computed:?}", entry.id) };
+    file.to_owned()
+}
+
+/// The names of files, without their folder and ending, each with its text.
+fn named(folder: &str, extension: &str) -> Vec<(String, String)> {
+    let name = |file: &std::path::Path| file.file_stem().unwrap().to_str().unwrap().to_owned();
+    files(folder, extension).into_iter().map(|file| (name(&file), read(&file))).collect()
+}
+
+/// The index: what tests of the whole hold of each rule.
 #[test]
-fn examples_of_built_rules_are_computed() {
-    let examples: Vec<(String, String)> = files("tests/rules", "rs")
-        .into_iter()
-        .map(|file| (format!("tests/rules/{}", file.file_name().unwrap().to_str().unwrap()), read(&file)))
-        .collect();
+fn the_index_is_right() {
+    let (examples, vectors, scenes) = (named("tests/rules", "rs"), vectors(), captured());
+    let oracle: BTreeSet<String> = named("tests/oracle", "rs").iter().flat_map(|(_, source)| ids(source)).collect();
+    let mut table =
+        "| rule | grade | example | oracle | measured rows | captured scenes |\n|---|---|---|---|---|---|\n".to_owned();
     for entry in built() {
-        let opens = |source: &str| {
-            let literals = id_literals(source);
-            literals.iter().filter(|(before, id)| *id == entry.id && before.trim_end().ends_with("example(")).count()
+        let quoted = |names: Option<&BTreeSet<String>>| {
+            let names = names.into_iter().flatten().map(|name| format!("`{name}`"));
+            names.collect::<Vec<_>>().join(", ")
         };
-        let computed: Vec<&str> =
-            examples.iter().flat_map(|(file, source)| std::iter::repeat_n(file.as_str(), opens(source))).collect();
-        let pinned = entry.references("Pinned by");
-        let named: Vec<&str> =
-            pinned.iter().map(|(file, _)| file.as_str()).filter(|file| file.starts_with("tests/rules/")).collect();
-        assert_eq!(computed.len(), 1, "{}: its example is computed in {computed:?}", entry.id);
-        assert_eq!(named, computed, "{}: its entry names the left, its example is computed in the right", entry.id);
+        let link = format!("{} {}", entry.id, entry.title).to_lowercase().replace(' ', "-");
+        let link: String = link.chars().filter(|c| c.is_alphanumeric() || *c == '-').collect();
+        let cells = [
+            format!("[{}](#{link}) {}", entry.id, entry.title),
+            entry.grades()[0].clone(),
+            computed(entry, &examples),
+            if oracle.contains(&entry.id) { "yes".to_owned() } else { String::new() },
+            quoted(vectors.get(&entry.id)),
+            quoted(scenes.get(&entry.id)),
+        ];
+        table += &format!("| {} |\n", cells.join(" | "));
     }
+    pages::hold(PAGE, "tests/rules (index)", &table);
 }
 
 #[test]
@@ -165,30 +188,27 @@ fn counts() -> BTreeMap<String, [usize; 3]> {
 
 #[test]
 fn the_table_counts_right() {
-    let mut counts = counts();
+    let counts = counts();
     let all = counts.values().fold([0; 3], |a, b| std::array::from_fn(|n| a[n] + b[n]));
-    counts.insert("all".to_string(), all);
-    let text = read("docs/numerics.md");
-    for (grade, [built, not_built, in_part]) in counts {
-        let line = format!("| {grade} | {built} | {not_built} | {in_part} |");
-        assert!(text.contains(&line), "the table of grades should have the line\n{line}");
+    let rows = GRADES.iter().map(|grade| (*grade, counts[*grade])).chain([("all", all)]);
+    let mut table = "| grade | built | not built | built, in part |\n|---|---|---|---|\n".to_owned();
+    for (grade, [built, not_built, in_part]) in rows {
+        table += &format!("| {grade} | {built} | {not_built} | {in_part} |\n");
     }
+    pages::hold(PAGE, "tests/rules (counts)", &table);
 }
 
 /// The README has the handbook's grades, meanings and counts.
 #[test]
 fn the_readme_counts_right() {
-    let (handbook, readme) = (read("docs/numerics.md"), read("README.md"));
-    let table = readme.split_once("<!-- grades -->\n").and_then(|(_, rest)| rest.split_once("<!-- /grades -->"));
-    let (table, _) = table.expect("README.md has a table between <!-- grades --> and <!-- /grades -->");
-    let counts = counts();
-    let mut expected = "| grade | meaning | rules built |\n|---|---|---:|\n".to_string();
+    let (handbook, counts) = (read(PAGE), counts());
+    let mut table = "| grade | meaning | rules built |\n|---|---|---:|\n".to_string();
     for grade in GRADES {
         let row = |line: &str| Some(line.strip_prefix(&format!("| {grade} | "))?.strip_suffix(" |")?.to_string());
-        let meaning = handbook.lines().find_map(row).unwrap_or_else(|| panic!("docs/numerics.md: what is {grade}?"));
-        expected += &format!("| {grade} | {meaning} | {} |\n", counts[grade][0]);
+        let meaning = handbook.lines().find_map(row).unwrap_or_else(|| panic!("{PAGE}: what is {grade}?"));
+        table += &format!("| {grade} | {meaning} | {} |\n", counts[grade][0]);
     }
-    assert!(table == expected, "the grades of README.md should be\n{expected}\nand are\n{table}");
+    pages::hold("README.md", "tests/rules (grades)", &table);
 }
 
 /// Names of the files of vectors that name a rule in their header, by rule.
@@ -207,40 +227,35 @@ fn vectors() -> BTreeMap<String, BTreeSet<String>> {
     vectors
 }
 
-/// A rule names the vectors that pin it, and only those; so do the vectors.
 #[test]
-fn vectors_and_rules_name_each_other() {
-    let vectors = vectors();
-    for (rule, names) in &vectors {
+fn vectors_name_built_rules() {
+    for (rule, names) in &vectors() {
         assert!(find(rule).is_some_and(|e| e.built), "{names:?} pin {rule}, which is not a built rule");
-    }
-    for entry in ENTRIES.iter() {
-        let named: BTreeSet<String> = entry.references("Vectors").into_iter().map(|(name, _)| name).collect();
-        let pinning = vectors.get(&entry.id).cloned().unwrap_or_default();
-        assert_eq!(named, pinning, "{}: its entry names the left, the vectors say the right", entry.id);
-        let drawn = entry.references("Pinned by").iter().any(|(file, _)| file == PROBES);
-        assert_eq!(drawn, !pinning.is_empty(), "{}: whether {PROBES} pins it, and whether there are vectors", entry.id);
     }
 }
 
-/// The table of `vectors/scenes/silicon/README.md` says which rules a scene of a captured frame pins, and the rules say the same.
-#[test]
-fn scenes_of_captures_and_rules_name_each_other() {
-    let mut pinned = BTreeSet::new();
-    for line in read("vectors/scenes/silicon/README.md").lines().filter(|line| line.starts_with("| `")) {
+/// Names of the scenes of captured frames that pin a rule, by rule, as the table beside them says.
+fn captured() -> BTreeMap<String, BTreeSet<String>> {
+    let mut pinned: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    for line in read(format!("{CAPTURED_SCENES}README.md")).lines().filter(|line| line.starts_with("| `")) {
         let scene = line.split('`').nth(1).unwrap();
-        pinned.extend(ids(line).into_iter().map(|rule| (format!("{CAPTURED_SCENES}{scene}.ron"), rule)));
+        for rule in ids(line) {
+            pinned.entry(rule).or_default().insert(scene.to_owned());
+        }
     }
-    let mut named = BTreeSet::new();
-    for entry in ENTRIES.iter() {
-        let files = entry.references("Pinned by").into_iter().map(|(file, _)| file);
-        named.extend(files.filter(|f| f.starts_with(CAPTURED_SCENES)).map(|file| (file, entry.id.clone())));
+    pinned
+}
+
+/// The table of `vectors/scenes/silicon/README.md` has every scene there, and its rules are built.
+#[test]
+fn scenes_of_captures_name_built_rules() {
+    let pinned = captured();
+    for (rule, scenes) in &pinned {
+        assert!(find(rule).is_some_and(|e| e.built), "{scenes:?} pin {rule}, which is not a built rule");
     }
-    assert_eq!(pinned, named, "the table names the left, docs/numerics.md the right");
-    let scenes: BTreeSet<String> = pinned.into_iter().map(|(scene, _)| scene).collect();
-    let stored = files(CAPTURED_SCENES.trim_end_matches('/'), "ron").into_iter();
-    let stored = stored.map(|file| format!("{CAPTURED_SCENES}{}", file.file_name().unwrap().to_str().unwrap()));
-    assert_eq!(scenes, stored.filter(|file| !file.ends_with(".expect.ron")).collect());
+    let scenes: BTreeSet<String> = pinned.into_values().flatten().collect();
+    let stored = named(CAPTURED_SCENES.trim_end_matches('/'), "ron").into_iter().map(|(name, _)| name);
+    assert_eq!(scenes, stored.filter(|name| !name.ends_with(".expect")).collect());
 }
 
 /// The table of `vectors/silicon/README.md` says the same as the files.
@@ -272,16 +287,13 @@ fn the_table_of_vectors_is_right() {
 fn bounds_are_those_of_the_comparison() {
     let scene = Scene { profile: Profile::Nv2a, targets: vec![], textures: vec![], palettes: vec![], draws: vec![] };
     let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
-    let text = read("docs/numerics.md");
+    let mut table = "| rule | lowest | highest |\n|---|---:|---:|\n".to_owned();
     for rule in Rule::ALL {
-        let line = bound::of(*rule, &plan).map(|(low, high)| {
-            // INT-4 allows for the last bits of float64.
-            let number = |n: f64| format!("{n:.3}").replace("-0.000", "0.000");
-            format!("| {} | {} | {} |", rule.name(), number(low), number(high))
-        });
-        match line {
-            Some(line) => assert!(text.contains(&line), "the table of bounds should have the line\n{line}"),
-            None => assert!(!text.contains(&format!("\n| {} |", rule.name())), "{} has no bound", rule.name()),
+        // INT-4 allows for the last bits of float64.
+        let number = |n: f64| format!("{n:.3}").replace("-0.000", "0.000");
+        if let Some((low, high)) = bound::of(*rule, &plan) {
+            table += &format!("| {} | {} | {} |\n", rule.name(), number(low), number(high));
         }
     }
+    pages::hold(PAGE, "tests/rules (bounds)", &table);
 }

@@ -1,7 +1,9 @@
 //! `docs/numerics.md`, read: its entries, its examples, and whatever else is found in files by its shape.
 //!
-//! A rule's entry is a heading `### ID title` followed by a list of fields, one a line: `- Grade: ...`.
+//! A rule's entry is a heading `### ID title`, a block of text with its formula, and a list of fields, one a line: `- Grade: ...`.
 
+use crate::pages;
+use crate::settings::bless;
 use ninebit::state::Policies;
 use std::collections::BTreeSet;
 use std::fmt::Debug;
@@ -13,12 +15,16 @@ const PREFIXES: [&str; 17] = [
     "CYL",
 ];
 
+/// The handbook.
+pub const PAGE: &str = "docs/numerics.md";
+
 /// Every entry of the handbook, in its order.
 pub static ENTRIES: LazyLock<Vec<Entry>> = LazyLock::new(entries);
 
 /// The entry of one rule.
 pub struct Entry {
     pub id: String,
+    pub title: String,
     /// Not in the section of what is known but not built.
     pub built: bool,
     /// Label and text of each field, in order.
@@ -60,15 +66,23 @@ impl Entry {
 
 fn entries() -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::new();
-    let (mut built, mut open) = (true, false);
-    for line in read("docs/numerics.md").lines() {
+    let (mut built, mut open, mut formula) = (true, false, None::<String>);
+    for line in read(PAGE).lines() {
         if let Some(title) = line.strip_prefix("## ") {
             built &= title != "Known, not built yet";
             open = false;
         } else if let Some(title) = line.strip_prefix("### ") {
-            let id = title.split(' ').next().unwrap().to_string();
-            entries.push(Entry { id, built, fields: Vec::new() });
+            let (id, title) = title.split_once(' ').unwrap();
+            entries.push(Entry { id: id.to_string(), title: title.to_string(), built, fields: Vec::new() });
             open = true;
+        } else if line == "```text" && open {
+            formula = Some(String::new());
+        } else if let ("```", Some(text)) = (line, &formula) {
+            entries.last_mut().unwrap().fields.push(("Formula".to_string(), text.clone()));
+            formula = None;
+        } else if let Some(text) = &mut formula {
+            *text += line;
+            text.push('\n');
         } else if let (true, Some((label, text))) = (open, line.strip_prefix("- ").and_then(|l| l.split_once(": "))) {
             entries.last_mut().unwrap().fields.push((label.to_string(), text.to_string()));
         }
@@ -86,12 +100,26 @@ pub struct Example {
     rule: &'static str,
 }
 
-/// Opens the example of `rule`. `text` is the handbook's line, so that whoever changes one of the two sees the other.
+/// Opens the example of `rule`. `text` is the line that the handbook shows; `BLESS=1` writes it there.
 #[track_caller]
 pub fn example(rule: &'static str, text: &str) -> Example {
     let entry = ENTRIES.iter().find(|e| e.id == rule).unwrap_or_else(|| panic!("the handbook has no rule {rule}"));
     let line = entry.field("Example");
-    assert!(line == text, "{rule}: the example of docs/numerics.md is\n{line}\nand the test computes\n{text}");
+    if line != text && bless() {
+        let _writing = pages::WRITING.lock();
+        let page = read(PAGE);
+        let start = page.find(&format!("\n### {rule} ")).unwrap();
+        let at =
+            start + page[start..].find("\n- Example: ").unwrap_or_else(|| panic!("{rule} has no line of its example"));
+        let end = at + 1 + page[at + 1..].find('\n').unwrap();
+        let written = format!("{}\n- Example: {text}{}", &page[..at], &page[end..]);
+        std::fs::write(root().join(PAGE), written).unwrap();
+    } else {
+        assert!(
+            line == text,
+            "{rule}: the example of {PAGE} is\n{line}\nand the test computes\n{text}\nBLESS=1 writes it"
+        );
+    }
     Example { rule }
 }
 

@@ -5,7 +5,11 @@ mod agreement;
 #[path = "../common/build.rs"]
 mod build;
 mod handbook;
+#[path = "../common/pages.rs"]
+mod pages;
 mod pixel;
+#[path = "../common/settings.rs"]
+mod settings;
 
 mod final_combiner;
 mod fog;
