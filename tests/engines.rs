@@ -240,6 +240,47 @@ fn engines_agree_on_textures_that_states_share() {
     }
 }
 
+/// A volume of few layers after one of many: lanes without a pixel must not look for the layers that the draw before left there.
+#[test]
+fn engines_agree_on_a_smaller_volume_after_a_larger_one() {
+    let layers = |count: usize| {
+        let layer = |n: usize| format!("Solid(width: 4, height: 4, color: ({}, {}, 90))", 15 * n, 255 - 10 * n);
+        format!("(source: Layers([{}]))", (0..count).map(layer).collect::<Vec<_>>().join(", "))
+    };
+    let draw = |texture: &str, [x, y]: [u32; 2], [width, height]: [u32; 2], r: f32| {
+        let corner = |x, y, s, t, r| format!("(position: ({x}, {y}), t0: ({s}, {t}, {r}, 1))");
+        let (right, below) = (x + width, y + height);
+        let corners = [
+            corner(x, y, 0, 0, r),
+            corner(right, y, 1, 0, r),
+            corner(right, below, 1, 1, 0.9 * r),
+            corner(x, below, 0, 1, r),
+        ];
+        format!(
+            "(vertices: Window([{}]), topology: Quads, textures: [(texture: \"{texture}\", min_filter: Nearest, address: ClampToEdge, \
+             address_r: ClampToEdge)], program: Combiners(stages: [()], final_combiner: (d: Texture0)))",
+            corners.join(", ")
+        )
+    };
+    for width in [1, 2, 3, 5, 8, 17, 40, 200] {
+        for height in [1, 2, 3, 5, 8, 33] {
+            let text = format!(
+                "(version: 1, profile: Nv2a, targets: [(name: \"frame\", width: 512, height: 64)], \
+                 textures: {{ \"large\": {}, \"small\": {} }}, draws: [{}, {}])",
+                layers(16),
+                layers(2),
+                draw("large", [0, 0], [512, 64], 0.97),
+                draw("small", [7, 3], [width, height], 0.6)
+            );
+            let loaded =
+                scene::parse(&text, Path::new("volumes.ron"), &Limits::default()).unwrap_or_else(|e| panic!("{e}"));
+            if let Err(difference) = compare(&loaded.plan, &[fast(Isa::best(), 1), fast(Isa::Baseline, 1)]) {
+                panic!("{width} x {height}: {difference}");
+            }
+        }
+    }
+}
+
 /// Stages of a texture shader that sample at the same coordinates, some of whose colours nobody reads.
 #[test]
 fn engines_agree_on_stages_with_equal_coordinates() {

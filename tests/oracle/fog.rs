@@ -11,7 +11,8 @@ pub fn factor(setup: &Setup, sample: &Sample, function: Option<FogFunction>) -> 
         // INT-5n: the vertices' factors, interpolated.
         let sum: i128 = (0..3)
             .map(|k| {
-                let (m, e) = split(setup.vertices[k].fog.clamp(0.0, 1.0));
+                let given = setup.vertices[k].fog;
+                let (m, e) = split(if given.is_nan() { 0.0 } else { given.clamp(0.0, 1.0) });
                 shift(setup.p[k] * 4096 * m, e) * sample.e[k]
             })
             .sum();

@@ -80,11 +80,16 @@ pub enum FogStep {
     NotFinite,
 }
 
+/// INT-5n: a factor limited to 0..1. Clipping makes numbers that are none of infinite ones: they count as 0.
+pub(super) fn limited(factor: f32) -> f32 {
+    if factor.is_nan() { 0.0 } else { factor.clamp(0.0, 1.0) }
+}
+
 impl FogPlane {
     /// Sets up the fog of a triangle from what its vertices have: factors, or d' or e of the function.
     pub fn new(triangle: &Triangle, function: Option<FogFunction>, vertices: [f32; 3]) -> FogPlane {
         let Some(function) = function else {
-            return FogPlane::Factor(triangle.factor(vertices.map(|f| f.clamp(0.0, 1.0))));
+            return FogPlane::Factor(triangle.factor(vertices.map(limited)));
         };
         let mode = function.mode;
         let mut finite = vertices.iter().all(|n| n.is_finite());

@@ -48,7 +48,7 @@ pub fn quotient(coordinate: f64, q: f64) -> f64 {
 /// p0 + p1 d + p2 d^2 at the vertices, or what they pass where no coordinate is known.
 pub fn fog(function: &Option<FogFunction>, weights: [f64; 3], passed: [f32; 3], coordinates: [Option<f32>; 3]) -> f64 {
     let Some(function) = function else {
-        return 255.0 * mix(weights, passed.map(|f| f64::from(f).clamp(0.0, 1.0)));
+        return 255.0 * mix(weights, passed.map(|f| f64::from(super::fog::limited(f))));
     };
     let mode = function.mode;
     let vertices: [f64; 3] = std::array::from_fn(|k| fog_of_vertex(function, passed[k], coordinates[k]));
