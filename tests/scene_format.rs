@@ -11,7 +11,7 @@ use ninebit::state::{
     AddressMode, Blend, BlendEquation, BlendFactor, Component, Cull, DepthBuffer, DepthFormat, Filter, FinalRegister,
     InputMapping, Positions, Profile, Register, SurfaceFormat, TextureFormat, TextureImage, Topology, VertexColor,
 };
-use ninebit_scene::{self as scene, Loaded, VertexSpans};
+use ninebit_scene::{self as scene, Loaded, VertexSpans, fields};
 
 fn parse(text: &str) -> Loaded {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -39,6 +39,38 @@ fn every_example_of_the_document_is_accepted_without_warnings() {
         let frames = engine::render(&plan, &RenderOptions::default());
         let words = &frames.surfaces[0].words;
         assert!(words.iter().any(|word| *word != words[0]) || words[0] != 0xff00_0000, "blank: {example}");
+    }
+}
+
+/// The tables of fields are made from the declarations that the reader reads: `<!-- generated: Fog -->`, or several structures with what each is
+/// called in a scene. `BLESS=1` writes them anew.
+#[test]
+fn the_tables_of_fields_are_those_of_the_declarations() {
+    const PAGE: &str = "docs/scene-format.md";
+    let page = fs::read_to_string(PAGE).unwrap();
+    let mut made = String::new();
+    let mut structures = Vec::new();
+    let (mut rest, end) = (page.as_str(), "<!-- /generated -->");
+    while let Some((before, behind)) = rest.split_once("<!-- generated: ") {
+        let (of, behind) = behind.split_once(" -->\n").unwrap();
+        let list: Vec<_> = of.split(", ").map(|one| one.split_once('=').unwrap_or((one, one))).collect();
+        let table = match of {
+            "codes" => fields::codes(),
+            _ => fields::table(&list).unwrap_or_else(|| panic!("no structure {of}")),
+        };
+        structures.extend(list.iter().map(|(_, structure)| *structure).filter(|_| of != "codes"));
+        made += &format!("{before}<!-- generated: {of} -->\n{table}{end}");
+        rest = behind.split_once(end).unwrap().1;
+    }
+    made += rest;
+    structures.sort_unstable();
+    let mut declared = fields::structures();
+    declared.sort_unstable();
+    assert_eq!(structures, declared, "each structure has its place in the page, once");
+    if crate::settings::bless() {
+        fs::write(PAGE, &made).unwrap();
+    } else {
+        snapbox::assert_data_eq!(page, made);
     }
 }
 

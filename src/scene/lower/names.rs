@@ -194,10 +194,6 @@ impl<'a> Names<'a> {
         names
     }
 
-    pub(super) fn color(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
-        self.colors.get(reader, raw, &evaluate_color, 0)
-    }
-
     pub(super) fn matrix(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>) -> Option<Rows> {
         matrix::evaluate(reader, &self.matrices, raw, 0)
     }
@@ -250,6 +246,12 @@ impl<'a> Names<'a> {
     }
 }
 
+impl<'a> Colors<'a> for Names<'a> {
+    fn color(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
+        evaluate_color(reader, &self.colors, raw, 0)
+    }
+}
+
 /// Vectors first: every other value may be made of them.
 fn read_vectors<'a>(
     reader: &mut Reader<'a>,
@@ -258,7 +260,7 @@ fn read_vectors<'a>(
 ) {
     for Entry { name, place, value: raw, shared } in reader.tables("vector", own, shared) {
         let value =
-            value(reader, &raw).and_then(|()| reader.numbers_written(&raw, "a vector", 1, 4, [0.0, 0.0, 0.0, 1.0]));
+            value(reader, &raw).and_then(|()| reader.numbers_written(&raw, "a vector", 1..=4, [0.0, 0.0, 0.0, 1.0]));
         reader.vectors.add(NamedVector { name, place, value, used: false, shared });
     }
 }

@@ -100,7 +100,6 @@ fn texture<'a>(
     sources: &mut Sources<'_, 'a>,
     entry: &Entry<'a, source::Texture<'a>>,
 ) -> Option<(Texture, Option<usize>)> {
-    let opening = reader.range(entry.value.text.get(..1).unwrap_or(entry.value.text));
     let fields = reader.read(&entry.value)?;
     let kind = match &fields.kind {
         Some(raw) => Some(kind(reader, raw)?),
@@ -111,15 +110,12 @@ fn texture<'a>(
         None => None,
     };
     let palette = fields.palette.as_ref().and_then(|raw| palettes.find(reader, raw));
-    let border = match &fields.border {
-        Some(raw) => reader.read(raw)?,
-        None => false,
-    };
+    let border = fields.border(reader);
     let levels = match &fields.levels {
         Some(raw) => texture_levels::wanted(reader, raw)?,
         None => Wanted::Own,
     };
-    let source = reader.required(&fields.source, "source", "texture", opening)?;
+    let source = fields.source(reader)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
     let texture = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
         let depths = Variant::ALL[variant] == Variant::Depth;
