@@ -5,7 +5,7 @@ use std::fmt::Display;
 use std::ops::{Range, RangeInclusive};
 
 use super::assets::Assets;
-use super::diagnostic::Diagnostic;
+use super::diagnostic::{Diagnostic, only_nv2a};
 use super::field::{COUNT, FINITE, KIND, MISSING, RANGE, TWICE, UNKNOWN, Valued, WORD};
 use super::notation::{Fault, FaultKind, Notation};
 use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
@@ -317,6 +317,19 @@ impl<'a> Reader<'a> {
                 .note("the format reserves this so that it can be added without a change of version")
                 .help("leave it out"),
         );
+    }
+
+    /// Refuses a field on NV10 that is written and `needs` NV2A: what it is, and the rule.
+    pub(super) fn needs_nv2a<T>(
+        &mut self,
+        field: &Option<Raw<'a, T>>,
+        needs: bool,
+        code: &'static str,
+        (what, rule): (&str, &'static str),
+    ) {
+        if let Some(raw) = field.as_ref().filter(|_| needs && self.profile == Profile::Nv10) {
+            self.push(only_nv2a(code, self.span(raw), what, rule));
+        }
     }
 
     /// Refuses a field that is reserved.

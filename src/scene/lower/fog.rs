@@ -53,17 +53,12 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
         return fog;
     };
     fog.place = reader.span(raw);
-    if let Some(raw) = &fields.evaluation {
-        let place = reader.span(raw);
-        fog.evaluation = reader.name(raw).unwrap_or(chip);
-        if fog.evaluation == FogEvaluation::PerPixel && reader.profile == Profile::Nv10 {
-            reader.push(target::only_nv2a("NB0324", place, "linear fog of each pixel", "INT-5n"));
-        }
-    }
+    fog.evaluation = fields.evaluation.and_then(|raw| reader.name(&raw)).unwrap_or(chip);
+    let each_pixel = fog.evaluation == FogEvaluation::PerPixel;
+    reader.needs_nv2a(&fields.evaluation, each_pixel, "NB0324", ("linear fog of each pixel", "INT-5n"));
     if let Some(mode) = reader.name(raw) {
-        if mode == FogMode::LinearAbs && reader.profile == Profile::Nv10 {
-            reader.push(target::only_nv2a("NB0324", fog.place.clone(), "fog mode LinearAbs", "INT-5n"));
-        }
+        let absolute = mode == FogMode::LinearAbs;
+        reader.needs_nv2a(&fields.mode, absolute, "NB0324", ("fog mode LinearAbs", "INT-5n"));
         fog.function = function(reader, &fields, mode, fog.evaluation, &fog.place);
     }
     fog

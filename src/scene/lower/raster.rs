@@ -20,12 +20,7 @@ const MOST_CLIPPED: u32 = 65535;
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
     let fields = reader.read(&raw.as_other::<source::Blend<'a>>())?;
     let equation = fields.equation(reader);
-    if let Some(raw) = &fields.equation
-        && equation.is_nv2a_only()
-        && reader.profile == Profile::Nv10
-    {
-        reader.push(target::only_nv2a("NB0315", reader.span(raw), "this blend equation", "ROP-3"));
-    }
+    reader.needs_nv2a(&fields.equation, equation.is_nv2a_only(), "NB0315", ("this blend equation", "ROP-3"));
     Some(Blend { equation, source: fields.source(reader), destination: fields.destination(reader) })
 }
 

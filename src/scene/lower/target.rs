@@ -10,7 +10,7 @@ use super::*;
 pub(super) use ninebit::diagnostic::only_nv2a;
 use ninebit::number::convert;
 use ninebit::raster::depth;
-use ninebit::state::{DepthBuffer, Named, Target, TextureImage, TextureKind};
+use ninebit::state::{DepthBuffer, DepthFormat, Named, Target, TextureImage, TextureKind};
 
 /// The targets, and where they were named.
 pub(super) struct Targets<'s> {
@@ -135,20 +135,10 @@ fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Targe
     let (width, height, format) = (fields.width(reader), fields.height(reader), fields.format(reader));
     let mut target =
         Target { name, width, height, format, clear_color: [0; 4], contents: None, depth: None, clip: None };
-    if let Some(raw) = &fields.format
-        && target.format.is_nv2a_only()
-        && reader.profile == Profile::Nv10
-    {
-        reader.push(only_nv2a("NB0314", reader.span(raw), "this surface format", "ROP-5"));
-    }
+    reader.needs_nv2a(&fields.format, format.is_nv2a_only(), "NB0314", ("this surface format", "ROP-5"));
     let depth = fields.depth.as_ref().and_then(|raw| reader.name(raw));
-    if let (Some(raw), Some(format)) = (&fields.depth, depth)
-        && format.is_float()
-        && reader.profile == Profile::Nv10
-    {
-        let place = reader.span(raw);
-        reader.push(only_nv2a("NB0314", place, "this depth format", "DEP-3"));
-    }
+    let float = depth.is_some_and(DepthFormat::is_float);
+    reader.needs_nv2a(&fields.depth, float, "NB0314", ("this depth format", "DEP-3"));
     let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     target.depth = depth.map(|format| DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
     target.clear_color = color::bytes(clear.color(reader, names));

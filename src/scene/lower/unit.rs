@@ -82,27 +82,14 @@ fn unit<'a>(
         (&fields.address_t, unit.address_t),
         (&fields.address_r, unit.address_r),
     ] {
-        if let Some(raw) = field
-            && mode == AddressMode::ClampToBorder
-            && reader.profile == Profile::Nv10
-        {
-            reader.push(target::only_nv2a("NB0317", reader.span(raw), "a border colour", "TEX-7"));
-        }
+        reader.needs_nv2a(field, mode == AddressMode::ClampToBorder, "NB0317", ("a border colour", "TEX-7"));
     }
     unit.border_color = color::bytes(fields.border_color(reader, names));
-    if let Some(raw) = &fields.border_color
-        && reader.profile == Profile::Nv10
-    {
-        reader.push(target::only_nv2a("NB0317", reader.span(raw), "a border colour", "TEX-7"));
-    }
+    reader.needs_nv2a(&fields.border_color, true, "NB0317", ("a border colour", "TEX-7"));
     filters(reader, &fields, &mut unit);
     unit.signed = fields.signed(reader);
-    if let Some(raw) = &fields.signed
-        && unit.signed != [false; 4]
-        && reader.profile == Profile::Nv10
-    {
-        reader.push(target::only_nv2a("NB0318", reader.span(raw), "a signed texture channel", "TEX-18"));
-    }
+    let signed = unit.signed != [false; 4];
+    reader.needs_nv2a(&fields.signed, signed, "NB0318", ("a signed texture channel", "TEX-18"));
     lod(reader, &fields, &mut unit);
     sampling(reader, &fields, &mut unit);
     unit.color_key = fields.color_key.as_ref().and_then(|raw| color_key(reader, names, raw, &unit));
