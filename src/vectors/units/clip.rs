@@ -21,7 +21,8 @@ impl Unit for Clip {
     known_as!(
         "clip",
         &["CLP-1", "CLP-2"],
-        "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip"
+        "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -83,9 +84,5 @@ impl Unit for Clip {
         };
         let found = windows(&Draw { window_clip, ..Draw::default() }, &target).iter().filter(|w| inside(w)).count();
         results[0] = found as i64;
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -253,12 +253,8 @@ impl Unit for BlueToAlpha {
     known_as!(
         "blue-to-alpha",
         &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"],
-        "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"
+        "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"; on &[Profile::Nv2a]
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["cfg.ab_dot", "cfg.ab_to_alpha", "cfg.cd_to_alpha"].map(Column::flag).to_vec();

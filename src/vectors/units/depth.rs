@@ -53,7 +53,12 @@ fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
 pub(super) struct DepthWord;
 
 impl Unit for DepthWord {
-    known_as!("depth-word", &["DEP-3"], "the word that stands for a depth of mantissa 2^exponent steps, in a format");
+    known_as!(
+        "depth-word",
+        &["DEP-3"],
+        "the word that stands for a depth of mantissa 2^exponent steps, in a format",
+        Geometry
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -107,10 +112,6 @@ impl Unit for DepthWord {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = word(named(inputs[0]), Binary { mantissa: inputs[1], exponent: inputs[2] as i32 }).into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The range of depths.
@@ -121,7 +122,8 @@ impl Unit for DepthRange {
     known_as!(
         "depth-range",
         &["DEP-3", "DEP-4"],
-        "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps"
+        "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -187,10 +189,6 @@ impl Unit for DepthRange {
         let word = kept.map_or(0, |depth| word(format, depth));
         results.copy_from_slice(&[plane.is_some().into(), kept.is_some().into(), word.into()]);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// A pixel's depth, with bias and slope.
@@ -201,7 +199,8 @@ impl Unit for PixelDepth {
     known_as!(
         "pixel-depth",
         &["DEP-1", "DEP-3", "DEP-5"],
-        "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope"
+        "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -247,10 +246,6 @@ impl Unit for PixelDepth {
         let depth = plane.unwrap_or_default().at(triangle.edges(inputs[6], inputs[7]));
         results.copy_from_slice(&[slope.mantissa, slope.exponent.into(), word(format, depth).into()]);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// A pixel of a w buffer.
@@ -261,7 +256,8 @@ impl Unit for WBuffer {
     known_as!(
         "w-buffer",
         &["DEP-3", "DEP-6"],
-        "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)"
+        "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -318,9 +314,5 @@ impl Unit for WBuffer {
         let test = DepthTest { w_buffer: true, offset, ..test() };
         let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, ([0.0; 3], w)));
         results[0] = word(format, plane.unwrap_or_default().at([1, 2, 3].map(|n| inputs[n]))).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

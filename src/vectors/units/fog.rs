@@ -27,7 +27,8 @@ impl Unit for FogFactor {
     known_as!(
         "fog-factor",
         &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
-        "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a"
+        "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -81,10 +82,6 @@ impl Unit for FogFactor {
         };
         results[2] = found.byte.into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The table of the exponential modes.
@@ -92,7 +89,12 @@ impl Unit for FogFactor {
 pub(super) struct FogTable;
 
 impl Unit for FogTable {
-    known_as!("fog-table", &["FOG-4"], "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode");
+    known_as!(
+        "fog-table",
+        &["FOG-4"],
+        "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode",
+        Geometry
+    );
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -108,10 +110,6 @@ impl Unit for FogTable {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = exponential(CURVES[inputs[0] as usize & 3], inputs[1]).into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The words of the light unit: conversion, product and sum.
@@ -122,7 +120,8 @@ impl Unit for LightUnit {
     known_as!(
         "light-unit",
         &["FOG-1", "FOG-3"],
-        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth"
+        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -151,9 +150,5 @@ impl Unit for LightUnit {
         for (result, word) in results.iter_mut().zip(words.into_iter().chain([product, sum])) {
             *result = word.into();
         }
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -29,7 +29,7 @@ fn bytes(values: &[i64]) -> [u8; 4] {
 pub(super) struct AlphaTest;
 
 impl Unit for AlphaTest {
-    known_as!("alpha-test", &["ROP-1"], "whether a fragment of this alpha passes");
+    known_as!("alpha-test", &["ROP-1"], "whether a fragment of this alpha passes", Direct);
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")]
@@ -42,10 +42,6 @@ impl Unit for AlphaTest {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let test = state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 };
         results[0] = blend::alpha_test(&test, inputs[2] as i32, &mut Silent).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }
 
@@ -61,7 +57,8 @@ impl Unit for Blend {
     known_as!(
         "blend",
         &["ROP-2", "ROP-3", "ROP-4"],
-        "a fragment blended with what a surface of eight bits a channel holds"
+        "a fragment blended with what a surface of eight bits a channel holds",
+        Direct
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -114,10 +111,6 @@ impl Unit for Blend {
             })
         })
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
-    }
 }
 
 /// Bytes to a surface's word.
@@ -125,7 +118,7 @@ impl Unit for Blend {
 pub(super) struct SurfaceStore;
 
 impl Unit for SurfaceStore {
-    known_as!("surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps");
+    known_as!("surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps", Direct);
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<SurfaceFormat>("cfg.format")];
@@ -140,10 +133,6 @@ impl Unit for SurfaceStore {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = surface::pack(named(inputs[0]), bytes(&inputs[1..])).into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
-    }
 }
 
 /// A surface's word to the bytes that a blend reads.
@@ -151,7 +140,7 @@ impl Unit for SurfaceStore {
 pub(super) struct SurfaceLoad;
 
 impl Unit for SurfaceLoad {
-    known_as!("surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads");
+    known_as!("surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads", Direct);
 
     fn inputs(&self) -> Vec<Column> {
         vec![Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]
@@ -174,9 +163,5 @@ impl Unit for SurfaceLoad {
         for (result, byte) in results.iter_mut().zip(surface::read(named(inputs[0]), inputs[1] as u32)) {
             *result = byte.into();
         }
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }

@@ -45,7 +45,8 @@ impl Unit for ColorKey {
     known_as!(
         "color-key",
         &["KEY-1"],
-        "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped"
+        "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -101,10 +102,6 @@ impl Unit for ColorKey {
         let [r, g, b, a] = keyed.map(i64::from);
         results.copy_from_slice(&[a << 24 | r << 16 | g << 8 | b, dropped.into()]);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// A depth that is compared.
@@ -124,12 +121,8 @@ impl Unit for ShadowComparison {
     known_as!(
         "shadow-comparison",
         &["DEP-3", "SHD-1"],
-        "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth"
+        "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth", Geometry; on &[Profile::Nv2a]
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
-    }
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -193,10 +186,6 @@ impl Unit for ShadowComparison {
             results[1] = value[0].into();
         });
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The layer of a volume.
@@ -207,12 +196,8 @@ impl Unit for VolumeLayer {
     known_as!(
         "volume-layer",
         &["INT-4", "TEX-7", "TEX-15", "VOL-1"],
-        "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour"
+        "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour", Geometry; on &[Profile::Nv2a]
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
-    }
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -263,10 +248,6 @@ impl Unit for VolumeLayer {
             (results[1], results[2]) = (found.is_some().into(), found.unwrap_or(0) as i64);
         });
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The taps of a footprint.
@@ -280,7 +261,8 @@ impl Unit for AnisotropyTaps {
     known_as!(
         "anisotropy-taps",
         &["TEX-11", "TEX-17"],
-        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel"
+        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -343,10 +325,6 @@ impl Unit for AnisotropyTaps {
             result.copy_from_slice(&[u, v, taps.weights[2 * pair].into()]);
         }
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// Coordinates that go the shorter way around.
@@ -357,7 +335,8 @@ impl Unit for CylindricalWrap {
     known_as!(
         "cylindrical-wrap",
         &["CYL-1"],
-        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign"
+        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -399,9 +378,5 @@ impl Unit for CylindricalWrap {
             // Which zero it is depends on the machine, and nothing depends on it.
             *result = if s == 0.0 { 0 } else { s.to_bits().into() };
         }
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -33,12 +33,8 @@ impl Unit for Remap {
     known_as!(
         "shader-remap",
         &["TSH-1", "TSH-2", "TSH-3"],
-        "a colour's bytes as the three floats that the dot unit reads"
+        "a colour's bytes as the three floats that the dot unit reads"; on NV2A
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         [vec![Column::choice::<DotMapping>("cfg.mapping")], color()].concat()
@@ -63,12 +59,8 @@ impl Unit for DotProduct {
     known_as!(
         "shader-dot-product",
         &["TSH-1", "TSH-2", "TSH-3", "TSH-4"],
-        "the dot product of float coordinates and a remapped colour, in single precision"
+        "the dot product of float coordinates and a remapped colour, in single precision"; on NV2A
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<DotMapping>("cfg.mapping")];
@@ -99,12 +91,8 @@ impl Unit for BumpOffset {
     known_as!(
         "bump-offset",
         &["TSH-7"],
-        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel"
+        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel", Geometry; on NV2A
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 64, 256, 4096])];
@@ -121,10 +109,6 @@ impl Unit for BumpOffset {
         let entries = [1, 2].map(|n| float(inputs[n]));
         results[0] = shader::offset(entries, [inputs[3] as u8, inputs[4] as u8], inputs[0] as u32);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The luminance of a bump map.
@@ -135,12 +119,8 @@ impl Unit for Luminance {
     known_as!(
         "bump-luminance",
         &["TSH-8", "NUM-6"],
-        "a channel times R / 255 scale + offset, in 4096ths and as a byte"
+        "a channel times R / 255 scale + offset, in 4096ths and as a byte", Direct; on NV2A
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["in.channel", "in.red"].map(Column::byte).to_vec();
@@ -156,10 +136,6 @@ impl Unit for Luminance {
         results[0] = shader::luminance(inputs[0] as i32, inputs[1] as u8, [2, 3].map(|n| float(inputs[n])));
         results[1] = shader::luminance_byte(results[0]).into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
-    }
 }
 
 /// A byte, or a result of the dot unit, as a coordinate.
@@ -170,12 +146,8 @@ impl Unit for Dependent {
     known_as!(
         "dependent-coordinate",
         &["TSH-4", "TSH-6"],
-        "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel"
+        "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel", Geometry; on NV2A
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         vec![
@@ -198,9 +170,5 @@ impl Unit for Dependent {
         let size = inputs[0] as u32;
         results[0] = shader::dependent(inputs[1] as u8, size, conditions.policies.dependent_scale);
         results[1] = shader::coordinate(float(inputs[2]), size);
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -14,7 +14,8 @@ impl Unit for StencilTest {
     known_as!(
         "stencil-test",
         &["STN-1"],
-        "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says"
+        "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -71,9 +72,5 @@ impl Unit for StencilTest {
         results[0] = operation as i64;
         results[1] = passes.into();
         results[2] = stencil::written(&test, operation, stored).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -62,7 +62,8 @@ impl Unit for NearestAddress {
     known_as!(
         "nearest-address",
         &["TEX-5", "TEX-7", "TEX-8"],
-        "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour"
+        "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -85,10 +86,6 @@ impl Unit for NearestAddress {
         results[0] = filter::nearest(inputs[3]);
         [results[1], results[2]] = place(inputs, results[0]);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The two texels of the linear filter along one axis.
@@ -99,7 +96,8 @@ impl Unit for LinearAddress {
     known_as!(
         "linear-address",
         &["TEX-6", "TEX-7", "TEX-8"],
-        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths"
+        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -128,10 +126,6 @@ impl Unit for LinearAddress {
         [results[2], results[3]] = place(inputs, index);
         [results[4], results[5]] = place(inputs, index + 1);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// One linear step.
@@ -142,7 +136,8 @@ impl Unit for LinearStep {
     known_as!(
         "linear-step",
         &["TEX-6", "TEX-9"],
-        "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)"
+        "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)",
+        Direct
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -155,10 +150,6 @@ impl Unit for LinearStep {
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = filter::lerp(inputs[0] as i32, inputs[1] as i32, inputs[2] as i32).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }
 
@@ -219,7 +210,8 @@ impl Unit for CubeFace {
     known_as!(
         "cube-face",
         &["TEX-12", "TEX-13"],
-        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel"
+        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -251,10 +243,6 @@ impl Unit for CubeFace {
             *result = shader::face_coordinate(minor, m, inputs[0] as u32, 8);
         }
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// Filter and levels for a lod.
@@ -265,7 +253,8 @@ impl Unit for LevelChoice {
     known_as!(
         "level-choice",
         &["TEX-9", "TEX-10", "TEX-11"],
-        "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight"
+        "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -331,9 +320,5 @@ impl Unit for LevelChoice {
         let numbers =
             [log2_ratio.into(), biased.into(), choice.filter as i64, choice.level as i64, next as i64, weight.into()];
         results.copy_from_slice(&numbers);
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }
