@@ -22,7 +22,8 @@ impl Unit for Clip {
         "clip",
         &["CLP-1", "CLP-2"],
         "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip",
-        Geometry
+        Geometry;
+        gives [Column::result("out.drawn", Kind::Unsigned(1))]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -35,10 +36,6 @@ impl Unit for Clip {
         }
         columns.extend(["in.column", "in.row"].map(|name| Column::unsigned(name, 12, i64::from(SIDE) - 1)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.drawn", Kind::Unsigned(1))]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {

@@ -332,11 +332,8 @@ impl Unit for TwoStages {
     known_as!(
         "two-stages",
         &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"],
-        "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping"
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping";
+        takes [
             Column::choice::<Scale>("cfg.scale"),
             Column::choice::<Bias>("cfg.bias"),
             Column::choice::<InputMapping>("cfg.mapping_spare0"),
@@ -346,7 +343,7 @@ impl Unit for TwoStages {
             Column::register("in.c"),
             Column::register("in.d"),
         ]
-    }
+    );
 
     fn results(&self) -> Vec<Column> {
         let mut columns = vec![Column::result("mid.spare0", Kind::Signed(9))];

@@ -57,20 +57,14 @@ impl Unit for DepthWord {
         "depth-word",
         &["DEP-3"],
         "the word that stands for a depth of mantissa 2^exponent steps, in a format",
-        Geometry
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        Geometry;
+        takes [
             Column::choice::<DepthFormat>("cfg.format"),
             Column::signed("in.mantissa", 32, -(1 << 31), (1 << 31) - 1),
             Column::signed("in.exponent", 9, -180, 110),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.word", Kind::Hex(24))]
-    }
+        ];
+        gives [Column::result("out.word", Kind::Hex(24))]
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // 1.5; 2^-7; 600; the largest of each format, and what is next to it.
@@ -123,7 +117,12 @@ impl Unit for DepthRange {
         "depth-range",
         &["DEP-3", "DEP-4"],
         "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps",
-        Geometry
+        Geometry;
+        gives [
+            Column::result("mid.drawn", Kind::Unsigned(1)),
+            Column::result("out.kept", Kind::Unsigned(1)),
+            Column::result("out.word", Kind::Hex(24)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -135,14 +134,6 @@ impl Unit for DepthRange {
         let names = ["in.lowest", "in.highest", "in.z0", "in.z1", "in.z2", "in.depth"];
         columns.extend(names.map(|name| Column::float(name, true, 26)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.drawn", Kind::Unsigned(1)),
-            Column::result("out.kept", Kind::Unsigned(1)),
-            Column::result("out.word", Kind::Hex(24)),
-        ]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
@@ -200,7 +191,12 @@ impl Unit for PixelDepth {
         "pixel-depth",
         &["DEP-1", "DEP-3", "DEP-5"],
         "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope",
-        Geometry
+        Geometry;
+        gives [
+            Column::result("mid.slope", Kind::Unsigned(60)),
+            Column::result("mid.exponent", Kind::Signed(10)),
+            Column::result("out.word", Kind::Hex(24)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -210,14 +206,6 @@ impl Unit for PixelDepth {
         columns.push(Column::float("in.bias", true, 16));
         columns.push(Column::float("in.factor", true, 8));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.slope", Kind::Unsigned(60)),
-            Column::result("mid.exponent", Kind::Signed(10)),
-            Column::result("out.word", Kind::Hex(24)),
-        ]
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -257,7 +245,8 @@ impl Unit for WBuffer {
         "w-buffer",
         &["DEP-3", "DEP-6"],
         "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)",
-        Geometry
+        Geometry;
+        gives [Column::result("out.word", Kind::Hex(24))]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -266,10 +255,6 @@ impl Unit for WBuffer {
         columns.extend(["in.w0", "in.w1", "in.w2"].map(|name| Column::float(name, false, 25)));
         columns.push(Column::float("in.bias", true, 16));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.word", Kind::Hex(24))]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {

@@ -28,7 +28,12 @@ impl Unit for FogFactor {
         "fog-factor",
         &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
         "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a",
-        Geometry
+        Geometry;
+        gives [
+            Column::result("mid.passed", Kind::Hex(32)),
+            Column::result("mid.steps", Kind::Signed(20)),
+            Column::result("out.byte", Kind::Unsigned(8)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -36,14 +41,6 @@ impl Unit for FogFactor {
         columns.extend(["in.p0", "in.p1", "in.p2"].map(|name| Column::float(name, true, 8)));
         columns.push(Column::word("in.coordinate", 32));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.passed", Kind::Hex(32)),
-            Column::result("mid.steps", Kind::Signed(20)),
-            Column::result("out.byte", Kind::Unsigned(8)),
-        ]
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -93,19 +90,13 @@ impl Unit for FogTable {
         "fog-table",
         &["FOG-4"],
         "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode",
-        Geometry
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        Geometry;
+        takes [
             Column::names("cfg.mode", &["Exp", "Exp2", "ExpAbs", "Exp2Abs"]),
             Column::signed("in.steps", 13, -4096, 4095),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.byte", Kind::Unsigned(8))]
-    }
+        ];
+        gives [Column::result("out.byte", Kind::Unsigned(8))]
+    );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = exponential(CURVES[inputs[0] as usize & 3], inputs[1]).into();

@@ -1,9 +1,12 @@
 //! The units that vectors are made of, in the order of the pipe.
 
-/// A unit's name, the rules that it applies, and what it does, in one line. Behind these may stand how a frame buffer shows every row, and the chips
-/// that have it, if not both.
+/// A unit's name, the rules that it applies, and what it does, in one line. Behind these may stand how a frame buffer shows every row, the chips
+/// that have it, if not both, and the columns that it takes and gives.
 macro_rules! known_as {
-    ($name:expr, $rules:expr, $about:expr $(, $reach:ident)? $(; on $profiles:expr)?) => {
+    (
+        $name:expr, $rules:expr, $about:expr $(, $reach:ident)? $(; on $profiles:expr)?
+        $(; takes [$($input:expr),+ $(,)?])? $(; gives [$($result:expr),+ $(,)?])?
+    ) => {
         fn name(&self) -> &'static str {
             $name
         }
@@ -22,6 +25,14 @@ $(
 )?$(
         fn profiles(&self) -> &'static [Profile] {
             $profiles
+        }
+)?$(
+        fn inputs(&self) -> Vec<Column> {
+            vec![$($input),+]
+        }
+)?$(
+        fn results(&self) -> Vec<Column> {
+            vec![$($result),+]
         }
 )?    };
 }

@@ -17,16 +17,10 @@ impl Unit for VertexColor {
         "vertex-color",
         &["NUM-4"],
         "a float vertex colour c becomes a byte: clamped to 0..1, cut to 14 significant bits, floor(255 c + 1/2)",
-        Direct
+        Direct;
+        takes [Column::float("in.color", true, 2)];
+        gives [Column::result("out.byte", Kind::Unsigned(8))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::float("in.color", true, 2)]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.byte", Kind::Unsigned(8))]
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = convert::vertex_color(float(inputs[0])).into();
@@ -48,16 +42,10 @@ impl Unit for ConstantColor {
         "constant-color",
         &["NUM-0"],
         "a float constant c becomes a byte: floor(255 c + 1/2) after clamping to 0..1, exactly",
-        Direct
+        Direct;
+        takes [Column::float("in.color", true, 2)];
+        gives [Column::result("out.byte", Kind::Unsigned(8))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::float("in.color", true, 2)]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.byte", Kind::Unsigned(8))]
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = convert::constant(float(inputs[0])).into();
@@ -69,15 +57,11 @@ impl Unit for ConstantColor {
 pub(super) struct VertexSnap;
 
 impl Unit for VertexSnap {
-    known_as!("vertex-snap", &["RAS-1"], "a window coordinate becomes 1/16 pixel, truncated toward zero", Geometry);
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::float("in.coordinate", true, 12)]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.snapped", Kind::Signed(17))]
-    }
+    known_as!(
+        "vertex-snap", &["RAS-1"], "a window coordinate becomes 1/16 pixel, truncated toward zero", Geometry;
+        takes [Column::float("in.coordinate", true, 12)];
+        gives [Column::result("out.snapped", Kind::Signed(17))]
+    );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = convert::snap(float(inputs[0]));
@@ -89,15 +73,11 @@ impl Unit for VertexSnap {
 pub(super) struct Depth;
 
 impl Unit for Depth {
-    known_as!("depth", &["DEP-1"], "a depth z becomes floor(z (2^bits - 1)), clamped to the buffer's range", Geometry);
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]), Column::float("in.depth", true, 2)]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.depth", Kind::Unsigned(24))]
-    }
+    known_as!(
+        "depth", &["DEP-1"], "a depth z becomes floor(z (2^bits - 1)), clamped to the buffer's range", Geometry;
+        takes [Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]), Column::float("in.depth", true, 2)];
+        gives [Column::result("out.depth", Kind::Unsigned(24))]
+    );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = convert::depth(float(inputs[1]), inputs[0] as u32);

@@ -255,17 +255,14 @@ impl Unit for ColorInterpolation {
     known_as!(
         "color-interpolation",
         &["INT-2"],
-        "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths"
+        "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths";
+        gives [Column::result("out.color", Kind::Unsigned(8))]
     );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["in.c0", "in.c1", "in.c2"].map(Column::byte).to_vec();
         columns.extend(["in.weight0", "in.weight2"].map(|name| Column::unsigned(name, 9, 256)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.color", Kind::Unsigned(8))]
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {

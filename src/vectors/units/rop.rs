@@ -29,15 +29,11 @@ fn bytes(values: &[i64]) -> [u8; 4] {
 pub(super) struct AlphaTest;
 
 impl Unit for AlphaTest {
-    known_as!("alpha-test", &["ROP-1"], "whether a fragment of this alpha passes", Direct);
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.passes", Kind::Unsigned(1))]
-    }
+    known_as!(
+        "alpha-test", &["ROP-1"], "whether a fragment of this alpha passes", Direct;
+        takes [Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")];
+        gives [Column::result("out.passes", Kind::Unsigned(1))]
+    );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let test = state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 };
@@ -118,16 +114,15 @@ impl Unit for Blend {
 pub(super) struct SurfaceStore;
 
 impl Unit for SurfaceStore {
-    known_as!("surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps", Direct);
+    known_as!(
+        "surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps", Direct;
+        gives [Column::result("out.word", Kind::Hex(32))]
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<SurfaceFormat>("cfg.format")];
         columns.extend(CHANNELS.map(|channel| Column::byte(&format!("in.{channel}"))));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.word", Kind::Hex(32))]
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
@@ -140,11 +135,10 @@ impl Unit for SurfaceStore {
 pub(super) struct SurfaceLoad;
 
 impl Unit for SurfaceLoad {
-    known_as!("surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads", Direct);
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]
-    }
+    known_as!(
+        "surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads", Direct;
+        takes [Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]
+    );
 
     fn results(&self) -> Vec<Column> {
         CHANNELS.map(|channel| Column::result(&format!("out.{channel}"), Kind::Unsigned(8))).to_vec()

@@ -46,21 +46,15 @@ impl Unit for ColorKey {
         "color-key",
         &["KEY-1"],
         "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped",
-        Geometry
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        Geometry;
+        takes [
             Column::choice::<ColorKeyMode>("cfg.mode"),
             formats(|_| true),
             Column::word("in.key", 32),
             Column::word("in.texel", 32),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.texel", Kind::Hex(32)), Column::result("out.dropped", Kind::Unsigned(1))]
-    }
+        ];
+        gives [Column::result("out.texel", Kind::Hex(32)), Column::result("out.dropped", Kind::Unsigned(1))]
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // In each mode and format equal, and different in one bit of each channel.
@@ -121,11 +115,8 @@ impl Unit for ShadowComparison {
     known_as!(
         "shadow-comparison",
         &["DEP-3", "SHD-1"],
-        "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth", Geometry; on &[Profile::Nv2a]
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth", Geometry; on &[Profile::Nv2a];
+        takes [
             Column::choice::<CompareFunction>("cfg.function"),
             Column::choice::<ShadowReference>("cfg.reference"),
             Column::choice::<DepthFormat>("cfg.format"),
@@ -133,12 +124,9 @@ impl Unit for ShadowComparison {
             Column::float("in.q", true, 8),
             Column::word("in.depth", 24),
             Column::word("in.stencil", 8),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("mid.reference", Kind::Hex(24)), Column::result("out.value", Kind::Unsigned(8))]
-    }
+        ];
+        gives [Column::result("mid.reference", Kind::Hex(24)), Column::result("out.value", Kind::Unsigned(8))]
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // The handbook's example and its neighbours, by all functions.
@@ -196,25 +184,19 @@ impl Unit for VolumeLayer {
     known_as!(
         "volume-layer",
         &["INT-4", "TEX-7", "TEX-15", "VOL-1"],
-        "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour", Geometry; on &[Profile::Nv2a]
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour", Geometry; on &[Profile::Nv2a];
+        takes [
             Column::choice::<AddressMode>("cfg.mode"),
             Column::listed("cfg.layers", Kind::Unsigned(10), &[1, 2, 4, 8, 16, 64, 512]),
             Column::float("in.r", true, 7),
             Column::float("in.q", true, 7),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
+        ];
+        gives [
             Column::result("mid.w", Kind::Signed(26)),
             Column::result("out.inside", Kind::Unsigned(1)),
             Column::result("out.layer", Kind::Unsigned(9)),
         ]
-    }
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Layers 0 to 3 of four, their borders, and what lies beyond, in every mode.

@@ -91,7 +91,8 @@ impl Unit for BumpOffset {
     known_as!(
         "bump-offset",
         &["TSH-7"],
-        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel", Geometry; on NV2A
+        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel", Geometry; on NV2A;
+        gives [Column::result("out.offset", Kind::Signed(56))]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -99,10 +100,6 @@ impl Unit for BumpOffset {
         columns.extend(["in.entry_blue", "in.entry_green"].map(|name| Column::float(name, true, 3)));
         columns.extend(["in.blue", "in.green"].map(Column::byte));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.offset", Kind::Signed(56))]
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
@@ -119,17 +116,14 @@ impl Unit for Luminance {
     known_as!(
         "bump-luminance",
         &["TSH-8", "NUM-6"],
-        "a channel times R / 255 scale + offset, in 4096ths and as a byte", Direct; on NV2A
+        "a channel times R / 255 scale + offset, in 4096ths and as a byte", Direct; on NV2A;
+        gives [Column::result("mid.value", Kind::Unsigned(21)), Column::result("out.byte", Kind::Unsigned(8))]
     );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["in.channel", "in.red"].map(Column::byte).to_vec();
         columns.extend(["in.scale", "in.offset"].map(|name| Column::float(name, true, 3)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("mid.value", Kind::Unsigned(21)), Column::result("out.byte", Kind::Unsigned(8))]
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
@@ -146,20 +140,14 @@ impl Unit for Dependent {
     known_as!(
         "dependent-coordinate",
         &["TSH-4", "TSH-6"],
-        "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel", Geometry; on NV2A
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel", Geometry; on NV2A;
+        takes [
             Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 1024, 4096]),
             Column::byte("in.byte"),
             Column::float("in.float", true, 6),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.of_byte", Kind::Unsigned(21)), Column::result("out.of_float", Kind::Signed(28))]
-    }
+        ];
+        gives [Column::result("out.of_byte", Kind::Unsigned(21)), Column::result("out.of_float", Kind::Signed(28))]
+    );
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         // A float whose coordinate fits: all of the domain do.

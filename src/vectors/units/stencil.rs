@@ -15,7 +15,12 @@ impl Unit for StencilTest {
         "stencil-test",
         &["STN-1"],
         "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says",
-        Geometry
+        Geometry;
+        gives [
+            Column::result("mid.operation", Kind::Name(StencilOperation::NAMES)),
+            Column::result("out.passes", Kind::Unsigned(1)),
+            Column::result("out.stored", Kind::Unsigned(8)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -24,14 +29,6 @@ impl Unit for StencilTest {
         columns.extend(["in.reference", "in.mask", "in.write_mask", "in.stored"].map(Column::byte));
         columns.push(Column::flag("in.depth_passes"));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.operation", Kind::Name(StencilOperation::NAMES)),
-            Column::result("out.passes", Kind::Unsigned(1)),
-            Column::result("out.stored", Kind::Unsigned(8)),
-        ]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {

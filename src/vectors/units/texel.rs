@@ -28,11 +28,10 @@ fn is_compressed(format: TextureFormat) -> bool {
 pub(super) struct TexelExpansion;
 
 impl Unit for TexelExpansion {
-    known_as!("texel-expansion", &["TEX-1"], "the word of a texel as the bytes that a unit reads", Direct);
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)]
-    }
+    known_as!(
+        "texel-expansion", &["TEX-1"], "the word of a texel as the bytes that a unit reads", Direct;
+        takes [formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)]
+    );
 
     fn results(&self) -> Vec<Column> {
         channels()

@@ -63,19 +63,16 @@ impl Unit for NearestAddress {
         "nearest-address",
         &["TEX-5", "TEX-7", "TEX-8"],
         "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour",
-        Geometry
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        addressing()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
+        Geometry;
+        gives [
             Column::result("mid.index", Kind::Signed(17)),
             Column::result("out.inside", Kind::Unsigned(1)),
             Column::result("out.texel", Kind::Signed(14)),
         ]
+    );
+
+    fn inputs(&self) -> Vec<Column> {
+        addressing()
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -137,16 +134,10 @@ impl Unit for LinearStep {
         "linear-step",
         &["TEX-6", "TEX-9"],
         "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)",
-        Direct
+        Direct;
+        takes [Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")];
+        gives [Column::result("out.value", Kind::Unsigned(8))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.value", Kind::Unsigned(8))]
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = filter::lerp(inputs[0] as i32, inputs[1] as i32, inputs[2] as i32).into();
@@ -254,7 +245,15 @@ impl Unit for LevelChoice {
         "level-choice",
         &["TEX-9", "TEX-10", "TEX-11"],
         "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight",
-        Geometry
+        Geometry;
+        gives [
+            Column::result("mid.log2_ratio", Kind::Signed(16)),
+            Column::result("mid.lod", Kind::Signed(16)),
+            Column::result("out.filter", Kind::Name(Filter::NAMES)),
+            Column::result("out.level", Kind::Unsigned(4)),
+            Column::result("out.next_level", Kind::Unsigned(4)),
+            Column::result("out.weight", Kind::Unsigned(8)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -270,17 +269,6 @@ impl Unit for LevelChoice {
         let names = ["in.u_right", "in.v_right", "in.u_lower", "in.v_lower"];
         columns.extend(names.map(|name| Column::signed(name, 34, -(1 << 32), 1 << 32)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.log2_ratio", Kind::Signed(16)),
-            Column::result("mid.lod", Kind::Signed(16)),
-            Column::result("out.filter", Kind::Name(Filter::NAMES)),
-            Column::result("out.level", Kind::Unsigned(4)),
-            Column::result("out.next_level", Kind::Unsigned(4)),
-            Column::result("out.weight", Kind::Unsigned(8)),
-        ]
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
