@@ -114,7 +114,7 @@ pub(super) fn fields<'a>(
     Ok(())
 }
 
-/// Declares structures: their fields, how each is read, and what the document says of it. How to read a declaration: [`field`](super::field).
+/// Declares structures: their fields, how each is read, and what the document says of it. How to read a declaration: [`fields`](super::fields).
 macro_rules! source {
     ($($(#[doc = $about:literal])* struct $name:ident $($called:literal)? {
         $($(#[doc = $meaning:literal])* $field:ident : $type:ty $([$($read:tt)*])? $(= $default:expr)?),* $(,)?

@@ -243,38 +243,43 @@ impl Arithmetic {
 named! {
     /// An instruction that loads a texture register, in the order of the table in `docs/pixel-shader.md`.
     pub enum TextureOperation =>
-    /// Registers that are written behind its name.
-    operands: usize {
+    /// Registers that are written behind its name, and whether its own holds a colour afterwards.
+    form: (usize, bool) {
         /// The texture at its coordinates.
-        Tex = "tex" => 1,
+        Tex = "tex" => (1, true),
         /// The coordinates themselves, limited to 0..1.
-        Texcoord = "texcoord" => 1,
+        Texcoord = "texcoord" => (1, true),
         /// Drops the pixel if a coordinate is negative.
-        Texkill = "texkill" => 1,
+        Texkill = "texkill" => (1, false),
         /// The texture where a matrix times the source moves the coordinates.
-        Texbem = "texbem" => 2,
+        Texbem = "texbem" => (2, true),
         /// The same, and scaled by the source's luminance.
-        Texbeml = "texbeml" => 2,
+        Texbeml = "texbeml" => (2, true),
         /// The texture at the source's alpha and red.
-        Texreg2ar = "texreg2ar" => 2,
+        Texreg2ar = "texreg2ar" => (2, true),
         /// The texture at the source's green and blue.
-        Texreg2gb = "texreg2gb" => 2,
+        Texreg2gb = "texreg2gb" => (2, true),
         /// The first row of two.
-        Texm3x2pad = "texm3x2pad" => 2,
+        Texm3x2pad = "texm3x2pad" => (2, false),
         /// The second row, and the texture at the two products.
-        Texm3x2tex = "texm3x2tex" => 2,
+        Texm3x2tex = "texm3x2tex" => (2, true),
         /// The first or second row of three.
-        Texm3x3pad = "texm3x3pad" => 2,
+        Texm3x3pad = "texm3x3pad" => (2, false),
         /// The third row, and the cube map in that direction.
-        Texm3x3tex = "texm3x3tex" => 2,
+        Texm3x3tex = "texm3x3tex" => (2, true),
         /// The third row, and the cube map in the direction reflected, the eye a constant.
-        Texm3x3spec = "texm3x3spec" => 3,
+        Texm3x3spec = "texm3x3spec" => (3, true),
         /// The same, the eye in the three fourth coordinates.
-        Texm3x3vspec = "texm3x3vspec" => 2,
+        Texm3x3vspec = "texm3x3vspec" => (2, true),
     }
 }
 
 impl TextureOperation {
+    /// Registers that are written behind its name.
+    pub fn operands(self) -> usize {
+        self.form().0
+    }
+
     /// Whether it has a source register.
     pub fn has_source(self) -> bool {
         self.operands() > 1
@@ -287,7 +292,7 @@ impl TextureOperation {
 
     /// Whether its register holds a colour afterwards.
     pub fn gives_color(self) -> bool {
-        !matches!(self, TextureOperation::Texkill | TextureOperation::Texm3x2pad | TextureOperation::Texm3x3pad)
+        self.form().1
     }
 }
 

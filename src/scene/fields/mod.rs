@@ -1,7 +1,7 @@
 //! Fields of the structures of a scene: what is declared of each beside its type, and the tables of `docs/scene-format.md`, which are made of that.
 //!
-//! In brackets behind the type of a field stands how it is read, behind `=` its
-//! default:
+//! In brackets behind the type of a field stands how it is read, behind `=` its default. The comments are the document's; a field without one shares the
+//! row of the field before.
 //!
 //! | declared | read by the method of its name |
 //! |---|---|
@@ -9,7 +9,7 @@
 //! | `[required]` | the unread value; that it is missing is an error |
 //! | `[required value]`, `[required numbers ...]` | the value |
 //! | `[in range, "a lod bias"]` | the value within that range; what it is called, for the error |
-//! | `[up to limit, "NB0606", "the width of a target"]` | 1 to a limit of [`Limits`], another error beyond |
+//! | `[up to limit, "NB0606", "the width of a target"]` | 1 to a limit of `ninebit limits`, another error beyond |
 //! | `[numbers range, "a normal"]` | so many numbers in parentheses; of the default those that are not written |
 //! | `[flags "four"]` | so many flags in parentheses |
 //! | `[color]` | a colour; its default is bytes |

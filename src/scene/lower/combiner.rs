@@ -6,7 +6,7 @@ use super::*;
 use crate::raw::Tuple;
 use ninebit::legality::{Help, Notation, stage_count};
 use ninebit::state::{
-    Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, Named, Portion, Register, Scale,
+    Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, Named, Portion, Register,
 };
 use ninebit_program::{Part, Place, Places};
 
@@ -14,14 +14,6 @@ use ninebit_program::{Part, Place, Places};
 pub(super) struct Fields;
 
 impl Notation for Fields {
-    fn register(&self, register: FinalRegister) -> &'static str {
-        register.name()
-    }
-
-    fn scale(&self, scale: Scale) -> &'static str {
-        scale.name()
-    }
-
     fn help(&self, help: Help) -> &'static str {
         match help {
             Help::EmptyStage => "write `[()]` for a stage that changes nothing",
@@ -29,16 +21,13 @@ impl Notation for Fields {
                 "write `constants` beside `stages`, for the whole program; profile Nv2a allows them here"
             }
             Help::OtherRegister => "send one of them to another register, or to `Discard`",
-            Help::BiasScale => "with this bias the scale is One or Two",
-            Help::FogColor => "read Rgb here",
             Help::FogBlue => "write `(Fog, Blue)` for the fog colour's blue",
             Help::SecondaryAlpha => "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of PrimaryColor",
             Help::RgbComponents => "take Rgb (the default here) or Alpha",
             Help::AlphaComponents => "take Alpha (the default here) or Blue",
             Help::FinalComponents => "inputs A to F read Rgb (the default) or Alpha",
             Help::FinalAlphaComponents => "G reads Alpha (the default) or Blue",
-            Help::Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
-            Help::OtherInput => "read Spare0 or another register",
+            Help::BiasScale | Help::FogColor | Help::Writable | Help::OtherInput => help.text(),
         }
     }
 }

@@ -11,7 +11,7 @@ use super::target::Targets;
 use super::texture::Textures;
 use super::*;
 use crate::mesh::Mesh;
-use ninebit::state::{Combiners, Draw, Named, Positions, Rectangle, ShaderOperation, Texture, Topology, Vertices};
+use ninebit::state::{Combiners, Draw, Named, Positions, Rectangle, ShaderOperation, Texture, Topology};
 
 /// A draw and what else is known of it.
 pub(super) struct Drawn {
@@ -151,8 +151,6 @@ fn draw<'a>(
         name: header.name,
         target: target.unwrap_or(0),
         positions: geometry.as_ref().map_or(Positions::Window, |geometry| geometry.positions),
-        vertices: Vertices::new(),
-        indices: Arc::default(),
         topology,
         shade_model: fields.shade_model(reader),
         provoking_vertex: fields.provoking_vertex(reader),
@@ -160,19 +158,12 @@ fn draw<'a>(
         cull: fields.cull(reader),
         front_face: fields.front_face(reader),
         scissor: scissor(reader, targets, target, fields),
-        window_clip: None,
         fog: fog.state(),
         textures: units.bound,
         texture_shader,
         combiners,
         program_origin,
-        vertex_program: None,
-        alpha_test: None,
-        stencil_test: None,
-        depth_test: None,
-        blend: None,
-        blend_constant: [0; 4],
-        color_mask: [true; 4],
+        ..Draw::default()
     };
     raster::operations(reader, names, targets, fields, &mut draw);
     for (unit, read) in reads.iter().enumerate() {

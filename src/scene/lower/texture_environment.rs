@@ -2,14 +2,12 @@
 
 use super::api_program::{ApiProgram, name_at};
 use super::names::Names;
-use super::program::{Asides, once, pasted};
-use super::program_text::ProgramText;
+use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::reader::Name;
 use crate::source::List;
 use ninebit::state::{Named, Scale};
 use ninebit_program::At;
-use ninebit_program::c_source::Style;
 use ninebit_program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
 
 /// Reads the fields in the parentheses.
@@ -21,12 +19,8 @@ pub(super) fn texture_environment<'a>(
 ) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureEnvironment<'a>>::new(text))?;
     let units = fields.units.as_ref().map(|raw| reader.span(raw));
-    once(reader, units, &fields.text, &fields.file, ("a texture environment is", "units"))?;
-    let written = match (&fields.text, &fields.file) {
-        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?.expanded(reader, Style::Calls)?),
-        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?.expanded(reader, Style::Calls)?),
-        (None, None) => None,
-    };
+    let what = ("a texture environment is", "units");
+    let written = calls(reader, names, units, &fields.text, &fields.file, what)?;
     let mut program = match &written {
         None => TextureEnvironment::default(),
         Some(written) => pasted(reader, written, texture_environment::parse(&written.text), asides)?,

@@ -2,13 +2,11 @@
 
 use super::api_program::{ApiProgram, name_at};
 use super::names::Names;
-use super::program::{Asides, once, pasted};
-use super::program_text::ProgramText;
+use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::raw::Tuple;
 use ninebit::state::Named;
 use ninebit_program::At;
-use ninebit_program::c_source::Style;
 use ninebit_program::texture_stages::{
     self, ArgumentSource, CoordinateIndex, Generation, Half, PROJECTED, STAGES, StageArgument, TextureStage,
     TextureStages,
@@ -23,12 +21,7 @@ pub(super) fn texture_stages<'a>(
 ) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
     let stages = fields.stages.as_ref().map(|raw| reader.span(raw));
-    once(reader, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
-    let written = match (&fields.text, &fields.file) {
-        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?.expanded(reader, Style::Calls)?),
-        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?.expanded(reader, Style::Calls)?),
-        (None, None) => None,
-    };
+    let written = calls(reader, names, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
     let mut program = match &written {
         None => TextureStages::default(),
         Some(written) => pasted(reader, written, texture_stages::parse(&written.text), asides)?,

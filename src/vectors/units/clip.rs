@@ -19,10 +19,8 @@ fn rectangle(inputs: &[i64]) -> Rectangle {
 
 impl Unit for Clip {
     known_as!(
-        "clip",
-        &["CLP-1", "CLP-2"],
-        "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip",
-        Geometry;
+        "clip", &["CLP-1", "CLP-2"],
+        "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip", Geometry;
         gives [Column::result("out.drawn", Kind::Unsigned(1))]
     );
 

@@ -35,8 +35,7 @@ pub(super) struct InputMapping;
 
 impl Unit for InputMapping {
     known_as!(
-        "input-mapping",
-        &["CMB-2", "CMB-3", "CMB-4", "CMB-5"],
+        "input-mapping", &["CMB-2", "CMB-3", "CMB-4", "CMB-5"],
         "a register through one of the eight input mappings becomes a factor";
         takes [Column::choice::<state::InputMapping>("cfg.mapping"), Column::register("in.x")];
         gives [Column::result("out.factor", Kind::Halves(11))]
@@ -58,8 +57,7 @@ pub(super) struct Product;
 
 impl Unit for Product {
     known_as!(
-        "product",
-        &["CMB-6", "NUM-2", "NUM-3"],
+        "product", &["CMB-6", "NUM-2", "NUM-3"],
         "AB: the product of two factors, rounded to the nearest 255th, saturated";
         takes [Column::factor("in.a"), Column::factor("in.b")];
         gives [Column::result("mid.product", WIDE), Column::result("out.ab", Kind::Signed(9))]
@@ -133,8 +131,7 @@ pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
     known_as!(
-        "dot-product",
-        &["CMB-8", "NUM-2", "NUM-3"],
+        "dot-product", &["CMB-8", "NUM-2", "NUM-3"],
         "A . B: the sum of three products at full width, rounded once, saturated";
         gives [Column::result("mid.sum", Kind::Signed(20)), Column::result("out.dot", Kind::Signed(9))]
     );
@@ -181,15 +178,9 @@ pub(super) struct ScaleBias;
 
 impl Unit for ScaleBias {
     known_as!(
-        "scale-bias",
-        &["CMB-9", "NUM-2", "NUM-3"],
+        "scale-bias", &["CMB-9", "NUM-2", "NUM-3"],
         "AB through the output of a portion: rounded to the nearest 255th, biased, scaled, saturated";
-        takes [
-            Column::choice::<Scale>("cfg.scale"),
-            Column::choice::<Bias>("cfg.bias"),
-            Column::factor("in.a"),
-            Column::factor("in.b"),
-        ];
+        takes [Column::choice::<Scale>("cfg.scale"), Column::choice::<Bias>("cfg.bias"), Column::factor("in.a"), Column::factor("in.b")];
         gives [
             Column::result("mid.product", WIDE),
             Column::result("mid.rounded", Kind::Signed(10)),

@@ -251,8 +251,7 @@ fn blue_to_alpha<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &
 
 impl Unit for BlueToAlpha {
     known_as!(
-        "blue-to-alpha",
-        &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"],
+        "blue-to-alpha", &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"],
         "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"; on &[Profile::Nv2a]
     );
 
@@ -330,8 +329,7 @@ fn two_stages<L: Lane, O: Observer>(
 
 impl Unit for TwoStages {
     known_as!(
-        "two-stages",
-        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"],
+        "two-stages", &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"],
         "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping";
         takes [
             Column::choice::<Scale>("cfg.scale"),

@@ -54,10 +54,8 @@ pub(super) struct DepthWord;
 
 impl Unit for DepthWord {
     known_as!(
-        "depth-word",
-        &["DEP-3"],
-        "the word that stands for a depth of mantissa 2^exponent steps, in a format",
-        Geometry;
+        "depth-word", &["DEP-3"],
+        "the word that stands for a depth of mantissa 2^exponent steps, in a format", Geometry;
         takes [
             Column::choice::<DepthFormat>("cfg.format"),
             Column::signed("in.mantissa", 32, -(1 << 31), (1 << 31) - 1),
@@ -114,10 +112,8 @@ pub(super) struct DepthRange;
 
 impl Unit for DepthRange {
     known_as!(
-        "depth-range",
-        &["DEP-3", "DEP-4"],
-        "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps",
-        Geometry;
+        "depth-range", &["DEP-3", "DEP-4"],
+        "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps", Geometry;
         gives [
             Column::result("mid.drawn", Kind::Unsigned(1)),
             Column::result("out.kept", Kind::Unsigned(1)),
@@ -188,10 +184,8 @@ pub(super) struct PixelDepth;
 
 impl Unit for PixelDepth {
     known_as!(
-        "pixel-depth",
-        &["DEP-1", "DEP-3", "DEP-5"],
-        "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope",
-        Geometry;
+        "pixel-depth", &["DEP-1", "DEP-3", "DEP-5"],
+        "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope", Geometry;
         gives [
             Column::result("mid.slope", Kind::Unsigned(60)),
             Column::result("mid.exponent", Kind::Signed(10)),
@@ -242,10 +236,8 @@ pub(super) struct WBuffer;
 
 impl Unit for WBuffer {
     known_as!(
-        "w-buffer",
-        &["DEP-3", "DEP-6"],
-        "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)",
-        Geometry;
+        "w-buffer", &["DEP-3", "DEP-6"],
+        "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)", Geometry;
         gives [Column::result("out.word", Kind::Hex(24))]
     );
 

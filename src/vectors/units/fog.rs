@@ -25,10 +25,8 @@ pub(super) struct FogFactor;
 
 impl Unit for FogFactor {
     known_as!(
-        "fog-factor",
-        &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
-        "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a",
-        Geometry;
+        "fog-factor", &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
+        "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a", Geometry;
         gives [
             Column::result("mid.passed", Kind::Hex(32)),
             Column::result("mid.steps", Kind::Signed(20)),
@@ -87,14 +85,9 @@ pub(super) struct FogTable;
 
 impl Unit for FogTable {
     known_as!(
-        "fog-table",
-        &["FOG-4"],
-        "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode",
-        Geometry;
-        takes [
-            Column::names("cfg.mode", &["Exp", "Exp2", "ExpAbs", "Exp2Abs"]),
-            Column::signed("in.steps", 13, -4096, 4095),
-        ];
+        "fog-table", &["FOG-4"],
+        "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode", Geometry;
+        takes [Column::names("cfg.mode", &["Exp", "Exp2", "ExpAbs", "Exp2Abs"]), Column::signed("in.steps", 13, -4096, 4095)];
         gives [Column::result("out.byte", Kind::Unsigned(8))]
     );
 

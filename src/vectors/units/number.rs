@@ -14,10 +14,8 @@ pub(super) struct VertexColor;
 
 impl Unit for VertexColor {
     known_as!(
-        "vertex-color",
-        &["NUM-4"],
-        "a float vertex colour c becomes a byte: clamped to 0..1, cut to 14 significant bits, floor(255 c + 1/2)",
-        Direct;
+        "vertex-color", &["NUM-4"],
+        "a float vertex colour c becomes a byte: clamped to 0..1, cut to 14 significant bits, floor(255 c + 1/2)", Direct;
         takes [Column::float("in.color", true, 2)];
         gives [Column::result("out.byte", Kind::Unsigned(8))]
     );
@@ -39,10 +37,8 @@ pub(super) struct ConstantColor;
 
 impl Unit for ConstantColor {
     known_as!(
-        "constant-color",
-        &["NUM-0"],
-        "a float constant c becomes a byte: floor(255 c + 1/2) after clamping to 0..1, exactly",
-        Direct;
+        "constant-color", &["NUM-0"],
+        "a float constant c becomes a byte: floor(255 c + 1/2) after clamping to 0..1, exactly", Direct;
         takes [Column::float("in.color", true, 2)];
         gives [Column::result("out.byte", Kind::Unsigned(8))]
     );

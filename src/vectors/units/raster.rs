@@ -253,8 +253,7 @@ pub(super) struct ColorInterpolation;
 
 impl Unit for ColorInterpolation {
     known_as!(
-        "color-interpolation",
-        &["INT-2"],
+        "color-interpolation", &["INT-2"],
         "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths";
         gives [Column::result("out.color", Kind::Unsigned(8))]
     );

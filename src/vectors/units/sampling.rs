@@ -43,16 +43,9 @@ pub(super) struct ColorKey;
 
 impl Unit for ColorKey {
     known_as!(
-        "color-key",
-        &["KEY-1"],
-        "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped",
-        Geometry;
-        takes [
-            Column::choice::<ColorKeyMode>("cfg.mode"),
-            formats(|_| true),
-            Column::word("in.key", 32),
-            Column::word("in.texel", 32),
-        ];
+        "color-key", &["KEY-1"],
+        "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped", Geometry;
+        takes [Column::choice::<ColorKeyMode>("cfg.mode"), formats(|_| true), Column::word("in.key", 32), Column::word("in.texel", 32)];
         gives [Column::result("out.texel", Kind::Hex(32)), Column::result("out.dropped", Kind::Unsigned(1))]
     );
 
@@ -113,8 +106,7 @@ fn of_word(format: DepthFormat, depth: u32) -> f32 {
 
 impl Unit for ShadowComparison {
     known_as!(
-        "shadow-comparison",
-        &["DEP-3", "SHD-1"],
+        "shadow-comparison", &["DEP-3", "SHD-1"],
         "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth", Geometry; on &[Profile::Nv2a];
         takes [
             Column::choice::<CompareFunction>("cfg.function"),
@@ -182,8 +174,7 @@ pub(super) struct VolumeLayer;
 
 impl Unit for VolumeLayer {
     known_as!(
-        "volume-layer",
-        &["INT-4", "TEX-7", "TEX-15", "VOL-1"],
+        "volume-layer", &["INT-4", "TEX-7", "TEX-15", "VOL-1"],
         "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour", Geometry; on &[Profile::Nv2a];
         takes [
             Column::choice::<AddressMode>("cfg.mode"),

@@ -31,9 +31,7 @@ pub(super) struct Remap;
 
 impl Unit for Remap {
     known_as!(
-        "shader-remap",
-        &["TSH-1", "TSH-2", "TSH-3"],
-        "a colour's bytes as the three floats that the dot unit reads"; on NV2A
+        "shader-remap", &["TSH-1", "TSH-2", "TSH-3"], "a colour's bytes as the three floats that the dot unit reads"; on NV2A
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -57,8 +55,7 @@ pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
     known_as!(
-        "shader-dot-product",
-        &["TSH-1", "TSH-2", "TSH-3", "TSH-4"],
+        "shader-dot-product", &["TSH-1", "TSH-2", "TSH-3", "TSH-4"],
         "the dot product of float coordinates and a remapped colour, in single precision"; on NV2A
     );
 
@@ -89,8 +86,7 @@ pub(super) struct BumpOffset;
 
 impl Unit for BumpOffset {
     known_as!(
-        "bump-offset",
-        &["TSH-7"],
+        "bump-offset", &["TSH-7"],
         "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel", Geometry; on NV2A;
         gives [Column::result("out.offset", Kind::Signed(56))]
     );
@@ -114,8 +110,7 @@ pub(super) struct Luminance;
 
 impl Unit for Luminance {
     known_as!(
-        "bump-luminance",
-        &["TSH-8", "NUM-6"],
+        "bump-luminance", &["TSH-8", "NUM-6"],
         "a channel times R / 255 scale + offset, in 4096ths and as a byte", Direct; on NV2A;
         gives [Column::result("mid.value", Kind::Unsigned(21)), Column::result("out.byte", Kind::Unsigned(8))]
     );
@@ -138,8 +133,7 @@ pub(super) struct Dependent;
 
 impl Unit for Dependent {
     known_as!(
-        "dependent-coordinate",
-        &["TSH-4", "TSH-6"],
+        "dependent-coordinate", &["TSH-4", "TSH-6"],
         "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel", Geometry; on NV2A;
         takes [
             Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 1024, 4096]),

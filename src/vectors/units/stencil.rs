@@ -12,10 +12,8 @@ pub(super) struct StencilTest;
 
 impl Unit for StencilTest {
     known_as!(
-        "stencil-test",
-        &["STN-1"],
-        "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says",
-        Geometry;
+        "stencil-test", &["STN-1"],
+        "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says", Geometry;
         gives [
             Column::result("mid.operation", Kind::Name(StencilOperation::NAMES)),
             Column::result("out.passes", Kind::Unsigned(1)),

@@ -60,10 +60,8 @@ pub(super) struct NearestAddress;
 
 impl Unit for NearestAddress {
     known_as!(
-        "nearest-address",
-        &["TEX-5", "TEX-7", "TEX-8"],
-        "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour",
-        Geometry;
+        "nearest-address", &["TEX-5", "TEX-7", "TEX-8"],
+        "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour", Geometry;
         gives [
             Column::result("mid.index", Kind::Signed(17)),
             Column::result("out.inside", Kind::Unsigned(1)),
@@ -131,10 +129,8 @@ pub(super) struct LinearStep;
 
 impl Unit for LinearStep {
     known_as!(
-        "linear-step",
-        &["TEX-6", "TEX-9"],
-        "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)",
-        Direct;
+        "linear-step", &["TEX-6", "TEX-9"],
+        "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)", Direct;
         takes [Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")];
         gives [Column::result("out.value", Kind::Unsigned(8))]
     );
@@ -242,10 +238,8 @@ pub(super) struct LevelChoice;
 
 impl Unit for LevelChoice {
     known_as!(
-        "level-choice",
-        &["TEX-9", "TEX-10", "TEX-11"],
-        "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight",
-        Geometry;
+        "level-choice", &["TEX-9", "TEX-10", "TEX-11"],
+        "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight", Geometry;
         gives [
             Column::result("mid.log2_ratio", Kind::Signed(16)),
             Column::result("mid.lod", Kind::Signed(16)),
