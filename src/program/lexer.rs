@@ -46,6 +46,8 @@ impl Language {
     /// Assembler of shaders.
     pub(super) const ASSEMBLER: Language =
         Language { comment: Some(';'), versions: true, greedy_numbers: false, c: false };
+    /// Words of registers.
+    pub(super) const WORDS: Language = Language { comment: Some('#'), versions: false, greedy_numbers: true, c: false };
     /// Calls of an API in C, and lines of effect files.
     pub(super) const C: Language = Language { comment: None, versions: false, greedy_numbers: true, c: true };
 }
