@@ -16,8 +16,7 @@ impl Unit for VertexColor {
     known_as!(
         "vertex-color", &["NUM-4"],
         "a float vertex colour c becomes a byte: clamped to 0..1, cut to 14 significant bits, floor(255 c + 1/2)", Direct;
-        takes [Column::float("in.color", true, 2)];
-        gives [Column::result("out.byte", Kind::Unsigned(8))]
+        takes [Column::float("in.color", true, 2)]; gives [Column::result("out.byte", Kind::Unsigned(8))]
     );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
@@ -39,8 +38,7 @@ impl Unit for ConstantColor {
     known_as!(
         "constant-color", &["NUM-0"],
         "a float constant c becomes a byte: floor(255 c + 1/2) after clamping to 0..1, exactly", Direct;
-        takes [Column::float("in.color", true, 2)];
-        gives [Column::result("out.byte", Kind::Unsigned(8))]
+        takes [Column::float("in.color", true, 2)]; gives [Column::result("out.byte", Kind::Unsigned(8))]
     );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
@@ -55,8 +53,7 @@ pub(super) struct VertexSnap;
 impl Unit for VertexSnap {
     known_as!(
         "vertex-snap", &["RAS-1"], "a window coordinate becomes 1/16 pixel, truncated toward zero", Geometry;
-        takes [Column::float("in.coordinate", true, 12)];
-        gives [Column::result("out.snapped", Kind::Signed(17))]
+        takes [Column::float("in.coordinate", true, 12)]; gives [Column::result("out.snapped", Kind::Signed(17))]
     );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
