@@ -197,23 +197,27 @@ fn errors_say_what_to_do() {
     let bench = bench();
     write(&bench, "small.png", &Rgba { width: 2, height: 2, pixels: vec![[0; 4]; 4] });
     bench.write("not.png", "GIF89a").write("broken.ron", "(version: 1,");
-    bench.run("diff a.png").failed(2, "<B.png>");
-    bench
-        .run("diff a.png small.png")
-        .failed(3, "error[NB0521]: the pictures differ in size: `a.png` is 8 x 4, `small.png` is 2 x 2");
-    bench
-        .run("diff small.png small.png --scene scene.ron")
-        .failed(3, "error[NB0522]: target `frame` of `scene.ron` is 8 x 4");
-    bench.run("diff small.png small.png --scene scene.ron --target attic").failed(2, "its targets: `frame`, `spare`");
-    bench.run("diff a.png none.png").failed(4, "help: check the spelling and the folder");
-    bench.run("diff a.png not.png").failed(3, "error[NB0513]");
-    bench.run("diff a.png b.png --scene none.ron").failed(4, "none.ron");
-    bench.run("diff a.png b.png --scene broken.ron").failed(3, "broken.ron");
-    bench.run("diff a.png b.png --target frame").failed(2, "--scene");
-    bench.run("diff a.png b.png --policy CMB-7=each").failed(2, "`--scene SCENE`");
-    bench.run("diff a.png b.png --scene scene.ron --policy CMB-7=never").failed(2, "once, each");
-    bench.run("diff a.png b.png --regions 1001").failed(2, "not a number from 0 to 1000");
-    bench.run("diff a.png b.png -o -").failed(2, "cannot both go to stdout");
-    bench.run("diff a.png b.png -o a.png").failed(2, "is the input");
-    bench.run("diff a.png b.png -o none/d.png").failed(7, "create its folder first");
+    for (command, status, said) in [
+        ("diff a.png", 2, "<B.png>"),
+        (
+            "diff a.png small.png",
+            3,
+            "error[NB0521]: the pictures differ in size: `a.png` is 8 x 4, `small.png` is 2 x 2",
+        ),
+        ("diff small.png small.png --scene scene.ron", 3, "error[NB0522]: target `frame` of `scene.ron` is 8 x 4"),
+        ("diff small.png small.png --scene scene.ron --target attic", 2, "its targets: `frame`, `spare`"),
+        ("diff a.png none.png", 4, "help: check the spelling and the folder"),
+        ("diff a.png not.png", 3, "error[NB0513]"),
+        ("diff a.png b.png --scene none.ron", 4, "none.ron"),
+        ("diff a.png b.png --scene broken.ron", 3, "broken.ron"),
+        ("diff a.png b.png --target frame", 2, "--scene"),
+        ("diff a.png b.png --policy CMB-7=each", 2, "`--scene SCENE`"),
+        ("diff a.png b.png --scene scene.ron --policy CMB-7=never", 2, "once, each"),
+        ("diff a.png b.png --regions 1001", 2, "not a number from 0 to 1000"),
+        ("diff a.png b.png -o -", 2, "cannot both go to stdout"),
+        ("diff a.png b.png -o a.png", 2, "is the input"),
+        ("diff a.png b.png -o none/d.png", 7, "create its folder first"),
+    ] {
+        bench.run(command).failed(status, said);
+    }
 }

@@ -153,7 +153,6 @@ impl Words {
             let checked = match page {
                 "docs/numerics.md" => &["- Code: ", "- Pinned by: ", "- Policy: "][..],
                 "docs/answers.md" => &["- Vectors: "],
-                "docs/scene-format.md" => &["| "],
                 _ => &[],
             };
             let count = line.split_whitespace().count();

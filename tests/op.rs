@@ -247,36 +247,45 @@ fn broken_tables_say_where() {
     bench.run("op combiner --inputs large.tsv").failed(5, "error[NB0534]");
 }
 
+/// Operations that no scene may say, and what is said of them: of a general stage, and others.
+const ILLEGAL: [(&str, &str); 20] = [
+    ("combiner --a tex0 --scale 4 --bias", "error[NB0307]: bias NegativeHalf does not go with scale Four"),
+    ("combiner --a tex0 --portion alpha --dot", "error[NB0306]: the alpha portion has no dot products"),
+    ("combiner --a tex0 --ab spare0 --sum spare0", "error[NB0310]: two results go to Spare0"),
+    ("combiner --a tex2", "error[NB0302]: register Texture2 does not exist on Nv10"),
+    ("combiner --a tex0 --blue-to-alpha", "error[NB0304]"),
+    ("combiner --a fog.a", "error[NB0308]"),
+    ("combiner --a secondary.a", "error[NB0309]"),
+    ("combiner --a tex0.b", "error[NB0311]: an RGB portion cannot read just blue"),
+    ("combiner --a tex0.rgb --portion alpha", "error[NB0311]: an alpha portion has no RGB to read"),
+    ("combiner --a tex0 --ab fog", "error[NB0312]"),
+    ("final --a tex0:expand", "error[NB0311]: the final combiner has no mapping ExpandNormal"),
+    ("final --e sum", "error[NB0313]"),
+    ("final --g tex0.rgb", "error[NB0311]: this input cannot read Rgb"),
+    ("blend --equation signed_add --source 1 --destination 1", "error[NB0315]"),
+    ("blend --surface b8 --source 1 --destination 1", "error[NB0316]"),
+    ("blend --surface g8b8 --source 1 --destination 1", "error[NB0314]"),
+    ("address --mode wrap --size 6 --index 1", "error[NB0219]"),
+    ("address --mode clamp_to_border --size 8 --index 1", "error[NB0317]"),
+    ("cube --size 100 --direction 1,0,0", "error[NB0219]"),
+    ("cube --size 2048 --direction 1,0,0", "error[NB0321]"),
+];
+
+fn refused(bench: &Bench, illegal: &[(&str, &str)]) {
+    for (arguments, message) in illegal {
+        bench.run(&format!("op {arguments}")).failed(3, message);
+    }
+}
+
 #[test]
 fn what_a_scene_may_not_say_is_refused_in_its_words() {
-    let bench = Bench::new();
-    let refused = |arguments: &str, message: &str| bench.run(&format!("op {arguments}")).failed(3, message);
-    refused("combiner --a tex0 --scale 4 --bias", "error[NB0307]: bias NegativeHalf does not go with scale Four");
-    refused("combiner --a tex0 --portion alpha --dot", "error[NB0306]: the alpha portion has no dot products");
-    refused("combiner --a tex0 --ab spare0 --sum spare0", "error[NB0310]: two results go to Spare0");
-    refused("combiner --a tex2", "error[NB0302]: register Texture2 does not exist on Nv10");
-    refused("combiner --a tex0 --blue-to-alpha", "error[NB0304]");
-    refused("combiner --a fog.a", "error[NB0308]");
-    refused("combiner --a secondary.a", "error[NB0309]");
-    refused("combiner --a tex0.b", "error[NB0311]: an RGB portion cannot read just blue");
-    refused("combiner --a tex0.rgb --portion alpha", "error[NB0311]: an alpha portion has no RGB to read");
-    refused("combiner --a tex0 --ab fog", "error[NB0312]");
+    refused(&Bench::new(), &ILLEGAL[..10]);
 }
 
 #[test]
 fn other_illegal_operations() {
     let bench = Bench::new();
-    let refused = |arguments: &str, message: &str| bench.run(&format!("op {arguments}")).failed(3, message);
-    refused("final --a tex0:expand", "error[NB0311]: the final combiner has no mapping ExpandNormal");
-    refused("final --e sum", "error[NB0313]");
-    refused("final --g tex0.rgb", "error[NB0311]: this input cannot read Rgb");
-    refused("blend --equation signed_add --source 1 --destination 1", "error[NB0315]");
-    refused("blend --surface b8 --source 1 --destination 1", "error[NB0316]");
-    refused("blend --surface g8b8 --source 1 --destination 1", "error[NB0314]");
-    refused("address --mode wrap --size 6 --index 1", "error[NB0219]");
-    refused("address --mode clamp_to_border --size 8 --index 1", "error[NB0317]");
-    refused("cube --size 100 --direction 1,0,0", "error[NB0219]");
-    refused("cube --size 2048 --direction 1,0,0", "error[NB0321]");
+    refused(&bench, &ILLEGAL[10..]);
     let text = bench.run("op combiner --a tex2").stderr;
     assert!(text.contains("`--profile nv2a` chooses the other chip"), "{text}");
 }

@@ -6,16 +6,24 @@ use std::ops::Range;
 
 use super::place::{Part, Place, Places};
 use crate::diagnostic::{Diagnostic, only_nv2a};
-use crate::state::{Bias, Combiners, Component, FinalRegister, GeneralStage, Portion, Profile, Register, Scale};
+use crate::state::{Bias, Combiners, Component, FinalRegister, GeneralStage, Named, Portion, Profile, Register, Scale};
 
 /// What a language calls things.
 pub trait Notation {
     /// A register.
-    fn register(&self, register: FinalRegister) -> &'static str;
+    fn register(&self, register: FinalRegister) -> &'static str {
+        register.name()
+    }
+
     /// An output scale.
-    fn scale(&self, scale: Scale) -> &'static str;
+    fn scale(&self, scale: Scale) -> &'static str {
+        scale.name()
+    }
+
     /// What to do about a finding.
-    fn help(&self, help: Help) -> &'static str;
+    fn help(&self, help: Help) -> &'static str {
+        help.text()
+    }
 }
 
 /// Advice that each language words for itself.
@@ -47,6 +55,29 @@ pub enum Help {
     Writable,
     /// A register of the final combiner where it cannot be read.
     OtherInput,
+}
+
+impl Help {
+    /// In the words of the state.
+    pub fn text(self) -> &'static str {
+        match self {
+            Help::EmptyStage => "one whose portions are `Portion::idle` changes nothing",
+            Help::SharedConstants => {
+                "give all stages and the final combiner the same constants; the profile Nv2a allows own ones"
+            }
+            Help::OtherRegister => "send one of them to another register, or to Zero, which discards it",
+            Help::BiasScale => "with this bias the scale is One or Two",
+            Help::FogColor => "read Rgb here",
+            Help::FogBlue => "read Blue here, the fog colour's",
+            Help::SecondaryAlpha => "the profile Nv2a defines it; or read the alpha of PrimaryColor",
+            Help::RgbComponents => "take Rgb or Alpha",
+            Help::AlphaComponents => "take Alpha or Blue",
+            Help::FinalComponents => "inputs A to F read Rgb or Alpha",
+            Help::FinalAlphaComponents => "G reads Alpha or Blue",
+            Help::Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
+            Help::OtherInput => "read Spare0 or another register",
+        }
+    }
 }
 
 /// What was found, besides errors, about a program.

@@ -11,7 +11,7 @@
 
 use std::ops::Range;
 
-use super::calls::opengl::{self, bare, capability, choose, color, flag, is_vector, numbered, whole};
+use super::calls::opengl::{self, bare, capability, choose, color, flag, is_vector, numbered, table, whole};
 use super::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
 use super::finding::finding;
 use super::{Part, Place, Places};
@@ -92,31 +92,31 @@ struct Parser<'t> {
     places: Vec<(Place, Range<usize>)>,
 }
 
-const REGISTERS: &[(&str, FinalRegister)] = &[
-    ("ZERO", FinalRegister::Zero),
-    ("CONSTANT_COLOR0", FinalRegister::ConstantColor0),
-    ("CONSTANT_COLOR1", FinalRegister::ConstantColor1),
-    ("FOG", FinalRegister::Fog),
-    ("PRIMARY_COLOR", FinalRegister::PrimaryColor),
-    ("SECONDARY_COLOR", FinalRegister::SecondaryColor),
-    ("TEXTURE0", FinalRegister::Texture0),
-    ("TEXTURE1", FinalRegister::Texture1),
-    ("TEXTURE2", FinalRegister::Texture2),
-    ("TEXTURE3", FinalRegister::Texture3),
-    ("SPARE0", FinalRegister::Spare0),
-    ("SPARE1", FinalRegister::Spare1),
-    ("SPARE0_PLUS_SECONDARY_COLOR", FinalRegister::Spare0PlusSecondary),
-    ("E_TIMES_F", FinalRegister::ETimesF),
+const REGISTERS: &[&str] = &[
+    "ZERO",
+    "CONSTANT_COLOR0",
+    "CONSTANT_COLOR1",
+    "FOG",
+    "PRIMARY_COLOR",
+    "SECONDARY_COLOR",
+    "TEXTURE0",
+    "TEXTURE1",
+    "TEXTURE2",
+    "TEXTURE3",
+    "SPARE0",
+    "SPARE1",
+    "SPARE0_PLUS_SECONDARY_COLOR",
+    "E_TIMES_F",
 ];
-const MAPPINGS: &[(&str, InputMapping)] = &[
-    ("UNSIGNED_IDENTITY", InputMapping::UnsignedIdentity),
-    ("UNSIGNED_INVERT", InputMapping::UnsignedInvert),
-    ("EXPAND_NORMAL", InputMapping::ExpandNormal),
-    ("EXPAND_NEGATE", InputMapping::ExpandNegate),
-    ("HALF_BIAS_NORMAL", InputMapping::HalfBiasNormal),
-    ("HALF_BIAS_NEGATE", InputMapping::HalfBiasNegate),
-    ("SIGNED_IDENTITY", InputMapping::SignedIdentity),
-    ("SIGNED_NEGATE", InputMapping::SignedNegate),
+const MAPPINGS: &[&str] = &[
+    "UNSIGNED_IDENTITY",
+    "UNSIGNED_INVERT",
+    "EXPAND_NORMAL",
+    "EXPAND_NEGATE",
+    "HALF_BIAS_NORMAL",
+    "HALF_BIAS_NEGATE",
+    "SIGNED_IDENTITY",
+    "SIGNED_NEGATE",
 ];
 const COMPONENTS: &[(&str, Component)] =
     &[("RGB", Component::Rgb), ("ALPHA", Component::Alpha), ("BLUE", Component::Blue)];
@@ -257,7 +257,7 @@ impl<'t> Parser<'t> {
 
     /// A register of a general stage.
     fn register(&mut self, value: &Value<'t>) -> Option<Register> {
-        let register = choose(value, "register", REGISTERS, &mut self.reader.findings)?;
+        let register = choose(value, "register", &table(REGISTERS), &mut self.reader.findings)?;
         if matches!(register, FinalRegister::Spare0PlusSecondary | FinalRegister::ETimesF) {
             let finding =
                 only_final(value.place.clone(), Words.register(register), "use it in `glFinalCombinerInputNV`");
@@ -277,7 +277,7 @@ impl<'t> Parser<'t> {
     ) -> Option<()> {
         let n = choose(variable, "variable of a general stage", &VARIABLES[..4], &mut self.reader.findings);
         let register = self.register(input);
-        let mapping = choose(mapping, "mapping", MAPPINGS, &mut self.reader.findings);
+        let mapping = choose(mapping, "mapping", &table(MAPPINGS), &mut self.reader.findings);
         let component = choose(usage, "component usage", COMPONENTS, &mut self.reader.findings);
         let (n, register, mapping, component) = (n?, register?, mapping?, component?);
         self.half(portion).inputs[n] = CombinerInput { register, component, mapping };
@@ -332,8 +332,8 @@ impl<'t> Parser<'t> {
     ) -> Option<()> {
         let findings = &mut self.reader.findings;
         let n = choose(variable, "variable of the final combiner", VARIABLES, findings);
-        let register = choose(input, "register", REGISTERS, findings);
-        let mapped = choose(mapping, "mapping", MAPPINGS, findings);
+        let register = choose(input, "register", &table(REGISTERS), findings);
+        let mapped = choose(mapping, "mapping", &table(MAPPINGS), findings);
         let component = choose(usage, "component usage", COMPONENTS, findings);
         let (n, register, mapped, component) = (n?, register?, mapped?, component?);
         let invert = match mapped {
@@ -395,7 +395,7 @@ pub struct Words;
 
 impl Notation for Words {
     fn register(&self, of: FinalRegister) -> &'static str {
-        REGISTERS.iter().find(|(_, known)| *known == of).map_or("", |(name, _)| *name)
+        REGISTERS.get(of as usize).copied().unwrap_or_default()
     }
 
     fn scale(&self, scale: Scale) -> &'static str {

@@ -46,13 +46,25 @@ impl Language {
     /// Assembler of shaders.
     pub(super) const ASSEMBLER: Language =
         Language { comment: Some(';'), versions: true, greedy_numbers: false, c: false };
+    /// Words of registers.
+    pub(super) const WORDS: Language = Language { comment: Some('#'), versions: false, greedy_numbers: true, c: false };
     /// Calls of an API in C, and lines of effect files.
     pub(super) const C: Language = Language { comment: None, versions: false, greedy_numbers: true, c: true };
 }
 
-/// All tokens, and where a comment is opened that does not end. Comments and spaces are left out.
-pub(super) fn tokens(text: &str, language: Language) -> (Vec<Token>, Option<Range<usize>>) {
-    let (mut tokens, mut unclosed) = (Vec::new(), None);
+/// What a text is made of. Comments and spaces are left out.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Tokens {
+    pub(super) tokens: Vec<Token>,
+    /// Where a comment is opened that does not end.
+    pub(super) unclosed: Option<Range<usize>>,
+    /// Comments that begin with the language's own sign, without it.
+    pub(super) comments: Vec<Range<usize>>,
+}
+
+/// Takes a text apart.
+pub(super) fn tokens(text: &str, language: Language) -> Tokens {
+    let (mut tokens, mut unclosed, mut comments) = (Vec::new(), None, Vec::new());
     let (mut at, mut first) = (0, true);
     while let Some(c) = text.get(at..).and_then(|rest| rest.chars().next()) {
         let rest = &text[at..];
@@ -62,7 +74,11 @@ pub(super) fn tokens(text: &str, language: Language) -> (Vec<Token>, Option<Rang
         } else if c.is_whitespace() {
             at += c.len_utf8();
         } else if language.comment == Some(c) || rest.starts_with("//") {
-            at += rest.find(['\n', '\r']).unwrap_or(rest.len());
+            let length = rest.find(['\n', '\r']).unwrap_or(rest.len());
+            if language.comment == Some(c) {
+                comments.push(at + 1..at + length);
+            }
+            at += length;
         } else if let Some(comment) = rest.strip_prefix("/*") {
             let end = comment.find("*/");
             if end.is_none() {
@@ -78,7 +94,7 @@ pub(super) fn tokens(text: &str, language: Language) -> (Vec<Token>, Option<Rang
             at += length;
         }
     }
-    (tokens, unclosed)
+    Tokens { tokens, unclosed, comments }
 }
 
 fn token(rest: &str, c: char, language: Language) -> (Kind, usize) {
@@ -155,7 +171,7 @@ mod tests {
     use super::*;
 
     fn parts(text: &str, language: Language) -> Vec<(String, bool)> {
-        tokens(text, language).0.into_iter().map(|token| (text[token.place].to_owned(), token.first)).collect()
+        tokens(text, language).tokens.into_iter().map(|token| (text[token.place].to_owned(), token.first)).collect()
     }
 
     fn words(text: &str, language: Language) -> Vec<String> {
@@ -211,7 +227,8 @@ mod tests {
     fn a_comment_that_is_not_closed_ends_the_text() {
         for language in [Language::COMBINERS, Language::ASSEMBLER, Language::C] {
             for text in ["/* x", "/*/ x"] {
-                assert_eq!(tokens(text, language), (Vec::new(), Some(0..2)));
+                let Tokens { tokens, unclosed, .. } = tokens(text, language);
+                assert_eq!((tokens, unclosed), (Vec::new(), Some(0..2)));
             }
         }
     }

@@ -17,6 +17,7 @@ pub mod c_source;
 mod calls;
 pub mod cascade;
 pub mod combiner_calls;
+mod cursor;
 mod finding;
 mod lexer;
 pub mod pixel_shader;

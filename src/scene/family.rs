@@ -8,10 +8,10 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::assets::Assets;
+use super::fields as source;
 use super::lower::{DrawSpans, VertexSpans, shared_text};
 use super::raw::Raw;
 use super::reader::Reader;
-use super::source;
 use ninebit::diagnostic::{Diagnostic, File, Source};
 use ninebit::limits::Limits;
 

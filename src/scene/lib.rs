@@ -9,6 +9,8 @@ pub mod dds;
 pub mod diff;
 mod error;
 mod family;
+mod field;
+pub mod fields;
 pub mod generate;
 pub mod image;
 mod literal;

@@ -5,10 +5,10 @@
 
 use std::ops::Range;
 
+use super::fields as source;
 use super::notation::Notation;
 use super::raw::{Entries, Few, Raw, Reserved, Tuple};
 use super::reader::Name;
-use super::source;
 use ninebit::state::Named;
 
 /// Values beyond so many are left out: of a mesh of ten thousand vertices nobody wants a form.

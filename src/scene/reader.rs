@@ -1,12 +1,14 @@
 //! Reads raw values, gathers what is wrong with them, and says it in the words of the format.
 
 use std::collections::HashMap;
-use std::ops::Range;
+use std::fmt::Display;
+use std::ops::{Range, RangeInclusive};
 
 use super::assets::Assets;
-use super::diagnostic::Diagnostic;
+use super::diagnostic::{Diagnostic, only_nv2a};
+use super::field::{COUNT, FINITE, KIND, MISSING, RANGE, TWICE, UNKNOWN, Valued, WORD};
 use super::notation::{Fault, FaultKind, Notation};
-use super::raw::{Entries, Numbers, Raw, Reserved, Tuple};
+use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
 use super::source::{Expected, Mismatch};
 use super::wording::{closest, describe, shorten, twice, words};
 use ninebit::limits::Limits;
@@ -94,9 +96,9 @@ impl<'a> Reader<'a> {
         T::read(&self.notation, text).ok()
     }
 
-    /// The value of an optional field; `default` if it is absent or wrong.
-    pub(super) fn or<T: Expected<'a>>(&mut self, raw: &Option<Raw<'a, T>>, default: T) -> T {
-        raw.as_ref().and_then(|raw| self.read(raw)).unwrap_or(default)
+    /// The first character of a value, which stands for the whole.
+    pub(super) fn opening(&self, text: &str) -> Range<usize> {
+        self.range(text.get(..1).unwrap_or(text))
     }
 
     /// The value of a field that must be there.
@@ -109,7 +111,7 @@ impl<'a> Reader<'a> {
     ) -> Option<Raw<'a, T>> {
         if raw.is_none() {
             self.push(
-                Diagnostic::error("NB0202", place, format!("this {owner} has no `{field}`"))
+                Diagnostic::error(MISSING, place, format!("this {owner} has no `{field}`"))
                     .label(format!("`{field}` is missing"))
                     .help(format!("add `{field}: ...`; it has no default")),
             );
@@ -125,10 +127,6 @@ impl<'a> Reader<'a> {
         }
         self.unknown_variant(raw, &words(T::TYPE), T::NAMES);
         None
-    }
-
-    pub(super) fn name_or<T: Named>(&mut self, raw: &Option<Raw<'a, Name<T>>>, default: T) -> T {
-        raw.as_ref().and_then(|raw| self.name(raw)).unwrap_or(default)
     }
 
     /// Splits `Variant(...)`: the index in `variants`, and the text after the identifier. `None` once the reason has been
@@ -152,11 +150,11 @@ impl<'a> Reader<'a> {
         let (head, rest) = raw.split();
         let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         let diagnostic = if head.is_empty() {
-            Diagnostic::error("NB0205", self.span(raw), format!("expected a {what}, found {}", describe(raw.text)))
+            Diagnostic::error(KIND, self.span(raw), format!("expected a {what}, found {}", describe(raw.text)))
                 .label("wrong kind of value")
                 .help(format!("write one of {list}"))
         } else if known.contains(&head) {
-            Diagnostic::error("NB0205", self.range(rest), format!("`{head}` takes nothing in parentheses"))
+            Diagnostic::error(KIND, self.range(rest), format!("`{head}` takes nothing in parentheses"))
                 .label("not expected here")
                 .help(format!("write just `{head}`"))
         } else {
@@ -164,23 +162,22 @@ impl<'a> Reader<'a> {
                 Some(name) => format!("did you mean `{name}`? All of them: {list}"),
                 None => format!("write one of {list}"),
             };
-            Diagnostic::error("NB0204", self.range(head), format!("there is no {what} `{}`", shorten(head)))
+            Diagnostic::error(WORD, self.range(head), format!("there is no {what} `{}`", shorten(head)))
                 .label("not known")
                 .help(help)
         };
         self.push(diagnostic);
     }
 
-    /// `least..=most` finite numbers in parentheses; those not written keep `defaults`.
+    /// So many finite numbers in parentheses; those not written keep `defaults`.
     pub(super) fn numbers(
         &mut self,
         raw: &Raw<'a, Numbers>,
         what: &str,
-        least: usize,
-        most: usize,
+        counts: RangeInclusive<usize>,
         defaults: [f32; 4],
     ) -> Option<[f32; 4]> {
-        self.numbers_written(raw, what, least, most, defaults).map(|(values, _)| values)
+        self.numbers_written(raw, what, counts, defaults).map(|(values, _)| values)
     }
 
     /// The same, and how many are written.
@@ -188,53 +185,40 @@ impl<'a> Reader<'a> {
         &mut self,
         raw: &Raw<'a, Numbers>,
         what: &str,
-        least: usize,
-        most: usize,
+        counts: RangeInclusive<usize>,
         defaults: [f32; 4],
     ) -> Option<([f32; 4], usize)> {
-        if raw.is_text() {
-            return self.named_vector(raw, what, least, most, defaults);
-        }
-        if let Some(numbers) = self.attempt::<Numbers>(raw.text)
-            && (least..=most).contains(&numbers.count)
-            && numbers.values.iter().all(|value| value.is_finite())
+        let (written, count) = if raw.is_text() {
+            self.named_vector(raw, what, &counts)?
+        } else if let Some(Few { values, count }) = self.attempt::<Numbers>(raw.text)
+            && counts.contains(&count)
+            && values.iter().all(|value| value.is_finite())
         {
-            let mut values = defaults;
-            values[..numbers.count].copy_from_slice(&numbers.values[..numbers.count]);
-            return Some((values, numbers.count));
-        }
-        // Something is wrong: read it again, number by number, to find out which.
-        let parts = self.read(&raw.as_other::<Tuple<'a, f32>>())?.0;
-        if !(least..=most).contains(&parts.len()) {
-            let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
-            self.push(
-                Diagnostic::error(
-                    "NB0211",
-                    self.span(raw),
-                    format!("{what} has {wanted} numbers, not {}", parts.len()),
-                )
-                .label(if parts.len() == 1 {
-                    "1 number".to_owned()
-                } else {
-                    format!("{} numbers", parts.len())
-                }),
-            );
+            (values, count)
+        } else {
+            // Something is wrong: read it again, number by number, to find out which.
+            let parts = self.read(&raw.as_other::<Tuple<'a, f32>>())?.0;
+            if counts.contains(&parts.len()) {
+                parts.iter().for_each(|part| _ = self.finite(part));
+            } else {
+                let (wanted, count) = (wanted(&counts), parts.len());
+                let message = format!("{what} has {wanted} numbers, not {count}");
+                let label = if count == 1 { "1 number".to_owned() } else { format!("{count} numbers") };
+                self.push(Diagnostic::error(COUNT, self.span(raw), message).label(label));
+            }
             return None;
-        }
-        for part in &parts {
-            self.finite(part);
-        }
-        None
+        };
+        let mut values = defaults;
+        values[..count].copy_from_slice(&written[..count]);
+        Some((values, count))
     }
 
-    /// The numbers of a vector that is given by its name.
+    /// The numbers of a vector that is given by its name, and how many they are.
     fn named_vector(
         &mut self,
         raw: &Raw<'a, Numbers>,
         what: &str,
-        least: usize,
-        most: usize,
-        defaults: [f32; 4],
+        counts: &RangeInclusive<usize>,
     ) -> Option<([f32; 4], usize)> {
         let name = self.read(&raw.as_other::<String>())?;
         let place = self.span(raw);
@@ -247,15 +231,13 @@ impl<'a> Reader<'a> {
         };
         vector.used = true;
         let (written, count) = vector.value?;
-        if !(least..=most).contains(&count) {
-            let wanted = if least == most { format!("{most}") } else { format!("{least} to {most}") };
-            let message = format!("{what} has {wanted} numbers, and the vector \"{}\" has {count}", shorten(&name));
-            self.push(Diagnostic::error("NB0211", place, message).label("does not fit here"));
+        if !counts.contains(&count) {
+            let (wanted, name) = (wanted(counts), shorten(&name));
+            let message = format!("{what} has {wanted} numbers, and the vector \"{name}\" has {count}");
+            self.push(Diagnostic::error(COUNT, place, message).label("does not fit here"));
             return None;
         }
-        let mut values = defaults;
-        values[..count].copy_from_slice(&written[..count]);
-        Some((values, count))
+        Some((written, count))
     }
 
     /// A number that is neither infinite nor NaN.
@@ -266,7 +248,7 @@ impl<'a> Reader<'a> {
         }
         let message = if value.is_nan() { "NaN is not a position, colour or size" } else { "this number is infinite" };
         self.push(
-            Diagnostic::error("NB0207", self.span(raw), message)
+            Diagnostic::error(FINITE, self.span(raw), message)
                 .label("not a finite number")
                 .rule("NUM-0")
                 .help("numbers are 32-bit floats: at most about 3.4e38 away from zero"),
@@ -274,24 +256,57 @@ impl<'a> Reader<'a> {
         None
     }
 
-    /// A whole number in `range`.
-    pub(super) fn whole(
+    /// A number in `range`; `said` adds to the finding that it is not.
+    pub(super) fn within<T: Valued<'a, Value = T> + PartialOrd + Display>(
         &mut self,
-        raw: &Raw<'a, u32>,
+        raw: &Raw<'a, T>,
         what: &str,
-        range: std::ops::RangeInclusive<u32>,
-    ) -> Option<u32> {
-        let value = self.read(raw)?;
+        range: RangeInclusive<T>,
+        said: impl FnOnce(Diagnostic) -> Diagnostic,
+    ) -> Option<T> {
+        let value = T::value(self, raw)?;
         if range.contains(&value) {
             return Some(value);
         }
-        let (least, most) = (range.start(), range.end());
+        let finding = Diagnostic::error(RANGE, self.span(raw), format!("{what} cannot be {value}"));
+        let help = format!("write {} to {}", range.start(), range.end());
+        self.push(said(finding.label("out of range").help(help)));
+        None
+    }
+
+    /// A whole number from 1 to a limit; `code` is that of greater ones.
+    pub(super) fn up_to(&mut self, raw: &Raw<'a, u32>, what: &str, limit: u32, code: &'static str) -> Option<u32> {
+        let value = self.read(raw)?;
+        if value <= limit {
+            return self.within(raw, what, 1..=limit, |finding| finding);
+        }
         self.push(
-            Diagnostic::error("NB0206", self.span(raw), format!("{what} cannot be {value}"))
-                .label("out of range")
-                .help(format!("write {least} to {most}")),
+            Diagnostic::error(code, self.span(raw), format!("{what} is {value}; {limit} are allowed"))
+                .label("too large")
+                .help(format!("write 1 to {limit}; `ninebit limits` prints what is allowed")),
         );
         None
+    }
+
+    /// As many flags in parentheses as `defaults` has; `counted` says how many of what, `said` adds to the finding that they are not.
+    pub(super) fn flags<const N: usize>(
+        &mut self,
+        raw: &Raw<'a, Tuple<'a, bool>>,
+        counted: &str,
+        defaults: [bool; N],
+        said: impl FnOnce(Diagnostic) -> Diagnostic,
+    ) -> Option<[bool; N]> {
+        let parts = self.read(raw)?.0;
+        if parts.len() != N {
+            let finding = Diagnostic::error(COUNT, self.span(raw), format!("{counted}, not {}", parts.len()));
+            self.push(said(finding.label(format!("{} here", parts.len()))));
+            return None;
+        }
+        let mut flags = defaults;
+        for (flag, part) in flags.iter_mut().zip(&parts) {
+            *flag = self.read(part).unwrap_or(*flag);
+        }
+        Some(flags)
     }
 
     /// Records that the format reserves something that is not built.
@@ -302,6 +317,19 @@ impl<'a> Reader<'a> {
                 .note("the format reserves this so that it can be added without a change of version")
                 .help("leave it out"),
         );
+    }
+
+    /// Refuses a field on NV10 that is written and `needs` NV2A: what it is, and the rule.
+    pub(super) fn needs_nv2a<T>(
+        &mut self,
+        field: &Option<Raw<'a, T>>,
+        needs: bool,
+        code: &'static str,
+        (what, rule): (&str, &'static str),
+    ) {
+        if let Some(raw) = field.as_ref().filter(|_| needs && self.profile == Profile::Nv10) {
+            self.push(only_nv2a(code, self.span(raw), what, rule));
+        }
     }
 
     /// Refuses a field that is reserved.
@@ -347,20 +375,20 @@ impl<'a> Reader<'a> {
     fn mismatch(&self, text: &'a str, mismatch: &Mismatch<'a>, expected: &str) -> Diagnostic {
         let found = || format!("expected {expected}, found {}", describe(text));
         match mismatch {
-            Mismatch::Kind => Diagnostic::error("NB0205", self.range(text), found()).label("wrong kind of value"),
-            Mismatch::Range => Diagnostic::error("NB0206", self.range(text), found()).label("out of range"),
+            Mismatch::Kind => Diagnostic::error(KIND, self.range(text), found()).label("wrong kind of value"),
+            Mismatch::Range => Diagnostic::error(RANGE, self.range(text), found()).label("out of range"),
             Mismatch::Unknown(field, known) => {
                 let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
                 let help = match closest(field, known.iter().copied()) {
                     Some(name) => format!("did you mean `{name}`? Fields here: {list}"),
                     None => format!("fields here: {list}"),
                 };
-                Diagnostic::error("NB0201", self.range(field), format!("there is no field `{}` here", shorten(field)))
+                Diagnostic::error(UNKNOWN, self.range(field), format!("there is no field `{}` here", shorten(field)))
                     .label("unknown field")
                     .help(help)
             }
             Mismatch::Twice(field) => {
-                Diagnostic::error("NB0203", self.range(field), format!("`{}` is given twice", shorten(field)))
+                Diagnostic::error(TWICE, self.range(field), format!("`{}` is given twice", shorten(field)))
                     .label("again here")
                     .help("keep one of them")
             }
@@ -421,6 +449,12 @@ impl<'a> Reader<'a> {
             _ => finding,
         }
     }
+}
+
+/// "3", or "2 to 4".
+fn wanted(counts: &RangeInclusive<usize>) -> String {
+    let (least, most) = (counts.start(), counts.end());
+    if least == most { format!("{most}") } else { format!("{least} to {most}") }
 }
 
 /// An entry of a table.

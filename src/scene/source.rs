@@ -5,14 +5,7 @@
 
 use super::literal::{Literal, Number};
 use super::notation::{Notation, trim};
-use super::outline::{Described, Form};
-use super::raw::{Entries, Few, Numbers, Raw, Reserved, Tuple};
-use super::reader::Name;
-use crate::truth;
-use ninebit::state;
-use ninebit::vertex::fog::{FogEvaluation, FogSource};
-use ninebit_program::texture_environment;
-use ninebit_program::texture_stages::{Operation, ResultArgument};
+use super::raw::{Entries, Few, Numbers, Raw, Tuple};
 
 /// Why a value is not what is expected.
 pub(super) enum Mismatch<'a> {
@@ -96,7 +89,7 @@ fn few<'a, N: Number>(notation: &Notation<'a>, text: &'a str) -> Result<Few<N>, 
 }
 
 /// The fields of a structure that are written, by their place in `names`. Before the parentheses may stand what it is called here.
-fn fields<'a>(
+pub(super) fn fields<'a>(
     notation: &Notation<'a>,
     text: &'a str,
     called: &str,
@@ -121,15 +114,42 @@ fn fields<'a>(
     Ok(())
 }
 
+/// Declares structures: their fields, how each is read, and what the document says of it. How to read a declaration: [`fields`](super::fields).
 macro_rules! source {
-    ($($(#[$meta:meta])* struct $name:ident { $($field:ident : $type:ty),* $(,)? })+) => { $(
-        $(#[$meta])*
+    ($($(#[doc = $about:literal])* struct $name:ident $($called:literal)? {
+        $($(#[doc = $meaning:literal])* $field:ident : $type:ty $([$($read:tt)*])? $(= $default:expr)?),* $(,)?
+    })+) => {
+        /// The structures and their fields, as the document describes them.
+        pub(crate) const STRUCTURES: &[Structure] = &[$((stringify!($name), $name::described)),+];
+    $(
+        $(#[doc = $about])*
         #[derive(Default)]
-        pub(super) struct $name<'a> { $(pub(super) $field: Option<Raw<'a, $type>>),* }
+        pub(crate) struct $name<'a> {
+            /// Where it is said that a field is missing: the first character.
+            pub(crate) opening: &'a str,
+            /// What is said to lack it.
+            pub(crate) called: &'static str,
+            $(pub(crate) $field: Option<Raw<'a, $type>>),*
+        }
         impl<'a> $name<'a> {
+            $(read_field!($field $type, [$($($read)*)?] $($default)?);)*
+
+            /// The fields, as the document describes them.
+            fn described() -> Vec<Field> {
+                vec![$(described_field!(
+                    Field::new::<$type>(stringify!($field), concat!($($meaning),*)), $type, [$($($read)*)?] $($default)?
+                )),*]
+            }
+
+            /// These fields, and where they are not written those of another.
+            #[allow(dead_code, reason = "asked of a few")]
+            pub(crate) fn or(self, other: Self) -> Self {
+                $name { opening: self.opening, called: self.called, $($field: self.$field.or(other.$field)),* }
+            }
+
             /// The fields that are written, with their texts.
             #[allow(dead_code, reason = "asked of a few")]
-            pub(super) fn written(&self) -> impl Iterator<Item = (&'static str, &'a str)> {
+            pub(crate) fn written(&self) -> impl Iterator<Item = (&'static str, &'a str)> {
                 [$((stringify!($field), self.$field.as_ref().map(|raw| raw.text))),*]
                     .into_iter()
                     .filter_map(|(name, text)| Some((name, text?)))
@@ -147,11 +167,13 @@ macro_rules! source {
                 let mut values = [None; NAMES.len()];
                 fields(notation, text, stringify!($name), NAMES, |index, value| values[index] = Some(value))?;
                 let [$($field),*] = values;
-                Ok($name { $($field: $field.map(Raw::new)),* })
+                let (opening, called) = (text.get(..1).unwrap_or(text), concat!($($called)?));
+                Ok($name { opening, called, $($field: $field.map(Raw::new)),* })
             }
         }
     )+ };
 }
+pub(super) use source;
 
 /// A list of values.
 pub(super) type List<'a, T> = Vec<Raw<'a, T>>;
@@ -201,394 +223,3 @@ pub(super) struct StageArgument;
 pub(super) struct TransformFlags;
 /// A word without further meaning to the types: one of a few.
 pub(super) struct Word;
-
-source! {
-    /// The whole file.
-    struct Scene {
-        version: u32,
-        profile: Name<state::Profile>,
-        names: Names<'a>,
-        targets: List<'a, Target<'a>>,
-        textures: Entries<'a, Texture<'a>>,
-        palettes: Entries<'a, List<'a, String>>,
-        draws: List<'a, Draw<'a>>,
-        truth: Truth<'a>,
-        family: String,
-    }
-    /// What several scenes share, in a file of its own.
-    struct Family {
-        names: Names<'a>,
-        targets: List<'a, Target<'a>>,
-        truth: Truth<'a>,
-    }
-    /// What the picture ought to show.
-    struct Truth {
-        equation: Word,
-        normal: NormalSource,
-        lights: List<'a, TruthLight<'a>>,
-        eye: TruthPlace<'a>,
-        material: TruthMaterial<'a>,
-        hemisphere: TruthHemisphere<'a>,
-        color_map: String,
-        shading_normal: ShadingNormal<'a>,
-    }
-    struct TruthLight { position: Numbers, direction: Numbers, color: Color }
-    struct TruthPlace { position: Numbers, direction: Numbers }
-    struct TruthMaterial {
-        ambient: Color,
-        diffuse: Color,
-        specular: Color,
-        exponent: u32,
-        model: Name<truth::Model>,
-        self_shadowing: bool,
-    }
-    struct TruthHemisphere {
-        axis: Numbers,
-        sky: Color,
-        ground: Color,
-        integral: Name<truth::Integral>,
-        occlusion: HeightFile<'a>,
-    }
-    struct ShadingNormal { register: Name<state::Register>, unit: u32, space: Name<truth::Space> }
-    struct RadialNormals { center: Numbers }
-    struct HemisphereNormals { zero_outside: bool, size: u32, noise: f32, seed: u32 }
-    struct HeightFile { file: String, scale: f32, channel: Word }
-    /// Values that repeat.
-    struct Names {
-        vectors: Entries<'a, Numbers>,
-        colors: Entries<'a, Color>,
-        matrices: Entries<'a, Matrix>,
-        vertices: Entries<'a, VertexList>,
-        meshes: Entries<'a, MeshSource>,
-        programs: Entries<'a, Program>,
-        blends: Entries<'a, BlendSource>,
-    }
-    struct Target {
-        name: String,
-        width: u32,
-        height: u32,
-        format: Name<state::SurfaceFormat>,
-        clear: Clear<'a>,
-        contents: String,
-        depth: Name<state::DepthFormat>,
-        clip: Rectangle<'a>,
-    }
-    struct Clear { color: Color, depth: f32, stencil: u8 }
-    /// A clear among the draws.
-    struct ClearDraw { color: Color, color_mask: Tuple<'a, bool>, depth: f32, stencil: u8, rectangle: Rectangle<'a> }
-    struct StencilTest {
-        function: Name<state::CompareFunction>,
-        reference: u8,
-        mask: u8,
-        write_mask: u8,
-        fail: Name<state::StencilOperation>,
-        depth_fail: Name<state::StencilOperation>,
-        pass: Name<state::StencilOperation>,
-    }
-    struct ColorKey { color: Color, mode: Name<state::ColorKeyMode> }
-    struct WindowClip { rectangles: List<'a, Rectangle<'a>>, exclusive: bool }
-    struct Texture {
-        kind: Word,
-        format: Name<state::TextureFormat>,
-        source: ImageSource,
-        levels: Word,
-        mips: List<'a, ImageSource>,
-        palette: String,
-        border: bool,
-        first_level: u32,
-    }
-    struct RawFile { file: String, width: u32, height: u32, layers: u32 }
-    struct Faces {
-        positive_x: ImageSource,
-        negative_x: ImageSource,
-        positive_y: ImageSource,
-        negative_y: ImageSource,
-        positive_z: ImageSource,
-        negative_z: ImageSource,
-    }
-    struct TexelRows { width: u32, height: u32, rows: List<'a, String> }
-    struct SolidImage { width: u32, height: u32, color: Color }
-    struct CheckerImage { width: u32, height: u32, cell: u32, colors: Tuple<'a, Color> }
-    struct RampImage { width: u32, height: u32, from: Color, to: Color, axis: Word }
-    struct Draw {
-        name: String,
-        target: String,
-        vertices: VertexSource,
-        indices: Vec<u32>,
-        topology: Name<state::Topology>,
-        shade_model: Name<state::ShadeModel>,
-        provoking_vertex: Name<state::ProvokingVertex>,
-        perspective: bool,
-        cull: Name<state::Cull>,
-        front_face: Name<state::FrontFace>,
-        scissor: Rectangle<'a>,
-        window_clip: WindowClip<'a>,
-        fog: Fog<'a>,
-        textures: List<'a, Unit>,
-        program: Program,
-        alpha_test: AlphaTest<'a>,
-        depth_test: DepthTest<'a>,
-        blend: BlendSource,
-        blend_constant: Color,
-        color_mask: Tuple<'a, bool>,
-        dither: bool,
-        stencil_test: StencilTest<'a>,
-        clear: ClearDraw<'a>,
-        logic_op: Reserved,
-        texture_shader: List<'a, ShaderStage>,
-        texgen: List<'a, CoordinateSource>,
-        viewer: Word,
-        texture_matrices: List<'a, Matrix>,
-        truth: bool,
-    }
-    struct Vertex {
-        position: Numbers,
-        diffuse: Color,
-        specular: Color,
-        fog: f32,
-        fog_coordinate: f32,
-        normal: Numbers,
-        t0: Numbers,
-        t1: Numbers,
-        t2: Numbers,
-        t3: Numbers,
-    }
-    struct MatrixVertices {
-        matrix: Matrix,
-        model_view: Matrix,
-        viewport: Viewport<'a>,
-        vertices: VertexList,
-        mesh: MeshSource,
-        diffuse: Attribute,
-        specular: Attribute,
-        t0: Attribute,
-        t1: Attribute,
-        t2: Attribute,
-        t3: Attribute,
-    }
-    struct ProgramVertices {
-        text: String,
-        file: String,
-        constants: Entries<'a, ShaderConstant>,
-        inputs: ShaderInputs<'a>,
-        viewport: Viewport<'a>,
-        clip_depth: Word,
-        vertices: VertexList,
-        mesh: MeshSource,
-    }
-    struct ShaderInputs {
-        v0: Attribute,
-        v1: Attribute,
-        v2: Attribute,
-        v3: Attribute,
-        v4: Attribute,
-        v5: Attribute,
-        v6: Attribute,
-        v7: Attribute,
-        v8: Attribute,
-        v9: Attribute,
-        v10: Attribute,
-        v11: Attribute,
-        v12: Attribute,
-        v13: Attribute,
-        v14: Attribute,
-        v15: Attribute,
-    }
-    struct Viewport { x: f32, y: f32, width: f32, height: f32, near: f32, far: f32, depth_clamp: bool }
-    struct Grid { columns: u32, rows: u32, size: Numbers, repeat: Numbers }
-    struct Sphere { slices: u32, stacks: u32, radius: f32, repeat: Numbers }
-    struct Torus { slices: u32, sides: u32, radius: f32, tube: f32, repeat: Numbers }
-    struct Cylinder { slices: u32, stacks: u32, radius: f32, height: f32, caps: bool, repeat: Numbers }
-    struct Triangles { vertices: VertexList, indices: Vec<u32> }
-    struct LightVector { position: Numbers, direction: Numbers, space: Word }
-    struct HalfVector { position: Numbers, direction: Numbers, viewer: Numbers, space: Word }
-    struct Frustum { left: f32, right: f32, bottom: f32, top: f32, near: f32, far: f32 }
-    struct LookAt { eye: Numbers, center: Numbers, up: Numbers }
-    struct Rectangle { x: u32, y: u32, width: u32, height: u32 }
-    struct Fog {
-        enabled: bool,
-        color: Color,
-        mode: Name<state::FogMode>,
-        density: f32,
-        start: f32,
-        end: f32,
-        parameters: Numbers,
-        coordinate_source: Name<FogSource>,
-        evaluation: Name<FogEvaluation>,
-    }
-    struct CoordinateSet { input: u32, s: Generator, t: Generator, r: Generator, q: Generator }
-    struct Emboss { light: Numbers, scale: Numbers }
-    struct UnitState {
-        texture: String,
-        palette: String,
-        coordinates: u32,
-        address: Name<state::AddressMode>,
-        address_s: Name<state::AddressMode>,
-        address_t: Name<state::AddressMode>,
-        address_r: Name<state::AddressMode>,
-        min_filter: Name<state::Filter>,
-        mag_filter: Name<state::Filter>,
-        mip_filter: Name<state::MipFilter>,
-        border_color: Color,
-        signed: Tuple<'a, bool>,
-        lod_bias: f32,
-        min_lod: f32,
-        max_lod: f32,
-        anisotropy: u32,
-        cylindrical_wrap: Tuple<'a, bool>,
-        color_key: ColorKey<'a>,
-        shadow: ShadowComparison<'a>,
-    }
-    struct ShadowComparison { function: Name<state::CompareFunction>, reference: Name<state::ShadowReference> }
-    struct StageState {
-        operation: ShaderOperation,
-        previous: u32,
-        mapping: Name<state::DotMapping>,
-        coordinates: u32,
-    }
-    struct CullFragment { s: Word, t: Word, r: Word, q: Word }
-    struct BumpEnvironment { matrix: Numbers, luminance: Numbers }
-    struct ConstantEye { eye: Numbers }
-    struct AlphaTest { function: Name<state::CompareFunction>, reference: Word }
-    struct DepthTest {
-        function: Name<state::CompareFunction>,
-        write: bool,
-        vertex_depths: Name<state::VertexDepths>,
-        w_buffer: bool,
-        range: DepthRange<'a>,
-        offset: PolygonOffset<'a>,
-    }
-    struct DepthRange { lowest: f32, highest: f32, clamp: bool, drop_triangles: bool }
-    struct PolygonOffset { bias: f32, factor: f32 }
-    struct Blend {
-        equation: Name<state::BlendEquation>,
-        source: Name<state::BlendFactor>,
-        destination: Name<state::BlendFactor>,
-    }
-    struct ProgramFile { file: String }
-    struct RegisterWords { nv10: Nv10Words<'a>, nv20: Nv20Words<'a>, text: String, file: String }
-    struct Nv10Words {
-        rc_in_alpha: List<'a, u32>,
-        rc_in_rgb: List<'a, u32>,
-        rc_color: List<'a, u32>,
-        rc_out_alpha: List<'a, u32>,
-        rc_out_rgb: List<'a, u32>,
-        rc_final0: u32,
-        rc_final1: u32,
-    }
-    struct Nv20Words {
-        rc_in_alpha: List<'a, u32>,
-        rc_in_rgb: List<'a, u32>,
-        rc_color: List<'a, u32>,
-        rc_constant_color0: List<'a, u32>,
-        rc_constant_color1: List<'a, u32>,
-        rc_out_alpha: List<'a, u32>,
-        rc_out_rgb: List<'a, u32>,
-        rc_final0: u32,
-        rc_final1: u32,
-        rc_config: u32,
-    }
-    struct Combiners {
-        constants: Tuple<'a, Color>,
-        mux_select: Name<state::MuxSelect>,
-        stages: List<'a, Stage<'a>>,
-        final_combiner: FinalCombiner<'a>,
-    }
-    struct TextureStages {
-        stages: List<'a, TextureStage<'a>>,
-        texture_factor: Color,
-        specular_enable: bool,
-        text: String,
-        file: String,
-    }
-    struct TextureStage {
-        color_op: Name<Operation>,
-        color_arg0: StageArgument,
-        color_arg1: StageArgument,
-        color_arg2: StageArgument,
-        alpha_op: Name<Operation>,
-        alpha_arg0: StageArgument,
-        alpha_arg1: StageArgument,
-        alpha_arg2: StageArgument,
-        result_arg: Name<ResultArgument>,
-        constant: Color,
-        texture_coordinate_index: Word,
-        texture_transform_flags: TransformFlags,
-        bump_matrix: Numbers,
-        bump_luminance: Numbers,
-    }
-    struct PixelShader {
-        text: String,
-        file: String,
-        constants: Entries<'a, Color>,
-        bump: Entries<'a, BumpEnvironment<'a>>,
-    }
-    struct TextureEnvironment { units: List<'a, EnvironmentUnit<'a>>, color_sum: bool, text: String, file: String }
-    struct EnvironmentUnit {
-        mode: Name<texture_environment::Mode>,
-        combine_rgb: Name<texture_environment::Function>,
-        combine_alpha: Name<texture_environment::Function>,
-        sources_rgb: List<'a, Name<texture_environment::EnvironmentSource>>,
-        sources_alpha: List<'a, Name<texture_environment::EnvironmentSource>>,
-        operands_rgb: List<'a, Name<texture_environment::Operand>>,
-        operands_alpha: List<'a, Name<texture_environment::Operand>>,
-        scale_rgb: u32,
-        scale_alpha: u32,
-        color: Color,
-        base_format: Name<texture_environment::BaseFormat>,
-    }
-    struct Stage { rgb: Portion<'a>, alpha: Portion<'a>, constants: Tuple<'a, Color> }
-    struct Portion {
-        a: Input,
-        b: Input,
-        c: Input,
-        d: Input,
-        ab: Output,
-        cd: Output,
-        sum: Output,
-        ab_dot: bool,
-        cd_dot: bool,
-        mux: bool,
-        scale: Name<state::Scale>,
-        bias: Name<state::Bias>,
-        ab_blue_to_alpha: bool,
-        cd_blue_to_alpha: bool,
-    }
-    struct FinalCombiner {
-        a: FinalInput,
-        b: FinalInput,
-        c: FinalInput,
-        d: FinalInput,
-        e: FinalInput,
-        f: FinalInput,
-        g: FinalInput,
-        color_sum_clamp: bool,
-        invert_spare0: bool,
-        invert_secondary: bool,
-        constants: Tuple<'a, Color>,
-    }
-}
-
-impl<'a> Truth<'a> {
-    /// These fields, and where they are not written those of another.
-    pub(super) fn or(self, other: Self) -> Self {
-        Truth {
-            equation: self.equation.or(other.equation),
-            normal: self.normal.or(other.normal),
-            lights: self.lights.or(other.lights),
-            eye: self.eye.or(other.eye),
-            material: self.material.or(other.material),
-            hemisphere: self.hemisphere.or(other.hemisphere),
-            color_map: self.color_map.or(other.color_map),
-            shading_normal: self.shading_normal.or(other.shading_normal),
-        }
-    }
-}
-
-impl<'a> ShaderInputs<'a> {
-    /// By their numbers.
-    pub(super) fn list(self) -> [Option<Raw<'a, Attribute>>; 16] {
-        let ShaderInputs { v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15 } = self;
-        [v0, v1, v2, v3, v4, v5, v6, v7, v8, v9, v10, v11, v12, v13, v14, v15]
-    }
-}

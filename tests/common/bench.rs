@@ -34,6 +34,14 @@ impl Bench {
     pub fn run(&self, arguments: &str) -> Run {
         Run::of(self.command(arguments).output().unwrap())
     }
+
+    /// A run whose output nobody reads: it ends in silence.
+    pub fn unread(&self, arguments: &str) {
+        let mut child = self.command(arguments).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        drop(child.stdout.take());
+        let run = Run::of(child.wait_with_output().unwrap());
+        assert_eq!((run.status, run.stderr.as_str()), (0, ""));
+    }
 }
 
 /// What a run left.

@@ -171,6 +171,12 @@ pub fn r3() -> Case {
     }
 }
 
+/// A smooth draw on the usual background; pixels that it covers, and of these those that differ.
+fn shaded(name: &'static str, capture: &'static str, draw: Draw, [covered, differing]: [usize; 2]) -> Case {
+    let background = [44, 48, 46];
+    Case { name, capture, scene: scene(background, vec![draw]), background, region: everywhere, covered, differing }
+}
+
 /// INT-2 on triangles of equal w.
 pub fn r4() -> Case {
     let corners = [
@@ -184,16 +190,7 @@ pub fn r4() -> Case {
         (3291, 5668, [204, 255, 51]),
         (5119, 3839, [255, 204, 51]),
     ];
-    let background = [44, 48, 46];
-    Case {
-        name: "R4",
-        capture: "Shade_model/Prog_Tri_Smooth_First.png",
-        scene: scene(background, vec![draw(Topology::Triangles, equal_w(&corners))]),
-        background,
-        region: everywhere,
-        covered: 36_035,
-        differing: 2,
-    }
+    shaded("R4", "Shade_model/Prog_Tri_Smooth_First.png", draw(Topology::Triangles, equal_w(&corners)), [36_035, 2])
 }
 
 /// INT-2 on quads of equal w.
@@ -208,16 +205,7 @@ pub fn r5() -> Case {
         (8710, 6125, [51, 255, 204]),
         (5119, 6125, [204, 255, 51]),
     ];
-    let background = [44, 48, 46];
-    Case {
-        name: "R5",
-        capture: "Shade_model/Prog_Quad_Smooth_First.png",
-        scene: scene(background, vec![draw(Topology::Quads, equal_w(&corners))]),
-        background,
-        region: everywhere,
-        covered: 116_958,
-        differing: 1,
-    }
+    shaded("R5", "Shade_model/Prog_Quad_Smooth_First.png", draw(Topology::Quads, equal_w(&corners)), [116_958, 1])
 }
 
 fn equal_w(corners: &[(i32, i32, [u8; 3])]) -> Vec<Vertex> {

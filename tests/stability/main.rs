@@ -28,44 +28,19 @@ fn textures() {
     content::check();
 }
 
-#[test]
-fn lengths() {
-    page::check(&lengths::section());
+macro_rules! sections {
+    ($($section:ident),+) => { $(
+        #[test]
+        fn $section() {
+            page::check(&super::$section::section());
+        }
+    )+ };
 }
 
-#[test]
-fn minified() {
-    page::check(&minified::section());
-}
-
-#[test]
-fn cube() {
-    page::check(&cube::section());
-}
-
-#[test]
-fn far() {
-    page::check(&far::section());
-}
-
-#[test]
-fn near_eye() {
-    page::check(&near_eye::section());
-}
-
-#[test]
-fn compressed() {
-    page::check(&compressed::section());
-}
-
-#[test]
-fn one_texel() {
-    page::check(&one_texel::section());
-}
-
-#[test]
-fn level_of_detail() {
-    page::check(&level_of_detail::section());
+/// What each section of the page shows is what is measured.
+mod sections {
+    use super::page;
+    sections!(lengths, minified, cube, far, near_eye, compressed, one_texel, level_of_detail);
 }
 
 #[test]

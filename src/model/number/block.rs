@@ -124,30 +124,6 @@ pub struct Halved(i16);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Quarter(i16);
 
-impl Add for Narrow {
-    type Output = Narrow;
-    #[inline(always)]
-    fn add(self, other: Narrow) -> Narrow {
-        Narrow(self.0 + other.0)
-    }
-}
-
-impl Sub for Narrow {
-    type Output = Narrow;
-    #[inline(always)]
-    fn sub(self, other: Narrow) -> Narrow {
-        Narrow(self.0 - other.0)
-    }
-}
-
-impl Add for Quarter {
-    type Output = Quarter;
-    #[inline(always)]
-    fn add(self, other: Quarter) -> Quarter {
-        Quarter(self.0.saturating_add(other.0))
-    }
-}
-
 impl Sum for Quarter {
     type Register = Narrow;
     /// floor((8m + 255) / 510) on 0..=16256; negative sums come out as 0, larger ones as 255.
@@ -171,14 +147,6 @@ impl Factor for Halved {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NarrowSum(i32);
 
-impl Add for NarrowSum {
-    type Output = NarrowSum;
-    #[inline(always)]
-    fn add(self, other: NarrowSum) -> NarrowSum {
-        NarrowSum(self.0 + other.0)
-    }
-}
-
 impl Sum for NarrowSum {
     type Register = Narrow;
     #[inline(always)]
@@ -194,6 +162,13 @@ impl Factor for Narrow {
     fn product(self, other: Narrow) -> NarrowSum {
         NarrowSum(i32::from(self.0) * i32::from(other.0))
     }
+}
+
+wrapped! {
+    Narrow: Add, add, |a, b| a + b;
+    Narrow: Sub, sub, |a, b| a - b;
+    Quarter: Add, add, |a, b| a.saturating_add(b);
+    NarrowSum: Add, add, |a, b| a + b;
 }
 
 impl Register for Narrow {

@@ -57,13 +57,9 @@ impl<T: Copy + Sub<Output = T>> Sub for Each<T> {
 impl Blend for Each<i32> {
     type Weight = Each<i32>;
     const WHOLE: Self = Each([i32::WHOLE; EACH]);
-    #[inline(always)]
-    fn times(self, weight: Self) -> Self {
-        self.zip(weight, i32::times)
-    }
-    #[inline(always)]
-    fn round8(self) -> Self {
-        self.map(i32::round8)
+    componentwise! {
+        times(weight: Self) -> Self = i32::times;
+        round8() -> Self = i32::round8;
     }
 }
 
@@ -73,21 +69,11 @@ impl Register for Each<i32> {
     const ZERO: Self = Each([i32::ZERO; EACH]);
     const ONE: Self = Each([i32::ONE; EACH]);
     const HALF: Self = Each([i32::HALF; EACH]);
-    #[inline(always)]
-    fn max0(self) -> Self {
-        self.map(i32::max0)
-    }
-    #[inline(always)]
-    fn factor(self) -> Each<Halves> {
-        self.map(i32::factor)
-    }
-    #[inline(always)]
-    fn twice(self) -> Each<Halves> {
-        self.map(i32::twice)
-    }
-    #[inline(always)]
-    fn halved(self) -> Self {
-        self.map(i32::halved)
+    componentwise! {
+        max0() -> Self = i32::max0;
+        factor() -> Each<Halves> = i32::factor;
+        twice() -> Each<Halves> = i32::twice;
+        halved() -> Self = i32::halved;
     }
     #[inline(always)]
     fn saturated(self, floor: RegisterFloor) -> Self {
@@ -163,17 +149,10 @@ impl Lane for Each<i32> {
     fn rounded_half(sum: Each<Quarters>) -> Self {
         sum.map(i32::rounded_half)
     }
-    #[inline(always)]
-    fn clamped(self) -> Self {
-        self.map(i32::clamped)
-    }
-    #[inline(always)]
-    fn least(self, other: Self) -> Self {
-        self.zip(other, i32::least)
-    }
-    #[inline(always)]
-    fn greatest(self, other: Self) -> Self {
-        self.zip(other, i32::greatest)
+    componentwise! {
+        clamped() -> Self = i32::clamped;
+        least(other: Self) -> Self = i32::least;
+        greatest(other: Self) -> Self = i32::greatest;
     }
     #[inline(always)]
     fn decision(self) -> i32 {

@@ -21,12 +21,12 @@ pub struct IdealTracks<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> IdealTracks<N> {
     #[inline(always)]
-    fn each(self, f: impl Fn(f64) -> f64) -> Self {
+    fn map(self, f: impl Fn(f64) -> f64) -> Self {
         IdealTracks(std::array::from_fn(|n| f(self.0[n])))
     }
 
     #[inline(always)]
-    fn both(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
         IdealTracks(std::array::from_fn(|n| f(self.0[n], other.0[n])))
     }
 }
@@ -58,7 +58,7 @@ impl<const N: usize> Ideal for IdealTracks<N> {
     }
     #[inline(always)]
     fn remembered(self, fixed: i32, signed: bool) -> Self {
-        let remembered = self.each(|memory| memory.remembered(fixed, signed));
+        let remembered = self.map(|memory| memory.remembered(fixed, signed));
         // What the store lost of a signed channel shows here, before its unit changes.
         if signed { remembered.absorb(f64::from(fixed) * 255.0 / 128.0, Part::Store).0 } else { remembered }
     }
@@ -68,7 +68,7 @@ impl<const N: usize> Add for IdealTracks<N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        self.both(other, |a, b| a + b)
+        self.zip(other, |a, b| a + b)
     }
 }
 
@@ -76,20 +76,16 @@ impl<const N: usize> Sub for IdealTracks<N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        self.both(other, |a, b| a - b)
+        self.zip(other, |a, b| a - b)
     }
 }
 
 impl<const N: usize> Blend for IdealTracks<N> {
     type Weight = Self;
     const WHOLE: Self = IdealTracks([f64::WHOLE; N]);
-    #[inline(always)]
-    fn times(self, weight: Self) -> Self {
-        self.both(weight, f64::times)
-    }
-    #[inline(always)]
-    fn round8(self) -> Self {
-        self.each(f64::round8)
+    componentwise! {
+        times(weight: Self) -> Self = f64::times;
+        round8() -> Self = f64::round8;
     }
 }
 
@@ -101,23 +97,19 @@ impl<const N: usize> Register for IdealTracks<N> {
     const HALF: Self = IdealTracks([f64::HALF; N]);
     #[inline(always)]
     fn max0(self) -> Self {
-        self.each(Register::max0)
+        self.map(Register::max0)
     }
     #[inline(always)]
     fn factor(self) -> Self {
         self
     }
-    #[inline(always)]
-    fn twice(self) -> Self {
-        self.each(Register::twice)
-    }
-    #[inline(always)]
-    fn halved(self) -> Self {
-        self.each(Register::halved)
+    componentwise! {
+        twice() -> Self = Register::twice;
+        halved() -> Self = Register::halved;
     }
     #[inline(always)]
     fn saturated(self, floor: RegisterFloor) -> Self {
-        self.each(|x| x.saturated(floor))
+        self.map(|x| x.saturated(floor))
     }
 }
 
@@ -126,7 +118,7 @@ impl<const N: usize> Factor for IdealTracks<N> {
     type Register = Self;
     #[inline(always)]
     fn product(self, other: Self) -> Self {
-        self.both(other, Factor::product)
+        self.zip(other, Factor::product)
     }
 }
 
@@ -134,7 +126,7 @@ impl<const N: usize> Sum for IdealTracks<N> {
     type Register = Self;
     #[inline(always)]
     fn rounded(self) -> Self {
-        self.each(Sum::rounded)
+        self.map(Sum::rounded)
     }
 }
 
@@ -152,7 +144,7 @@ impl<const N: usize> Lane for IdealTracks<N> {
     }
     #[inline(always)]
     fn signed_texel(self) -> Self {
-        self.each(Lane::signed_texel)
+        self.map(Lane::signed_texel)
     }
     #[inline(always)]
     fn weight(_fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
@@ -165,35 +157,28 @@ impl<const N: usize> Lane for IdealTracks<N> {
     #[inline(always)]
     fn multiplied(self, fixed: i32, factor: impl FnOnce() -> f64) -> Self {
         let factor = factor();
-        self.each(|strand| strand.multiplied(fixed, || factor))
+        self.map(|strand| strand.multiplied(fixed, || factor))
     }
     #[inline(always)]
     fn halfway(a: Self, b: Self) -> Self {
-        a.both(b, f64::halfway)
+        a.zip(b, f64::halfway)
     }
     #[inline(always)]
     fn negated(factor: Self) -> Self {
-        factor.each(f64::negated)
+        factor.map(f64::negated)
     }
     #[inline(always)]
     fn widened(self) -> Self {
-        self.each(Lane::widened)
+        self.map(Lane::widened)
     }
     #[inline(always)]
     fn rounded_half(sum: Self) -> Self {
-        sum.each(f64::rounded_half)
+        sum.map(f64::rounded_half)
     }
-    #[inline(always)]
-    fn clamped(self) -> Self {
-        self.each(Lane::clamped)
-    }
-    #[inline(always)]
-    fn least(self, other: Self) -> Self {
-        self.both(other, f64::min)
-    }
-    #[inline(always)]
-    fn greatest(self, other: Self) -> Self {
-        self.both(other, f64::max)
+    componentwise! {
+        clamped() -> Self = Lane::clamped;
+        least(other: Self) -> Self = f64::min;
+        greatest(other: Self) -> Self = f64::max;
     }
     #[inline(always)]
     fn decision(self) -> i32 {

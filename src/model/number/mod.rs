@@ -17,6 +17,32 @@
 //!
 //! All lanes count in steps of 1/255 (NUM-1): 1.0 is 255.
 
+/// Sums of numbers that are wrapped in a structure, by an operation on what it holds.
+macro_rules! wrapped {
+    ($($type:ident: $trait:ident, $method:ident, |$a:ident, $b:ident| $result:expr;)+) => { $(
+        impl $trait for $type {
+            type Output = $type;
+            #[inline(always)]
+            fn $method(self, other: $type) -> $type {
+                let ($a, $b) = (self.0, other.0);
+                $type($result)
+            }
+        }
+    )+ };
+}
+
+/// Methods of a type of several numbers that act on each of them alone: by its `map`, or on those of two by its `zip`.
+macro_rules! componentwise {
+    ($($method:ident($($other:ident: $type:ty)?) -> $result:ty = $of:expr;)+) => { $(
+        #[inline(always)]
+        fn $method(self $(, $other: $type)?) -> $result {
+            componentwise!(@ self, $of $(, $other)?)
+        }
+    )+ };
+    (@ $value:expr, $of:expr) => { $value.map($of) };
+    (@ $value:expr, $of:expr, $other:ident) => { $value.zip($other, $of) };
+}
+
 mod block;
 pub mod convert;
 mod each;

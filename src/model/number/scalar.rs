@@ -66,20 +66,9 @@ impl Factor for Halves {
     }
 }
 
-impl Add for Quarters {
-    type Output = Quarters;
-    #[inline(always)]
-    fn add(self, other: Quarters) -> Quarters {
-        Quarters(self.0 + other.0)
-    }
-}
-
-impl Sub for Quarters {
-    type Output = Quarters;
-    #[inline(always)]
-    fn sub(self, other: Quarters) -> Quarters {
-        Quarters(self.0 - other.0)
-    }
+wrapped! {
+    Quarters: Add, add, |a, b| a + b;
+    Quarters: Sub, sub, |a, b| a - b;
 }
 
 impl Sum for Quarters {

@@ -6,15 +6,15 @@
 
 use super::PlanError;
 use crate::diagnostic::Severity;
-use crate::legality::{self, Help, Notation};
+use crate::legality::{self, Notation};
 use crate::limits::Limits;
 use crate::place::Places;
 use crate::raster::GUARD;
 use crate::rop::surface;
 use crate::state::{
-    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, FinalRegister, LARGEST_VOLUME, Level, Named, Palette,
-    PolygonOffset, Positions, Profile, Scale, Scene, ShaderOperation, ShaderStage, Target, Texels, Texture,
-    TextureFormat, TextureImage, TextureKind, TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
+    AddressMode, CUBE_FACES, DepthRange, DepthTest, Draw, LARGEST_VOLUME, Level, Named, Palette, PolygonOffset,
+    Positions, Profile, Scene, ShaderOperation, ShaderStage, Target, Texels, Texture, TextureFormat, TextureImage,
+    TextureKind, TextureUnit, VertexDepths, WINDOW_CLIP_RECTANGLES,
 };
 
 /// At most this many errors of one kind of thing: the rest would say the same.
@@ -502,32 +502,4 @@ fn missing(what: &str, index: usize, count: usize) -> (String, String) {
 /// The words of the state.
 struct Words;
 
-impl Notation for Words {
-    fn register(&self, register: FinalRegister) -> &'static str {
-        register.name()
-    }
-
-    fn scale(&self, scale: Scale) -> &'static str {
-        scale.name()
-    }
-
-    fn help(&self, help: Help) -> &'static str {
-        match help {
-            Help::EmptyStage => "one whose portions are `Portion::idle` changes nothing",
-            Help::SharedConstants => {
-                "give all stages and the final combiner the same constants; the profile Nv2a allows own ones"
-            }
-            Help::OtherRegister => "send one of them to another register, or to Zero, which discards it",
-            Help::BiasScale => "with this bias the scale is One or Two",
-            Help::FogColor => "read Rgb here",
-            Help::FogBlue => "read Blue here, the fog colour's",
-            Help::SecondaryAlpha => "the profile Nv2a defines it; or read the alpha of PrimaryColor",
-            Help::RgbComponents => "take Rgb or Alpha",
-            Help::AlphaComponents => "take Alpha or Blue",
-            Help::FinalComponents => "inputs A to F read Rgb or Alpha",
-            Help::FinalAlphaComponents => "G reads Alpha or Blue",
-            Help::Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
-            Help::OtherInput => "read Spare0 or another register",
-        }
-    }
-}
+impl Notation for Words {}

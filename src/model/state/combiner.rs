@@ -2,85 +2,53 @@
 
 use super::named;
 
-named! {
-    /// A register of the general combiner stages.
-    pub enum Register {
-        /// Always 0. As a destination: discard.
-        Zero,
-        /// Constant colour 0.
-        ConstantColor0,
-        /// Constant colour 1.
-        ConstantColor1,
-        /// Fog colour and factor.
-        Fog,
-        /// Interpolated diffuse.
-        PrimaryColor,
-        /// Interpolated specular.
-        SecondaryColor,
-        /// Unit 0's result.
-        Texture0,
-        /// Unit 1's result.
-        Texture1,
-        /// Unit 2's result (nv2a).
-        Texture2,
-        /// Unit 3's result (nv2a).
-        Texture3,
-        /// Scratch; its alpha steers the mux.
-        Spare0,
-        /// Scratch.
-        Spare1,
-    }
-}
-named! {
-    /// A register of the final combiner.
-    pub enum FinalRegister {
-        /// Always 0.
-        Zero,
-        /// Constant colour 0.
-        ConstantColor0,
-        /// Constant colour 1.
-        ConstantColor1,
-        /// Fog colour and factor.
-        Fog,
-        /// Interpolated diffuse, or what a stage wrote there.
-        PrimaryColor,
-        /// Interpolated specular, or what a stage wrote there.
-        SecondaryColor,
-        /// Unit 0's result, or what a stage wrote there.
-        Texture0,
-        /// Unit 1's result, or what a stage wrote there.
-        Texture1,
-        /// Unit 2's result, or what a stage wrote there (nv2a).
-        Texture2,
-        /// Unit 3's result, or what a stage wrote there (nv2a).
-        Texture3,
-        /// Scratch.
-        Spare0,
-        /// Scratch.
-        Spare1,
-        /// SPARE0 + SECONDARY, up to 2.0 (FIN-3). Inputs A to D, RGB.
-        Spare0PlusSecondary,
-        /// E times F (FIN-4). Inputs A to D, RGB.
-        ETimesF,
-    }
-}
-impl From<Register> for FinalRegister {
-    fn from(register: Register) -> Self {
-        match register {
-            Register::Zero => FinalRegister::Zero,
-            Register::ConstantColor0 => FinalRegister::ConstantColor0,
-            Register::ConstantColor1 => FinalRegister::ConstantColor1,
-            Register::Fog => FinalRegister::Fog,
-            Register::PrimaryColor => FinalRegister::PrimaryColor,
-            Register::SecondaryColor => FinalRegister::SecondaryColor,
-            Register::Texture0 => FinalRegister::Texture0,
-            Register::Texture1 => FinalRegister::Texture1,
-            Register::Texture2 => FinalRegister::Texture2,
-            Register::Texture3 => FinalRegister::Texture3,
-            Register::Spare0 => FinalRegister::Spare0,
-            Register::Spare1 => FinalRegister::Spare1,
+/// The registers of both; those of the final combiner begin as those of the general stages do.
+macro_rules! registers {
+    ($($(#[$meta:meta])* $register:ident),+; $($(#[$final_meta:meta])* $final_register:ident),+ $(,)?) => {
+        named! {
+            /// A register of the general combiner stages.
+            pub enum Register { $($(#[$meta])* $register),+ }
         }
-    }
+        named! {
+            /// A register of the final combiner: as a stage left it, if one wrote it.
+            pub enum FinalRegister { $($(#[$meta])* $register,)+ $($(#[$final_meta])* $final_register),+ }
+        }
+        impl From<Register> for FinalRegister {
+            fn from(register: Register) -> Self {
+                match register { $(Register::$register => FinalRegister::$register),+ }
+            }
+        }
+    };
+}
+registers! {
+    /// Always 0. As a destination: discard.
+    Zero,
+    /// Constant colour 0.
+    ConstantColor0,
+    /// Constant colour 1.
+    ConstantColor1,
+    /// Fog colour and factor.
+    Fog,
+    /// Interpolated diffuse.
+    PrimaryColor,
+    /// Interpolated specular.
+    SecondaryColor,
+    /// Unit 0's result.
+    Texture0,
+    /// Unit 1's result.
+    Texture1,
+    /// Unit 2's result (nv2a).
+    Texture2,
+    /// Unit 3's result (nv2a).
+    Texture3,
+    /// Scratch; its alpha steers the mux.
+    Spare0,
+    /// Scratch.
+    Spare1;
+    /// SPARE0 + SECONDARY, up to 2.0 (FIN-3). Inputs A to D, RGB.
+    Spare0PlusSecondary,
+    /// E times F (FIN-4). Inputs A to D, RGB.
+    ETimesF,
 }
 
 named! {

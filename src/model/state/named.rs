@@ -20,11 +20,23 @@ pub trait Named: Copy + PartialEq + 'static {
     }
 }
 
-/// Declares a field-less enumeration and implements [`Named`] for it. A variant is named as it is spelled, or `= "otherwise"`.
+/// Declares a field-less enumeration and implements [`Named`] for it. A variant is named as it is spelled, or `= "otherwise"`. With `=> method: Type` behind
+/// the enumeration's name each variant has a value of that type, which the method gives.
 #[macro_export]
 macro_rules! named {
     (@name $variant:ident) => { stringify!($variant) };
     (@name $variant:ident $text:literal) => { $text };
+    ($(#[$meta:meta])* $vis:vis enum $name:ident => $(#[$doc:meta])* $method:ident: $type:ty {
+        $($(#[$vmeta:meta])* $variant:ident $(= $text:literal)? => $value:expr),+ $(,)?
+    }) => {
+        $crate::named! { $(#[$meta])* $vis enum $name { $($(#[$vmeta])* $variant $(= $text)?),+ } }
+        impl $name {
+            $(#[$doc])*
+            pub fn $method(self) -> $type {
+                match self { $($name::$variant => $value),+ }
+            }
+        }
+    };
     ($(#[$meta:meta])* $vis:vis enum $name:ident { $($(#[$vmeta:meta])* $variant:ident $(= $text:literal)?),+ $(,)? }) => {
         $(#[$meta])*
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -87,43 +87,59 @@ named! {
     }
 }
 
-/// One value for every policy.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Policies {
-    /// NUM-3.
-    pub register_floor: RegisterFloor,
-    /// TSH-6.
-    pub dependent_scale: DependentScale,
-    /// CMB-3.
-    pub expand_centre: ExpandCentre,
-    /// CMB-4.
-    pub half_bias: HalfBiasConstant,
-    /// CMB-7.
-    pub sum_rounding: SumRounding,
-    /// CMB-8.
-    pub dot_rounding: DotRounding,
-    /// CMB-9.
-    pub output_rounding: OutputRounding,
-    /// CMB-10.
-    pub mux_negative: MuxNegative,
-    /// FIN-2.
-    pub lerp_rounding: LerpRounding,
+/// One value for every policy, and what there is to be chosen: a rule each, the question, and names and meanings of the enumeration's values, in its
+/// order.
+macro_rules! policies {
+    ($($field:ident: $type:ident = $default:ident, $rule:literal, $question:literal, [$($value:expr),+];)+) => {
+        /// One value for every policy.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub struct Policies { $(#[doc = concat!($rule, ".")] pub $field: $type),+ }
+
+        impl Policies {
+            /// What the model takes unless told otherwise.
+            pub const DEFAULT: Policies = Policies { $($field: $type::$default),+ };
+
+            /// Sets the policy of `rule` to its value number `index`; unknown rules and indices change nothing.
+            pub fn choose(&mut self, rule: &str, index: usize) {
+                match rule {
+                    $($rule => self.$field = $type::ALL.get(index).copied().unwrap_or(self.$field),)+
+                    _ => {}
+                }
+            }
+
+            /// Number of the chosen value of `rule`, as in [`Policy::values`].
+            pub fn chosen(&self, rule: &str) -> usize {
+                match rule { $($rule => self.$field as usize,)+ _ => 0 }
+            }
+        }
+
+        /// Every policy, in the order of `docs/numerics.md`. Values stand in the order of the enumerations above.
+        pub const POLICIES: &[Policy] =
+            &[$(Policy { rule: $rule, question: $question, values: &[$($value),+] }),+];
+    };
+}
+policies! {
+    register_floor: RegisterFloor = Full, "NUM-3", "lowest value of a register",
+        [("256", "saturates at -256"), ("255", "saturates at -255")];
+    dependent_scale: DependentScale = Over255, "TSH-6", "what makes a byte a coordinate of a dependent read",
+        [("255", "v / 255: 255 is 1.0"), ("256", "v / 256: 255 is the last of 256 texels")];
+    expand_centre: ExpandCentre = Centred, "CMB-3", "centre of the expand mappings",
+        [("centred", "2 (x - 128): 128 becomes 0"), ("literal", "2x - 255: 127 becomes -1, 128 becomes 1")];
+    half_bias: HalfBiasConstant = Half128, "CMB-4", "one half in the half-bias mappings",
+        [("128", "x - 128"), ("127", "x - 127"), ("127.5", "x - 127.5, the half bit kept up to the product")];
+    sum_rounding: SumRounding = Once, "CMB-7", "rounding of AB + CD",
+        [("once", "after the sum"), ("each", "each product before the sum")];
+    dot_rounding: DotRounding = Once, "CMB-8", "rounding of a dot product",
+        [("once", "after the sum"), ("each", "each product before the sum")];
+    output_rounding: OutputRounding = BeforeScale, "CMB-9", "division by 255 and output scale",
+        [("before", "rounded, then biased and scaled"), ("after", "biased and scaled, then rounded")];
+    mux_negative: MuxNegative = Sign, "CMB-10", "mux on a negative SPARE0.a in MSB mode",
+        [("sign", "negative is not set"), ("bit7", "bit 7 of the two's complement value")];
+    lerp_rounding: LerpRounding = Once, "FIN-2", "rounding of the final combiner's lerp",
+        [("once", "after the sum"), ("twice", "each product before the sum")];
 }
 
 impl Policies {
-    /// What the model takes unless told otherwise.
-    pub const DEFAULT: Policies = Policies {
-        register_floor: RegisterFloor::Full,
-        dependent_scale: DependentScale::Over255,
-        expand_centre: ExpandCentre::Centred,
-        half_bias: HalfBiasConstant::Half128,
-        sum_rounding: SumRounding::Once,
-        dot_rounding: DotRounding::Once,
-        output_rounding: OutputRounding::BeforeScale,
-        mux_negative: MuxNegative::Sign,
-        lerp_rounding: LerpRounding::Once,
-    };
-
     /// Applies one assignment such as `CMB-3=literal`.
     ///
     /// # Errors
@@ -143,46 +159,6 @@ impl Policies {
         self.choose(policy.rule, index);
         Ok(())
     }
-
-    /// Sets the policy of `rule` to its value number `index`; unknown rules and indices change nothing.
-    pub fn choose(&mut self, rule: &str, index: usize) {
-        fn pick<T: Named>(field: &mut T, index: usize) {
-            if let Some(value) = T::ALL.get(index) {
-                *field = *value;
-            }
-        }
-        match rule {
-            "NUM-3" => pick(&mut self.register_floor, index),
-            "TSH-6" => pick(&mut self.dependent_scale, index),
-            "CMB-3" => pick(&mut self.expand_centre, index),
-            "CMB-4" => pick(&mut self.half_bias, index),
-            "CMB-7" => pick(&mut self.sum_rounding, index),
-            "CMB-8" => pick(&mut self.dot_rounding, index),
-            "CMB-9" => pick(&mut self.output_rounding, index),
-            "CMB-10" => pick(&mut self.mux_negative, index),
-            "FIN-2" => pick(&mut self.lerp_rounding, index),
-            _ => {}
-        }
-    }
-
-    /// Number of the chosen value of `rule`, as in [`Policy::values`].
-    pub fn chosen(&self, rule: &str) -> usize {
-        fn number<T: Named>(field: T) -> usize {
-            T::ALL.iter().position(|v| *v == field).unwrap_or(0)
-        }
-        match rule {
-            "NUM-3" => number(self.register_floor),
-            "TSH-6" => number(self.dependent_scale),
-            "CMB-3" => number(self.expand_centre),
-            "CMB-4" => number(self.half_bias),
-            "CMB-7" => number(self.sum_rounding),
-            "CMB-8" => number(self.dot_rounding),
-            "CMB-9" => number(self.output_rounding),
-            "CMB-10" => number(self.mux_negative),
-            "FIN-2" => number(self.lerp_rounding),
-            _ => 0,
-        }
-    }
 }
 
 impl Default for Policies {
@@ -201,55 +177,6 @@ pub struct Policy {
     /// Names and meanings; the first is the default.
     pub values: &'static [(&'static str, &'static str)],
 }
-
-/// Every policy, in the order of `docs/numerics.md`. Values stand in the order of the enumerations above.
-pub const POLICIES: &[Policy] = &[
-    Policy {
-        rule: "NUM-3",
-        question: "lowest value of a register",
-        values: &[("256", "saturates at -256"), ("255", "saturates at -255")],
-    },
-    Policy {
-        rule: "TSH-6",
-        question: "what makes a byte a coordinate of a dependent read",
-        values: &[("255", "v / 255: 255 is 1.0"), ("256", "v / 256: 255 is the last of 256 texels")],
-    },
-    Policy {
-        rule: "CMB-3",
-        question: "centre of the expand mappings",
-        values: &[("centred", "2 (x - 128): 128 becomes 0"), ("literal", "2x - 255: 127 becomes -1, 128 becomes 1")],
-    },
-    Policy {
-        rule: "CMB-4",
-        question: "one half in the half-bias mappings",
-        values: &[("128", "x - 128"), ("127", "x - 127"), ("127.5", "x - 127.5, the half bit kept up to the product")],
-    },
-    Policy {
-        rule: "CMB-7",
-        question: "rounding of AB + CD",
-        values: &[("once", "after the sum"), ("each", "each product before the sum")],
-    },
-    Policy {
-        rule: "CMB-8",
-        question: "rounding of a dot product",
-        values: &[("once", "after the sum"), ("each", "each product before the sum")],
-    },
-    Policy {
-        rule: "CMB-9",
-        question: "division by 255 and output scale",
-        values: &[("before", "rounded, then biased and scaled"), ("after", "biased and scaled, then rounded")],
-    },
-    Policy {
-        rule: "CMB-10",
-        question: "mux on a negative SPARE0.a in MSB mode",
-        values: &[("sign", "negative is not set"), ("bit7", "bit 7 of the two's complement value")],
-    },
-    Policy {
-        rule: "FIN-2",
-        question: "rounding of the final combiner's lerp",
-        values: &[("once", "after the sum"), ("twice", "each product before the sum")],
-    },
-];
 
 /// A `--policy` argument that cannot be used.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -5,98 +5,77 @@ use crate::state::named;
 
 named! {
     /// The rules that can move a value away from the ideal, by the ids of `docs/numerics.md`.
-    pub enum Rule {
-        /// Vertex colours given as floats.
-        Num4 = "NUM-4",
-        /// Fog factors.
-        Num6 = "NUM-6",
-        /// Linear fog: the light unit's part, the line, and the byte made of its factor.
-        Fog2 = "FOG-2",
-        /// Exponential fog: the light unit's part and the table.
-        Fog4 = "FOG-4",
-        /// Interpolated colours.
-        Int2 = "INT-2",
-        /// Texture coordinates, as the weights of the filter.
-        Int4 = "INT-4",
-        /// The same of projective coordinates.
-        Tex15 = "TEX-15",
-        /// The same of cube maps.
-        Tex12 = "TEX-12",
-        /// Dependent coordinates of the dot unit, as the weights of the filter.
-        Tsh4 = "TSH-4",
-        /// The same of dependent reads by bytes.
-        Tsh6 = "TSH-6",
-        /// The same of bump environment maps.
-        Tsh7 = "TSH-7",
-        /// Luminance.
-        Tsh8 = "TSH-8",
-        /// Coordinates as colours.
-        Tsh9 = "TSH-9",
-        /// Texels of few bits, and bytes of 16-bit halves.
-        Tex1 = "TEX-1",
-        /// Compressed texels.
-        Tex2 = "TEX-2",
-        /// DXT1, dithered.
-        Tex3 = "TEX-3",
-        /// DXT1 in few bits.
-        Tex4 = "TEX-4",
-        /// The weight of a level.
-        Tex9 = "TEX-9",
-        /// One linear step of the filter.
-        Tex6 = "TEX-6",
-        /// The weight of a tap.
-        Tex17 = "TEX-17",
-        /// Signed texels, filtered.
-        Tex18 = "TEX-18",
-        /// Unsigned mappings.
-        Cmb2 = "CMB-2",
-        /// Expand mappings.
-        Cmb3 = "CMB-3",
-        /// Half-bias mappings.
-        Cmb4 = "CMB-4",
-        /// Signed mappings.
-        Cmb5 = "CMB-5",
-        /// Products.
-        Cmb6 = "CMB-6",
-        /// Sums of products.
-        Cmb7 = "CMB-7",
-        /// Dot products.
-        Cmb8 = "CMB-8",
-        /// Bias and scale.
-        Cmb9 = "CMB-9",
-        /// Saturation.
-        Num3 = "NUM-3",
-        /// The final lerp.
-        Fin2 = "FIN-2",
-        /// E times F.
-        Fin4 = "FIN-4",
-        /// Blend equations.
-        Rop2 = "ROP-2",
-        /// What a surface keeps.
-        Rop5 = "ROP-5",
-    }
-}
-
-impl Rule {
+    pub enum Rule =>
     /// The part that the rule's error counts in.
-    pub fn part(self) -> Part {
-        match self {
-            Rule::Num4 | Rule::Num6 | Rule::Fog2 | Rule::Fog4 | Rule::Int2 => Part::Interpolation,
-            Rule::Int4 | Rule::Tex12 | Rule::Tex15 => Part::Interpolation,
-            Rule::Tsh4 | Rule::Tsh6 | Rule::Tsh7 | Rule::Tsh9 => Part::Interpolation,
-            Rule::Tex1
-            | Rule::Tex2
-            | Rule::Tex3
-            | Rule::Tex4
-            | Rule::Tex6
-            | Rule::Tex9
-            | Rule::Tex17
-            | Rule::Tex18
-            | Rule::Tsh8 => Part::Filtering,
-            Rule::Cmb2 | Rule::Cmb3 | Rule::Cmb4 | Rule::Cmb5 => Part::Expansion,
-            Rule::Cmb6 | Rule::Cmb7 | Rule::Cmb8 | Rule::Cmb9 | Rule::Num3 | Rule::Fin2 | Rule::Fin4 => Part::Product,
-            Rule::Rop2 | Rule::Rop5 => Part::Store,
-        }
+    part: Part {
+        /// Vertex colours given as floats.
+        Num4 = "NUM-4" => Part::Interpolation,
+        /// Fog factors.
+        Num6 = "NUM-6" => Part::Interpolation,
+        /// Linear fog: the light unit's part, the line, and the byte made of its factor.
+        Fog2 = "FOG-2" => Part::Interpolation,
+        /// Exponential fog: the light unit's part and the table.
+        Fog4 = "FOG-4" => Part::Interpolation,
+        /// Interpolated colours.
+        Int2 = "INT-2" => Part::Interpolation,
+        /// Texture coordinates, as the weights of the filter.
+        Int4 = "INT-4" => Part::Interpolation,
+        /// The same of projective coordinates.
+        Tex15 = "TEX-15" => Part::Interpolation,
+        /// The same of cube maps.
+        Tex12 = "TEX-12" => Part::Interpolation,
+        /// Dependent coordinates of the dot unit, as the weights of the filter.
+        Tsh4 = "TSH-4" => Part::Interpolation,
+        /// The same of dependent reads by bytes.
+        Tsh6 = "TSH-6" => Part::Interpolation,
+        /// The same of bump environment maps.
+        Tsh7 = "TSH-7" => Part::Interpolation,
+        /// Luminance.
+        Tsh8 = "TSH-8" => Part::Filtering,
+        /// Coordinates as colours.
+        Tsh9 = "TSH-9" => Part::Interpolation,
+        /// Texels of few bits, and bytes of 16-bit halves.
+        Tex1 = "TEX-1" => Part::Filtering,
+        /// Compressed texels.
+        Tex2 = "TEX-2" => Part::Filtering,
+        /// DXT1, dithered.
+        Tex3 = "TEX-3" => Part::Filtering,
+        /// DXT1 in few bits.
+        Tex4 = "TEX-4" => Part::Filtering,
+        /// The weight of a level.
+        Tex9 = "TEX-9" => Part::Filtering,
+        /// One linear step of the filter.
+        Tex6 = "TEX-6" => Part::Filtering,
+        /// The weight of a tap.
+        Tex17 = "TEX-17" => Part::Filtering,
+        /// Signed texels, filtered.
+        Tex18 = "TEX-18" => Part::Filtering,
+        /// Unsigned mappings.
+        Cmb2 = "CMB-2" => Part::Expansion,
+        /// Expand mappings.
+        Cmb3 = "CMB-3" => Part::Expansion,
+        /// Half-bias mappings.
+        Cmb4 = "CMB-4" => Part::Expansion,
+        /// Signed mappings.
+        Cmb5 = "CMB-5" => Part::Expansion,
+        /// Products.
+        Cmb6 = "CMB-6" => Part::Product,
+        /// Sums of products.
+        Cmb7 = "CMB-7" => Part::Product,
+        /// Dot products.
+        Cmb8 = "CMB-8" => Part::Product,
+        /// Bias and scale.
+        Cmb9 = "CMB-9" => Part::Product,
+        /// Saturation.
+        Num3 = "NUM-3" => Part::Product,
+        /// The final lerp.
+        Fin2 = "FIN-2" => Part::Product,
+        /// E times F.
+        Fin4 = "FIN-4" => Part::Product,
+        /// Blend equations.
+        Rop2 = "ROP-2" => Part::Store,
+        /// What a surface keeps.
+        Rop5 = "ROP-5" => Part::Store,
     }
 }
 

@@ -9,8 +9,9 @@ mod value;
 use std::collections::HashMap;
 use std::ops::Range;
 
+use super::cursor::{Cursor, GivenUp};
 use super::finding::finding;
-use super::lexer::{Kind, Language, Token, tokens};
+use super::lexer::{Kind, Language};
 use ninebit::diagnostic::{Diagnostic, shorten};
 pub(super) use value::{Part, PartKind, Value, integer, known, one, out_of_range, without_prefix, wrong_kind};
 
@@ -75,16 +76,11 @@ pub(super) enum Statement<'t> {
     State { name: Range<usize>, index: Option<Value<'t>>, value: Value<'t> },
 }
 
-/// Why a statement was given up: the reason has been recorded.
-struct GivenUp;
-
 pub(super) struct Reader<'t> {
-    pub(super) text: &'t str,
     pub(super) findings: Vec<Diagnostic>,
     pub(super) asides: Vec<Aside>,
     vocabulary: &'static Vocabulary,
-    tokens: Vec<Token>,
-    at: usize,
+    cursor: Cursor<'t>,
     /// Before this token only calls that are read count.
     until: usize,
     /// Names that are passed over.
@@ -95,16 +91,15 @@ pub(super) struct Reader<'t> {
 
 impl<'t> Reader<'t> {
     pub(super) fn new(text: &'t str, vocabulary: &'static Vocabulary) -> Self {
-        let (tokens, unclosed) = tokens(text, Language::C);
+        let cursor = Cursor::new(text, Language::C);
+        let unclosed = cursor.unclosed.clone();
         let unclosed =
             unclosed.map(|at| finding("NB0103", at, "this comment does not end", "opened here", "close it with `*/`"));
         Reader {
-            text,
             findings: unclosed.into_iter().collect(),
             asides: Vec::new(),
             vocabulary,
-            tokens,
-            at: 0,
+            cursor,
             until: 0,
             passed: Vec::new(),
             arrays: HashMap::new(),
@@ -118,10 +113,10 @@ impl<'t> Reader<'t> {
 
     /// The next statement that is read; `None` at the end.
     pub(super) fn next(&mut self) -> Option<Statement<'t>> {
-        while self.at < self.tokens.len() && self.findings.len() < MOST_FINDINGS {
-            if self.at < self.until {
-                if !self.is_call(self.at) {
-                    self.at += 1;
+        while !self.cursor.is_done() && self.findings.len() < MOST_FINDINGS {
+            if self.cursor.at < self.until {
+                if !self.is_call(self.cursor.at) {
+                    self.cursor.advance();
                 } else if let Some(call) = self.call() {
                     return Some(call);
                 }
@@ -138,7 +133,7 @@ impl<'t> Reader<'t> {
 
     /// The text of a place.
     pub(super) fn word(&self, place: &Range<usize>) -> &'t str {
-        self.text.get(place.clone()).unwrap_or("")
+        self.cursor.text(place)
     }
 
     /// Notes something that is no part of the program, once for each name.
@@ -176,41 +171,14 @@ impl<'t> Reader<'t> {
         }
     }
 
-    fn kind_at(&self, at: usize) -> Option<Kind> {
-        self.tokens.get(at).map(|token| token.kind)
-    }
-
-    fn peek(&self) -> Option<Kind> {
-        self.kind_at(self.at)
-    }
-
-    fn word_at(&self, at: usize) -> &'t str {
-        self.tokens.get(at).map_or("", |token| self.word(&token.place))
-    }
-
-    /// The place of the token at hand; the end of the text after the last.
-    fn place(&self) -> Range<usize> {
-        match (self.tokens.get(self.at), self.tokens.last()) {
-            (Some(token), _) => token.place.clone(),
-            (None, Some(last)) => last.place.end..last.place.end,
-            (None, None) => 0..0,
-        }
-    }
-
     fn expected(&mut self, what: &str) {
-        let place = self.place();
-        let found = match self.word(&place) {
-            "" => "the end of the text".to_owned(),
-            word => format!("`{}`", shorten(word)),
-        };
-        let message = format!("expected {what}, found {found}");
+        let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
         let help = format!("write {}", self.vocabulary.example);
-        self.findings.push(finding("NB0103", place, message, "not a statement from here", help));
+        self.findings.push(finding("NB0103", self.cursor.place(), message, "not a statement from here", help));
     }
 
     fn sign(&mut self, sign: char) -> Option<()> {
-        if self.peek() == Some(Kind::Sign(sign)) {
-            self.at += 1;
+        if self.cursor.take(sign) {
             return Some(());
         }
         self.expected(&format!("`{sign}`"));
@@ -219,37 +187,30 @@ impl<'t> Reader<'t> {
 
     /// Skips to the next statement: behind a semicolon, or at the start of a line.
     fn recover(&mut self) {
-        while self.at < self.tokens.len() {
-            self.at += 1;
-            let behind = self.kind_at(self.at - 1) == Some(Kind::Sign(';'));
-            if behind || self.tokens.get(self.at).is_some_and(|next| next.first) {
-                return;
-            }
-        }
+        self.cursor.advance();
+        self.cursor.skip_to(|cursor| cursor.is_new_line() || cursor.kind_at(cursor.at - 1) == Some(Kind::Sign(';')));
     }
 
     fn is_call(&self, at: usize) -> bool {
-        self.kind_at(at) == Some(Kind::Word)
-            && self.kind_at(at + 1) == Some(Kind::Sign('('))
-            && self.vocabulary.reads(self.word_at(at))
+        self.cursor.kind_at(at) == Some(Kind::Word)
+            && self.cursor.kind_at(at + 1) == Some(Kind::Sign('('))
+            && self.vocabulary.reads(self.cursor.text_at(at))
     }
 
     /// One step at the beginning of a statement.
     fn step(&mut self) -> Result<Option<Statement<'t>>, GivenUp> {
-        match self.peek() {
+        match self.cursor.kind() {
             Some(Kind::Sign(';' | '{' | '}')) => {
-                self.at += 1;
+                self.cursor.advance();
                 Ok(None)
             }
             Some(Kind::Word) => self.at_word(),
             Some(Kind::Sign('#')) => {
-                let (place, name) = (self.place(), self.word_at(self.at + 1));
+                let (place, name) = (self.cursor.place(), self.cursor.text_at(self.cursor.at + 1));
                 let help = "the text is read as if the line were not there; `#define NAME value` is understood";
                 self.pass(place, name, "this line of the preprocessor is passed over", "not looked at", help);
-                self.at += 1;
-                while self.tokens.get(self.at).is_some_and(|token| !token.first) {
-                    self.at += 1;
-                }
+                self.cursor.advance();
+                self.cursor.skip_to(Cursor::is_new_line);
                 Ok(None)
             }
             _ => {
@@ -260,17 +221,17 @@ impl<'t> Reader<'t> {
     }
 
     fn at_word(&mut self) -> Result<Option<Statement<'t>>, GivenUp> {
-        let word = self.word_at(self.at);
-        let place = self.place();
-        match (word, self.kind_at(self.at + 1)) {
+        let word = self.cursor.text_at(self.cursor.at);
+        let place = self.cursor.place();
+        match (word, self.cursor.kind_at(self.cursor.at + 1)) {
             ("if" | "while" | "for" | "switch", Some(Kind::Sign('('))) => {
                 let message = format!("the condition of `{word}` is not looked at");
                 let help = "what stands below is read as if it were run once: paste the part that is meant";
                 self.pass(place, word, &message, "passed over", help);
-                self.until = self.behind_brackets(self.at + 1);
-                self.at += 1;
+                self.until = self.behind_brackets(self.cursor.at + 1);
+                self.cursor.advance();
             }
-            ("else" | "do" | "try", _) => self.at += 1,
+            ("else" | "do" | "try", _) => self.cursor.advance(),
             ("return" | "break" | "continue" | "goto" | "case" | "default", _) => self.until = self.statement_end(),
             (_, Some(Kind::Sign('('))) => return self.at_call(word, place),
             (_, Some(Kind::Sign('[' | '='))) if self.vocabulary.is_state(word) => {
@@ -289,8 +250,8 @@ impl<'t> Reader<'t> {
                 self.pass_statement(word, place);
             }
             // What stands before a call: a pointer, a type, a name of a pass.
-            (_, Some(Kind::Arrow | Kind::Sign('.' | ':'))) => self.at += 2,
-            (_, Some(Kind::Word | Kind::Sign('*' | '{'))) => self.at += 1,
+            (_, Some(Kind::Arrow | Kind::Sign('.' | ':'))) => self.cursor.at += 2,
+            (_, Some(Kind::Word | Kind::Sign('*' | '{'))) => self.cursor.advance(),
             _ => self.pass_statement(word, place),
         }
         Ok(None)
@@ -308,8 +269,8 @@ impl<'t> Reader<'t> {
             self.findings.push(finding("NB0204", place, message, "not known", help));
             return Err(GivenUp);
         }
-        let end = self.behind_brackets(self.at + 1);
-        if (self.at + 1..end).any(|at| self.is_call(at)) {
+        let end = self.behind_brackets(self.cursor.at + 1);
+        if (self.cursor.at + 1..end).any(|at| self.is_call(at)) {
             // `FAILED(pDevice->...)`
             self.until = end;
             return Ok(None);
@@ -317,7 +278,7 @@ impl<'t> Reader<'t> {
         if !self.vocabulary.silent.iter().any(|silent| word.ends_with(silent)) {
             self.pass_name(word, place);
         }
-        self.at = end;
+        self.cursor.at = end;
         Ok(None)
     }
 
@@ -334,18 +295,18 @@ impl<'t> Reader<'t> {
     /// Passes over a statement that is not read, but for the calls in it.
     fn pass_statement(&mut self, word: &'t str, place: Range<usize>) {
         let end = self.statement_end();
-        if (self.at..end).any(|at| self.is_call(at)) {
+        if (self.cursor.at..end).any(|at| self.is_call(at)) {
             self.until = end;
             return;
         }
         self.pass_name(word, place);
-        self.at = end;
+        self.cursor.at = end;
     }
 
     /// The token behind the bracket that closes the one at a place.
     fn behind_brackets(&self, open: usize) -> usize {
         let mut depth = 0usize;
-        for (at, token) in self.tokens.iter().enumerate().skip(open) {
+        for (at, token) in self.cursor.from(open) {
             match token.kind {
                 Kind::Sign('(') => depth += 1,
                 Kind::Sign(')') if depth <= 1 => return at + 1,
@@ -353,19 +314,19 @@ impl<'t> Reader<'t> {
                 _ => {}
             }
         }
-        self.tokens.len()
+        self.cursor.count()
     }
 
     /// The token behind the statement at hand: behind its semicolon, before a block or at the start of a line.
     fn statement_end(&self) -> usize {
         let mut depth = 0usize;
-        for (at, token) in self.tokens.iter().enumerate().skip(self.at) {
-            if depth == 0 && at > self.at && token.first {
+        for (at, token) in self.cursor.from(self.cursor.at) {
+            if depth == 0 && at > self.cursor.at && token.first {
                 return at;
             }
             match token.kind {
                 Kind::Sign(';') if depth == 0 => return at + 1,
-                Kind::Sign('{') if depth == 0 && self.kind_at(at.wrapping_sub(1)) != Some(Kind::Sign('=')) => {
+                Kind::Sign('{') if depth == 0 && self.cursor.kind_at(at.wrapping_sub(1)) != Some(Kind::Sign('=')) => {
                     return at;
                 }
                 Kind::Sign('}') if depth == 0 => return at,
@@ -374,50 +335,40 @@ impl<'t> Reader<'t> {
                 _ => {}
             }
         }
-        self.tokens.len()
+        self.cursor.count()
     }
 
     /// A semicolon, or nothing where the next statement begins a line.
     fn end(&mut self) -> Option<()> {
-        match self.tokens.get(self.at) {
-            None => Some(()),
-            Some(token) if token.kind == Kind::Sign(';') => {
-                self.at += 1;
-                Some(())
-            }
-            Some(token) if token.first || token.kind == Kind::Sign('}') => Some(()),
-            Some(_) => {
-                self.expected("`;`");
-                None
-            }
+        if self.cursor.take(';') || self.cursor.is_new_line() || self.cursor.is('}') {
+            return Some(());
         }
+        self.expected("`;`");
+        None
     }
 
     /// `name(a, b)`; `None` once the reason that it is none has been recorded.
     fn call(&mut self) -> Option<Statement<'t>> {
-        let name = self.place();
-        self.at += 2;
+        let name = self.cursor.place();
+        self.cursor.at += 2;
         let mut arguments = Vec::new();
-        if self.peek() == Some(Kind::Sign(')')) {
-            self.at += 1;
+        if self.cursor.take(')') {
             return Some(Statement::Call { name, arguments });
         }
         loop {
             arguments.push(self.value()?);
-            if self.peek() != Some(Kind::Sign(',')) {
+            if !self.cursor.take(',') {
                 break;
             }
-            self.at += 1;
         }
         self.sign(')')?;
         Some(Statement::Call { name, arguments })
     }
 
     fn state(&mut self, name: Range<usize>) -> Option<Statement<'t>> {
-        self.at += 1;
+        self.cursor.advance();
         let mut index = None;
-        if self.peek() == Some(Kind::Sign('[')) {
-            self.at += 1;
+        if self.cursor.take('[') {
             index = Some(self.value()?);
             self.sign(']')?;
         }
@@ -428,21 +379,21 @@ impl<'t> Reader<'t> {
 
     /// Takes `name[4] = { 1, 0, 0, 1 };` if that is what stands here.
     fn array(&mut self, name: &'t str) -> bool {
-        let count = usize::from(self.kind_at(self.at + 2) == Some(Kind::Number));
+        let count = usize::from(self.cursor.kind_at(self.cursor.at + 2) == Some(Kind::Number));
         let shape = [']', '=', '{'];
-        if (0..3).any(|n| self.kind_at(self.at + 2 + count + n) != Some(Kind::Sign(shape[n]))) {
+        if (0..3).any(|n| self.cursor.kind_at(self.cursor.at + 2 + count + n) != Some(Kind::Sign(shape[n]))) {
             return false;
         }
-        let (start, findings) = (self.at, self.findings.len());
-        self.at += 4 + count;
+        let (start, findings) = (self.cursor.at, self.findings.len());
+        self.cursor.at += 4 + count;
         let value = self.value().and_then(|mut value| value.parts.pop());
         if let Some(Part { kind: PartKind::List(values), .. }) = value {
             self.arrays.insert(name, values);
         } else {
             // An array of something else, which no call that is read takes.
             self.findings.truncate(findings);
-            self.at = start;
-            self.at = self.statement_end();
+            self.cursor.at = start;
+            self.cursor.at = self.statement_end();
         }
         true
     }

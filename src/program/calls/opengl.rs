@@ -6,6 +6,7 @@ use super::{Part, PartKind, Reader, Value, known, wrong_kind};
 use crate::finding::finding;
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::number::convert::constant;
+use ninebit::state::Named;
 
 /// A name without what only decorates it: `GL_COMBINE_RGB_ARB` is `COMBINE_RGB`. `keep`: endings that matter.
 pub(crate) fn bare<'w>(word: &'w str, keep: &[&str]) -> &'w str {
@@ -38,6 +39,11 @@ pub(crate) fn choose<T: Copy>(
             None
         }
     }
+}
+
+/// All values of an enumeration, by the names that the API has for them, in their order.
+pub(crate) fn table<T: Named>(names: &[&'static str]) -> Vec<(&'static str, T)> {
+    names.iter().copied().zip(T::ALL.iter().copied()).collect()
 }
 
 /// n of `GL_TEXTURE0 + n`, `GL_TEXTUREn_ARB`, and likewise of other names: below `count`.

@@ -44,21 +44,16 @@ impl<'t> Reader<'t> {
     }
 
     fn nested_value(&mut self, depth: usize) -> Option<Value<'t>> {
-        let start = self.place().start;
+        let start = self.cursor.place().start;
         let mut parts = Vec::new();
         loop {
             self.part(&mut parts, depth)?;
-            if !matches!(self.peek(), Some(Kind::Sign('|' | '+'))) {
+            if !matches!(self.cursor.kind(), Some(Kind::Sign('|' | '+'))) {
                 break;
             }
-            self.at += 1;
+            self.cursor.advance();
         }
-        Some(Value { parts, place: start..self.end_before() })
-    }
-
-    /// Where the token before the one at hand ends.
-    fn end_before(&self) -> usize {
-        self.tokens.get(self.at.wrapping_sub(1)).map_or(0, |token| token.place.end)
+        Some(Value { parts, place: start..self.cursor.end() })
     }
 
     fn part(&mut self, parts: &mut Vec<Part<'t>>, depth: usize) -> Option<()> {
@@ -66,65 +61,64 @@ impl<'t> Reader<'t> {
             self.expected("a value in fewer brackets");
             return None;
         }
-        let place = self.place();
+        let place = self.cursor.place();
         let text = self.word(&place);
-        match self.peek() {
+        match self.cursor.kind() {
             Some(Kind::Number) => {
-                self.at += 1;
+                self.cursor.advance();
                 parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, false)? });
             }
             Some(Kind::Sign('-')) => {
-                self.at += 1;
-                let number = self.place();
+                self.cursor.advance();
+                let number = self.cursor.place();
                 let text = self.word(&number);
-                if self.peek() != Some(Kind::Number) {
+                if self.cursor.kind() != Some(Kind::Number) {
                     self.expected("a number");
                     return None;
                 }
-                self.at += 1;
+                self.cursor.advance();
                 let place = place.start..number.end;
                 parts.push(Part { text, place: place.clone(), kind: self.number_kind(text, place, true)? });
             }
             // The address of an array's first element is the array.
             Some(Kind::Sign('&' | '+')) => {
-                self.at += 1;
+                self.cursor.advance();
                 return self.part(parts, depth + 1);
             }
             Some(Kind::Sign('(')) => {
                 if let Some(behind) = self.cast() {
-                    self.at = behind;
+                    self.cursor.at = behind;
                     return self.part(parts, depth + 1);
                 }
-                self.at += 1;
+                self.cursor.advance();
                 let inner = self.nested_value(depth + 1)?;
                 self.sign(')')?;
                 parts.extend(inner.parts);
             }
             Some(Kind::Sign('{')) => {
-                self.at += 1;
+                self.cursor.advance();
                 let values = self.values('}', depth)?;
-                let place = place.start..self.end_before();
+                let place = place.start..self.cursor.end();
                 parts.push(Part { text: self.word(&place), place, kind: PartKind::List(values) });
             }
-            Some(Kind::Sign('<')) if self.kind_at(self.at + 2) == Some(Kind::Sign('>')) => {
-                self.at += 3;
-                let place = place.start..self.end_before();
+            Some(Kind::Sign('<')) if self.cursor.kind_at(self.cursor.at + 2) == Some(Kind::Sign('>')) => {
+                self.cursor.at += 3;
+                let place = place.start..self.cursor.end();
                 parts.push(Part { text: self.word(&place), place, kind: PartKind::Name });
             }
             Some(Kind::Word) => {
-                self.at += 1;
-                if self.peek() == Some(Kind::Sign('(')) {
-                    self.at += 1;
+                self.cursor.advance();
+                if self.cursor.take('(') {
                     let arguments = self.values(')', depth)?;
-                    let place = place.start..self.end_before();
+                    let place = place.start..self.cursor.end();
                     parts.push(Part { text, place, kind: PartKind::Call(arguments) });
                     return Some(());
                 }
                 self.members();
-                let text = self.word(&(place.start..self.end_before()));
+                let text = self.word(&(place.start..self.cursor.end()));
                 parts.push(Part {
                     text: text.trim_end_matches("[0]"),
-                    place: place.start..self.end_before(),
+                    place: place.start..self.cursor.end(),
                     kind: PartKind::Name,
                 });
             }
@@ -139,12 +133,11 @@ impl<'t> Reader<'t> {
     /// Values with commas between them, up to a closing bracket.
     fn values(&mut self, closing: char, depth: usize) -> Option<Vec<Value<'t>>> {
         let mut values = Vec::new();
-        while self.peek() != Some(Kind::Sign(closing)) {
+        while !self.cursor.is(closing) {
             values.push(self.nested_value(depth + 1)?);
-            if self.peek() != Some(Kind::Sign(',')) {
+            if !self.cursor.take(',') {
                 break;
             }
-            self.at += 1;
         }
         self.sign(closing)?;
         Some(values)
@@ -153,10 +146,12 @@ impl<'t> Reader<'t> {
     /// Takes `[0]`, `.v` and `->v` behind a name.
     fn members(&mut self) {
         loop {
-            let inside = [1, 2].map(|n| self.kind_at(self.at + n));
-            match (self.peek(), inside) {
-                (Some(Kind::Sign('[')), [Some(Kind::Number | Kind::Word), Some(Kind::Sign(']'))]) => self.at += 3,
-                (Some(Kind::Arrow | Kind::Sign('.')), [Some(Kind::Word), _]) => self.at += 2,
+            let inside = [1, 2].map(|n| self.cursor.kind_at(self.cursor.at + n));
+            match (self.cursor.kind(), inside) {
+                (Some(Kind::Sign('[')), [Some(Kind::Number | Kind::Word), Some(Kind::Sign(']'))]) => {
+                    self.cursor.at += 3
+                }
+                (Some(Kind::Arrow | Kind::Sign('.')), [Some(Kind::Word), _]) => self.cursor.at += 2,
                 _ => return,
             }
         }
@@ -164,12 +159,12 @@ impl<'t> Reader<'t> {
 
     /// The token behind `(DWORD)`, `(const GLfloat *)`, `(GLfloat[4])`, if a cast stands here.
     fn cast(&self) -> Option<usize> {
-        if !is_type(self.word_at(self.at + 1)) {
+        if !is_type(self.cursor.text_at(self.cursor.at + 1)) {
             return None;
         }
         let parts = |kind| matches!(kind, Some(Kind::Word | Kind::Number | Kind::Sign('*' | '[' | ']' | '&')));
-        let close = (self.at + 2..self.at + 10).find(|at| !parts(self.kind_at(*at)))?;
-        (self.kind_at(close) == Some(Kind::Sign(')'))).then_some(close + 1)
+        let close = (self.cursor.at + 2..self.cursor.at + 10).find(|at| !parts(self.cursor.kind_at(*at)))?;
+        (self.cursor.kind_at(close) == Some(Kind::Sign(')'))).then_some(close + 1)
     }
 
     fn number_kind(&mut self, text: &str, place: Range<usize>, negative: bool) -> Option<PartKind<'t>> {

@@ -173,34 +173,25 @@ pub struct Target {
 
 named! {
     /// An arithmetic instruction; a, b and c are its sources.
-    pub enum Operation {
-        /// a.
-        Mov = "mov",
-        /// a + b.
-        Add = "add",
-        /// a - b.
-        Sub = "sub",
-        /// a b.
-        Mul = "mul",
-        /// a b + c.
-        Mad = "mad",
-        /// a b + (1 - a) c, a limited to 0..1.
-        Lrp = "lrp",
-        /// The sum of a b over R, G and B, in all channels that are written.
-        Dp3 = "dp3",
-        /// b if a, which is r0.a, is greater than 1/2, else c.
-        Cnd = "cnd",
-    }
-}
-
-impl Operation {
+    pub enum Operation =>
     /// Sources it has.
-    pub fn sources(self) -> usize {
-        match self {
-            Operation::Mov => 1,
-            Operation::Add | Operation::Sub | Operation::Mul | Operation::Dp3 => 2,
-            Operation::Mad | Operation::Lrp | Operation::Cnd => 3,
-        }
+    sources: usize {
+        /// a.
+        Mov = "mov" => 1,
+        /// a + b.
+        Add = "add" => 2,
+        /// a - b.
+        Sub = "sub" => 2,
+        /// a b.
+        Mul = "mul" => 2,
+        /// a b + c.
+        Mad = "mad" => 3,
+        /// a b + (1 - a) c, a limited to 0..1.
+        Lrp = "lrp" => 3,
+        /// The sum of a b over R, G and B, in all channels that are written.
+        Dp3 = "dp3" => 2,
+        /// b if a, which is r0.a, is greater than 1/2, else c.
+        Cnd = "cnd" => 3,
     }
 }
 
@@ -251,59 +242,57 @@ impl Arithmetic {
 
 named! {
     /// An instruction that loads a texture register, in the order of the table in `docs/pixel-shader.md`.
-    pub enum TextureOperation {
+    pub enum TextureOperation =>
+    /// Registers that are written behind its name, and whether its own holds a colour afterwards.
+    form: (usize, bool) {
         /// The texture at its coordinates.
-        Tex = "tex",
+        Tex = "tex" => (1, true),
         /// The coordinates themselves, limited to 0..1.
-        Texcoord = "texcoord",
+        Texcoord = "texcoord" => (1, true),
         /// Drops the pixel if a coordinate is negative.
-        Texkill = "texkill",
+        Texkill = "texkill" => (1, false),
         /// The texture where a matrix times the source moves the coordinates.
-        Texbem = "texbem",
+        Texbem = "texbem" => (2, true),
         /// The same, and scaled by the source's luminance.
-        Texbeml = "texbeml",
+        Texbeml = "texbeml" => (2, true),
         /// The texture at the source's alpha and red.
-        Texreg2ar = "texreg2ar",
+        Texreg2ar = "texreg2ar" => (2, true),
         /// The texture at the source's green and blue.
-        Texreg2gb = "texreg2gb",
+        Texreg2gb = "texreg2gb" => (2, true),
         /// The first row of two.
-        Texm3x2pad = "texm3x2pad",
+        Texm3x2pad = "texm3x2pad" => (2, false),
         /// The second row, and the texture at the two products.
-        Texm3x2tex = "texm3x2tex",
+        Texm3x2tex = "texm3x2tex" => (2, true),
         /// The first or second row of three.
-        Texm3x3pad = "texm3x3pad",
+        Texm3x3pad = "texm3x3pad" => (2, false),
         /// The third row, and the cube map in that direction.
-        Texm3x3tex = "texm3x3tex",
+        Texm3x3tex = "texm3x3tex" => (2, true),
         /// The third row, and the cube map in the direction reflected, the eye a constant.
-        Texm3x3spec = "texm3x3spec",
+        Texm3x3spec = "texm3x3spec" => (3, true),
         /// The same, the eye in the three fourth coordinates.
-        Texm3x3vspec = "texm3x3vspec",
+        Texm3x3vspec = "texm3x3vspec" => (2, true),
     }
 }
 
 impl TextureOperation {
-    /// Whether it has a source register.
-    pub fn has_source(self) -> bool {
-        !matches!(self, TextureOperation::Tex | TextureOperation::Texcoord | TextureOperation::Texkill)
-    }
-
     /// Registers that are written behind its name.
     pub fn operands(self) -> usize {
-        1 + usize::from(self.has_source()) + usize::from(self == TextureOperation::Texm3x3spec)
+        self.form().0
+    }
+
+    /// Whether it has a source register.
+    pub fn has_source(self) -> bool {
+        self.operands() > 1
     }
 
     /// Whether it is a row of a matrix, whose source may be `_bx2`.
     pub fn is_row(self) -> bool {
-        use TextureOperation as Op;
-        matches!(
-            self,
-            Op::Texm3x2pad | Op::Texm3x2tex | Op::Texm3x3pad | Op::Texm3x3tex | Op::Texm3x3spec | Op::Texm3x3vspec
-        )
+        self.name().starts_with("texm3x")
     }
 
     /// Whether its register holds a colour afterwards.
     pub fn gives_color(self) -> bool {
-        !matches!(self, TextureOperation::Texkill | TextureOperation::Texm3x2pad | TextureOperation::Texm3x3pad)
+        self.form().1
     }
 }
 

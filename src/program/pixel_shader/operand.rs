@@ -42,9 +42,9 @@ impl Parser<'_> {
             let message = format!("{what} takes no `_{}` here", shorten(modifier));
             self.push("NB0371", span.clone(), message, "not here", "leave it out");
         }
-        if self.is('.') {
-            let place = self.place();
-            self.at += 1;
+        if self.cursor.is('.') {
+            let place = self.cursor.place();
+            self.cursor.advance();
             let word = self.word("channels")?;
             let end = word.pieces.last().map_or(place.end, |(_, span)| span.end);
             if word.pieces.first().is_none_or(|(word, _)| words::mask(word) != Some(Mask::All)) {
@@ -56,17 +56,17 @@ impl Parser<'_> {
     }
 
     pub(super) fn number(&mut self) -> Option<f32> {
-        let from = self.place().start;
-        let negative = self.take('-');
+        let from = self.cursor.place().start;
+        let negative = self.cursor.take('-');
         if !negative {
-            self.take('+');
+            self.cursor.take('+');
         }
-        if self.kind() != Some(Kind::Number) {
+        if self.cursor.kind() != Some(Kind::Number) {
             return self.expected("a number");
         }
-        let place = self.place();
-        self.at += 1;
-        let digits = self.text[place.clone()].trim_end_matches(['f', 'F']);
+        let place = self.cursor.place();
+        self.cursor.advance();
+        let digits = self.cursor.text(&place).trim_end_matches(['f', 'F']);
         let value = format!("{}{digits}", if negative { "-" } else { "" }).parse::<f32>().ok();
         let value = value.filter(|value| value.is_finite());
         if value.is_none() {
@@ -112,14 +112,14 @@ impl Parser<'_> {
             self.push("NB0371", span.clone(), message, "not here", help);
         }
         let mut mask = Mask::All;
-        if self.take('.') {
-            let span = self.place();
+        if self.cursor.take('.') {
+            let span = self.cursor.place();
             let word = self.word("the channels to write")?;
             place.end = span.end;
             match word.pieces.first().and_then(|(word, _)| words::mask(word)) {
                 Some(found) if word.pieces.len() == 1 => mask = found,
                 _ => {
-                    let message = format!("`.{}` cannot be written alone", shorten(&self.text[span.clone()]));
+                    let message = format!("`.{}` cannot be written alone", shorten(self.cursor.text(&span)));
                     let help = "write `.rgb` or `.a`, or no channels for all four";
                     self.push("NB0371", span, message, "not these channels", help);
                 }
@@ -129,19 +129,19 @@ impl Parser<'_> {
     }
 
     pub(super) fn source(&mut self) -> Option<At<Source>> {
-        let from = self.place().start;
-        let negate = self.take('-');
+        let from = self.cursor.place().start;
+        let negate = self.cursor.take('-');
         let mut modifier = Modifier::Plain;
-        if self.kind() == Some(Kind::Number) {
-            let place = self.place();
-            if self.text[place.clone()].parse::<f32>().ok() != Some(1.0) {
-                let message = format!("`{}` is no source", shorten(&self.text[place.clone()]));
+        if self.cursor.kind() == Some(Kind::Number) {
+            let place = self.cursor.place();
+            if self.cursor.text(&place).parse::<f32>().ok() != Some(1.0) {
+                let message = format!("`{}` is no source", shorten(self.cursor.text(&place)));
                 let help = "write `1-` before a register, or `def c0, ...` and c0";
                 self.push("NB0205", place, message, "a number", help);
                 return None;
             }
-            self.at += 1;
-            if !self.take('-') {
+            self.cursor.advance();
+            if !self.cursor.take('-') {
                 return self.expected("`-`");
             }
             modifier = Modifier::Invert;
@@ -152,7 +152,7 @@ impl Parser<'_> {
         let register = self.register(&name, place.clone());
         let mut selector = None;
         let mut suffixes: Vec<_> = pieces.collect();
-        while self.take('.') {
+        while self.cursor.take('.') {
             let Pieces { pieces } = self.word("the channels to read")?;
             let mut pieces = pieces.into_iter();
             let (word, span) = pieces.next()?;
@@ -166,7 +166,7 @@ impl Parser<'_> {
             }
             suffixes.extend(pieces);
         }
-        let end = self.at.checked_sub(1).and_then(|at| self.tokens.get(at)).map_or(place.end, |token| token.place.end);
+        let end = self.cursor.end();
         for (word, span) in suffixes {
             match words::modifier(&word) {
                 Some(found) if modifier == Modifier::Plain => modifier = found,

@@ -4,8 +4,9 @@ use std::ops::Range;
 
 use super::words::{self, Word};
 use super::*;
+use crate::cursor::Cursor;
 use crate::finding::{finding, foreign, header};
-use crate::lexer::{Kind, Language, Token, tokens};
+use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
 
@@ -16,11 +17,11 @@ const MOST_FINDINGS: usize = 32;
 pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
     let program =
         PixelShader { version: Version::Ps11, definitions: Vec::new(), textures: Vec::new(), arithmetic: Vec::new() };
-    let mut parser = Parser { text, tokens: tokens(text, Language::ASSEMBLER).0, at: 0, findings: Vec::new(), program };
+    let mut parser = Parser { cursor: Cursor::new(text, Language::ASSEMBLER), findings: Vec::new(), program };
     if let Some(place) = header(text) {
         parser.findings.push(foreign(text, place, "NB0370", "a pixel shader begins with `ps.1.1`"));
     } else if parser.version().is_some() {
-        while parser.at < parser.tokens.len() && parser.findings.len() < MOST_FINDINGS {
+        while !parser.cursor.is_done() && parser.findings.len() < MOST_FINDINGS {
             if parser.instruction().is_none() {
                 parser.recover();
             }
@@ -30,9 +31,7 @@ pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
 }
 
 pub(super) struct Parser<'t> {
-    pub(super) text: &'t str,
-    pub(super) tokens: Vec<Token>,
-    pub(super) at: usize,
+    pub(super) cursor: Cursor<'t>,
     findings: Vec<Diagnostic>,
     program: PixelShader,
 }
@@ -42,27 +41,7 @@ pub(super) struct Pieces {
     pub(super) pieces: Vec<(String, Range<usize>)>,
 }
 
-impl<'t> Parser<'t> {
-    pub(super) fn kind(&self) -> Option<Kind> {
-        self.tokens.get(self.at).map(|token| token.kind)
-    }
-
-    pub(super) fn is(&self, sign: char) -> bool {
-        self.kind() == Some(Kind::Sign(sign))
-    }
-
-    pub(super) fn take(&mut self, sign: char) -> bool {
-        let found = self.is(sign);
-        self.at += usize::from(found);
-        found
-    }
-
-    /// Place of the token at hand; behind the last one, of the last one.
-    pub(super) fn place(&self) -> Range<usize> {
-        let token = self.tokens.get(self.at).or(self.tokens.last());
-        token.map_or(0..0, |token| token.place.clone())
-    }
-
+impl Parser<'_> {
     pub(super) fn push(
         &mut self,
         code: &'static str,
@@ -75,35 +54,31 @@ impl<'t> Parser<'t> {
     }
 
     pub(super) fn expected<T>(&mut self, what: &str) -> Option<T> {
-        let place = self.place();
-        let (found, label) = match self.kind() {
-            None => ("the end of the text".to_owned(), "behind this"),
-            Some(_) => (format!("`{}`", shorten(&self.text[place.clone()])), "not expected here"),
+        let (place, label) = match self.cursor.is_done() {
+            true => (self.cursor.place_at(self.cursor.count().saturating_sub(1)), "behind this"),
+            false => (self.cursor.place(), "not expected here"),
         };
         let help = "an instruction is written `mad_x2_sat r0.rgb, t0_bx2, 1-v0.a, c0`";
-        self.push("NB0103", place, format!("expected {what}, found {found}"), label, help);
+        let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
+        self.push("NB0103", place, message, label, help);
         None
     }
 
     /// Skips to the next line, or to a `+`.
     fn recover(&mut self) {
-        while self.at < self.tokens.len() {
-            self.at += 1;
-            if self.is('+') || self.tokens.get(self.at).is_some_and(|token| token.first) {
-                return;
-            }
-        }
+        self.cursor.advance();
+        self.cursor.skip_to(|cursor| cursor.is('+') || cursor.is_new_line());
     }
 
     /// The word at hand, taken.
     pub(super) fn word(&mut self, what: &str) -> Option<Pieces> {
-        if self.kind() != Some(Kind::Word) {
+        if self.cursor.kind() != Some(Kind::Word) {
             return self.expected(what);
         }
-        let place = self.place();
-        self.at += 1;
+        let place = self.cursor.place();
+        self.cursor.advance();
         let mut start = place.start;
-        let pieces = self.text[place].split('_').map(|piece| {
+        let pieces = self.cursor.text(&place).split('_').map(|piece| {
             let span = start..start + piece.len();
             start = span.end + 1;
             (piece.to_ascii_lowercase(), span)
@@ -113,15 +88,15 @@ impl<'t> Parser<'t> {
 
     /// The version, if the text starts with one; without one it is 1.1. `None`: a version that is not read.
     fn version(&mut self) -> Option<()> {
-        let place = self.place();
-        let word = match self.kind() {
-            Some(Kind::Word) => self.text[place.clone()].to_ascii_lowercase(),
+        let place = self.cursor.place();
+        let word = match self.cursor.kind() {
+            Some(Kind::Word) => self.cursor.text(&place).to_ascii_lowercase(),
             None => return self.expected("a pixel shader"),
             Some(_) => String::new(),
         };
         match words::version(&word) {
             Some(Ok(version)) => {
-                self.at += 1;
+                self.cursor.advance();
                 self.program.version = version;
             }
             Some(Err(())) => {
@@ -141,8 +116,8 @@ impl<'t> Parser<'t> {
 
     /// One instruction; `None` once the reason that it is none has been recorded.
     fn instruction(&mut self) -> Option<()> {
-        let paired = self.take('+');
-        let start = self.at;
+        let paired = self.cursor.take('+');
+        let start = self.cursor.at;
         let Pieces { pieces } = self.word("an instruction")?;
         let mut pieces = pieces.into_iter();
         let (name, place) = pieces.next()?;
@@ -171,7 +146,7 @@ impl<'t> Parser<'t> {
                 self.arithmetic(operation, scale, saturate, paired, place)?;
             }
         }
-        match self.tokens.get(self.at) {
+        match self.cursor.token() {
             Some(token) if token.kind == Kind::Sign(',') => self.too_many(&name, start),
             Some(token) if !token.first && token.kind == Kind::Sign('.') => self.expected("the next instruction"),
             _ => Some(()),
@@ -179,7 +154,7 @@ impl<'t> Parser<'t> {
     }
 
     fn unknown(&mut self, token: usize, name: &str) -> Option<()> {
-        let place = self.tokens[token].place.clone();
+        let place = self.cursor.place_at(token);
         if let Some((version, help)) = words::later(name) {
             let message = format!("`{name}` is an instruction of ps.{version}, which ps.1.1 does not have");
             self.push("NB0370", place, message, "not in this language", help);
@@ -223,12 +198,11 @@ impl<'t> Parser<'t> {
     }
 
     fn comma(&mut self, what: &str, start: usize, wanted: usize, found: usize) -> Option<()> {
-        if self.take(',') {
+        if self.cursor.take(',') {
             return Some(());
         }
-        let next = self.tokens.get(self.at);
-        if next.is_none_or(|token| token.first || token.kind == Kind::Sign('+')) {
-            let token = self.tokens[start].place.clone();
+        if self.cursor.is_new_line() || self.cursor.is('+') {
+            let token = self.cursor.place_at(start);
             let message = format!("{what} has {wanted} operands, not {found}");
             self.push("NB0211", token, message, "this instruction", operands(what));
             return None;
@@ -237,8 +211,8 @@ impl<'t> Parser<'t> {
     }
 
     fn too_many(&mut self, what: &str, start: usize) -> Option<()> {
-        let place = self.place();
-        let first = self.tokens[start].place.clone();
+        let place = self.cursor.place();
+        let first = self.cursor.place_at(start);
         let wanted = match words::find(what) {
             Some(Word::Arithmetic(operation)) => 1 + operation.sources(),
             Some(Word::Texture(operation)) => operation.operands(),
@@ -252,7 +226,7 @@ impl<'t> Parser<'t> {
     }
 
     fn definition(&mut self) -> Option<()> {
-        let start = self.at - 1;
+        let start = self.cursor.at - 1;
         let At { value: index, place } = self.plain_register(Bank::Constant, "def", "a constant")?;
         let mut value = [0.0; 4];
         for (n, slot) in value.iter_mut().enumerate() {
@@ -264,7 +238,7 @@ impl<'t> Parser<'t> {
     }
 
     fn texture(&mut self, operation: TextureOperation, place: Range<usize>) -> Option<()> {
-        let start = self.at - 1;
+        let start = self.cursor.at - 1;
         let name = operation.name();
         let unit = self.plain_register(Bank::Texture, name, "a texture register")?;
         let wanted = operation.operands();
@@ -294,7 +268,7 @@ impl<'t> Parser<'t> {
         paired: bool,
         place: Range<usize>,
     ) -> Option<()> {
-        let start = self.at - 1;
+        let start = self.cursor.at - 1;
         let target = self.target()?;
         let mut sources = Vec::with_capacity(operation.sources());
         while sources.len() < operation.sources() {

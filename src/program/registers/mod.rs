@@ -19,62 +19,42 @@ pub use text::{Written, read};
 
 named! {
     /// A register of the combiners, or an array of them.
-    pub enum Word {
+    pub enum Word =>
+    /// Of NV10 and of NV20: how many of them the chip has, 0 for none, and the method of its 3D class that sets the first; the others follow at four
+    /// bytes each.
+    layout: [(usize, u32); 2] {
         /// Inputs of the alpha portions.
-        RcInAlpha = "rc_in_alpha",
+        RcInAlpha = "rc_in_alpha" => [(2, 0x260), (8, 0x260)],
         /// Inputs of the RGB portions.
-        RcInRgb = "rc_in_rgb",
+        RcInRgb = "rc_in_rgb" => [(2, 0x268), (8, 0xac0)],
         /// Constant colours 0 and 1: of the whole program (nv10), of the final combiner (nv20).
-        RcColor = "rc_color",
+        RcColor = "rc_color" => [(2, 0x270), (2, 0x1e20)],
         /// Constant colour 0 of each stage (nv20).
-        RcConstantColor0 = "rc_constant_color0",
+        RcConstantColor0 = "rc_constant_color0" => [(0, 0xa60), (8, 0xa60)],
         /// Constant colour 1 of each stage (nv20).
-        RcConstantColor1 = "rc_constant_color1",
+        RcConstantColor1 = "rc_constant_color1" => [(0, 0xa80), (8, 0xa80)],
         /// Outputs of the alpha portions.
-        RcOutAlpha = "rc_out_alpha",
+        RcOutAlpha = "rc_out_alpha" => [(2, 0x278), (8, 0xaa0)],
         /// Outputs of the RGB portions; on nv10 the second also has the number of stages and the mux bit.
-        RcOutRgb = "rc_out_rgb",
+        RcOutRgb = "rc_out_rgb" => [(2, 0x280), (8, 0x1e40)],
         /// Inputs A to D of the final combiner.
-        RcFinal0 = "rc_final0",
+        RcFinal0 = "rc_final0" => [(1, 0x288), (1, 0x288)],
         /// Inputs E to G of the final combiner, and its flags.
-        RcFinal1 = "rc_final1",
+        RcFinal1 = "rc_final1" => [(1, 0x28c), (1, 0x28c)],
         /// Number of stages, mux bit, and whether stages have own constants (nv20).
-        RcConfig = "rc_config",
+        RcConfig = "rc_config" => [(0, 0x1e60), (1, 0x1e60)],
     }
 }
 
 impl Word {
     /// How many of them a chip has; 0: none.
     pub fn count(self, chip: Profile) -> usize {
-        let stages = chip.general_stages();
-        match (self, chip) {
-            (Word::RcInAlpha | Word::RcInRgb | Word::RcOutAlpha | Word::RcOutRgb, _) => stages,
-            (Word::RcColor, _) => 2,
-            (Word::RcFinal0 | Word::RcFinal1, _) => 1,
-            (Word::RcConstantColor0 | Word::RcConstantColor1, Profile::Nv2a) => stages,
-            (Word::RcConfig, Profile::Nv2a) => 1,
-            (Word::RcConstantColor0 | Word::RcConstantColor1 | Word::RcConfig, Profile::Nv10) => 0,
-        }
+        self.layout()[chip as usize].0
     }
 
     /// Method of the chip's 3D class that sets the first of them; the others follow at four bytes each.
     pub fn method(self, chip: Profile) -> u32 {
-        match (self, chip) {
-            (Word::RcInAlpha, _) => 0x260,
-            (Word::RcInRgb, Profile::Nv10) => 0x268,
-            (Word::RcInRgb, Profile::Nv2a) => 0xac0,
-            (Word::RcColor, Profile::Nv10) => 0x270,
-            (Word::RcColor, Profile::Nv2a) => 0x1e20,
-            (Word::RcConstantColor0, _) => 0xa60,
-            (Word::RcConstantColor1, _) => 0xa80,
-            (Word::RcOutAlpha, Profile::Nv10) => 0x278,
-            (Word::RcOutAlpha, Profile::Nv2a) => 0xaa0,
-            (Word::RcOutRgb, Profile::Nv10) => 0x280,
-            (Word::RcOutRgb, Profile::Nv2a) => 0x1e40,
-            (Word::RcFinal0, _) => 0x288,
-            (Word::RcFinal1, _) => 0x28c,
-            (Word::RcConfig, _) => 0x1e60,
-        }
+        self.layout()[chip as usize].1
     }
 
     /// The word that a method sets, and which of them; `None` if it sets none of these.

@@ -5,45 +5,29 @@ use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, SurfaceFormat,
 
 named! {
     /// A method of the raster operations.
-    pub enum Method {
-        /// Format of the surface: colour in the lowest four bits.
-        SurfaceFormat = "surface_format",
-        /// Whether fragments are tested.
-        AlphaTestEnable = "alpha_test_enable",
-        /// Whether fragments are blended.
-        BlendEnable = "blend_enable",
-        /// Comparison of the alpha test.
-        AlphaFunc = "alpha_func",
-        /// Its reference, 0 to 255.
-        AlphaRef = "alpha_ref",
-        /// Factor of the source.
-        BlendFuncSfactor = "blend_func_sfactor",
-        /// Factor of the destination.
-        BlendFuncDfactor = "blend_func_dfactor",
-        /// Blend constant, A8R8G8B8.
-        BlendColor = "blend_color",
-        /// Equation.
-        BlendEquation = "blend_equation",
-        /// Channels that are written.
-        ColorMask = "color_mask",
-    }
-}
-
-impl Method {
+    pub enum Method =>
     /// Its number.
-    pub fn number(self) -> u32 {
-        match self {
-            Method::SurfaceFormat => 0x208,
-            Method::AlphaTestEnable => 0x300,
-            Method::BlendEnable => 0x304,
-            Method::AlphaFunc => 0x33c,
-            Method::AlphaRef => 0x340,
-            Method::BlendFuncSfactor => 0x344,
-            Method::BlendFuncDfactor => 0x348,
-            Method::BlendColor => 0x34c,
-            Method::BlendEquation => 0x350,
-            Method::ColorMask => 0x358,
-        }
+    number: u32 {
+        /// Format of the surface: colour in the lowest four bits.
+        SurfaceFormat = "surface_format" => 0x208,
+        /// Whether fragments are tested.
+        AlphaTestEnable = "alpha_test_enable" => 0x300,
+        /// Whether fragments are blended.
+        BlendEnable = "blend_enable" => 0x304,
+        /// Comparison of the alpha test.
+        AlphaFunc = "alpha_func" => 0x33c,
+        /// Its reference, 0 to 255.
+        AlphaRef = "alpha_ref" => 0x340,
+        /// Factor of the source.
+        BlendFuncSfactor = "blend_func_sfactor" => 0x344,
+        /// Factor of the destination.
+        BlendFuncDfactor = "blend_func_dfactor" => 0x348,
+        /// Blend constant, A8R8G8B8.
+        BlendColor = "blend_color" => 0x34c,
+        /// Equation.
+        BlendEquation = "blend_equation" => 0x350,
+        /// Channels that are written.
+        ColorMask = "color_mask" => 0x358,
     }
 }
 

@@ -6,6 +6,8 @@ use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Combiners, Named, Profile};
 
 use super::{RegisterWords, Word, decode, word_of};
+use crate::cursor::Cursor;
+use crate::lexer::{Kind, Language};
 use crate::{Part, Place, Places};
 
 /// Words, and where each stands in a text.
@@ -125,14 +127,14 @@ const ASIDE: [&str; 7] = [
 ];
 
 /// A piece of the text that is no separator.
-struct Token<'t> {
+struct Piece<'t> {
     text: &'t str,
     /// It stands behind an opening bracket.
     bracketed: bool,
     place: Range<usize>,
 }
 
-impl Token<'_> {
+impl Piece<'_> {
     /// Its number: with `0x`, or eight digits, hexadecimal.
     fn number(&self) -> Option<u32> {
         let hexadecimal = self.text.strip_prefix("0x").or_else(|| self.text.strip_prefix("0X"));
@@ -154,48 +156,39 @@ impl Token<'_> {
 pub fn read(text: &str, chip: Profile) -> Result<Written, Vec<Diagnostic>> {
     let mut written = Written::new(chip, 0..text.find('\n').unwrap_or(text.len()));
     let mut findings = Vec::new();
-    let mut statement: Vec<Token<'_>> = Vec::new();
-    let mut at = 0;
-    while at < text.len() {
-        let rest = &text[at..];
-        let ended = rest.starts_with(['\n', ';']);
-        if ended {
-            finish(&mut statement, &mut written, &mut findings);
-        }
-        let length = if ended {
-            1
-        } else if rest.starts_with("//") || rest.starts_with('#') {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map_or(rest.len(), |end| end + 2)
-        } else {
-            let token = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
-            if token > 0 {
-                let bracketed = text[..at].ends_with(['[', '(']);
-                statement.push(Token { text: &rest[..token], bracketed, place: at..at + token });
-                token
-            } else {
-                let separator = rest.chars().next().map_or(1, char::len_utf8);
-                if !rest.starts_with(|c: char| c.is_whitespace() || ",:={}[]()".contains(c)) {
-                    findings.push(
-                        Diagnostic::error("NB0103", at..at + separator, "this is no part of a list of register words")
-                            .label("here")
-                            .help("write a line a word: `RC_IN_RGB[0] 0x08040000`, or a method and its word: `0x0ac0 0x08040000`"),
-                    );
+    let mut cursor = Cursor::new(text, Language::WORDS);
+    while !cursor.is_done() {
+        let mut statement: Vec<Piece<'_>> = Vec::new();
+        loop {
+            let place = cursor.place();
+            match cursor.kind() {
+                Some(Kind::Word | Kind::Number) => {
+                    let bracketed = text[..place.start].ends_with(['[', '(']);
+                    statement.push(Piece { text: cursor.text(&place), bracketed, place });
                 }
-                separator
+                Some(Kind::Sign(sign)) if ";,:={}[]()".contains(sign) => {}
+                _ => findings.push(
+                    Diagnostic::error("NB0103", place, "this is no part of a list of register words")
+                        .label("here")
+                        .help("write a line a word: `RC_IN_RGB[0] 0x08040000`, or a method and its word: `0x0ac0 0x08040000`"),
+                ),
             }
-        };
-        at += length;
+            let ended = cursor.take(';');
+            if !ended {
+                cursor.advance();
+            }
+            if ended || cursor.is_new_line() {
+                break;
+            }
+        }
+        finish(&statement, &mut written, &mut findings);
     }
-    finish(&mut statement, &mut written, &mut findings);
     if findings.is_empty() { Ok(written) } else { Err(findings) }
 }
 
-/// Ends a statement.
-fn finish(statement: &mut Vec<Token<'_>>, written: &mut Written, findings: &mut Vec<Diagnostic>) {
-    let tokens = std::mem::take(statement);
-    let Some((name, rest)) = tokens.split_first() else { return };
+/// Reads a statement.
+fn finish(statement: &[Piece<'_>], written: &mut Written, findings: &mut Vec<Diagnostic>) {
+    let Some((name, rest)) = statement.split_first() else { return };
     let chip = written.words.chip;
     let (first, mut values) = match name.number() {
         Some(method) => (Word::of_method(method, chip), rest),
@@ -258,7 +251,7 @@ fn finish(statement: &mut Vec<Token<'_>>, written: &mut Written, findings: &mut 
 }
 
 /// Whether a token says which word of an array is meant.
-fn is_index(token: &Token<'_>, word: Word, chip: Profile) -> bool {
+fn is_index(token: &Piece<'_>, word: Word, chip: Profile) -> bool {
     token.bracketed && token.number().is_some_and(|n| (n as usize) < word.count(chip))
 }
 

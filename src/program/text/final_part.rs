@@ -24,14 +24,14 @@ const ONE: FinalInput = FinalInput { register: FinalRegister::Zero, component: C
 impl Final {
     /// Reads one of them.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Result<(), GivenUp> {
-        let start = parser.here();
-        match parser.word() {
+        let start = parser.cursor.place();
+        match parser.cursor.word() {
             "clamp_color_sum" => {
                 parser.call()?;
                 parser.once(&mut self.clamp, start);
             }
             "final_product" => {
-                parser.advance();
+                parser.cursor.advance();
                 parser.sign('=')?;
                 let e = operand(parser, 4)?;
                 parser.sign('*')?;
@@ -40,7 +40,7 @@ impl Final {
                 set(parser, &mut self.product, [e, f], start);
             }
             "color_sum" => {
-                parser.advance();
+                parser.cursor.advance();
                 parser.sign('=')?;
                 let spare0 = side(parser, FinalRegister::Spare0)?;
                 parser.sign('+')?;
@@ -55,15 +55,15 @@ impl Final {
 
     /// `out.rgb = ...;` or `out.a = ...;`
     fn out(&mut self, parser: &mut Parser<'_>) -> Result<(), GivenUp> {
-        let start = parser.here().start;
-        parser.advance();
+        let start = parser.cursor.place().start;
+        parser.cursor.advance();
         parser.sign('.')?;
-        let what = parser.word();
-        let span = start..parser.here().end;
+        let what = parser.cursor.word();
+        let span = start..parser.cursor.place().end;
         if !matches!(what, "rgb" | "a") {
             return Err(parser.unknown_or_expected("output", &["rgb", "a"]));
         }
-        parser.advance();
+        parser.cursor.advance();
         parser.sign('=')?;
         if what == "a" {
             let g = operand(parser, 6)?;
@@ -144,41 +144,41 @@ fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Range<usize>)>, value: 
 /// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`, or with d first: A B + (1 - A) C + D.
 fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
     let mut inputs = [ZERO; 4];
-    if parser.word() == "lerp" {
+    if parser.cursor.word() == "lerp" {
         lerp(parser, &mut inputs)?;
-        if parser.is('+') {
-            parser.advance();
+        if parser.cursor.is('+') {
+            parser.cursor.advance();
             inputs[3] = operand(parser, 3)?;
         }
         return Ok(inputs);
     }
     // Where an operand stands in the sum is known behind it.
     let first = unplaced(parser, false)?;
-    if parser.is('*') {
+    if parser.cursor.is('*') {
         inputs[0] = place(parser, 0, first);
-        parser.advance();
+        parser.cursor.advance();
         inputs[1] = operand(parser, 1)?;
-        if parser.is('+') {
-            parser.advance();
+        if parser.cursor.is('+') {
+            parser.cursor.advance();
             inputs[3] = operand(parser, 3)?;
         }
         return Ok(inputs);
     }
-    if !parser.is('+') {
+    if !parser.cursor.is('+') {
         inputs[3] = place(parser, 3, first);
         return Ok(inputs);
     }
-    parser.advance();
-    if parser.word() == "lerp" {
+    parser.cursor.advance();
+    if parser.cursor.word() == "lerp" {
         inputs[3] = place(parser, 3, first);
         lerp(parser, &mut inputs)?;
         return Ok(inputs);
     }
     let second = unplaced(parser, false)?;
-    if parser.is('*') {
+    if parser.cursor.is('*') {
         inputs[3] = place(parser, 3, first);
         inputs[0] = place(parser, 0, second);
-        parser.advance();
+        parser.cursor.advance();
         inputs[1] = operand(parser, 1)?;
     } else {
         inputs[0] = place(parser, 0, first);
@@ -190,7 +190,7 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
 
 /// `lerp(a, b, c)`
 fn lerp(parser: &mut Parser<'_>, inputs: &mut [FinalInput; 4]) -> Result<(), GivenUp> {
-    parser.advance();
+    parser.cursor.advance();
     parser.sign('(')?;
     for (n, input) in inputs.iter_mut().take(3).enumerate() {
         if n > 0 {
@@ -226,18 +226,22 @@ struct Operand {
 
 /// `spare0`, `spare0.a`, `unsigned_invert(spare0)`, `unsigned(spare0)`
 fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
-    let start = parser.here().start;
-    let function = parser.word();
-    if parser.is('-') || matches!(function, "expand" | "half_bias") {
+    let start = parser.cursor.place().start;
+    let function = parser.cursor.word();
+    if parser.cursor.is('-') || matches!(function, "expand" | "half_bias") {
         let name = if function.is_empty() { "-" } else { function };
-        let finding = Diagnostic::error("NB0311", parser.here(), format!("the final combiner has no mapping `{name}`"))
-            .label("not here")
-            .rule("FIN-1")
-            .help("its inputs are taken as they are, or inverted: `spare0`, `unsigned_invert(spare0)`; map in a stage");
+        let finding = Diagnostic::error(
+            "NB0311",
+            parser.cursor.place(),
+            format!("the final combiner has no mapping `{name}`"),
+        )
+        .label("not here")
+        .rule("FIN-1")
+        .help("its inputs are taken as they are, or inverted: `spare0`, `unsigned_invert(spare0)`; map in a stage");
         return Err(parser.give_up(finding));
     }
     if function == "lerp" {
-        let finding = Diagnostic::error("NB0104", parser.here(), "`lerp` is not an input")
+        let finding = Diagnostic::error("NB0104", parser.cursor.place(), "`lerp` is not an input")
             .label("not here")
             .rule("FIN-1")
             .help("a final combiner has one: `out.rgb = lerp(a, b, c) + d;`");
@@ -245,7 +249,7 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
     }
     let mapped = matches!(function, "unsigned" | "unsigned_invert");
     if mapped {
-        parser.advance();
+        parser.cursor.advance();
         parser.sign('(')?;
     } else if find(function).is_none() && !function.is_empty() {
         let known: Vec<&str> = REGISTERS.iter().map(|(name, _)| *name).chain(["unsigned", "unsigned_invert"]).collect();
@@ -258,7 +262,7 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
     let plain = if alpha { Component::Alpha } else { Component::Rgb };
     let (read, component) = component.map_or((plain, None), |(read, place)| (read, Some(place)));
     let input = FinalInput { register, component: read, invert: function == "unsigned_invert" };
-    Ok(Operand { input, span: start..parser.end(), component })
+    Ok(Operand { input, span: start..parser.cursor.end(), component })
 }
 
 /// A side of the colour sum: the register, as it is or inverted.

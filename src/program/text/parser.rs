@@ -6,8 +6,10 @@ use super::Program;
 use super::final_part::Final;
 use super::portion::PortionReader;
 use super::words::{REGISTERS, find};
+use crate::cursor::Cursor;
+pub(super) use crate::cursor::{GivenUp, Read};
 use crate::finding::{foreign, header};
-use crate::lexer::{Kind, Language, Token, tokens};
+use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use crate::{Place, Places};
 use ninebit::diagnostic::{Diagnostic, Severity, shorten};
@@ -16,11 +18,6 @@ use ninebit::state::{Combiners, Component, FinalRegister, GeneralStage, MuxSelec
 
 /// Findings beyond this many are not looked for.
 const MOST_FINDINGS: usize = 64;
-
-/// Why a statement was given up: the reason has been recorded.
-pub(super) struct GivenUp;
-
-pub(super) type Read<T> = Result<T, GivenUp>;
 
 /// A register as an input names it.
 pub(super) struct Source {
@@ -32,12 +29,7 @@ pub(super) struct Source {
 
 /// What is known while a program is read.
 pub(super) struct Parser<'t> {
-    text: &'t str,
-    tokens: Vec<Token>,
-    /// The token to be looked at.
-    at: usize,
-    /// Where the token before it ended.
-    end: usize,
+    pub(super) cursor: Cursor<'t>,
     findings: Vec<Diagnostic>,
     pub(super) places: Places,
 }
@@ -47,8 +39,8 @@ type Written = Option<([u8; 4], Range<usize>)>;
 
 impl<'t> Parser<'t> {
     pub(super) fn new(text: &'t str) -> Self {
-        let (tokens, _) = tokens(text, Language::COMBINERS);
-        let mut parser = Parser { text, tokens, at: 0, end: 0, findings: Vec::new(), places: Places::default() };
+        let cursor = Cursor::new(text, Language::COMBINERS);
+        let mut parser = Parser { cursor, findings: Vec::new(), places: Places::default() };
         parser.header();
         parser
     }
@@ -56,16 +48,16 @@ impl<'t> Parser<'t> {
     /// Passes over what programs of the assembler start with, and refuses the languages beside it by name.
     fn header(&mut self) {
         // Comments may stand before it.
-        let start = self.here().start;
-        let Some(place) = header(self.text.get(start..).unwrap_or("")) else { return };
+        let start = self.cursor.place().start;
+        let Some(place) = header(self.cursor.text.get(start..).unwrap_or("")) else { return };
         let place = start + place.start..start + place.end;
-        if self.text[place.clone()].starts_with("!!RC1.0") {
+        if self.cursor.text(&place).starts_with("!!RC1.0") {
             let end = place.start + "!!RC1.0".len();
-            self.at = self.tokens.iter().take_while(|token| token.place.start < end).count();
+            self.cursor.skip_to(|cursor| cursor.place().start >= end);
             return;
         }
-        self.give_up(foreign(self.text, place, "NB0104", "a combiner program starts with `!!RC1.0`"));
-        self.at = self.tokens.len();
+        self.give_up(foreign(self.cursor.text, place, "NB0104", "a combiner program starts with `!!RC1.0`"));
+        self.cursor.skip_to(|_| false);
     }
 
     /// Reads the whole text.
@@ -77,13 +69,13 @@ impl<'t> Parser<'t> {
         let mut stages: Vec<(GeneralStage, [Written; 2])> = Vec::new();
         let mut mux: Option<Range<usize>> = None;
         let mut last = Final::default();
-        while self.kind().is_some() && self.findings.len() < MOST_FINDINGS {
-            let outcome = match self.word() {
-                _ if self.is('{') => self.stage(&mut stages),
+        while self.cursor.kind().is_some() && self.findings.len() < MOST_FINDINGS {
+            let outcome = match self.cursor.word() {
+                _ if self.cursor.is('{') => self.stage(&mut stages),
                 "const0" => self.constant(&mut shared[0]),
                 "const1" => self.constant(&mut shared[1]),
                 "mux_by_least_significant_bit" => {
-                    let span = self.here();
+                    let span = self.cursor.place();
                     self.call().map(|()| self.once(&mut mux, span))
                 }
                 "out" | "final_product" | "color_sum" | "clamp_color_sum" => last.statement(&mut self),
@@ -103,12 +95,12 @@ impl<'t> Parser<'t> {
             if outcome.is_err() {
                 self.recover();
                 // Nothing outside a stage can be closed.
-                while self.is('}') {
-                    self.advance();
+                while self.cursor.is('}') {
+                    self.cursor.advance();
                 }
             }
         }
-        let end = self.text.trim_end().len();
+        let end = self.cursor.text.trim_end().len();
         self.places.set(Place::Stages, self.before(end));
         let shared = shared.map(|written| written.map_or([0; 4], |(bytes, _)| bytes));
         if stages.is_empty() && last.is_written() {
@@ -136,17 +128,17 @@ impl<'t> Parser<'t> {
 
     /// `{ const0 = ...; rgb { ... } alpha { ... } }`
     fn stage(&mut self, stages: &mut Vec<(GeneralStage, [Written; 2])>) -> Read<()> {
-        let opening = self.here();
-        self.advance();
+        let opening = self.cursor.place();
+        self.cursor.advance();
         let index = stages.len();
         self.places.set(Place::Stage(index), opening.clone());
         let mut own: [Written; 2] = [None, None];
         let mut portions: [Option<(Portion, Range<usize>)>; 2] = [None, None];
-        while !self.is('}') && self.findings.len() < MOST_FINDINGS {
-            if self.kind().is_none() {
+        while !self.cursor.is('}') && self.findings.len() < MOST_FINDINGS {
+            if self.cursor.kind().is_none() {
                 return Err(self.unclosed(opening));
             }
-            let outcome = match self.word() {
+            let outcome = match self.cursor.word() {
                 "const0" => self.constant(&mut own[0]),
                 "const1" => self.constant(&mut own[1]),
                 "rgb" => self.portion(index, false, &mut portions[0]),
@@ -160,7 +152,7 @@ impl<'t> Parser<'t> {
                 self.recover();
             }
         }
-        self.advance();
+        self.cursor.advance();
         let first = own.iter().flatten().map(|(_, span)| span.start).min();
         let last = own.iter().flatten().map(|(_, span)| span.end).max();
         if let (Some(first), Some(last)) = (first, last) {
@@ -178,20 +170,20 @@ impl<'t> Parser<'t> {
 
     /// `rgb { ... }` or `alpha { ... }`
     fn portion(&mut self, stage: usize, alpha: bool, slot: &mut Option<(Portion, Range<usize>)>) -> Read<()> {
-        let name = self.here();
-        self.advance();
-        let opening = self.here();
+        let name = self.cursor.place();
+        self.cursor.advance();
+        let opening = self.cursor.place();
         self.sign('{')?;
         let mut reader = PortionReader::new(stage, alpha);
-        while !self.is('}') && self.findings.len() < MOST_FINDINGS {
-            if self.kind().is_none() {
+        while !self.cursor.is('}') && self.findings.len() < MOST_FINDINGS {
+            if self.cursor.kind().is_none() {
                 return Err(self.unclosed(opening));
             }
             if reader.statement(self).is_err() {
                 self.recover();
             }
         }
-        self.advance();
+        self.cursor.advance();
         match slot {
             Some((_, first)) => {
                 let first = first.clone();
@@ -204,35 +196,35 @@ impl<'t> Parser<'t> {
 
     /// `const0 = (1.0, 0.5, 0.0, 1.0);` or `const0 = bytes(255, 128, 0, 255);`
     fn constant(&mut self, slot: &mut Written) -> Read<()> {
-        let name = self.here();
-        self.advance();
+        let name = self.cursor.place();
+        self.cursor.advance();
         self.sign('=')?;
-        let bytes = self.word() == "bytes";
+        let bytes = self.cursor.word() == "bytes";
         if bytes {
-            self.advance();
+            self.cursor.advance();
         }
-        let opening = self.here().start;
+        let opening = self.cursor.place().start;
         self.sign('(')?;
         let mut values = Vec::new();
         loop {
-            let start = self.here().start;
-            let negative = self.is('-');
-            if negative || self.is('+') {
-                self.advance();
+            let start = self.cursor.place().start;
+            let negative = self.cursor.is('-');
+            if negative || self.cursor.is('+') {
+                self.cursor.advance();
             }
-            if self.kind() != Some(Kind::Number) {
+            if self.cursor.kind() != Some(Kind::Number) {
                 return Err(self.expected("a number"));
             }
-            let place = start..self.here().end;
-            self.advance();
+            let place = start..self.cursor.place().end;
+            self.cursor.advance();
             values.push(self.number(place, negative, bytes));
-            if !self.is(',') {
+            if !self.cursor.is(',') {
                 break;
             }
-            self.advance();
+            self.cursor.advance();
         }
         self.sign(')')?;
-        let span = opening..self.end;
+        let span = opening..self.cursor.end();
         self.sign(';')?;
         let Ok(values) = <[_; 4]>::try_from(values) else {
             self.findings.push(
@@ -256,7 +248,7 @@ impl<'t> Parser<'t> {
 
     /// A number as a byte of a colour. What is beyond 0.0 to 1.0 is limited to it, as the extension has it.
     fn number(&mut self, place: Range<usize>, negative: bool, byte: bool) -> Option<u8> {
-        let written = self.text.get(place.clone()).unwrap_or("");
+        let written = self.cursor.text(&place);
         let digits = written.trim_start_matches(['+', '-']).trim_start();
         let limited = if negative { "0" } else { "1" };
         // NUM-0. Digits and a point are a number, at most infinite.
@@ -289,88 +281,49 @@ impl<'t> Parser<'t> {
 
     /// A register, perhaps with a component: `tex0`, `tex0.a`.
     pub(super) fn register(&mut self) -> Read<Source> {
-        let span = self.here();
-        if self.kind() != Some(Kind::Word) {
+        let span = self.cursor.place();
+        if self.cursor.kind() != Some(Kind::Word) {
             return Err(self.expected("a register"));
         }
-        let Some(register) = find(self.word()) else {
+        let Some(register) = find(self.cursor.word()) else {
             let known: Vec<&str> = REGISTERS.iter().map(|(name, _)| *name).collect();
             return Err(self.unknown("register", &known));
         };
-        self.advance();
+        self.cursor.advance();
         let component = self.component();
-        Ok(Source { register, component, span: span.start..self.end })
+        Ok(Source { register, component, span: span.start..self.cursor.end() })
     }
 
     /// `.rgb`, `.a` or `.b` without a space before the point: anything else is an operator.
     pub(super) fn component(&mut self) -> Option<(Component, Range<usize>)> {
-        if !self.is('.') || self.here().start != self.end {
+        if !self.cursor.is('.') || self.cursor.place().start != self.cursor.end() {
             return None;
         }
-        let token = self.tokens.get(self.at + 1)?;
-        if token.place.start != self.here().end {
+        let place = self.cursor.place_at(self.cursor.at + 1);
+        if place.start != self.cursor.place().end {
             return None;
         }
-        let place = token.place.clone();
-        let component = match &self.text[place.clone()] {
+        let component = match self.cursor.text(&place) {
             "rgb" => Component::Rgb,
             "a" => Component::Alpha,
             "b" => Component::Blue,
             _ => return None,
         };
-        self.advance();
-        self.advance();
+        self.cursor.advance();
+        self.cursor.advance();
         Some((component, place))
     }
 
     // What all statements share.
 
-    pub(super) fn advance(&mut self) {
-        self.end = self.here().end;
-        self.at += 1;
-    }
-
-    fn kind(&self) -> Option<Kind> {
-        self.tokens.get(self.at).map(|token| token.kind)
-    }
-
-    /// The place of the token at hand; the end of the text behind the last.
-    pub(super) fn here(&self) -> Range<usize> {
-        let behind = || self.text.trim_end().len()..self.text.trim_end().len();
-        self.tokens.get(self.at).map_or_else(behind, |token| token.place.clone())
-    }
-
-    /// Where the token before the one at hand ended.
-    pub(super) fn end(&self) -> usize {
-        self.end
-    }
-
-    /// Text of the token.
-    fn lexeme(&self) -> &'t str {
-        &self.text[self.here()]
-    }
-
-    /// The word at hand; empty if it is none.
-    pub(super) fn word(&self) -> &'t str {
-        if self.kind() == Some(Kind::Word) { self.lexeme() } else { "" }
-    }
-
-    pub(super) fn is(&self, sign: char) -> bool {
-        self.kind() == Some(Kind::Sign(sign))
-    }
-
     /// Takes the sign, or says that it is missing.
     pub(super) fn sign(&mut self, sign: char) -> Read<()> {
-        if !self.is(sign) {
-            return Err(self.expected(&format!("`{sign}`")));
-        }
-        self.advance();
-        Ok(())
+        if self.cursor.take(sign) { Ok(()) } else { Err(self.expected(&format!("`{sign}`"))) }
     }
 
     /// `name();`
     pub(super) fn call(&mut self) -> Read<()> {
-        self.advance();
+        self.cursor.advance();
         self.sign('(')?;
         self.sign(')')?;
         self.sign(';')
@@ -395,39 +348,40 @@ impl<'t> Parser<'t> {
     }
 
     pub(super) fn expected(&mut self, what: &str) -> GivenUp {
-        let found = match self.kind() {
-            None => "the end of the program".to_owned(),
-            Some(_) => format!("`{}`", shorten(self.lexeme())),
-        };
+        let found = self.cursor.found("the end of the program");
         // What is missing at the end of a line is missing there, not where the next one starts.
-        let between = self.text.get(self.end..self.here().start).unwrap_or("");
-        let (span, label) = if self.kind().is_none() || between.contains('\n') {
-            (self.before(self.end), "behind this")
+        let between = self.cursor.text.get(self.cursor.end()..self.cursor.place().start).unwrap_or("");
+        let (span, label) = if self.cursor.kind().is_none() || between.contains('\n') {
+            (self.before(self.cursor.end()), "behind this")
         } else {
-            (self.here(), "not expected here")
+            (self.cursor.place(), "not expected here")
         };
         self.give_up(Diagnostic::error("NB0104", span, format!("expected {what}, found {found}")).label(label))
     }
 
     /// The finding that a word is none of the known ones.
     pub(super) fn unknown(&mut self, what: &str, known: &[&str]) -> GivenUp {
-        let word = self.word();
+        let word = self.cursor.word();
         let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         let help = match closest(word, known.iter().copied().filter(|name| *name != word)) {
             Some(name) => format!("did you mean `{name}`? All of them: {list}"),
             None => format!("write one of {list}"),
         };
         let message = format!("there is no {what} `{}`", shorten(word));
-        self.give_up(Diagnostic::error("NB0204", self.here(), message).label("not known").help(help))
+        self.give_up(Diagnostic::error("NB0204", self.cursor.place(), message).label("not known").help(help))
     }
 
     /// A word that is not known, or something that is no word.
     pub(super) fn unknown_or_expected(&mut self, what: &str, known: &[&str]) -> GivenUp {
-        if self.kind() == Some(Kind::Word) { self.unknown(what, known) } else { self.expected(&format!("a {what}")) }
+        if self.cursor.kind() == Some(Kind::Word) {
+            self.unknown(what, known)
+        } else {
+            self.expected(&format!("a {what}"))
+        }
     }
 
     fn unknown_statement(&mut self, expected: &str, known: &[&str]) -> GivenUp {
-        if self.kind() == Some(Kind::Word) { self.unknown("statement", known) } else { self.expected(expected) }
+        if self.cursor.kind() == Some(Kind::Word) { self.unknown("statement", known) } else { self.expected(expected) }
     }
 
     /// Records that a statement, which has been read to its end, was there before.
@@ -442,7 +396,8 @@ impl<'t> Parser<'t> {
 
     /// The character that ends at a place.
     fn before(&self, end: usize) -> Range<usize> {
-        let start = self.text.get(..end).and_then(|text| text.char_indices().next_back()).map_or(0, |(start, _)| start);
+        let start =
+            self.cursor.text.get(..end).and_then(|text| text.char_indices().next_back()).map_or(0, |(start, _)| start);
         start..end
     }
 
@@ -458,20 +413,20 @@ impl<'t> Parser<'t> {
     fn recover(&mut self) {
         let mut depth = 0usize;
         loop {
-            match self.kind() {
+            match self.cursor.kind() {
                 None => return,
-                Some(Kind::Sign(';')) if depth == 0 => return self.advance(),
+                Some(Kind::Sign(';')) if depth == 0 => return self.cursor.advance(),
                 Some(Kind::Sign('{')) => depth += 1,
                 Some(Kind::Sign('}')) if depth == 0 => return,
                 Some(Kind::Sign('}')) => {
                     depth -= 1;
                     if depth == 0 {
-                        return self.advance();
+                        return self.cursor.advance();
                     }
                 }
                 _ => {}
             }
-            self.advance();
+            self.cursor.advance();
         }
     }
 }

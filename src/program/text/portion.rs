@@ -49,8 +49,8 @@ impl PortionReader {
 
     /// Reads one of them.
     pub(super) fn statement(&mut self, parser: &mut Parser<'_>) -> Read<()> {
-        let span = parser.here();
-        let word = parser.word();
+        let span = parser.cursor.place();
+        let word = parser.cursor.word();
         let scale = match word {
             "scale_by_two" | "bias_by_negative_one_half_scale_by_two" => Some(Scale::Two),
             "scale_by_four" => Some(Scale::Four),
@@ -77,16 +77,16 @@ impl PortionReader {
 
     /// `spare0 = ...;`
     fn assignment(&mut self, parser: &mut Parser<'_>) -> Read<()> {
-        let start = parser.here().start;
+        let start = parser.cursor.place().start;
         let (output, written) = self.destination(parser)?;
         parser.sign('=')?;
-        if let third @ ("sum" | "mux") = parser.word() {
+        if let third @ ("sum" | "mux") = parser.cursor.word() {
             parser.call()?;
             if let Some(first) = self.third.clone() {
-                parser.twice(start..parser.end(), first, "the third result of this portion");
+                parser.twice(start..parser.cursor.end(), first, "the third result of this portion");
                 return Ok(());
             }
-            self.third = Some(start..parser.end());
+            self.third = Some(start..parser.cursor.end());
             self.portion.sum_output = output;
             self.portion.mux = third == "mux";
             parser.places.set(self.at(Part::Output(2)), written);
@@ -94,18 +94,18 @@ impl PortionReader {
         }
         let n = self.products.len();
         if n == 2 {
-            let finding = Diagnostic::error("NB0364", start..parser.end(), "a portion has two products")
+            let finding = Diagnostic::error("NB0364", start..parser.cursor.end(), "a portion has two products")
                 .label("the third")
                 .rule("CMB-12")
                 .help("use another stage; `sum()` and `mux()` give the two products together");
             return Err(parser.give_up(finding));
         }
         let first = self.operand(parser, 2 * n)?;
-        let sign = parser.here();
+        let sign = parser.cursor.place();
         let mut dot = false;
-        let second = if parser.is('*') || parser.is('.') {
-            dot = parser.is('.');
-            parser.advance();
+        let second = if parser.cursor.is('*') || parser.cursor.is('.') {
+            dot = parser.cursor.is('.');
+            parser.cursor.advance();
             self.operand(parser, 2 * n + 1)?
         } else {
             // A register on its own is taken times one.
@@ -113,18 +113,18 @@ impl PortionReader {
             CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
         };
         let mut blue = None;
-        if parser.is(',') {
-            parser.advance();
-            blue = Some(parser.here());
-            if parser.word() != "blue_to_alpha" {
+        if parser.cursor.is(',') {
+            parser.cursor.advance();
+            blue = Some(parser.cursor.place());
+            if parser.cursor.word() != "blue_to_alpha" {
                 return Err(parser.unknown_or_expected("property of a product", &["blue_to_alpha"]));
             }
-            parser.advance();
+            parser.cursor.advance();
         }
-        if !parser.is(';') {
+        if !parser.cursor.is(';') {
             return Err(parser.expected("`*`, `.` or `;`"));
         }
-        parser.advance();
+        parser.cursor.advance();
         parser.places.set(self.at(Part::Output(n)), written);
         if dot {
             parser.places.set(self.at(Part::Dot(n)), sign);
@@ -132,7 +132,7 @@ impl PortionReader {
         if let Some(span) = blue.clone() {
             parser.places.set(self.at(Part::BlueToAlpha(n)), span);
         }
-        self.products.push(start..parser.end());
+        self.products.push(start..parser.cursor.end());
         self.portion.inputs[2 * n] = first;
         self.portion.inputs[2 * n + 1] = second;
         let portion = &mut self.portion;
@@ -147,18 +147,18 @@ impl PortionReader {
 
     /// A register to write, or `discard`.
     fn destination(&self, parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
-        let span = parser.here();
-        if parser.word() == "discard" {
-            parser.advance();
+        let span = parser.cursor.place();
+        if parser.cursor.word() == "discard" {
+            parser.cursor.advance();
             return Ok((Register::Zero, span));
         }
-        let register = find(parser.word()).and_then(general);
+        let register = find(parser.cursor.word()).and_then(general);
         let Some(register) = register.filter(|register| *register != Register::Zero) else {
             let known = REGISTERS[4..12].iter().map(|(name, _)| *name).chain(["discard"]).chain(CALLS);
             let known: Vec<&str> = known.collect();
             return Err(parser.unknown_or_expected("destination or statement", &known));
         };
-        parser.advance();
+        parser.cursor.advance();
         if let Some((component, place)) = parser.component() {
             let own = if self.alpha { Component::Alpha } else { Component::Rgb };
             if component != own {
@@ -174,34 +174,35 @@ impl PortionReader {
                 return Err(parser.give_up(finding));
             }
         }
-        Ok((register, span.start..parser.end()))
+        Ok((register, span.start..parser.cursor.end()))
     }
 
     /// `tex0`, `-tex0`, `expand(tex0.a)`, `-expand(tex0)`
     fn operand(&self, parser: &mut Parser<'_>, n: usize) -> Read<CombinerInput> {
-        let start = parser.here().start;
-        let negative = parser.is('-');
+        let start = parser.cursor.place().start;
+        let negative = parser.cursor.is('-');
         if negative {
-            parser.advance();
+            parser.cursor.advance();
         }
-        let function = MAPPINGS.iter().find(|(name, _, _)| *name == parser.word());
+        let function = MAPPINGS.iter().find(|(name, _, _)| *name == parser.cursor.word());
         let mapping = match function {
             Some((_, mapping, _)) if !negative => *mapping,
             Some((_, _, Some(negated))) => *negated,
             Some((name, _, None)) => {
-                let finding = Diagnostic::error("NB0311", start..parser.here().end, format!("there is no `-{name}`"))
-                    .label("not negated")
-                    .rule("CMB-5")
-                    .help("a plain register can be negated, `expand` and `half_bias` too");
+                let finding =
+                    Diagnostic::error("NB0311", start..parser.cursor.place().end, format!("there is no `-{name}`"))
+                        .label("not negated")
+                        .rule("CMB-5")
+                        .help("a plain register can be negated, `expand` and `half_bias` too");
                 return Err(parser.give_up(finding));
             }
             None if negative => InputMapping::SignedNegate,
             None => InputMapping::SignedIdentity,
         };
         if function.is_some() {
-            parser.advance();
+            parser.cursor.advance();
             parser.sign('(')?;
-        } else if find(parser.word()).is_none() && !parser.word().is_empty() {
+        } else if find(parser.cursor.word()).is_none() && !parser.cursor.word().is_empty() {
             let known = REGISTERS[..12].iter().map(|(name, _)| *name).chain(MAPPINGS.iter().map(|(name, _, _)| *name));
             let known: Vec<&str> = known.collect();
             return Err(parser.unknown("input", &known));
@@ -214,7 +215,7 @@ impl PortionReader {
         if function.is_some() {
             parser.sign(')')?;
         }
-        parser.places.set(self.at(Part::Input(n)), start..parser.end());
+        parser.places.set(self.at(Part::Input(n)), start..parser.cursor.end());
         let plain = if self.alpha { Component::Alpha } else { Component::Rgb };
         let component = match component {
             Some((component, place)) => {

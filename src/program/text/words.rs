@@ -1,7 +1,7 @@
 //! The words of the language: registers, components, mappings.
 
 use ninebit::legality::{Help, Notation};
-use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Named, Scale};
+use ninebit::state::{CombinerInput, Component, FinalInput, FinalRegister, InputMapping, Scale};
 
 /// Registers by name. The last two exist in the final combiner only.
 pub const REGISTERS: &[(&str, FinalRegister)] = &[
@@ -91,10 +91,6 @@ pub struct Words;
 impl Notation for Words {
     fn register(&self, of: FinalRegister) -> &'static str {
         register(of)
-    }
-
-    fn scale(&self, scale: Scale) -> &'static str {
-        scale.name()
     }
 
     fn help(&self, help: Help) -> &'static str {

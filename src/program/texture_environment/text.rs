@@ -2,9 +2,9 @@
 
 use std::ops::Range;
 
-use super::{EnvironmentSource, Function, Half, Mode, Operand, TextureEnvironment, Unit};
+use super::{Half, TextureEnvironment, Unit};
 use crate::At;
-use crate::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, whole};
+use crate::calls::opengl::{self, bare, capability, choose, color, is_vector, numbered, table, whole};
 use crate::calls::{Pasted, Reader, Statement, Value, Vocabulary, wrong_kind};
 use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
@@ -67,44 +67,22 @@ enum Parameter {
     Operand(bool, usize),
 }
 
-const MODES: &[(&str, Mode)] = &[
-    ("REPLACE", Mode::Replace),
-    ("MODULATE", Mode::Modulate),
-    ("DECAL", Mode::Decal),
-    ("BLEND", Mode::Blend),
-    ("ADD", Mode::Add),
-    ("COMBINE", Mode::Combine),
-    ("COMBINE4", Mode::Combine4),
+const MODES: &[&str] = &["REPLACE", "MODULATE", "DECAL", "BLEND", "ADD", "COMBINE", "COMBINE4"];
+const FUNCTIONS: &[&str] = &[
+    "REPLACE",
+    "MODULATE",
+    "ADD",
+    "ADD_SIGNED",
+    "INTERPOLATE",
+    "SUBTRACT",
+    "DOT3_RGB",
+    "DOT3_RGBA",
+    "DOT3_RGB_EXT",
+    "DOT3_RGBA_EXT",
 ];
-const FUNCTIONS: &[(&str, Function)] = &[
-    ("REPLACE", Function::Replace),
-    ("MODULATE", Function::Modulate),
-    ("ADD", Function::Add),
-    ("ADD_SIGNED", Function::AddSigned),
-    ("INTERPOLATE", Function::Interpolate),
-    ("SUBTRACT", Function::Subtract),
-    ("DOT3_RGB", Function::Dot3RgbArb),
-    ("DOT3_RGBA", Function::Dot3RgbaArb),
-    ("DOT3_RGB_EXT", Function::Dot3RgbExt),
-    ("DOT3_RGBA_EXT", Function::Dot3RgbaExt),
-];
-const SOURCES: &[(&str, EnvironmentSource)] = &[
-    ("TEXTURE", EnvironmentSource::Texture),
-    ("TEXTURE0", EnvironmentSource::Texture0),
-    ("TEXTURE1", EnvironmentSource::Texture1),
-    ("TEXTURE2", EnvironmentSource::Texture2),
-    ("TEXTURE3", EnvironmentSource::Texture3),
-    ("CONSTANT", EnvironmentSource::Constant),
-    ("PRIMARY_COLOR", EnvironmentSource::PrimaryColor),
-    ("PREVIOUS", EnvironmentSource::Previous),
-    ("ZERO", EnvironmentSource::Zero),
-];
-const OPERANDS: &[(&str, Operand)] = &[
-    ("SRC_COLOR", Operand::SourceColor),
-    ("ONE_MINUS_SRC_COLOR", Operand::OneMinusSourceColor),
-    ("SRC_ALPHA", Operand::SourceAlpha),
-    ("ONE_MINUS_SRC_ALPHA", Operand::OneMinusSourceAlpha),
-];
+const SOURCES: &[&str] =
+    &["TEXTURE", "TEXTURE0", "TEXTURE1", "TEXTURE2", "TEXTURE3", "CONSTANT", "PRIMARY_COLOR", "PREVIOUS", "ZERO"];
+const OPERANDS: &[&str] = &["SRC_COLOR", "ONE_MINUS_SRC_COLOR", "SRC_ALPHA", "ONE_MINUS_SRC_ALPHA"];
 
 /// Names of parameters. OpenGL 1.5 writes SRC for SOURCE.
 fn parameters() -> Vec<(String, Parameter)> {
@@ -217,22 +195,22 @@ impl<'t> Parser<'t> {
         let findings = &mut self.reader.findings;
         match chosen {
             Parameter::Mode => {
-                if let Some(mode) = choose(value, "mode of the texture environment", MODES, findings) {
+                if let Some(mode) = choose(value, "mode of the texture environment", &table(MODES), findings) {
                     self.unit(index, parameter).mode = mode;
                 }
             }
             Parameter::Function(alpha) => {
-                if let Some(value) = choose(value, "combine function", FUNCTIONS, findings) {
+                if let Some(value) = choose(value, "combine function", &table(FUNCTIONS), findings) {
                     self.half(index, parameter, alpha).function = At { value, place };
                 }
             }
             Parameter::Source(alpha, n) => {
-                if let Some(value) = choose(value, "source", SOURCES, findings) {
+                if let Some(value) = choose(value, "source", &table(SOURCES), findings) {
                     self.half(index, parameter, alpha).sources[n] = At { value, place };
                 }
             }
             Parameter::Operand(alpha, n) => {
-                if let Some(value) = choose(value, "operand", OPERANDS, findings) {
+                if let Some(value) = choose(value, "operand", &table(OPERANDS), findings) {
                     self.half(index, parameter, alpha).operands[n] = At { value, place };
                 }
             }

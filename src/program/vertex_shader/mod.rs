@@ -7,7 +7,6 @@ mod flow;
 mod operand;
 mod parser;
 mod print;
-mod scanner;
 
 use std::ops::Range;
 

@@ -2,8 +2,8 @@
 
 use std::ops::Range;
 
-use super::parser::{GivenUp, Parser, Read};
-use super::scanner::Scanner;
+use super::parser::Parser;
+use crate::cursor::{GivenUp, Read};
 use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
 use ninebit::vertex::shader::{
@@ -35,43 +35,43 @@ enum Register {
 }
 
 /// Reads what an instruction writes.
-pub(super) fn destination(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Destination, Range<usize>)> {
-    let start = scanner.here();
-    if let Some(minus) = scanner.sign('-') {
+pub(super) fn destination(parser: &mut Parser<'_>) -> Read<(Destination, Range<usize>)> {
+    let start = parser.cursor.place().start;
+    if let Some(minus) = parser.sign('-') {
         let help = "negate the sources instead";
         return Err(parser.refuse("NB0380", minus, "a result cannot be negated", "not before what is written", help));
     }
-    let (found, place) = register(parser, scanner)?;
+    let (found, place) = register(parser)?;
     let register = match found {
         Register::Destination(register) => register,
         Register::Source(SourceRegister::Temporary(index)) => DestinationRegister::Temporary(index),
         Register::Source(_) | Register::Constants => {
-            let name = scanner.text(&place).to_owned();
+            let name = parser.cursor.text(&place).to_owned();
             let message = format!("`{name}` cannot be written");
             let help = "write to r0 to r11 or an output, such as oPos; `def` gives a constant its value";
             return Err(parser.refuse("NB0380", place, &message, "only read", help));
         }
     };
-    let mask = match modifier(parser, scanner)? {
+    let mask = match modifier(parser)? {
         None => match register {
             DestinationRegister::Address | DestinationRegister::Fog | DestinationRegister::PointSize => 1,
             _ => 15,
         },
-        Some(place) => mask(parser, scanner.text(&place), place.clone(), register)?,
+        Some(place) => mask(parser, parser.cursor.text(&place), place.clone(), register)?,
     };
-    Ok((Destination { register, mask }, start..end(scanner, start)))
+    Ok((Destination { register, mask }, start..parser.cursor.end()))
 }
 
 /// Reads a source.
-pub(super) fn source(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Source, Range<usize>)> {
-    let start = scanner.here();
-    let negate = scanner.sign('-').is_some();
-    let (found, place) = register(parser, scanner)?;
+pub(super) fn source(parser: &mut Parser<'_>) -> Read<(Source, Range<usize>)> {
+    let start = parser.cursor.place().start;
+    let negate = parser.sign('-').is_some();
+    let (found, place) = register(parser)?;
     let register = match found {
         Register::Source(register) => register,
-        Register::Constants => relative(parser, scanner)?,
+        Register::Constants => relative(parser)?,
         Register::Destination(register) => {
-            let name = scanner.text(&place).to_owned();
+            let name = parser.cursor.text(&place).to_owned();
             let help = match register {
                 DestinationRegister::Address => "use it in `c[a0.x + 4]`",
                 _ => "keep the value in a temporary, and move it to the output as well",
@@ -80,25 +80,19 @@ pub(super) fn source(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read
             return Err(parser.refuse("NB0380", place, &message, "only written", help));
         }
     };
-    let swizzle = match modifier(parser, scanner)? {
+    let swizzle = match modifier(parser)? {
         None => [0, 1, 2, 3],
-        Some(place) => swizzle(parser, scanner.text(&place), place.clone())?,
+        Some(place) => swizzle(parser, parser.cursor.text(&place), place.clone())?,
     };
-    Ok((Source { register, swizzle, negate }, start..end(scanner, start)))
-}
-
-/// Where what was read last ended.
-fn end(scanner: &Scanner<'_>, start: usize) -> usize {
-    let read = scanner.text(&(start..scanner.position()));
-    start + read.trim_end().len()
+    Ok((Source { register, swizzle, negate }, start..parser.cursor.end()))
 }
 
 /// Reads the name of a register; `c[` up to the bracket.
-fn register(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Register, Range<usize>)> {
-    let place = scanner.word();
-    let word = scanner.text(&place).to_owned();
+fn register(parser: &mut Parser<'_>) -> Read<(Register, Range<usize>)> {
+    let place = parser.word();
+    let word = parser.cursor.text(&place).to_owned();
     if word.is_empty() {
-        return Err(parser.expected(scanner, "a register"));
+        return Err(parser.expected("a register"));
     }
     let lower = word.to_ascii_lowercase();
     let letters = lower.trim_end_matches(|c: char| c.is_ascii_digit());
@@ -107,7 +101,7 @@ fn register(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<(Registe
         return Err(unknown(parser, &word, place));
     };
     if digits.is_empty() != (*count == 0) {
-        let brackets = *name == "c" && scanner.clone().sign('[').is_some();
+        let brackets = *name == "c" && parser.cursor.is('[');
         return if brackets { Ok((Register::Constants, place)) } else { Err(unknown(parser, &word, place)) };
     }
     let number = digits.parse::<usize>().unwrap_or(usize::MAX);
@@ -144,19 +138,19 @@ fn unknown(parser: &mut Parser<'_>, word: &str, place: Range<usize>) -> GivenUp 
 }
 
 /// Reads `[a0.x + 4]`, `[4 + a0.x]` or `[4]`.
-fn relative(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<SourceRegister> {
-    let Some(open) = scanner.sign('[') else { return Err(parser.expected(scanner, "`[`")) };
+fn relative(parser: &mut Parser<'_>) -> Read<SourceRegister> {
+    let Some(open) = parser.sign('[') else { return Err(parser.expected("`[`")) };
     let (mut relative, mut index) = (false, None);
     loop {
-        let place = scanner.word();
-        let word = scanner.text(&place).to_ascii_lowercase();
+        let place = parser.word();
+        let word = parser.cursor.text(&place).to_ascii_lowercase();
         if word == "a0" && !relative {
             relative = true;
-            let component = match scanner.sign('.') {
-                Some(_) => scanner.word(),
+            let component = match parser.sign('.') {
+                Some(_) => parser.word(),
                 None => place.clone(),
             };
-            if !scanner.text(&component).eq_ignore_ascii_case("x") {
+            if !parser.cursor.text(&component).eq_ignore_ascii_case("x") {
                 let message = "the address register is read as a0.x";
                 return Err(parser.refuse("NB0380", component, message, "has no other component", "write `a0.x`"));
             }
@@ -170,23 +164,23 @@ fn relative(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<SourceRe
             let message = "expected a0.x or a number in these brackets";
             return Err(parser.refuse("NB0108", open, message, "opened here", "write `c[a0.x + 4]`"));
         }
-        if scanner.sign(']').is_some() {
+        if parser.sign(']').is_some() {
             break;
         }
-        if scanner.sign('+').is_none() {
-            return Err(parser.expected(scanner, "`+` or `]`"));
+        if parser.sign('+').is_none() {
+            return Err(parser.expected("`+` or `]`"));
         }
     }
     Ok(SourceRegister::Constant { index: index.unwrap_or(0), relative })
 }
 
 /// The letters behind a point, if there is one.
-fn modifier(parser: &mut Parser<'_>, scanner: &mut Scanner<'_>) -> Read<Option<Range<usize>>> {
-    if scanner.sign('.').is_none() {
+fn modifier(parser: &mut Parser<'_>) -> Read<Option<Range<usize>>> {
+    if parser.sign('.').is_none() {
         return Ok(None);
     }
-    let place = scanner.word();
-    if place.is_empty() { Err(parser.expected(scanner, "components, such as `.xyz`")) } else { Ok(Some(place)) }
+    let place = parser.word();
+    if place.is_empty() { Err(parser.expected("components, such as `.xyz`")) } else { Ok(Some(place)) }
 }
 
 /// The number of a component.

@@ -3,9 +3,10 @@
 use std::ops::Range;
 
 use super::check::natural;
-use super::scanner::{Scanner, uncomment};
 use super::{InstructionPlaces, Written, operand};
+use crate::cursor::{Cursor, GivenUp, Read};
 use crate::finding::{finding, foreign, header};
+use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::vertex::shader::{Instruction, Opcode, SourceRegister, VertexShader};
@@ -16,16 +17,13 @@ const MOST_FINDINGS: usize = 64;
 /// Instructions beyond this many are not read; no program so long is legal.
 const MOST_INSTRUCTIONS: usize = 1024;
 
-/// Why a line was given up: the reason has been recorded.
-pub(super) struct GivenUp;
-
-pub(super) type Read<T> = Result<T, GivenUp>;
-
 /// What is known while a program is read.
 pub(super) struct Parser<'t> {
-    text: &'t str,
+    pub(super) cursor: Cursor<'t>,
     findings: Vec<Diagnostic>,
     written: Written,
+    /// The first token of the line.
+    start: usize,
     version: Option<Range<usize>>,
 }
 
@@ -40,30 +38,27 @@ pub fn parse(text: &str) -> Result<Written, Vec<Diagnostic>> {
 
 /// Every line that can be read, and what is wrong with the others.
 pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
-    let mut findings = Vec::new();
-    let uncommented = uncomment(text, &mut findings);
     let written =
         Written { shader: VertexShader::default(), places: Vec::new(), definitions: Vec::new(), warnings: Vec::new() };
-    let mut parser = Parser { text: &uncommented.text, findings, written, version: None };
-    for comment in &uncommented.behind_semicolons {
-        parser.hidden(text, comment);
+    let cursor = Cursor::new(text, Language::ASSEMBLER);
+    let mut parser = Parser { cursor, findings: Vec::new(), written, start: 0, version: None };
+    if let Some(place) = parser.cursor.unclosed.clone() {
+        parser.refuse("NB0108", place, "this comment does not end", "opened here", "close it with `*/`");
+    }
+    for comment in std::mem::take(&mut parser.cursor.comments) {
+        parser.hidden(&comment);
     }
     if let Some(place) = header(text) {
         parser.findings.push(foreign(text, place, "NB0108", "a vertex program begins with `vs.1.1`"));
         return (parser.written, parser.findings);
     }
-    let mut start = 0;
-    for line in uncommented.text.split_inclusive('\n') {
-        let part = start..start + line.len();
-        start = part.end;
-        let full = parser.written.shader.instructions.len() >= MOST_INSTRUCTIONS;
-        if full || parser.findings.len() >= MOST_FINDINGS {
-            break;
-        }
-        let mut scanner = Scanner::new(&uncommented.text, part);
-        if !scanner.is_done() {
-            let _given_up = parser.line(&mut scanner).is_err();
-        }
+    while !parser.cursor.is_done()
+        && parser.findings.len() < MOST_FINDINGS
+        && parser.written.shader.instructions.len() < MOST_INSTRUCTIONS
+    {
+        parser.start = parser.cursor.at;
+        let _given_up = parser.line().is_err();
+        parser.skip_line();
     }
     parser.findings.sort_by_key(Diagnostic::order);
     (parser.written, parser.findings)
@@ -88,11 +83,10 @@ impl Parser<'_> {
     }
 
     /// Records that something else stands here.
-    pub(super) fn expected(&mut self, scanner: &mut Scanner<'_>, what: &str) -> GivenUp {
-        let place = scanner.next();
-        let found = match scanner.text(&place) {
-            "" => "the end of the line".to_owned(),
-            word => format!("`{}`", shorten(word)),
+    pub(super) fn expected(&mut self, what: &str) -> GivenUp {
+        let (place, found) = match self.is_done() {
+            true => (self.line_end()..self.line_end(), "the end of the line".to_owned()),
+            false => (self.cursor.place(), self.cursor.found("")),
         };
         let message = format!("expected {what}, found {found}");
         self.refuse(
@@ -104,39 +98,73 @@ impl Parser<'_> {
         )
     }
 
+    /// Whether all of the line has been taken.
+    pub(super) fn is_done(&self) -> bool {
+        self.cursor.is_new_line() && self.cursor.at > self.start
+    }
+
+    /// Where the line ends that the token before the one at hand stands in.
+    fn line_end(&self) -> usize {
+        let (text, end) = (self.cursor.text, self.cursor.end());
+        text[end..].find('\n').map_or(text.len(), |line| end + line + 1)
+    }
+
+    /// Passes over what is left of the line; its end.
+    fn skip_line(&mut self) -> usize {
+        while !self.is_done() {
+            self.cursor.advance();
+        }
+        self.cursor.end()
+    }
+
+    /// Takes a word or a number, if one is at hand: its place, or an empty one.
+    pub(super) fn word(&mut self) -> Range<usize> {
+        let place = self.cursor.place();
+        if self.is_done() || !matches!(self.cursor.kind(), Some(Kind::Word | Kind::Number)) {
+            return place.start..place.start;
+        }
+        self.cursor.advance();
+        place
+    }
+
+    /// Takes a sign of this line.
+    pub(super) fn sign(&mut self, sign: char) -> Option<Range<usize>> {
+        let place = self.cursor.place();
+        (!self.is_done() && self.cursor.take(sign)).then_some(place)
+    }
+
     /// Warns of an instruction that a semicolon behind another one makes a comment.
-    fn hidden(&mut self, text: &str, comment: &Range<usize>) {
-        let before = self.text[..comment.start - 1].rsplit('\n').next().unwrap_or("");
-        let mut scanner = Scanner::new(text, comment.clone());
-        let word = scanner.word();
-        let operand = scanner.word();
+    fn hidden(&mut self, comment: &Range<usize>) {
+        let inside = self.cursor.text(comment);
+        let hidden = Cursor::new(inside, Language::ASSEMBLER);
         let register = |word: &str| {
             let letters = word.trim_end_matches(|c: char| c.is_ascii_digit()).to_ascii_lowercase();
             ["r", "opos", "od", "ot", "ofog", "opts"].contains(&letters.as_str())
         };
-        let instruction = opcode(scanner.text(&word)).is_some() && register(scanner.text(&operand));
-        let rest = scanner.remaining();
-        if !before.trim().is_empty() && instruction && scanner.text(&rest).contains(',') {
+        let instruction = opcode(hidden.text_at(0)).is_some() && register(hidden.text_at(1)) && inside.contains(',');
+        let between = self.cursor.text(&(self.cursor.end_before(comment.start)..comment.start));
+        if instruction && between.len() < comment.start && !between.contains('\n') {
             let message = "an instruction behind a semicolon, which begins a comment";
+            let place = comment.start + hidden.place().start..comment.start + inside.trim_end().len();
             self.written.warnings.push(
-                Diagnostic::warning("NB0913", word.start..rest.end, message)
+                Diagnostic::warning("NB0913", place, message)
                     .label("left out")
                     .help("write each instruction in a line of its own"),
             );
         }
     }
 
-    fn line(&mut self, scanner: &mut Scanner<'_>) -> Read<()> {
-        let place = scanner.word();
-        let word = scanner.text(&place).to_owned();
+    fn line(&mut self) -> Read<()> {
+        let place = self.word();
+        let word = self.cursor.text(&place);
         let lower = word.to_ascii_lowercase();
-        if ["vs", "ps"].contains(&lower.as_str()) || lower.starts_with("vs_") || lower.starts_with("ps_") {
-            return self.version(scanner, place, &lower);
+        if ["vs", "ps"].contains(&lower.split(['_', '.']).next().unwrap_or_default()) {
+            return self.version(place, &lower);
         }
         if lower == "def" {
-            return self.definition(scanner, place);
+            return self.definition(place);
         }
-        if lower == "nop" && scanner.is_done() {
+        if lower == "nop" && self.is_done() {
             return Ok(());
         }
         if lower == "dcl" || lower.starts_with("dcl_") {
@@ -149,13 +177,13 @@ impl Parser<'_> {
                 help,
             ));
         }
-        let Some(opcode) = opcode(&word) else { return Err(self.unknown(scanner, place, &word)) };
-        self.instruction(scanner, opcode, place)
+        let Some(opcode) = opcode(word) else { return Err(self.unknown(place, word)) };
+        self.instruction(opcode, place)
     }
 
-    fn version(&mut self, scanner: &mut Scanner<'_>, place: Range<usize>, word: &str) -> Read<()> {
-        let whole = place.start..scanner.remaining().end;
-        let written: String = self.text[whole.clone()].chars().filter(|c| !c.is_whitespace()).collect();
+    fn version(&mut self, place: Range<usize>, word: &str) -> Read<()> {
+        let whole = place.start..self.skip_line();
+        let written: String = (self.start..self.cursor.at).map(|at| self.cursor.text_at(at)).collect();
         let written = written.to_ascii_lowercase().replace('_', ".");
         if word.starts_with("ps") {
             let help = "a vertex program begins with `vs.1.1`; the pixel shader belongs into the draw's `program`";
@@ -178,8 +206,8 @@ impl Parser<'_> {
     }
 
     /// `def c4, 0.5, 1, 2, 0`.
-    fn definition(&mut self, scanner: &mut Scanner<'_>, word: Range<usize>) -> Read<()> {
-        let (source, place) = operand::source(self, scanner)?;
+    fn definition(&mut self, word: Range<usize>) -> Read<()> {
+        let (source, place) = operand::source(self)?;
         let SourceRegister::Constant { index, relative: false } = source.register else {
             return Err(self.refuse(
                 "NB0380",
@@ -190,21 +218,25 @@ impl Parser<'_> {
             ));
         };
         let mut values = Vec::new();
-        while scanner.sign(',').is_some() {
-            let place = scanner.until_comma();
-            let number = scanner.text(&place).trim_end_matches(['f', 'F']);
+        while self.sign(',').is_some() {
+            let mut place = self.cursor.place();
+            while !self.is_done() && !self.cursor.is(',') {
+                self.cursor.advance();
+            }
+            place.end = self.cursor.end().max(place.start);
+            let number = self.cursor.text(&place).trim_end_matches(['f', 'F']);
             let plain = number.chars().all(|c| c.is_ascii_digit() || "+-.eE".contains(c));
             match number.parse::<f32>() {
                 Ok(value) if plain && value.is_finite() => values.push(value),
                 _ => {
-                    let message = format!("`{}` is not a number", shorten(scanner.text(&place)));
+                    let message = format!("`{}` is not a number", shorten(self.cursor.text(&place)));
                     let help = "write four numbers, such as `def c4, 0.5, 1.0, 2.0, 0.0`";
                     return Err(self.refuse("NB0205", place, &message, "not finite or no number", help));
                 }
             }
         }
-        if !scanner.is_done() {
-            return Err(self.expected(scanner, "`,`"));
+        if !self.is_done() {
+            return Err(self.expected("`,`"));
         }
         let Ok(values) = <[f32; 4]>::try_from(values.as_slice()) else {
             let message = format!("a constant has four numbers, not {}", values.len());
@@ -222,16 +254,16 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn instruction(&mut self, scanner: &mut Scanner<'_>, opcode: Opcode, place: Range<usize>) -> Read<()> {
-        let (destination, written) = operand::destination(self, scanner)?;
+    fn instruction(&mut self, opcode: Opcode, place: Range<usize>) -> Read<()> {
+        let (destination, written) = operand::destination(self)?;
         let (mut sources, mut places) = (Vec::new(), Vec::new());
-        while scanner.sign(',').is_some() {
-            let (source, place) = operand::source(self, scanner)?;
+        while self.sign(',').is_some() {
+            let (source, place) = operand::source(self)?;
             sources.push(source);
             places.push(place);
         }
-        if !scanner.is_done() {
-            return Err(self.expected(scanner, "`,` or the end of the line"));
+        if !self.is_done() {
+            return Err(self.expected("`,` or the end of the line"));
         }
         if sources.len() != opcode.sources() {
             let count = |n: usize| if n == 1 { "1 source".to_owned() } else { format!("{n} sources") };
@@ -248,10 +280,9 @@ impl Parser<'_> {
         Ok(())
     }
 
-    fn unknown(&mut self, scanner: &mut Scanner<'_>, place: Range<usize>, word: &str) -> GivenUp {
+    fn unknown(&mut self, place: Range<usize>, word: &str) -> GivenUp {
         if word.is_empty() {
-            let mut at = Scanner::new(self.text, place.start..scanner.remaining().end);
-            return self.expected(&mut at, "an instruction");
+            return self.expected("an instruction");
         }
         let list: Vec<&str> = Opcode::ALL.iter().map(|opcode| opcode.word()).collect();
         let later = ["abs", "crs", "lrp", "mova", "nrm", "pow", "sgn", "sincos", "if", "loop", "rep", "call", "setp"];

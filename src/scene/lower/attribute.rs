@@ -54,7 +54,7 @@ pub(super) fn source<'a>(
 ) -> Option<Source> {
     let (head, _) = raw.split();
     if color && (raw.is_text() || matches!(head, "" | "Float" | "Vector")) {
-        return color::vertex_color(reader, names, &raw.as_other()).map(Source::Color);
+        return names.color(reader, &raw.as_other()).map(Source::Color);
     }
     if !color && (raw.text.starts_with('(') || raw.is_text()) {
         return vertex::coordinates(reader, &raw.as_other())
@@ -80,9 +80,7 @@ pub(super) fn source<'a>(
         _ => {
             let fields = reader.read(&Raw::<source::HalfVector<'a>>::new(rest))?;
             let light = place(reader, rest, "light", &fields.position, &fields.direction);
-            let opening = reader.range(rest.get(..1).unwrap_or(rest));
-            let viewer = reader.required(&fields.viewer, "viewer", "half vector", opening);
-            let viewer = viewer.and_then(|raw| point(reader, &raw, "the viewer's position"));
+            let viewer = fields.viewer(reader).map(|[x, y, z, _]| [x, y, z]);
             let tangent_space = space(reader, &fields.space);
             Source::Half { light: light?, viewer: viewer?, tangent_space: tangent_space? }
         }
@@ -90,7 +88,7 @@ pub(super) fn source<'a>(
 }
 
 fn point<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, what: &str) -> Option<[f32; 3]> {
-    reader.numbers(raw, what, 3, 3, [0.0; 4]).map(|[x, y, z, _]| [x, y, z])
+    reader.numbers(raw, what, 3..=3, [0.0; 4]).map(|[x, y, z, _]| [x, y, z])
 }
 
 /// Where a light or an eye is: exactly one of the two is given. `None` once the reason that it is not has been recorded.
@@ -109,7 +107,7 @@ pub(super) fn place<'a>(
                 Some(_) => format!("this {what} has a position and a direction; one of them is enough"),
                 None => format!("this {what} has neither `position` nor `direction`"),
             };
-            let place = reader.range(text.get(..1).unwrap_or(text));
+            let place = reader.opening(text);
             reader.push(Diagnostic::error("NB0202", place, message).label("in here").help(
                 "write `position: (x, y, z)` for one that is near, `direction: (x, y, z)` (toward it) for one far away",
             ));

@@ -6,35 +6,21 @@ use super::*;
 use crate::raw::{Few, Numbers, Tuple};
 use ninebit::state::VertexColor;
 
-/// A colour that stays as it was given. `None` once the reason has been recorded.
-pub(super) fn vertex_color<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, source::Color>,
-) -> Option<VertexColor> {
-    if raw.is_text() { names.color(reader, raw) } else { literal(reader, raw) }
-}
-
 /// A constant colour: four bytes.
 pub(super) fn constant<'a>(
     reader: &mut Reader<'a>,
     names: &Names<'a>,
     raw: &Raw<'a, source::Color>,
 ) -> Option<[u8; 4]> {
-    Some(match vertex_color(reader, names, raw)? {
-        VertexColor::Bytes(bytes) => bytes,
-        VertexColor::Floats(floats) => floats.map(byte),
-    })
+    names.color(reader, raw).map(bytes)
 }
 
-/// A constant colour that may be absent.
-pub(super) fn constant_or<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Option<Raw<'a, source::Color>>,
-    default: [u8; 4],
-) -> [u8; 4] {
-    raw.as_ref().and_then(|raw| constant(reader, names, raw)).unwrap_or(default)
+/// A colour as a constant.
+pub(super) fn bytes(color: VertexColor) -> [u8; 4] {
+    match color {
+        VertexColor::Bytes(bytes) => bytes,
+        VertexColor::Floats(floats) => floats.map(byte),
+    }
 }
 
 /// Constants 0 and 1; the ones not written are zero.
@@ -78,11 +64,11 @@ pub(super) fn floats(color: VertexColor) -> [f32; 4] {
 pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
     let (head, rest) = raw.split();
     if head.is_empty() && raw.text.starts_with('(') {
-        return bytes(reader, raw);
+        return three_or_four(reader, raw);
     }
     if head == "Vector" {
         let vector = texture_source::only::<Numbers>(reader, rest, "a vector or its name")?;
-        let [x, y, z, _] = reader.numbers(&vector, "a vector as a colour", 3, 3, [0.0; 4])?;
+        let [x, y, z, _] = reader.numbers(&vector, "a vector as a colour", 3..=3, [0.0; 4])?;
         return Some(VertexColor::Floats([0.5 + 0.5 * x, 0.5 + 0.5 * y, 0.5 + 0.5 * z, 1.0]));
     }
     if head != "Float" {
@@ -101,11 +87,11 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
     if Raw::<Numbers>::new(rest.strip_prefix('(').unwrap_or(rest)).is_text() {
         numbers = texture_source::only(reader, rest, "the name of a vector")?;
     }
-    reader.numbers(&numbers, "a colour", 3, 4, [0.0, 0.0, 0.0, 1.0]).map(VertexColor::Floats)
+    reader.numbers(&numbers, "a colour", 3..=4, [0.0, 0.0, 0.0, 1.0]).map(VertexColor::Floats)
 }
 
 /// Three or four bytes.
-fn bytes<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
+fn three_or_four<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
     match reader.attempt::<Few<u8>>(raw.text) {
         Some(Few { values: [r, g, b, _], count: 3 }) => return Some(VertexColor::Bytes([r, g, b, 255])),
         Some(Few { values, count: 4 }) => return Some(VertexColor::Bytes(values)),

@@ -6,8 +6,7 @@ use super::*;
 use crate::raw::Tuple;
 use ninebit::legality::{Help, Notation, stage_count};
 use ninebit::state::{
-    Bias, Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, MuxSelect, Named, Portion,
-    Register, Scale,
+    Combiners, Component, FinalCombiner, FinalInput, FinalRegister, GeneralStage, Named, Portion, Register,
 };
 use ninebit_program::{Part, Place, Places};
 
@@ -15,14 +14,6 @@ use ninebit_program::{Part, Place, Places};
 pub(super) struct Fields;
 
 impl Notation for Fields {
-    fn register(&self, register: FinalRegister) -> &'static str {
-        register.name()
-    }
-
-    fn scale(&self, scale: Scale) -> &'static str {
-        scale.name()
-    }
-
     fn help(&self, help: Help) -> &'static str {
         match help {
             Help::EmptyStage => "write `[()]` for a stage that changes nothing",
@@ -30,16 +21,13 @@ impl Notation for Fields {
                 "write `constants` beside `stages`, for the whole program; profile Nv2a allows them here"
             }
             Help::OtherRegister => "send one of them to another register, or to `Discard`",
-            Help::BiasScale => "with this bias the scale is One or Two",
-            Help::FogColor => "read Rgb here",
             Help::FogBlue => "write `(Fog, Blue)` for the fog colour's blue",
             Help::SecondaryAlpha => "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of PrimaryColor",
             Help::RgbComponents => "take Rgb (the default here) or Alpha",
             Help::AlphaComponents => "take Alpha (the default here) or Blue",
             Help::FinalComponents => "inputs A to F read Rgb (the default) or Alpha",
             Help::FinalAlphaComponents => "G reads Alpha (the default) or Blue",
-            Help::Writable => "write to Spare0, Spare1, PrimaryColor, SecondaryColor or a texture register",
-            Help::OtherInput => "read Spare0 or another register",
+            Help::BiasScale | Help::FogColor | Help::Writable | Help::OtherInput => help.text(),
         }
     }
 }
@@ -49,14 +37,13 @@ pub(super) fn combiners<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'
     let fields = reader.read(&Raw::<source::Combiners<'a>>::new(text))?;
     let shared = fields.constants.as_ref().map(|raw| color::constants(reader, names, raw)).unwrap_or_default();
     let mut places = Places::default();
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let stages = stages(reader, names, &fields, shared, opening, &mut places)?;
+    let stages = stages(reader, names, &fields, shared, &mut places)?;
     let final_combiner = match &fields.final_combiner {
         Some(raw) => final_combiner(reader, names, raw, shared, &mut places),
         None => Some(FinalCombiner::initial(shared)),
     };
     let final_combiner = final_combiner.unwrap_or(FinalCombiner::initial(shared));
-    let mux_select = reader.name_or(&fields.mux_select, MuxSelect::Msb);
+    let mux_select = fields.mux_select(reader);
     Some((Combiners { stages, mux_select, final_combiner }, places))
 }
 
@@ -65,13 +52,12 @@ fn stages<'a>(
     names: &Names<'a>,
     fields: &source::Combiners<'a>,
     shared: [[u8; 4]; 2],
-    opening: Range<usize>,
     places: &mut Places,
 ) -> Option<Vec<GeneralStage>> {
-    let list_raw = reader.required(&fields.stages, "stages", "program", opening)?;
+    let list_raw = fields.stages(reader)?;
     let list = reader.read(&list_raw)?;
     places.set(Place::Stages, reader.span(&list_raw));
-    let place = |index: usize| list.get(index).map(|raw| reader.range(raw.text.get(..1).unwrap_or(raw.text)));
+    let place = |index: usize| list.get(index).map(|raw| reader.opening(raw.text));
     if let Some(finding) = stage_count(list.len(), reader.profile, place) {
         reader.push(finding);
         return None;
@@ -150,13 +136,13 @@ fn portion<'a>(
     if let Some(raw) = &fields.scale {
         places.set(at(Part::Scale), reader.span(raw));
     }
-    portion.ab_dot_product = reader.or(&fields.ab_dot, false);
-    portion.cd_dot_product = reader.or(&fields.cd_dot, false);
-    portion.ab_blue_to_alpha = reader.or(&fields.ab_blue_to_alpha, false);
-    portion.cd_blue_to_alpha = reader.or(&fields.cd_blue_to_alpha, false);
-    portion.mux = reader.or(&fields.mux, false);
-    portion.scale = reader.name_or(&fields.scale, Scale::One);
-    portion.bias = reader.name_or(&fields.bias, Bias::None);
+    portion.ab_dot_product = fields.ab_dot(reader);
+    portion.cd_dot_product = fields.cd_dot(reader);
+    portion.ab_blue_to_alpha = fields.ab_blue_to_alpha(reader);
+    portion.cd_blue_to_alpha = fields.cd_blue_to_alpha(reader);
+    portion.mux = fields.mux(reader);
+    portion.scale = fields.scale(reader);
+    portion.bias = fields.bias(reader);
     portion
 }
 
@@ -197,13 +183,12 @@ fn final_combiner<'a>(
     }
     let [a, b, c, d, e, f, g] = inputs;
     let constants = own_constants(reader, names, &fields.constants, Place::FinalConstants, places);
-    let absent = FinalCombiner::default();
     Some(FinalCombiner {
         inputs: [a, b, c, d, e, f],
         g,
-        color_sum_clamp: reader.or(&fields.color_sum_clamp, absent.color_sum_clamp),
-        invert_spare0: reader.or(&fields.invert_spare0, absent.invert_spare0),
-        invert_secondary: reader.or(&fields.invert_secondary, absent.invert_secondary),
+        color_sum_clamp: fields.color_sum_clamp(reader),
+        invert_spare0: fields.invert_spare0(reader),
+        invert_secondary: fields.invert_secondary(reader),
         constants: constants.unwrap_or(shared),
     })
 }

@@ -11,10 +11,7 @@ use super::target::Targets;
 use super::texture::Textures;
 use super::*;
 use crate::mesh::Mesh;
-use ninebit::state::{
-    Combiners, Cull, Draw, FrontFace, Named, Positions, ProvokingVertex, Rectangle, ShadeModel, ShaderOperation,
-    Texture, Topology, Vertices,
-};
+use ninebit::state::{Combiners, Draw, Named, Positions, Rectangle, ShaderOperation, Texture, Topology};
 
 /// A draw and what else is known of it.
 pub(super) struct Drawn {
@@ -50,9 +47,8 @@ pub(super) fn draws<'a>(
     let mut written: Vec<bool> = targets.list.iter().map(|target| target.contents.is_some()).collect();
     let mut budget = Budget { vertices: reader.limits.vertices, indices: reader.limits.indices, spent: false };
     for (index, raw) in list.iter().enumerate() {
-        let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
         let Some(fields) = reader.read(raw) else { continue };
-        let mut place = opening.clone();
+        let mut place = reader.opening(raw.text);
         let mut name = format!("draw {index}");
         if let Some(raw) = &fields.name
             && let Some(given) = reader.read(raw)
@@ -65,7 +61,7 @@ pub(super) fn draws<'a>(
             seen.insert(given.clone(), place.clone());
             name = given;
         }
-        let header = Header { name, place, opening };
+        let header = Header { name, place };
         if let Some(mut draw) = draw(reader, names, targets, textures, &fields, header, &mut budget, &written) {
             draw.mesh = draw.mesh.filter(|_| keeps_meshes);
             if let Some(flag) = written.get_mut(draw.draw.target) {
@@ -90,7 +86,6 @@ struct Budget {
 struct Header {
     name: String,
     place: Range<usize>,
-    opening: Range<usize>,
 }
 
 #[expect(clippy::too_many_arguments, reason = "a draw can refer to everything")]
@@ -112,7 +107,7 @@ fn draw<'a>(
         return clear(reader, names, targets, (fields, raw), header, target?);
     }
     let truth = fields.truth.as_ref().and_then(|raw| Some((reader.read(raw)?, reader.span(raw))));
-    let source = reader.required(&fields.vertices, "vertices", "draw", header.opening.clone());
+    let source = fields.vertices(reader);
     let mut geometry = source.and_then(|raw| geometry(reader, names, targets, target.unwrap_or(0), &raw));
     let sets = texgen::sets(reader, names, &fields.texgen, &fields.texture_matrices);
     let viewer =
@@ -121,7 +116,7 @@ fn draw<'a>(
     let mut units = unit::units(reader, names, textures, &fields.textures);
     shader::shader(reader, textures, &mut units, &fields.texture_shader);
     let program = fields.program.as_ref().map(|raw| names.program(reader, raw));
-    let topology = reader.name_or(&fields.topology, Topology::Triangles);
+    let topology = fields.topology(reader);
     let mut around = Around {
         fog: fog.state().enabled,
         shader: fields.texture_shader.is_some(),
@@ -156,28 +151,19 @@ fn draw<'a>(
         name: header.name,
         target: target.unwrap_or(0),
         positions: geometry.as_ref().map_or(Positions::Window, |geometry| geometry.positions),
-        vertices: Vertices::new(),
-        indices: Arc::default(),
         topology,
-        shade_model: reader.name_or(&fields.shade_model, ShadeModel::Smooth),
-        provoking_vertex: reader.name_or(&fields.provoking_vertex, ProvokingVertex::Last),
-        perspective: reader.or(&fields.perspective, true),
-        cull: reader.name_or(&fields.cull, Cull::None),
-        front_face: reader.name_or(&fields.front_face, FrontFace::CounterClockwise),
+        shade_model: fields.shade_model(reader),
+        provoking_vertex: fields.provoking_vertex(reader),
+        perspective: fields.perspective(reader),
+        cull: fields.cull(reader),
+        front_face: fields.front_face(reader),
         scissor: scissor(reader, targets, target, fields),
-        window_clip: None,
         fog: fog.state(),
         textures: units.bound,
         texture_shader,
         combiners,
         program_origin,
-        vertex_program: None,
-        alpha_test: None,
-        stencil_test: None,
-        depth_test: None,
-        blend: None,
-        blend_constant: [0; 4],
-        color_mask: [true; 4],
+        ..Draw::default()
     };
     raster::operations(reader, names, targets, fields, &mut draw);
     for (unit, read) in reads.iter().enumerate() {

@@ -32,29 +32,20 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
         Profile::Nv10 => FogEvaluation::PerVertex,
         Profile::Nv2a => FogEvaluation::PerPixel,
     };
+    let fields = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    let [r, g, b, _] = color::bytes(fields.color(reader, names));
     let mut fog = FogFields {
-        enabled: false,
-        color: [0; 3],
+        enabled: raw.is_some() && fields.enabled(reader),
+        color: [r, g, b],
         function: None,
-        source: FogSource::Vertex,
+        source: fields.coordinate_source(reader),
         evaluation: chip,
         place: 0..0,
     };
-    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return fog };
-    fog.enabled = reader.or(&fields.enabled, true);
-    let [r, g, b, _] = color::constant_or(reader, names, &fields.color, [0; 4]);
-    fog.color = [r, g, b];
     let Some(raw) = &fields.mode else {
-        let numbers = [(&fields.start, "start"), (&fields.end, "end"), (&fields.density, "density")];
-        let mut given = numbers.iter().filter_map(|(field, name)| Some((reader.span(field.as_ref()?), *name)));
-        let given = given
-            .next()
-            .or_else(|| fields.parameters.as_ref().map(|raw| (reader.span(raw), "parameters")))
-            .or_else(|| fields.coordinate_source.as_ref().map(|raw| (reader.span(raw), "coordinate_source")))
-            .or_else(|| fields.evaluation.as_ref().map(|raw| (reader.span(raw), "evaluation")));
-        if let Some((place, name)) = given {
+        if let Some((name, text)) = fields.written().find(|(name, _)| !["enabled", "color"].contains(name)) {
             reader.push(
-                Diagnostic::error("NB0223", place, format!("`{name}` says nothing without a `mode`"))
+                Diagnostic::error("NB0223", reader.range(text), format!("`{name}` says nothing without a `mode`"))
                     .label("belongs to a fog function")
                     .help("add `mode: Linear` (or Exp, Exp2); without a mode the vertices give factors in `fog`"),
             );
@@ -62,18 +53,12 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
         return fog;
     };
     fog.place = reader.span(raw);
-    fog.source = reader.name_or(&fields.coordinate_source, FogSource::Vertex);
-    if let Some(raw) = &fields.evaluation {
-        let place = reader.span(raw);
-        fog.evaluation = reader.name(raw).unwrap_or(chip);
-        if fog.evaluation == FogEvaluation::PerPixel && reader.profile == Profile::Nv10 {
-            reader.push(target::only_nv2a("NB0324", place, "linear fog of each pixel", "INT-5n"));
-        }
-    }
+    fog.evaluation = fields.evaluation.and_then(|raw| reader.name(&raw)).unwrap_or(chip);
+    let each_pixel = fog.evaluation == FogEvaluation::PerPixel;
+    reader.needs_nv2a(&fields.evaluation, each_pixel, "NB0324", ("linear fog of each pixel", "INT-5n"));
     if let Some(mode) = reader.name(raw) {
-        if mode == FogMode::LinearAbs && reader.profile == Profile::Nv10 {
-            reader.push(target::only_nv2a("NB0324", fog.place.clone(), "fog mode LinearAbs", "INT-5n"));
-        }
+        let absolute = mode == FogMode::LinearAbs;
+        reader.needs_nv2a(&fields.mode, absolute, "NB0324", ("fog mode LinearAbs", "INT-5n"));
         fog.function = function(reader, &fields, mode, fog.evaluation, &fog.place);
     }
     fog
@@ -110,7 +95,7 @@ fn function<'a>(
             );
             return None;
         }
-        let [p0, p1, p2, _] = reader.numbers(raw, "the parameters of fog", 2, 3, [0.0; 4])?;
+        let [p0, p1, p2, _] = fields.parameters(reader)?;
         let per_vertex = evaluation == FogEvaluation::PerVertex;
         if p2 != 0.0 && straight && !per_vertex {
             reader.push(
@@ -127,15 +112,10 @@ fn function<'a>(
         }
         return Some(FogFunction { mode, p0, p1, p2, per_vertex });
     }
-    let mut number = |field: &Option<Raw<'a, f32>>, default: f32| match field {
-        Some(raw) => reader.finite(raw),
-        None => Some(default),
-    };
     let function = if straight {
-        let (start, end) = (number(&fields.start, 0.0), number(&fields.end, 1.0));
-        linear(mode, start?, end?, evaluation)
+        linear(mode, fields.start(reader), fields.end(reader), evaluation)
     } else {
-        Some(exponential(mode, number(&fields.density, 1.0)?, evaluation))
+        Some(exponential(mode, fields.density(reader), evaluation))
     };
     if function.is_some() {
         return function;

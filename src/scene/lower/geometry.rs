@@ -238,9 +238,9 @@ fn matrix_geometry<'a>(
     target: usize,
     text: &'a str,
 ) -> Option<Geometry> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
-    let matrix = reader.required(&fields.matrix, "matrix", "vertex source", opening.clone());
+    let matrix = fields.matrix(reader);
     let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
     let model_view = match &fields.model_view {
         Some(raw) => names.matrix(reader, raw),
@@ -318,51 +318,21 @@ pub(super) fn viewport<'a>(
     targets: &Targets,
     target: usize,
 ) -> Viewport {
-    let (width, height) = targets.list.get(target).map_or((640, 480), |target| (target.width, target.height));
+    let (width, height) = targets.list.get(target).map_or((1, 1), |target| (target.width, target.height));
     let (width, height) = (width as f32, height as f32);
-    let mut viewport = Viewport {
-        x: 0.0,
-        y: 0.0,
-        width,
-        height,
-        near: 0.0,
-        far: 1.0,
-        clip_depth: ClipDepth::MinusOneToOne,
-        depth_clamp: false,
+    let fields = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
+    let (x, y) = (fields.x(reader), fields.y(reader));
+    let mut side = |field: &Option<Raw<'a, f32>>, whole: f32| {
+        let Some((raw, value)) = field.as_ref().and_then(|raw| Some((raw, reader.finite(raw)?))) else { return whole };
+        if value <= 0.0 {
+            let message = "a viewport has a width and a height above 0";
+            reader.push(Diagnostic::error("NB0206", reader.span(raw), message).label("out of range"));
+        }
+        value
     };
-    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return viewport };
-    for (field, slot, positive) in [
-        (&fields.x, &mut viewport.x, false),
-        (&fields.y, &mut viewport.y, false),
-        (&fields.width, &mut viewport.width, true),
-        (&fields.height, &mut viewport.height, true),
-        (&fields.near, &mut viewport.near, false),
-        (&fields.far, &mut viewport.far, false),
-    ] {
-        let Some(raw) = field else { continue };
-        let Some(value) = reader.finite(raw) else { continue };
-        if positive && value <= 0.0 {
-            reader.push(
-                Diagnostic::error("NB0206", reader.span(raw), "a viewport has a width and a height above 0")
-                    .label("out of range"),
-            );
-        }
-        *slot = value;
-    }
-    viewport.depth_clamp = reader.or(&fields.depth_clamp, false);
-    for (field, value) in [(&fields.near, viewport.near), (&fields.far, viewport.far)] {
-        if let Some(raw) = field
-            && !(0.0..=1.0).contains(&value)
-            && value.is_finite()
-        {
-            reader.push(
-                Diagnostic::error("NB0206", reader.span(raw), format!("a depth cannot be {value}"))
-                    .label("out of range")
-                    .help("write 0.0 (near) to 1.0 (far)"),
-            );
-        }
-    }
-    viewport
+    let (width, height) = (side(&fields.width, width), side(&fields.height, height));
+    let (near, far, depth_clamp) = (fields.near(reader), fields.far(reader), fields.depth_clamp(reader));
+    Viewport { x, y, width, height, near, far, clip_depth: ClipDepth::MinusOneToOne, depth_clamp }
 }
 
 /// A source of vertices that has both of these fields, or neither.

@@ -29,7 +29,7 @@ pub(super) fn evaluate<'a>(
         return table.get(reader, raw, &evaluate, depth);
     }
     if depth > DEEPEST {
-        let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        let place = reader.opening(raw.text);
         reader.push(
             Diagnostic::error("NB0602", place, format!("more than {DEEPEST} products inside each other"))
                 .label("one level too many")
@@ -70,7 +70,7 @@ pub(super) fn evaluate<'a>(
 }
 
 fn vector<'a>(reader: &mut Reader<'a>, text: &'a str, what: &str, count: usize) -> Option<[f32; 4]> {
-    reader.numbers(&Raw::<Numbers>::new(text), what, count, count, [0.0; 4])
+    reader.numbers(&Raw::<Numbers>::new(text), what, count..=count, [0.0; 4])
 }
 
 /// Four rows of four numbers.
@@ -86,7 +86,7 @@ fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Optio
     }
     let mut rows = IDENTITY;
     for (row, part) in rows.iter_mut().zip(&parts) {
-        *row = reader.numbers(part, "a row of a matrix", 4, 4, [0.0; 4])?;
+        *row = reader.numbers(part, "a row of a matrix", 4..=4, [0.0; 4])?;
     }
     Some(rows)
 }
@@ -148,14 +148,10 @@ fn rotation([x, y, z, w]: [f32; 4]) -> Rows {
 
 /// OpenGL's frustum or orthographic box: the viewer looks along -z, depth -1 at `near` and 1 at `far`.
 fn projection<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Frustum<'a>>, perspective: bool) -> Option<Rows> {
-    let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let box_ = reader.read(raw)?;
-    let mut side = |field: &Option<Raw<'a, f32>>, name: &str| {
-        reader.required(field, name, "projection", place.clone()).and_then(|raw| reader.finite(&raw))
-    };
-    let (l, r) = (side(&box_.left, "left"), side(&box_.right, "right"));
-    let (b, t) = (side(&box_.bottom, "bottom"), side(&box_.top, "top"));
-    let (n, f) = (side(&box_.near, "near"), side(&box_.far, "far"));
+    let (l, r) = (box_.left(reader), box_.right(reader));
+    let (b, t) = (box_.bottom(reader), box_.top(reader));
+    let (n, f) = (box_.near(reader), box_.far(reader));
     let (l, r, b, t, n, f) = (l?, r?, b?, t?, n?, f?);
     let (width, height, depth) = (r - l, t - b, f - n);
     Some(if perspective {
@@ -177,16 +173,9 @@ fn projection<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Frustum<'a>>, p
 
 /// From the world to a viewer at `eye` who looks at `center`.
 fn look_at<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::LookAt<'a>>) -> Option<Rows> {
-    let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let view = reader.read(raw)?;
-    let mut point = |field: &Option<Raw<'a, Numbers>>, name: &str| {
-        let raw = reader.required(field, name, "view", place.clone())?;
-        let [x, y, z, _] = reader.numbers(&raw, name, 3, 3, [0.0; 4])?;
-        Some([x, y, z])
-    };
-    let (eye, center) = (point(&view.eye, "eye"), point(&view.center, "center"));
-    let up = if view.up.is_some() { point(&view.up, "up") } else { Some([0.0, 1.0, 0.0]) };
-    let (eye, center, up) = (eye?, center?, up?);
+    let (eye, center, up) = (view.eye(reader), view.center(reader), view.up(reader));
+    let (eye, center, up) = (point(eye?), point(center?), point(up));
     let forward = normalize(subtract(center, eye));
     let side = normalize(cross(forward, up));
     let up = cross(side, forward);
@@ -196,6 +185,10 @@ fn look_at<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::LookAt<'a>>) -> Op
         [-forward[0], -forward[1], -forward[2], dot(forward, eye)],
         [0.0, 0.0, 0.0, 1.0],
     ])
+}
+
+fn point([x, y, z, _]: [f32; 4]) -> [f32; 3] {
+    [x, y, z]
 }
 
 pub(super) fn subtract(a: [f32; 3], b: [f32; 3]) -> [f32; 3] {

@@ -6,7 +6,6 @@ use super::names::Names;
 use super::program_text::ProgramText;
 use super::*;
 use crate::mesh::{self, Mesh, MeshError, Surface};
-use crate::raw::Numbers;
 
 const KINDS: &[&str] = &["Grid", "Sphere", "Torus", "Cylinder", "Triangles", "Wavefront"];
 
@@ -46,92 +45,48 @@ pub(super) fn mesh<'a>(
 /// A mesh, or `None` once the reason that it cannot be read has been recorded; or why there is no such shape.
 type Made = Result<Option<Mesh>, MeshError>;
 
-fn count<'a>(
-    reader: &mut Reader<'a>,
-    field: &Option<Raw<'a, u32>>,
-    name: &str,
-    owner: &str,
-    text: &'a str,
-) -> Option<u32> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    reader.required(field, name, owner, opening).and_then(|raw| reader.read(&raw))
-}
-
-fn pair<'a>(
-    reader: &mut Reader<'a>,
-    field: &Option<Raw<'a, Numbers>>,
-    name: &str,
-    default: [f32; 2],
-) -> Option<[f32; 2]> {
-    match field {
-        Some(raw) => reader.numbers(raw, name, 2, 2, [0.0; 4]).map(|[a, b, ..]| [a, b]),
-        None => Some(default),
-    }
-}
-
-fn length<'a>(reader: &mut Reader<'a>, field: &Option<Raw<'a, f32>>, default: f32) -> Option<f32> {
-    match field {
-        Some(raw) => reader.finite(raw),
-        None => Some(default),
-    }
-}
-
-fn repeat<'a>(reader: &mut Reader<'a>, field: &Option<Raw<'a, Numbers>>) -> Option<[f32; 2]> {
-    pair(reader, field, "the repeat of a texture", [1.0, 1.0])
+/// The two numbers of a pair.
+fn pair([a, b, ..]: [f32; 4]) -> [f32; 2] {
+    [a, b]
 }
 
 fn grid<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
     let Some(fields) = reader.read(&Raw::<source::Grid<'a>>::new(text)) else { return Ok(None) };
-    let columns = count(reader, &fields.columns, "columns", "grid", text);
-    let rows = count(reader, &fields.rows, "rows", "grid", text);
-    let size = pair(reader, &fields.size, "the size of a grid", [2.0, 2.0]);
-    let repeat = repeat(reader, &fields.repeat);
-    let (Some(columns), Some(rows), Some(size), Some(repeat)) = (columns, rows, size, repeat) else { return Ok(None) };
+    let (columns, rows) = (fields.columns(reader), fields.rows(reader));
+    let (size, repeat) = (pair(fields.size(reader)), pair(fields.repeat(reader)));
+    let (Some(columns), Some(rows)) = (columns, rows) else { return Ok(None) };
     mesh::grid(columns, rows, size, repeat).map(Some)
 }
 
 fn sphere<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
     let Some(fields) = reader.read(&Raw::<source::Sphere<'a>>::new(text)) else { return Ok(None) };
-    let slices = count(reader, &fields.slices, "slices", "sphere", text);
-    let stacks = count(reader, &fields.stacks, "stacks", "sphere", text);
-    let radius = length(reader, &fields.radius, 1.0);
-    let repeat = repeat(reader, &fields.repeat);
-    let (Some(slices), Some(stacks), Some(radius), Some(repeat)) = (slices, stacks, radius, repeat) else {
-        return Ok(None);
-    };
+    let (slices, stacks) = (fields.slices(reader), fields.stacks(reader));
+    let (radius, repeat) = (fields.radius(reader), pair(fields.repeat(reader)));
+    let (Some(slices), Some(stacks)) = (slices, stacks) else { return Ok(None) };
     mesh::sphere(slices, stacks, radius, repeat).map(Some)
 }
 
 fn torus<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
     let Some(fields) = reader.read(&Raw::<source::Torus<'a>>::new(text)) else { return Ok(None) };
-    let slices = count(reader, &fields.slices, "slices", "torus", text);
-    let sides = count(reader, &fields.sides, "sides", "torus", text);
-    let radius = length(reader, &fields.radius, 1.0);
-    let tube = length(reader, &fields.tube, 0.375);
-    let repeat = repeat(reader, &fields.repeat);
-    let (Some(slices), Some(sides), Some(repeat)) = (slices, sides, repeat) else { return Ok(None) };
-    let (Some(radius), Some(tube)) = (radius, tube) else { return Ok(None) };
+    let (slices, sides) = (fields.slices(reader), fields.sides(reader));
+    let (radius, tube, repeat) = (fields.radius(reader), fields.tube(reader), pair(fields.repeat(reader)));
+    let (Some(slices), Some(sides)) = (slices, sides) else { return Ok(None) };
     mesh::torus(slices, sides, radius, tube, repeat).map(Some)
 }
 
 fn cylinder<'a>(reader: &mut Reader<'a>, text: &'a str) -> Made {
     let Some(fields) = reader.read(&Raw::<source::Cylinder<'a>>::new(text)) else { return Ok(None) };
-    let slices = count(reader, &fields.slices, "slices", "cylinder", text);
-    let stacks = count(reader, &fields.stacks, "stacks", "cylinder", text);
-    let radius = length(reader, &fields.radius, 1.0);
-    let height = length(reader, &fields.height, 2.0);
-    let caps = reader.or(&fields.caps, true);
-    let repeat = repeat(reader, &fields.repeat);
-    let (Some(slices), Some(stacks), Some(repeat)) = (slices, stacks, repeat) else { return Ok(None) };
-    let (Some(radius), Some(height)) = (radius, height) else { return Ok(None) };
+    let (slices, stacks) = (fields.slices(reader), fields.stacks(reader));
+    let (radius, height) = (fields.radius(reader), fields.height(reader));
+    let (caps, repeat) = (fields.caps(reader), pair(fields.repeat(reader)));
+    let (Some(slices), Some(stacks)) = (slices, stacks) else { return Ok(None) };
     mesh::cylinder(slices, stacks, radius, height, caps, repeat).map(Some)
 }
 
 /// Listed vertices as a mesh: position, normal (if it is not zero) and the first coordinate set.
 fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Mesh> {
     let fields = reader.read(&Raw::<source::Triangles<'a>>::new(text))?;
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let vertices = reader.required(&fields.vertices, "vertices", "mesh", opening);
+    let vertices = fields.vertices(reader);
     let data = vertices.and_then(|raw| names.vertices(reader, &raw));
     let indices = fields.indices.as_ref().map(|raw| (reader.span(raw), reader.read(raw)));
     let data = data?;
@@ -171,9 +126,8 @@ fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
 
 /// A file is read once, however many draws name it.
 fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<Arc<Mesh>> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
-    let raw = reader.required(&fields.file, "file", "mesh", opening)?;
+    let fields = source::ProgramFile { called: "mesh", ..reader.read(&Raw::new(text))? };
+    let raw = fields.file(reader)?;
     let name = reader.read(&raw)?;
     if let Some(known) = names.mesh_files.borrow().get(&name) {
         return known.clone();

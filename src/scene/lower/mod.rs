@@ -37,10 +37,11 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::diagnostic::Diagnostic;
+use super::field::Colors;
+use super::fields as source;
 use super::notation::trim;
 use super::raw::Raw;
 use super::reader::{Reader, too_many, unknown_name};
-use super::source;
 use super::wording::shorten;
 use crate::truth::Truth;
 use names::Names;
@@ -119,7 +120,7 @@ pub(super) fn scene<'a>(
     if !version(reader, &file, opening.clone()) {
         return None;
     }
-    let profile = reader.required(&file.profile, "profile", "scene", opening);
+    let profile = file.profile(reader);
     reader.profile = profile.and_then(|raw| reader.name(&raw)).unwrap_or(Profile::Nv2a);
     if let Some(raw) = &file.family {
         // What it names has been read; this finds what is no name.
@@ -127,7 +128,7 @@ pub(super) fn scene<'a>(
     }
     let shared = family.and_then(|text| reader.check::<source::Family<'a>>(text)).and_then(|raw| reader.read(&raw));
     let (shared_names, shared_targets, shared_truth) = match shared {
-        Some(source::Family { names, targets, truth }) => (names, targets, truth),
+        Some(source::Family { names, targets, truth, .. }) => (names, targets, truth),
         None => (None, None, None),
     };
 

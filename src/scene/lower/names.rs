@@ -124,10 +124,59 @@ impl<'a, S, T: Clone> Table<'a, S, T> {
 }
 
 /// The finding that nothing uses a definition.
-pub(super) fn unused(what: &str, name: &str, place: Range<usize>) -> Diagnostic {
+fn unused(what: &str, name: &str, place: Range<usize>) -> Diagnostic {
     Diagnostic::warning("NB0901", place, format!("the {what} \"{}\" is not used", shorten(name)))
         .label("nothing refers to it")
         .help("remove it, or check the spelling where it was meant to be used")
+}
+
+/// The names of a table that becomes a list. What is wrong keeps its name but has no index.
+pub(super) struct Index {
+    what: &'static str,
+    /// How to define one.
+    define: &'static str,
+    by_name: HashMap<String, Option<usize>>,
+    names: Vec<(String, Range<usize>)>,
+    used: Vec<bool>,
+}
+
+impl Index {
+    pub(super) fn new(what: &'static str, define: &'static str) -> Self {
+        Index { what, define, by_name: HashMap::new(), names: Vec::new(), used: Vec::new() }
+    }
+
+    pub(super) fn add(&mut self, name: String, place: Range<usize>, index: Option<usize>) {
+        self.by_name.insert(name.clone(), index);
+        self.names.push((name, place));
+        self.used.push(false);
+    }
+
+    /// Names of which nothing is known, and nothing said.
+    pub(super) fn unread(&mut self, names: impl Iterator<Item = String>) {
+        self.by_name = names.map(|name| (name, None)).collect();
+    }
+
+    /// The index of that name; `None` once the reason has been recorded.
+    pub(super) fn find<'a>(&mut self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
+        let name = reader.read(raw)?;
+        if let Some(index) = self.by_name.get(&name) {
+            if let Some(used) = self.names.iter().position(|(known, _)| *known == name) {
+                self.used[used] = true;
+            }
+            return *index;
+        }
+        let known = self.names.iter().map(|(name, _)| name.as_str());
+        unknown_name(reader, reader.span(raw), self.what, &name, known, self.define);
+        None
+    }
+
+    pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
+        for ((name, place), used) in self.names.iter().zip(&self.used) {
+            if !used {
+                reader.push(unused(self.what, name, place.clone()));
+            }
+        }
+    }
 }
 
 /// All tables.
@@ -175,63 +224,12 @@ impl<'a> Names<'a> {
         };
         names.colors.evaluate_all(reader, &evaluate_color);
         names.matrices.evaluate_all(reader, &matrix::evaluate);
-        names.vertices.evaluate_all(reader, &|reader, _, raw, _| {
-            value(reader, raw)?;
-            vertex::list(reader, &names, raw).map(Rc::new)
-        });
-        names.meshes.evaluate_all(reader, &|reader, _, raw, _| {
-            value(reader, raw)?;
-            mesh::mesh(reader, &names, raw)
-        });
-        names.programs.evaluate_all(reader, &|reader, _, raw, _| {
-            value(reader, raw)?;
-            program::program(reader, &names, raw).map(Rc::new)
-        });
-        names.blends.evaluate_all(reader, &|reader, _, raw, _| {
-            value(reader, raw)?;
-            raster::blend_function(reader, raw)
-        });
+        names.evaluate_others(reader);
         names
-    }
-
-    pub(super) fn color(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
-        self.colors.get(reader, raw, &evaluate_color, 0)
     }
 
     pub(super) fn matrix(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Matrix>) -> Option<Rows> {
         matrix::evaluate(reader, &self.matrices, raw, 0)
-    }
-
-    pub(super) fn vertices(
-        &self,
-        reader: &mut Reader<'a>,
-        raw: &Raw<'a, source::VertexList>,
-    ) -> Option<Rc<VertexData>> {
-        if raw.is_text() {
-            self.vertices.get(reader, raw, &|_, _, _, _| None, 0)
-        } else {
-            vertex::list(reader, self, raw).map(Rc::new)
-        }
-    }
-
-    pub(super) fn mesh(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::MeshSource>) -> Option<Arc<Mesh>> {
-        if raw.is_text() { self.meshes.get(reader, raw, &|_, _, _, _| None, 0) } else { mesh::mesh(reader, self, raw) }
-    }
-
-    pub(super) fn program(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Program>) -> Option<Rc<Program>> {
-        if raw.is_text() {
-            self.programs.get(reader, raw, &|_, _, _, _| None, 0)
-        } else {
-            program::program(reader, self, raw).map(Rc::new)
-        }
-    }
-
-    pub(super) fn blend(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
-        if raw.is_text() {
-            self.blends.get(reader, raw, &|_, _, _, _| None, 0)
-        } else {
-            raster::blend_function(reader, raw)
-        }
     }
 
     /// Warns of what nothing refers to.
@@ -250,6 +248,40 @@ impl<'a> Names<'a> {
     }
 }
 
+/// Tables whose values are no other names: how each is read, in the draws and where it is defined.
+macro_rules! plain_tables {
+    ($($method:ident, $table:ident: $source:ident => $value:ty, |$reader:ident, $names:ident, $raw:ident| $read:expr;)+) => {
+        impl<'a> Names<'a> {
+            $(pub(super) fn $method(&self, $reader: &mut Reader<'a>, $raw: &Raw<'a, source::$source>) -> Option<$value> {
+                if $raw.is_text() {
+                    return self.$table.get($reader, $raw, &|_, _, _, _| None, 0);
+                }
+                let $names = self;
+                $read
+            })+
+
+            fn evaluate_others(&self, reader: &mut Reader<'a>) {
+                $(self.$table.evaluate_all(reader, &|reader, _, raw, _| {
+                    value(reader, raw)?;
+                    self.$method(reader, raw)
+                });)+
+            }
+        }
+    };
+}
+plain_tables! {
+    vertices, vertices: VertexList => Rc<VertexData>, |reader, names, raw| vertex::list(reader, names, raw).map(Rc::new);
+    mesh, meshes: MeshSource => Arc<Mesh>, |reader, names, raw| mesh::mesh(reader, names, raw);
+    program, programs: Program => Rc<Program>, |reader, names, raw| program::program(reader, names, raw).map(Rc::new);
+    blend, blends: BlendSource => Blend, |reader, _names, raw| raster::blend_function(reader, raw);
+}
+
+impl<'a> Colors<'a> for Names<'a> {
+    fn color(&self, reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> Option<VertexColor> {
+        evaluate_color(reader, &self.colors, raw, 0)
+    }
+}
+
 /// Vectors first: every other value may be made of them.
 fn read_vectors<'a>(
     reader: &mut Reader<'a>,
@@ -258,7 +290,7 @@ fn read_vectors<'a>(
 ) {
     for Entry { name, place, value: raw, shared } in reader.tables("vector", own, shared) {
         let value =
-            value(reader, &raw).and_then(|()| reader.numbers_written(&raw, "a vector", 1, 4, [0.0, 0.0, 0.0, 1.0]));
+            value(reader, &raw).and_then(|()| reader.numbers_written(&raw, "a vector", 1..=4, [0.0, 0.0, 0.0, 1.0]));
         reader.vectors.add(NamedVector { name, place, value, used: false, shared });
     }
 }

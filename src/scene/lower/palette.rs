@@ -1,7 +1,6 @@
 //! Palettes: the colours that texels of P8 stand for.
 
-use std::collections::HashMap;
-
+use super::names::Index;
 use super::*;
 use crate::raw::Entries;
 use ninebit::state::{Named, Palette, TextureFormat};
@@ -9,9 +8,7 @@ use ninebit::state::{Named, Palette, TextureFormat};
 /// The palettes, and where they were named. A palette with errors keeps its name but has no index.
 pub(super) struct Palettes {
     pub(super) list: Vec<Palette>,
-    by_name: HashMap<String, Option<usize>>,
-    names: Vec<(String, Range<usize>)>,
-    used: Vec<bool>,
+    pub(super) index: Index,
 }
 
 impl Palettes {
@@ -20,12 +17,11 @@ impl Palettes {
         reader: &mut Reader<'a>,
         raw: &Option<Raw<'a, Entries<'a, source::List<'a, String>>>>,
     ) -> Palettes {
-        let mut palettes = Palettes { list: Vec::new(), by_name: HashMap::new(), names: Vec::new(), used: Vec::new() };
+        let define = "define it in `palettes: { \"...\": [\"ff000000 ...\"] }`";
+        let mut palettes = Palettes { list: Vec::new(), index: Index::new("palette", define) };
         for entry in reader.table("palette", raw) {
             let index = words(reader, &entry.value).map(|words| palettes.add(&entry.name, words));
-            palettes.by_name.insert(entry.name.clone(), index);
-            palettes.names.push((entry.name, entry.place));
-            palettes.used.push(false);
+            palettes.index.add(entry.name, entry.place, index);
         }
         palettes
     }
@@ -34,36 +30,6 @@ impl Palettes {
     pub(super) fn add(&mut self, name: &str, words: Vec<u32>) -> usize {
         self.list.push(Palette { name: name.to_owned(), entries: words.into() });
         self.list.len() - 1
-    }
-
-    /// The palette of that name; `None` once the reason has been recorded.
-    pub(super) fn find<'a>(&mut self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
-        let name = reader.read(raw)?;
-        if let Some(index) = self.by_name.get(&name) {
-            if let Some(used) = self.names.iter().position(|(known, _)| *known == name) {
-                self.used[used] = true;
-            }
-            return *index;
-        }
-        let place = reader.span(raw);
-        let known = self.names.iter().map(|(name, _)| name.as_str());
-        unknown_name(
-            reader,
-            place,
-            "palette",
-            &name,
-            known,
-            "define it in `palettes: { \"...\": [\"ff000000 ...\"] }`",
-        );
-        None
-    }
-
-    pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
-        for ((name, place), used) in self.names.iter().zip(&self.used) {
-            if !used {
-                reader.push(super::names::unused("palette", name, place.clone()));
-            }
-        }
     }
 }
 

@@ -26,11 +26,10 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
     let text = if Raw::<String>::new(inside).is_text() {
         ProgramText::read(reader, names, text)?
     } else {
-        let opening = reader.range(text.get(..1).unwrap_or(text));
         let fields = reader.read(&Raw::<source::PixelShader<'a>>::new(text))?;
         for entry in reader.table("constant", &fields.constants) {
             if let Some(index) = register(reader, &entry.name, entry.place, 'c', CONSTANTS, "constant") {
-                constants[index] = color::vertex_color(reader, names, &entry.value).map(color::floats);
+                constants[index] = names.color(reader, &entry.value).map(color::floats);
             }
         }
         for entry in reader.table("bump state", &fields.bump) {
@@ -48,8 +47,8 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
                 );
                 return None;
             }
-            (None, file) => {
-                let raw = reader.required(file, "file", "pixel shader", opening)?;
+            (None, _) => {
+                let raw = fields.file(reader)?;
                 ProgramText::file(reader, names, &raw)?
             }
         }
@@ -102,12 +101,11 @@ fn register(
 }
 
 fn bump<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BumpEnvironment<'a>>) -> Option<Bump> {
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-    let fields = reader.read(raw)?;
-    let matrix = reader.required(&fields.matrix, "matrix", "bump state", opening)?;
-    let matrix = reader.numbers(&matrix, "a bump matrix", 4, 4, [0.0; 4])?;
+    let fields = source::BumpEnvironment { called: "bump state", ..reader.read(raw)? };
+    let matrix = fields.matrix(reader)?;
+    let matrix = reader.numbers(&matrix, "a bump matrix", 4..=4, [0.0; 4])?;
     let luminance = match &fields.luminance {
-        Some(raw) => Some(reader.numbers(raw, "a bump luminance", 2, 2, [0.0; 4])?),
+        Some(raw) => Some(reader.numbers(raw, "a bump luminance", 2..=2, [0.0; 4])?),
         None => None,
     };
     Some(Bump { matrix: Some(matrix), luminance: luminance.map(|[scale, offset, ..]| [scale, offset]) })

@@ -143,17 +143,26 @@ fn judge(
     ProgramData { combiners, reads }
 }
 
-/// Refuses a program of an API that is given by fields, as a text and in a file at once. `what`: how it and its fields are called.
-pub(super) fn once<'a>(
+/// The calls of a program of an API, if it is given by these, as a text or in a file, and not by fields at once. `what`: how it and its fields are called.
+/// `None` once the reason that they cannot be read has been recorded.
+pub(super) fn calls<'a>(
     reader: &mut Reader<'a>,
+    names: &Names<'a>,
     fields: Option<Range<usize>>,
     text: &Option<Raw<'a, String>>,
     file: &Option<Raw<'a, String>>,
     (what, name): (&str, &str),
-) -> Option<()> {
+) -> Option<Option<ProgramText>> {
     let given = [fields, text.as_ref().map(|raw| reader.span(raw)), file.as_ref().map(|raw| reader.span(raw))];
     let mut given = given.into_iter().flatten();
-    let (Some(first), Some(second)) = (given.next(), given.next()) else { return Some(()) };
+    let (Some(first), Some(second)) = (given.next(), given.next()) else {
+        let text = match (text, file) {
+            (Some(raw), _) => ProgramText::inline(reader, raw)?,
+            (None, Some(raw)) => ProgramText::file(reader, names, raw)?,
+            (None, None) => return Some(None),
+        };
+        return text.expanded(reader, Style::Calls).map(Some);
+    };
     reader.push(
         Diagnostic::error("NB0356", second, format!("{what} given twice"))
             .label("again here")

@@ -152,9 +152,8 @@ fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Program
 }
 
 fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ProgramText> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
     let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
-    let raw = reader.required(&fields.file, "file", "program", opening)?;
+    let raw = fields.file(reader)?;
     named(reader, names, &raw, reader.limits.program_file())
 }
 

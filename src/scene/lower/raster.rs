@@ -3,31 +3,25 @@
 use super::names::Names;
 use super::target::Targets;
 use super::*;
-use crate::raw::{Numbers, Tuple};
+use crate::raw::Numbers;
 use ninebit::number::convert::constant;
 use ninebit::rop::surface;
 use ninebit::state::{
-    AlphaTest, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, DepthRange, DepthTest, Draw,
-    PolygonOffset, Positions, Rectangle, StencilOperation, StencilTest, Target, Topology, Vertex, VertexColor,
-    VertexDepths, WINDOW_CLIP_RECTANGLES, WindowClip,
+    AlphaTest, Blend, Combiners, CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, Positions, Rectangle,
+    StencilOperation, StencilTest, Target, Topology, Vertex, VertexColor, VertexDepths, WINDOW_CLIP_RECTANGLES,
+    WindowClip,
 };
 use std::sync::Arc;
+
+/// The most columns or rows of a rectangle.
+const MOST_CLIPPED: u32 = 65535;
 
 /// Reads a blend function.
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
     let fields = reader.read(&raw.as_other::<source::Blend<'a>>())?;
-    let equation = reader.name_or(&fields.equation, BlendEquation::Add);
-    if let Some(raw) = &fields.equation
-        && equation.is_nv2a_only()
-        && reader.profile == Profile::Nv10
-    {
-        reader.push(target::only_nv2a("NB0315", reader.span(raw), "this blend equation", "ROP-3"));
-    }
-    Some(Blend {
-        equation,
-        source: reader.name_or(&fields.source, BlendFactor::One),
-        destination: reader.name_or(&fields.destination, BlendFactor::Zero),
-    })
+    let equation = fields.equation(reader);
+    reader.needs_nv2a(&fields.equation, equation.is_nv2a_only(), "NB0315", ("this blend equation", "ROP-3"));
+    Some(Blend { equation, source: fields.source(reader), destination: fields.destination(reader) })
 }
 
 /// Reads everything behind the combiners into `draw`, whose target is set.
@@ -84,10 +78,8 @@ pub(super) fn operations<'a>(
             );
         }
     }
-    draw.blend_constant = color::constant_or(reader, names, &fields.blend_constant, [0; 4]);
-    if let Some(raw) = &fields.color_mask {
-        draw.color_mask = four_flags(reader, raw, "color_mask", true);
-    }
+    draw.blend_constant = color::bytes(fields.blend_constant(reader, names));
+    draw.color_mask = fields.color_mask(reader);
     if let Some(raw) = &fields.dither
         && reader.read(raw) == Some(true)
     {
@@ -104,8 +96,7 @@ pub(super) fn operations<'a>(
 
 fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>) -> Option<AlphaTest> {
     let fields = reader.read(raw)?;
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-    let function = reader.required(&fields.function, "function", "alpha test", opening);
+    let function = fields.function(reader);
     let reference = match &fields.reference {
         Some(raw) => alpha_reference(reader, raw),
         None => Some(0),
@@ -116,7 +107,7 @@ fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>)
 /// `Float(0.5)`, or the low eight bits of a number: APIs hold either, the number in a word of 32.
 fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<u8> {
     if let ("Float", rest) = raw.split() {
-        let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1, 1, [0.0; 4])?;
+        let [value, ..] = reader.numbers(&Raw::<Numbers>::new(rest), "an alpha reference", 1..=1, [0.0; 4])?;
         return Some(constant(value));
     }
     let Some(word) = reader.attempt::<u32>(raw.text) else {
@@ -147,25 +138,17 @@ fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> 
 
 fn depth_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthTest<'a>>) -> Option<DepthTest> {
     let fields = reader.read(raw)?;
-    let function = reader.name_or(&fields.function, CompareFunction::Less);
-    let vertex_depths = reader.name_or(&fields.vertex_depths, VertexDepths::Fractions);
+    let function = fields.function(reader);
+    let vertex_depths = fields.vertex_depths(reader);
     let range = fields.range.as_ref().and_then(|raw| depth_range(reader, raw));
     let offset = fields.offset.as_ref().and_then(|raw| polygon_offset(reader, raw)).unwrap_or_default();
-    let w_buffer = reader.or(&fields.w_buffer, false);
-    Some(DepthTest {
-        vertex_depths,
-        range,
-        offset,
-        w_buffer,
-        ..DepthTest::new(function, reader.or(&fields.write, true))
-    })
+    let w_buffer = fields.w_buffer(reader);
+    Some(DepthTest { vertex_depths, range, offset, w_buffer, ..DepthTest::new(function, fields.write(reader)) })
 }
 
 fn depth_range<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthRange<'a>>) -> Option<DepthRange> {
     let fields = reader.read(raw)?;
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-    let lowest = reader.required(&fields.lowest, "lowest", "depth range", opening.clone())?;
-    let highest = reader.required(&fields.highest, "highest", "depth range", opening)?;
+    let (lowest, highest) = (fields.lowest(reader)?, fields.highest(reader)?);
     let (low, high) = (reader.finite(&lowest)?, reader.finite(&highest)?);
     if low > high {
         reader.push(
@@ -181,33 +164,31 @@ fn depth_range<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthRange<'a>
         );
         return None;
     }
-    let (clamps, drops_triangles) = (reader.or(&fields.clamp, false), reader.or(&fields.drop_triangles, false));
+    let (clamps, drops_triangles) = (fields.clamp(reader), fields.drop_triangles(reader));
     Some(DepthRange { lowest: low, highest: high, clamps, drops_triangles })
 }
 
 fn polygon_offset<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::PolygonOffset<'a>>) -> Option<PolygonOffset> {
     let fields = reader.read(raw)?;
-    let mut number = |raw: &Option<Raw<'a, f32>>| raw.as_ref().map_or(Some(0.0), |raw| reader.finite(raw));
-    Some(PolygonOffset { bias: number(&fields.bias)?, factor: number(&fields.factor)? })
+    Some(PolygonOffset { bias: fields.bias(reader), factor: fields.factor(reader) })
 }
 
 fn stencil_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StencilTest<'a>>) -> Option<StencilTest> {
     let fields = reader.read(raw)?;
     Some(StencilTest {
-        function: reader.name_or(&fields.function, CompareFunction::Always),
-        reference: reader.or(&fields.reference, 0),
-        mask: reader.or(&fields.mask, 255),
-        write_mask: reader.or(&fields.write_mask, 255),
-        fail: reader.name_or(&fields.fail, StencilOperation::Keep),
-        depth_fail: reader.name_or(&fields.depth_fail, StencilOperation::Keep),
-        pass: reader.name_or(&fields.pass, StencilOperation::Keep),
+        function: fields.function(reader),
+        reference: fields.reference(reader),
+        mask: fields.mask(reader),
+        write_mask: fields.write_mask(reader),
+        fail: fields.fail(reader),
+        depth_fail: fields.depth_fail(reader),
+        pass: fields.pass(reader),
     })
 }
 
 fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>>) -> Option<WindowClip> {
     let fields = reader.read(raw)?;
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-    let list = reader.required(&fields.rectangles, "rectangles", "window clip", opening)?;
+    let list = fields.rectangles(reader)?;
     let rectangles = reader.read(&list)?;
     if !(1..=WINDOW_CLIP_RECTANGLES).contains(&rectangles.len()) {
         let message = format!("a window clip has 1 to {WINDOW_CLIP_RECTANGLES} rectangles, not {}", rectangles.len());
@@ -222,31 +203,7 @@ fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>
     }
     let rectangles = rectangles.iter().map(|raw| rectangle(reader, raw, ("window clip's rectangle", 1)));
     let rectangles = rectangles.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()?;
-    Some(WindowClip { rectangles, exclusive: reader.or(&fields.exclusive, false) })
-}
-
-/// Four flags for R, G, B, A.
-pub(super) fn four_flags<'a>(
-    reader: &mut Reader<'a>,
-    raw: &Raw<'a, Tuple<'a, bool>>,
-    field: &str,
-    default: bool,
-) -> [bool; 4] {
-    let mut flags = [default; 4];
-    let Some(parts) = reader.read(raw) else { return flags };
-    if parts.0.len() != 4 {
-        let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0211", place, format!("`{field}` has four flags, not {}", parts.0.len()))
-                .label(format!("{} here", parts.0.len()))
-                .help("they stand for red, green, blue and alpha: `(true, true, true, false)`"),
-        );
-        return flags;
-    }
-    for (flag, part) in flags.iter_mut().zip(&parts.0) {
-        *flag = reader.read(part).unwrap_or(default);
-    }
-    flags
+    Some(WindowClip { rectangles, exclusive: fields.exclusive(reader) })
 }
 
 /// Reads a rectangle that clips: a part of the target.
@@ -274,13 +231,12 @@ fn rectangle<'a>(
     raw: &Raw<'a, source::Rectangle<'a>>,
     (what, least): (&'static str, u32),
 ) -> Option<Rectangle> {
-    let fields = reader.read(raw)?;
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-    let (x, y) = (reader.or(&fields.x, 0), reader.or(&fields.y, 0));
-    let width = reader.required(&fields.width, "width", what, opening.clone());
-    let height = reader.required(&fields.height, "height", what, opening);
-    let width = width.and_then(|raw| reader.whole(&raw, &format!("the width of a {what}"), least..=65535));
-    let height = height.and_then(|raw| reader.whole(&raw, &format!("the height of a {what}"), least..=65535));
+    let fields = source::Rectangle { called: what, ..reader.read(raw)? };
+    let (x, y, width, height) = (fields.x(reader), fields.y(reader), fields.width(reader), fields.height(reader));
+    let mut side = |raw: Option<Raw<'a, u32>>, side: &str| {
+        reader.within(&raw?, &format!("the {side} of a {what}"), least..=MOST_CLIPPED, |finding| finding)
+    };
+    let (width, height) = (side(width, "width"), side(height, "height"));
     Some(Rectangle { x, y, width: width?, height: height? })
 }
 
@@ -298,9 +254,9 @@ pub(super) fn clear<'a>(
     let area =
         fields.rectangle.as_ref().map_or(Some(whole), |raw| clip(reader, target, "rectangle of a clear", raw))?;
     let color = fields.color.as_ref().map(|raw| color::constant(reader, names, raw));
-    draw.color_mask = [color.is_some(); 4];
-    if let (Some(_), Some(raw)) = (color, &fields.color_mask) {
-        draw.color_mask = four_flags(reader, raw, "color_mask", true);
+    draw.color_mask = [false; 4];
+    if color.is_some() {
+        draw.color_mask = fields.color_mask(reader);
     }
     let depth = fields.depth.as_ref().map(|raw| target::clear_depth(reader, target, raw));
     draw.depth_test = depth.map(|_| DepthTest::new(CompareFunction::Always, true));

@@ -14,11 +14,17 @@ pub(super) fn register_words<'a>(
     text: &'a str,
 ) -> Option<(Combiners, Places, Option<ProgramText>)> {
     let fields = reader.read(&Raw::<source::RegisterWords<'a>>::new(text))?;
-    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let opening = reader.opening(text);
     let mut inside = None;
     let given = match (&fields.nv10, &fields.nv20, &fields.text, &fields.file) {
-        (Some(raw), None, None, None) => nv10(reader, raw, opening)?,
-        (None, Some(raw), None, None) => nv20(reader, raw, opening)?,
+        (Some(raw), None, None, None) => {
+            let fields = reader.read(raw)?;
+            words(reader, Profile::Nv10, fields.written(), opening)
+        }
+        (None, Some(raw), None, None) => {
+            let fields = reader.read(raw)?;
+            words(reader, Profile::Nv2a, fields.written(), opening)
+        }
         (None, None, Some(raw), None) => {
             let text = ProgramText::inline(reader, raw)?;
             listed(reader, text, &mut inside)?
@@ -75,24 +81,12 @@ struct Given {
 }
 
 impl Given {
-    fn new(chip: Profile, opening: Range<usize>) -> Self {
-        Given { written: Written::new(chip, opening), wrong: false }
-    }
-
     fn set(&mut self, reader: &mut Reader<'_>, word: Word, index: usize, raw: &Raw<'_, u32>, value: Option<u32>) {
         self.wrong |= value.is_none();
         self.written.set(word, index, value.unwrap_or(0), reader.range(raw.text));
     }
 
-    fn one<'a>(&mut self, reader: &mut Reader<'a>, word: Word, field: &Option<Raw<'a, u32>>) {
-        if let Some(raw) = field {
-            let value = reader.read(raw);
-            self.set(reader, word, 0, raw, value);
-        }
-    }
-
-    fn list<'a>(&mut self, reader: &mut Reader<'a>, word: Word, field: &Option<Raw<'a, source::List<'a, u32>>>) {
-        let Some(raw) = field else { return };
+    fn list<'a>(&mut self, reader: &mut Reader<'a>, word: Word, raw: &Raw<'a, source::List<'a, u32>>) {
         let Some(list) = reader.read(raw) else {
             self.wrong = true;
             return;
@@ -111,31 +105,25 @@ impl Given {
     }
 }
 
-fn nv10<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Nv10Words<'a>>, opening: Range<usize>) -> Option<Given> {
-    let fields = reader.read(raw)?;
-    let mut given = Given::new(Profile::Nv10, opening);
-    given.list(reader, Word::RcInAlpha, &fields.rc_in_alpha);
-    given.list(reader, Word::RcInRgb, &fields.rc_in_rgb);
-    given.list(reader, Word::RcColor, &fields.rc_color);
-    given.list(reader, Word::RcOutAlpha, &fields.rc_out_alpha);
-    given.list(reader, Word::RcOutRgb, &fields.rc_out_rgb);
-    given.one(reader, Word::RcFinal0, &fields.rc_final0);
-    given.one(reader, Word::RcFinal1, &fields.rc_final1);
-    Some(given)
-}
-
-fn nv20<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Nv20Words<'a>>, opening: Range<usize>) -> Option<Given> {
-    let fields = reader.read(raw)?;
-    let mut given = Given::new(Profile::Nv2a, opening);
-    given.list(reader, Word::RcInAlpha, &fields.rc_in_alpha);
-    given.list(reader, Word::RcInRgb, &fields.rc_in_rgb);
-    given.list(reader, Word::RcColor, &fields.rc_color);
-    given.list(reader, Word::RcConstantColor0, &fields.rc_constant_color0);
-    given.list(reader, Word::RcConstantColor1, &fields.rc_constant_color1);
-    given.list(reader, Word::RcOutAlpha, &fields.rc_out_alpha);
-    given.list(reader, Word::RcOutRgb, &fields.rc_out_rgb);
-    given.one(reader, Word::RcFinal0, &fields.rc_final0);
-    given.one(reader, Word::RcFinal1, &fields.rc_final1);
-    given.one(reader, Word::RcConfig, &fields.rc_config);
-    Some(given)
+/// The words of a chip, `fields` being those that are written.
+fn words<'a>(
+    reader: &mut Reader<'a>,
+    chip: Profile,
+    fields: impl Iterator<Item = (&'static str, &'a str)>,
+    opening: Range<usize>,
+) -> Given {
+    let mut given = Given { written: Written::new(chip, opening), wrong: false };
+    for (name, text) in fields {
+        let word = Word::ALL.iter().copied().find(|word| word.name() == name);
+        match word.map(|word| (word, word.count(chip))) {
+            Some((word, 1)) => {
+                let raw = Raw::new(text);
+                let value = reader.read(&raw);
+                given.set(reader, word, 0, &raw, value);
+            }
+            Some((word, _)) => given.list(reader, word, &Raw::new(text)),
+            None => {}
+        }
+    }
+    given
 }

@@ -90,16 +90,11 @@ fn stage<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderStage>, stage:
         stage.operation = operation(reader, &raw.as_other())?;
         return Some(places);
     }
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let fields = reader.read(&raw.as_other::<source::StageState<'a>>())?;
-    let operation_raw = reader.required(&fields.operation, "operation", "texture shader stage", opening);
-    if let Some(raw) = &fields.coordinates {
-        stage.coordinate_set = reader.whole(raw, "a set of texture coordinates", 0..=3)? as usize;
-    }
-    if let Some(raw) = &fields.previous {
-        stage.previous = reader.whole(raw, "an earlier texture unit", 0..=2)? as usize;
-        places.previous = Some(reader.span(raw));
-    }
+    let operation_raw = fields.operation(reader);
+    stage.coordinate_set = fields.coordinates(reader).map_or(stage.coordinate_set, |set| set as usize);
+    stage.previous = fields.previous(reader).map_or(stage.previous, |unit| unit as usize);
+    places.previous = fields.previous.as_ref().map(|raw| reader.span(raw));
     if let Some(raw) = &fields.mapping {
         stage.mapping = reader.name::<DotMapping>(raw)?;
         places.mapping = Some(reader.span(raw));
@@ -117,13 +112,12 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
         reader.unknown_variant(raw, "texture shader operation", OPERATIONS);
         return None;
     }
-    let opening = reader.span(raw);
     Some(match OPERATIONS[kind] {
         "None" => ShaderOperation::None,
         "Sample" => ShaderOperation::Sample,
         "PassThrough" => ShaderOperation::PassThrough,
         "CullFragment" => cull(reader, rest)?,
-        "BumpEnvironment" => bump(reader, rest, opening)?,
+        "BumpEnvironment" => bump(reader, rest, raw.text)?,
         "DependentAlphaRed" => ShaderOperation::DependentAlphaRed,
         "DependentGreenBlue" => ShaderOperation::DependentGreenBlue,
         "DotProduct" => ShaderOperation::DotProduct,
@@ -132,9 +126,8 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
         "DotReflectDiffuse" => ShaderOperation::DotReflectDiffuse,
         "DotReflectSpecular" => ShaderOperation::DotReflectSpecular,
         "DotReflectConstantEye" => {
-            let fields = fields::<source::ConstantEye<'a>>(reader, rest)?;
-            let raw = reader.required(&fields.eye, "eye", "operation", opening)?;
-            let [x, y, z, _] = reader.numbers(&raw, "an eye vector", 3, 3, [0.0; 4])?;
+            let fields = source::ConstantEye { opening: raw.text, called: "operation", ..fields(reader, rest)? };
+            let [x, y, z, _] = fields.eye(reader)?;
             ShaderOperation::DotReflectConstantEye { eye: [x, y, z] }
         }
         name => {
@@ -165,13 +158,13 @@ fn cull<'a>(reader: &mut Reader<'a>, rest: &'a str) -> Option<ShaderOperation> {
     Some(ShaderOperation::CullFragment { drops_not_negative })
 }
 
-fn bump<'a>(reader: &mut Reader<'a>, rest: &'a str, opening: Range<usize>) -> Option<ShaderOperation> {
-    let fields = fields::<source::BumpEnvironment<'a>>(reader, rest)?;
-    let raw = reader.required(&fields.matrix, "matrix", "operation", opening)?;
-    let matrix = reader.numbers(&raw, "a bump environment matrix", 4, 4, [0.0; 4])?;
+fn bump<'a>(reader: &mut Reader<'a>, rest: &'a str, opening: &'a str) -> Option<ShaderOperation> {
+    let fields = source::BumpEnvironment { opening, called: "operation", ..fields(reader, rest)? };
+    let raw = fields.matrix(reader)?;
+    let matrix = reader.numbers(&raw, "a bump environment matrix", 4..=4, [0.0; 4])?;
     let luminance = match &fields.luminance {
         Some(raw) => {
-            let [scale, offset, ..] = reader.numbers(raw, "a luminance (scale and offset)", 2, 2, [0.0; 4])?;
+            let [scale, offset, ..] = reader.numbers(raw, "a luminance (scale and offset)", 2..=2, [0.0; 4])?;
             Some([scale, offset])
         }
         None => None,

@@ -10,7 +10,7 @@ use super::*;
 pub(super) use ninebit::diagnostic::only_nv2a;
 use ninebit::number::convert;
 use ninebit::raster::depth;
-use ninebit::state::{DepthBuffer, Named, SurfaceFormat, Target, TextureImage, TextureKind};
+use ninebit::state::{DepthBuffer, DepthFormat, Named, Target, TextureImage, TextureKind};
 
 /// The targets, and where they were named.
 pub(super) struct Targets<'s> {
@@ -48,6 +48,9 @@ impl<'s> Targets<'s> {
     }
 }
 
+/// The name of the first target that has no other.
+const FRAME: &str = "frame";
+
 /// Reads the targets; one of 640 x 480 named "frame" if the scene has none.
 pub(super) fn targets<'a>(
     reader: &mut Reader<'a>,
@@ -76,17 +79,18 @@ pub(super) fn targets<'a>(
             list
         }
         None => {
-            targets.add("frame".to_owned(), 0..0, default_target("frame".to_owned()));
+            let target = target(reader, names, &source::Target::default(), FRAME.to_owned());
+            targets.add(FRAME.to_owned(), 0..0, target);
             return targets;
         }
     };
     let mut bytes = 0;
     for raw in &list {
-        let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        let place = reader.opening(raw.text);
         let Some(fields) = reader.read(raw) else { continue };
         let (name, place) = match &fields.name {
             Some(raw) => (reader.read(raw), reader.span(raw)),
-            None if targets.list.is_empty() => (Some("frame".to_owned()), place),
+            None if targets.list.is_empty() => (Some(FRAME.to_owned()), place),
             None => {
                 reader.required(&fields.name, "name", "target", place.clone());
                 (None, place)
@@ -127,81 +131,30 @@ impl Targets<'_> {
     }
 }
 
-fn default_target(name: String) -> Target {
-    Target {
-        name,
-        width: 640,
-        height: 480,
-        format: SurfaceFormat::A8R8G8B8,
-        clear_color: [0, 0, 0, 255],
-        contents: None,
-        depth: None,
-        clip: None,
-    }
-}
-
 fn target<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Target<'a>, name: String) -> Target {
-    let mut target = default_target(name);
-    for (field, side, what) in [
-        (&fields.width, &mut target.width, "the width of a target"),
-        (&fields.height, &mut target.height, "the height of a target"),
-    ] {
-        if let Some(raw) = field
-            && let Some(value) = reader.read(raw)
-        {
-            let (limit, place) = (reader.limits.target_side, reader.span(raw));
-            if value == 0 {
-                reader.push(
-                    Diagnostic::error("NB0206", place, format!("{what} cannot be 0"))
-                        .label("out of range")
-                        .help(format!("write 1 to {limit}")),
-                );
-            } else if value > limit {
-                reader.push(
-                    Diagnostic::error("NB0606", place, format!("{what} is {value}; {limit} are allowed"))
-                        .label("too large")
-                        .help(format!("write 1 to {limit}; `ninebit limits` prints what is allowed")),
-                );
-            } else {
-                *side = value;
-            }
-        }
-    }
-    if let Some(raw) = &fields.format
-        && let Some(format) = reader.name(raw)
-    {
-        if format.is_nv2a_only() && reader.profile == Profile::Nv10 {
-            let place = reader.span(raw);
-            reader.push(only_nv2a("NB0314", place, "this surface format", "ROP-5"));
-        }
-        target.format = format;
-    }
+    let (width, height, format) = (fields.width(reader), fields.height(reader), fields.format(reader));
+    let mut target =
+        Target { name, width, height, format, clear_color: [0; 4], contents: None, depth: None, clip: None };
+    reader.needs_nv2a(&fields.format, format.is_nv2a_only(), "NB0314", ("this surface format", "ROP-5"));
     let depth = fields.depth.as_ref().and_then(|raw| reader.name(raw));
-    if let (Some(raw), Some(format)) = (&fields.depth, depth)
-        && format.is_float()
-        && reader.profile == Profile::Nv10
-    {
-        let place = reader.span(raw);
-        reader.push(only_nv2a("NB0314", place, "this depth format", "DEP-3"));
-    }
-    let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw));
+    let float = depth.is_some_and(DepthFormat::is_float);
+    reader.needs_nv2a(&fields.depth, float, "NB0314", ("this depth format", "DEP-3"));
+    let clear = fields.clear.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     target.depth = depth.map(|format| DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
-    if let Some(clear) = clear {
-        target.clear_color = color::constant_or(reader, names, &clear.color, target.clear_color);
-        if let Some(raw) = &clear.depth
-            && let (Some(depth), Some(buffer)) = (clear_depth(reader, &target, raw), &mut target.depth)
-        {
-            buffer.clear = if buffer.format.is_float() {
-                depth::word(buffer.format, depth::Binary::new(depth))
-            } else {
-                convert::depth(depth, buffer.format.bits()) as u32
-            };
-        }
-        if let Some(raw) = &clear.stencil
-            && let (Some(stencil), Some(buffer)) = (clear_stencil(reader, &target, raw), &mut target.depth)
-        {
-            buffer.clear_stencil = stencil;
-        }
+    target.clear_color = color::bytes(clear.color(reader, names));
+    if let Some(raw) = &clear.depth
+        && let (Some(depth), Some(buffer)) = (clear_depth(reader, &target, raw), &mut target.depth)
+    {
+        buffer.clear = if buffer.format.is_float() {
+            depth::word(buffer.format, depth::Binary::new(depth))
+        } else {
+            convert::depth(depth, buffer.format.bits()) as u32
+        };
+    }
+    if let Some(raw) = &clear.stencil
+        && let (Some(stencil), Some(buffer)) = (clear_stencil(reader, &target, raw), &mut target.depth)
+    {
+        buffer.clear_stencil = stencil;
     }
     target.clip = fields.clip.as_ref().and_then(|raw| raster::clip(reader, &target, "clip of a target", raw));
     target

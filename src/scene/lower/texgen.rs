@@ -75,8 +75,8 @@ fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, ind
         return Some(set);
     }
     let fields = reader.read(&raw.as_other::<source::CoordinateSet<'a>>())?;
-    if let Some(raw) = &fields.input {
-        set.input = reader.whole(raw, "a given coordinate set", 0..=3)? as usize;
+    if fields.input.is_some() {
+        set.input = fields.input(reader)? as usize;
     }
     for (component, field) in [&fields.s, &fields.t, &fields.r, &fields.q].into_iter().enumerate() {
         if let Some(raw) = field {
@@ -98,7 +98,7 @@ pub(super) fn viewer<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
         }
         (_, "") => Some(Viewer::FAR),
         (_, rest) => {
-            let [x, y, z, _] = reader.numbers(&Raw::<Numbers>::new(rest), "a line of sight", 3, 3, [0.0; 4])?;
+            let [x, y, z, _] = reader.numbers(&Raw::<Numbers>::new(rest), "a line of sight", 3..=3, [0.0; 4])?;
             Some(Viewer::Infinite([x, y, z]))
         }
     }
@@ -121,7 +121,7 @@ const GENERATORS: &[&str] = &["ObjectLinear", "EyeLinear", "SphereMap", "NormalM
 fn generator<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Generator>, component: usize) -> Option<Generator> {
     let (kind, rest) = reader.variant(raw, "coordinate generator", GENERATORS)?;
     if kind < 2 {
-        let plane = reader.numbers(&Raw::<Numbers>::new(rest), "a plane", 4, 4, [0.0; 4])?;
+        let plane = reader.numbers(&Raw::<Numbers>::new(rest), "a plane", 4..=4, [0.0; 4])?;
         return Some(if kind == 0 { Generator::ObjectLinear(plane) } else { Generator::EyeLinear(plane) });
     }
     if !rest.is_empty() {
@@ -172,11 +172,8 @@ fn emboss<'a>(
         );
         return None;
     }
-    let fields = reader.read(&Raw::<source::Emboss<'a>>::new(rest))?;
-    let light = reader.required(&fields.light, "light", "emboss", place.clone());
-    let scale = reader.required(&fields.scale, "scale", "emboss", place);
-    let light = light.and_then(|raw| reader.numbers(&raw, "the direction of a light", 3, 3, [0.0; 4]));
-    let scale = scale.and_then(|raw| reader.numbers(&raw, "a scale", 2, 2, [0.0; 4]));
+    let fields = source::Emboss { opening: raw.split().0, ..reader.read(&Raw::new(rest))? };
+    let (light, scale) = (fields.light(reader), fields.scale(reader));
     let ([x, y, z, _], [s, t, ..]) = (light?, scale?);
     Some(CoordinateSet { emboss: Some(Emboss { light: [x, y, z], scale: [s, t] }), ..CoordinateSet::given(1) })
 }

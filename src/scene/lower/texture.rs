@@ -1,8 +1,6 @@
 //! Textures: kind, format, and how faces and levels are put together.
 
-use std::collections::HashMap;
-
-use super::names::Names;
+use super::names::{Index, Names};
 use super::palette::Palettes;
 use super::target::Targets;
 use super::texture_legal as legal;
@@ -21,34 +19,18 @@ pub(super) struct Textures {
     /// Palette of each texture of the list, where it has one of its own.
     pub(super) palette_of: Vec<Option<usize>>,
     pub(super) palettes: Palettes,
-    by_name: HashMap<String, Option<usize>>,
-    names: Vec<(String, Range<usize>)>,
-    used: Vec<bool>,
+    index: Index,
 }
 
 impl Textures {
     /// The texture of that name; `None` once the reason has been recorded.
     pub(super) fn find<'a>(&mut self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
-        let name = reader.read(raw)?;
-        if let Some(index) = self.by_name.get(&name) {
-            if let Some(used) = self.names.iter().position(|(known, _)| *known == name) {
-                self.used[used] = true;
-            }
-            return *index;
-        }
-        let place = reader.span(raw);
-        let known = self.names.iter().map(|(name, _)| name.as_str());
-        unknown_name(reader, place, "texture", &name, known, "define it in `textures: { \"...\": (source: ...) }`");
-        None
+        self.index.find(reader, raw)
     }
 
     pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
-        for ((name, place), used) in self.names.iter().zip(&self.used) {
-            if !used {
-                reader.push(super::names::unused("texture", name, place.clone()));
-            }
-        }
-        self.palettes.warn_unused(reader);
+        self.index.warn_unused(reader);
+        self.palettes.index.warn_unused(reader);
     }
 }
 
@@ -64,9 +46,7 @@ pub(super) fn textures<'a>(
         list: Vec::new(),
         palette_of: Vec::new(),
         palettes: Palettes::read(reader, &file.palettes),
-        by_name: HashMap::new(),
-        names: Vec::new(),
-        used: Vec::new(),
+        index: Index::new("texture", "define it in `textures: { \"...\": (source: ...) }`"),
     };
     let entries = reader.table("texture", &file.textures);
     if let Some(raw) = &file.textures
@@ -75,7 +55,7 @@ pub(super) fn textures<'a>(
         let (place, count, most) = (reader.span(raw), entries.len(), reader.limits.textures);
         reader.push(too_many("NB0605", place, count, "textures", "textures", most));
         // Their names are known all the same.
-        textures.by_name = entries.into_iter().map(|entry| (entry.name, None)).collect();
+        textures.index.unread(entries.into_iter().map(|entry| entry.name));
         return textures;
     }
     let mut sources = Sources { names, folder, left: reader.limits.texture_bytes };
@@ -86,9 +66,7 @@ pub(super) fn textures<'a>(
             textures.palette_of.push(palette);
             textures.list.len() - 1
         });
-        textures.by_name.insert(entry.name.clone(), index);
-        textures.names.push((entry.name, entry.place));
-        textures.used.push(false);
+        textures.index.add(entry.name, entry.place, index);
     }
     textures
 }
@@ -101,7 +79,6 @@ fn texture<'a>(
     sources: &mut Sources<'_, 'a>,
     entry: &Entry<'a, source::Texture<'a>>,
 ) -> Option<(Texture, Option<usize>)> {
-    let opening = reader.range(entry.value.text.get(..1).unwrap_or(entry.value.text));
     let fields = reader.read(&entry.value)?;
     let kind = match &fields.kind {
         Some(raw) => Some(kind(reader, raw)?),
@@ -111,16 +88,13 @@ fn texture<'a>(
         Some(raw) => Some((format(reader, raw)?, reader.span(raw))),
         None => None,
     };
-    let palette = fields.palette.as_ref().and_then(|raw| palettes.find(reader, raw));
-    let border = match &fields.border {
-        Some(raw) => reader.read(raw)?,
-        None => false,
-    };
+    let palette = fields.palette.as_ref().and_then(|raw| palettes.index.find(reader, raw));
+    let border = fields.border(reader);
     let levels = match &fields.levels {
         Some(raw) => texture_levels::wanted(reader, raw)?,
         None => Wanted::Own,
     };
-    let source = reader.required(&fields.source, "source", "texture", opening)?;
+    let source = fields.source(reader)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
     let texture = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
         let depths = Variant::ALL[variant] == Variant::Depth;

@@ -2,14 +2,12 @@
 
 use super::api_program::{ApiProgram, name_at};
 use super::names::Names;
-use super::program::{Asides, once, pasted};
-use super::program_text::ProgramText;
+use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::reader::Name;
 use crate::source::List;
 use ninebit::state::{Named, Scale};
 use ninebit_program::At;
-use ninebit_program::c_source::Style;
 use ninebit_program::texture_environment::{self, Half, Mode, TextureEnvironment, Unit};
 
 /// Reads the fields in the parentheses.
@@ -21,19 +19,15 @@ pub(super) fn texture_environment<'a>(
 ) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureEnvironment<'a>>::new(text))?;
     let units = fields.units.as_ref().map(|raw| reader.span(raw));
-    once(reader, units, &fields.text, &fields.file, ("a texture environment is", "units"))?;
-    let written = match (&fields.text, &fields.file) {
-        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?.expanded(reader, Style::Calls)?),
-        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?.expanded(reader, Style::Calls)?),
-        (None, None) => None,
-    };
+    let what = ("a texture environment is", "units");
+    let written = calls(reader, names, units, &fields.text, &fields.file, what)?;
     let mut program = match &written {
         None => TextureEnvironment::default(),
         Some(written) => pasted(reader, written, texture_environment::parse(&written.text), asides)?,
     };
-    program.color_sum = reader.or(&fields.color_sum, program.color_sum);
+    program.color_sum = fields.color_sum.and_then(|raw| reader.read(&raw)).unwrap_or(program.color_sum);
     for raw in fields.units.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default() {
-        let place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+        let place = reader.opening(raw.text);
         let Some(fields) = reader.read(&raw) else { continue };
         program.units.push(unit(reader, names, &fields, place));
     }
@@ -47,7 +41,7 @@ fn unit<'a>(
     place: Range<usize>,
 ) -> Unit {
     let mut unit = Unit { place, ..Unit::initial() };
-    unit.mode = reader.name_or(&fields.mode, unit.mode);
+    unit.mode = fields.mode(reader);
     name_at(reader, &fields.combine_rgb, &mut unit.rgb.function);
     name_at(reader, &fields.combine_alpha, &mut unit.alpha.function);
     list(reader, &fields.sources_rgb, &mut unit.rgb.sources, "sources");
@@ -56,7 +50,7 @@ fn unit<'a>(
     list(reader, &fields.operands_alpha, &mut unit.alpha.operands, "operands");
     scale(reader, &fields.scale_rgb, &mut unit.rgb);
     scale(reader, &fields.scale_alpha, &mut unit.alpha);
-    unit.color = color::constant_or(reader, names, &fields.color, unit.color);
+    unit.color = color::bytes(fields.color(reader, names));
     unit.base_format = fields.base_format.as_ref().and_then(|raw| reader.name(raw));
     combine_only(reader, fields, unit.mode);
     unit
@@ -102,14 +96,8 @@ fn combine_only<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a
     if matches!(mode, Mode::Combine | Mode::Combine4) {
         return;
     }
-    let first = fields.combine_rgb.as_ref().map(|raw| raw.text);
-    let first = first.or(fields.combine_alpha.as_ref().map(|raw| raw.text));
-    let first = first.or(fields.sources_rgb.as_ref().map(|raw| raw.text));
-    let first = first.or(fields.sources_alpha.as_ref().map(|raw| raw.text));
-    let first = first.or(fields.operands_rgb.as_ref().map(|raw| raw.text));
-    let first = first.or(fields.operands_alpha.as_ref().map(|raw| raw.text));
-    let first = first.or(fields.scale_rgb.as_ref().map(|raw| raw.text));
-    if let Some(text) = first.or(fields.scale_alpha.as_ref().map(|raw| raw.text)) {
+    let others = ["mode", "color", "base_format"];
+    if let Some((_, text)) = fields.written().find(|(name, _)| !others.contains(name)) {
         let place = reader.range(text);
         reader.push(
             Diagnostic::error("NB0355", place, format!("mode {} does not combine", mode.name()))

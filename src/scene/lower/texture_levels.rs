@@ -28,7 +28,7 @@ pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
     }
     let number: Raw<'a, u32> = raw.as_other();
     if number.split().0.is_empty() {
-        return reader.whole(&number, "the number of levels", 1..=13).map(Wanted::Number);
+        return reader.within(&number, "the number of levels", 1..=13, |finding| finding).map(Wanted::Number);
     }
     reader.push(
         Diagnostic::error("NB0205", reader.span(raw), "expected a number of levels, or `All`")

@@ -165,18 +165,18 @@ impl<'a> Sources<'_, 'a> {
         place: Range<usize>,
     ) -> Option<Given> {
         let fields = reader.read(&Raw::<source::Faces<'a>>::new(text))?;
-        let opening = reader.range(text.get(..1).unwrap_or(text));
         let request = Request { faces: 1, ..*request };
         let mut six: Vec<Given> = Vec::new();
-        for (name, field) in [
-            ("positive_x", &fields.positive_x),
-            ("negative_x", &fields.negative_x),
-            ("positive_y", &fields.positive_y),
-            ("negative_y", &fields.negative_y),
-            ("positive_z", &fields.positive_z),
-            ("negative_z", &fields.negative_z),
-        ] {
-            let Some(raw) = reader.required(field, name, "cube map", opening.clone()) else { continue };
+        let face = [
+            source::Faces::positive_x,
+            source::Faces::negative_x,
+            source::Faces::positive_y,
+            source::Faces::negative_y,
+            source::Faces::positive_z,
+            source::Faces::negative_z,
+        ];
+        for face in face {
+            let Some(raw) = face(&fields, reader) else { continue };
             if let Some(face) = self.nested(reader, &raw, "source of a face", &Variant::OF_FACE, &request)
                 && six.first().is_none_or(|first| alike(reader, first, &face, reader.span(&raw), "face"))
             {
@@ -232,10 +232,10 @@ impl<'a> Sources<'_, 'a> {
             reader.push(cannot_pack(format, reader.span(&raw)));
             return None;
         }
-        let (width, height, place) = self.sides(reader, text, &fields.width, &fields.height, request)?;
+        let sides = (fields.width(reader), fields.height(reader));
+        let (width, height, place) = self.sides(reader, sides, request)?;
         self.afford(reader, place.clone(), u64::from(width) * u64::from(height))?;
-        let opening = reader.range(text.get(..1).unwrap_or(text));
-        let list = reader.required(&fields.rows, "rows", "texture", opening)?;
+        let list = fields.rows(reader)?;
         let rows = reader.read(&list)?;
         let digits = 2 * format.bytes() as usize;
         let help =
@@ -276,14 +276,9 @@ impl<'a> Sources<'_, 'a> {
     pub(super) fn sides(
         &mut self,
         reader: &mut Reader<'a>,
-        text: &'a str,
-        width: &Option<Raw<'a, u32>>,
-        height: &Option<Raw<'a, u32>>,
+        (width, height): (Option<Raw<'a, u32>>, Option<Raw<'a, u32>>),
         request: &Request,
     ) -> Option<(u32, u32, Range<usize>)> {
-        let opening = reader.range(text.get(..1).unwrap_or(text));
-        let width = reader.required(width, "width", "texture", opening.clone());
-        let height = reader.required(height, "height", "texture", opening);
         let (width, height) = (width?, height?);
         let place = reader.span(&width).start..reader.span(&height).end.max(reader.span(&width).end);
         let (width, height) = (reader.read(&width)?, reader.read(&height)?);

@@ -2,13 +2,11 @@
 
 use super::api_program::{ApiProgram, name_at};
 use super::names::Names;
-use super::program::{Asides, once, pasted};
-use super::program_text::ProgramText;
+use super::program::{Asides, calls, pasted};
 use super::*;
 use crate::raw::Tuple;
 use ninebit::state::Named;
 use ninebit_program::At;
-use ninebit_program::c_source::Style;
 use ninebit_program::texture_stages::{
     self, ArgumentSource, CoordinateIndex, Generation, Half, PROJECTED, STAGES, StageArgument, TextureStage,
     TextureStages,
@@ -23,12 +21,7 @@ pub(super) fn texture_stages<'a>(
 ) -> Option<ApiProgram> {
     let fields = reader.read(&Raw::<source::TextureStages<'a>>::new(text))?;
     let stages = fields.stages.as_ref().map(|raw| reader.span(raw));
-    once(reader, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
-    let written = match (&fields.text, &fields.file) {
-        (Some(raw), _) => Some(ProgramText::inline(reader, raw)?.expanded(reader, Style::Calls)?),
-        (None, Some(raw)) => Some(ProgramText::file(reader, names, raw)?.expanded(reader, Style::Calls)?),
-        (None, None) => None,
-    };
+    let written = calls(reader, names, stages, &fields.text, &fields.file, ("texture stages are", "stages"))?;
     let mut program = match &written {
         None => TextureStages::default(),
         Some(written) => pasted(reader, written, texture_stages::parse(&written.text), asides)?,
@@ -36,7 +29,7 @@ pub(super) fn texture_stages<'a>(
     if let Some(raw) = &fields.stages {
         let list = reader.read(raw)?;
         if let Some(extra) = list.get(STAGES) {
-            let place = reader.range(extra.text.get(..1).unwrap_or(extra.text));
+            let place = reader.opening(extra.text);
             reader.push(
                 Diagnostic::error("NB0206", place, format!("there is no texture stage {STAGES}"))
                     .label("one too many")
@@ -46,13 +39,17 @@ pub(super) fn texture_stages<'a>(
         for (index, raw) in list.iter().enumerate().take(STAGES) {
             let Some(fields) = reader.read(raw) else { continue };
             if let Some(stage) = program.stage_mut(index) {
-                stage.place = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+                stage.place = reader.opening(raw.text);
                 self::stage(reader, names, &fields, stage);
             }
         }
     }
-    program.texture_factor = color::constant_or(reader, names, &fields.texture_factor, program.texture_factor);
-    program.specular_enable = reader.or(&fields.specular_enable, program.specular_enable);
+    if let Some(color) = fields.texture_factor.and_then(|raw| color::constant(reader, names, &raw)) {
+        program.texture_factor = color;
+    }
+    if let Some(enable) = fields.specular_enable.and_then(|raw| reader.read(&raw)) {
+        program.specular_enable = enable;
+    }
     Some(ApiProgram::Stages(program, written))
 }
 
@@ -61,17 +58,13 @@ fn stage<'a>(reader: &mut Reader<'a>, names: &Names<'a>, fields: &source::Textur
     name_at(reader, &fields.alpha_op, &mut stage.alpha.operation);
     arguments(reader, [&fields.color_arg0, &fields.color_arg1, &fields.color_arg2], &mut stage.color);
     arguments(reader, [&fields.alpha_arg0, &fields.alpha_arg1, &fields.alpha_arg2], &mut stage.alpha);
-    stage.result = reader.name_or(&fields.result_arg, stage.result);
-    stage.constant = color::constant_or(reader, names, &fields.constant, stage.constant);
+    stage.result = fields.result_arg(reader);
+    stage.constant = color::bytes(fields.constant(reader, names));
     coordinates(reader, fields, stage);
-    if let Some(raw) = &fields.bump_matrix
-        && let Some(matrix) = reader.numbers(raw, "a bump matrix", 4, 4, [0.0; 4])
-    {
+    if let Some(matrix) = fields.bump_matrix(reader) {
         stage.bump_matrix = matrix;
     }
-    if let Some(raw) = &fields.bump_luminance
-        && let Some([scale, offset, ..]) = reader.numbers(raw, "a bump luminance", 2, 2, [0.0; 4])
-    {
+    if let Some([scale, offset, ..]) = fields.bump_luminance(reader) {
         stage.bump_luminance = [scale, offset];
     }
 }
@@ -131,7 +124,7 @@ fn coordinates<'a>(reader: &mut Reader<'a>, fields: &source::TextureStage<'a>, s
     if let Some(raw) = &fields.texture_coordinate_index {
         let place = reader.span(raw);
         let value = if raw.split().0.is_empty() {
-            let set = reader.whole(&raw.as_other(), "a set of texture coordinates", 0..=3);
+            let set = reader.within(&raw.as_other(), "a set of texture coordinates", 0..=3, |finding| finding);
             set.map(|set| CoordinateIndex { set, generation: 0 })
         } else {
             let generation = reader.variant(raw, "source of coordinates", Generation::NAMES);

@@ -14,14 +14,11 @@ use crate::image::{self, ImageLimits, Rgba};
 use crate::raw::{Numbers, Tuple};
 use crate::reader::Name;
 use crate::truth::{
-    Equation, Eye, Field, HemisphereLight, Integral, Interpolated, Light, Material, Model, NormalHolder, NormalSource,
-    ShadingNormal, Space, Truth, real_color,
+    Equation, Eye, Field, HemisphereLight, Interpolated, Light, Material, NormalHolder, NormalSource, ShadingNormal,
+    Truth, real_color,
 };
 use crate::vector::wide;
 use ninebit::state::{Named, Register};
-
-/// The largest exponent of a highlight.
-const LARGEST_EXPONENT: u32 = 65_536;
 
 /// Reads the truth of a scene. `None`: it has none, or the reason that it cannot be read has been recorded.
 pub(super) fn truth<'a>(
@@ -35,7 +32,7 @@ pub(super) fn truth<'a>(
         without_truth(reader, draws);
         return None;
     };
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
+    let opening = reader.opening(raw.text);
     let mut fields = reader.read(raw)?;
     if let (Some(_), Some(shared)) = (own, shared) {
         fields = fields.or(reader.read(shared)?);
@@ -154,19 +151,9 @@ fn only_lighting<'a>(reader: &mut Reader<'a>, equation: Equation, fields: &sourc
     if equation == Equation::Lighting {
         return;
     }
-    let spans = [
-        ("normal", fields.normal.as_ref().map(|raw| reader.span(raw))),
-        ("lights", fields.lights.as_ref().map(|raw| reader.span(raw))),
-        ("eye", fields.eye.as_ref().map(|raw| reader.span(raw))),
-        ("material", fields.material.as_ref().map(|raw| reader.span(raw))),
-        ("hemisphere", fields.hemisphere.as_ref().map(|raw| reader.span(raw))),
-        ("color_map", fields.color_map.as_ref().map(|raw| reader.span(raw))),
-        ("shading_normal", fields.shading_normal.as_ref().map(|raw| reader.span(raw))),
-    ];
-    for (name, span) in spans {
-        let Some(span) = span else { continue };
+    for (name, text) in fields.written().filter(|(name, _)| *name != "equation") {
         reader.push(
-            Diagnostic::error("NB0393", span, format!("`{name}` belongs to `equation: Lighting`"))
+            Diagnostic::error("NB0393", reader.range(text), format!("`{name}` belongs to `equation: Lighting`"))
                 .label("not read by this equation")
                 .related(place.clone(), "this one")
                 .help("leave one of the two out"),
@@ -210,7 +197,7 @@ fn long<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, vector: [f32; 3]) -
 fn light<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::TruthLight<'a>>) -> Option<Light> {
     let fields = reader.read(raw)?;
     let place = place(reader, raw.text, "light", &fields.position, &fields.direction);
-    let color = color(reader, names, &fields.color, [1.0; 3]);
+    let color = real_color(&fields.color(reader, names));
     Some(Light { place: place?, color })
 }
 
@@ -219,32 +206,19 @@ fn eye<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::TruthPlace<'a>>) -> Op
     place(reader, raw.text, "eye", &fields.position, &fields.direction).map(Eye)
 }
 
-fn color<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Option<Raw<'a, source::Color>>,
-    default: [f64; 3],
-) -> [f64; 3] {
-    let color = raw.as_ref().and_then(|raw| color::vertex_color(reader, names, raw));
-    color.map_or(default, |color| real_color(&color))
-}
-
 fn material<'a>(
     reader: &mut Reader<'a>,
     names: &Names<'a>,
     raw: &Option<Raw<'a, source::TruthMaterial<'a>>>,
 ) -> Material {
-    let default = Material::default();
-    let Some(fields) = raw.as_ref().and_then(|raw| reader.read(raw)) else { return default };
-    let exponent = fields.exponent.as_ref();
-    let exponent = exponent.and_then(|raw| reader.whole(raw, "the exponent of a highlight", 1..=LARGEST_EXPONENT));
+    let fields = raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default();
     Material {
-        ambient: color(reader, names, &fields.ambient, default.ambient),
-        diffuse: color(reader, names, &fields.diffuse, default.diffuse),
-        specular: color(reader, names, &fields.specular, default.specular),
-        exponent: exponent.unwrap_or(default.exponent),
-        model: reader.name_or(&fields.model, Model::Blinn),
-        self_shadowing: reader.or(&fields.self_shadowing, default.self_shadowing),
+        exponent: fields.exponent(reader),
+        ambient: real_color(&fields.ambient(reader, names)),
+        diffuse: real_color(&fields.diffuse(reader, names)),
+        specular: real_color(&fields.specular(reader, names)),
+        model: fields.model(reader),
+        self_shadowing: fields.self_shadowing(reader),
     }
 }
 
@@ -256,18 +230,16 @@ fn hemisphere_light<'a>(
     raw: &Raw<'a, source::TruthHemisphere<'a>>,
 ) -> (Option<HemisphereLight>, Occlusion) {
     let Some(fields) = reader.read(raw) else { return (None, None) };
-    let axis = match &fields.axis {
-        Some(raw) => reader.numbers(raw, "the axis of a sky", 3, 3, [0.0; 4]).and_then(|[x, y, z, _]| {
-            long(reader, raw, [x, y, z])?;
-            Some(wide([x, y, z]))
-        }),
-        None => Some([0.0, 1.0, 0.0]),
-    };
+    let [x, y, z, _] = fields.axis(reader);
+    if let Some(raw) = &fields.axis {
+        // This says what is wrong; without a direction nothing is measured.
+        long(reader, raw, [x, y, z]);
+    }
     let light = HemisphereLight {
-        axis: axis.unwrap_or([0.0, 1.0, 0.0]),
-        sky: color(reader, names, &fields.sky, [1.0; 3]),
-        ground: color(reader, names, &fields.ground, [0.0; 3]),
-        integral: reader.name_or(&fields.integral, Integral::Simplified),
+        axis: wide([x, y, z]),
+        sky: real_color(&fields.sky(reader, names)),
+        ground: real_color(&fields.ground(reader, names)),
+        integral: fields.integral(reader),
     };
     let occlusion = fields.occlusion.as_ref().and_then(|raw| {
         let (height, options) = height_file(reader, names, raw)?;
@@ -287,13 +259,9 @@ fn normal<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::
             None
         }
         "Radial" => {
-            let fields =
-                reader.read(&Raw::<source::RadialNormals<'a>>::new(if rest.is_empty() { "()" } else { rest }))?;
-            let center = match &fields.center {
-                Some(raw) => reader.numbers(raw, "a centre", 3, 3, [0.0; 4])?,
-                None => [0.0; 4],
-            };
-            Some(NormalSource::Radial { center: wide([center[0], center[1], center[2]]) })
+            let rest = if rest.is_empty() { "()" } else { rest };
+            let [x, y, z, _] = reader.read(&Raw::<source::RadialNormals<'a>>::new(rest))?.center(reader);
+            Some(NormalSource::Radial { center: wide([x, y, z]) })
         }
         "Hemisphere" => hemisphere_normals(reader, if rest.is_empty() { "()" } else { rest }),
         "Height" => {
@@ -313,16 +281,10 @@ fn normal<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::
 /// A hemisphere: exact without noise, else the generator's normals before they become bytes.
 fn hemisphere_normals<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<NormalSource> {
     let fields = reader.read(&Raw::<source::HemisphereNormals<'a>>::new(text))?;
-    let zero_outside = reader.or(&fields.zero_outside, false);
-    let default = hemisphere::Options::default();
-    let sides = crate::generate::SIDES;
-    let size =
-        fields.size.as_ref().map_or(Some(default.size), |raw| reader.whole(raw, "the side of an image", sides))?;
-    let seed = reader.or(&fields.seed, 1);
-    let noise = match &fields.noise {
-        Some(raw) => reader.finite(raw)?,
-        None => return Some(NormalSource::Hemisphere { zero_outside }),
-    };
+    let zero_outside = fields.zero_outside(reader);
+    let (size, seed) = (fields.size(reader), fields.seed(reader));
+    let Some(noise) = fields.noise else { return Some(NormalSource::Hemisphere { zero_outside }) };
+    let noise = reader.finite(&noise)?;
     let options = hemisphere::Options { size, noise: f64::from(noise), seed: u64::from(seed), zero_outside };
     let texels = hemisphere::vectors(&options);
     Some(NormalSource::Map(Arc::new(Field { width: size, height: size, texels, wrap: false })))
@@ -334,15 +296,11 @@ fn height_file<'a>(
     names: &Names<'a>,
     raw: &Raw<'a, source::HeightFile<'a>>,
 ) -> Option<(Rgba, normal_map::Options)> {
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let fields = reader.read(raw)?;
-    let file = reader.required(&fields.file, "file", "height field", opening)?;
+    let file = fields.file(reader)?;
     let image = picture(reader, names, &file)?;
     let default = normal_map::Options::default();
-    let scale = match &fields.scale {
-        Some(raw) => f64::from(reader.finite(raw)?),
-        None => default.scale,
-    };
+    let scale = f64::from(fields.scale(reader));
     let channel = match &fields.channel {
         Some(raw) => match reader.variant(raw, "channel of heights", &["Red", "Alpha"])?.0 {
             0 => HeightChannel::Red,
@@ -375,18 +333,20 @@ fn shading_normal<'a>(
     raw: &Raw<'a, source::ShadingNormal<'a>>,
     draws: &[Drawn],
 ) -> Option<ShadingNormal> {
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let fields = reader.read(raw)?;
-    let space = reader.name_or(&fields.space, Space::Tangent);
+    let space = fields.space(reader);
     let holder = match (&fields.register, &fields.unit) {
         (Some(_), Some(unit)) => {
             let message = "`unit` and `register` both say where the normals are";
             refuse_normals(reader, reader.span(unit), message, "one too many", "leave one of the two out");
             return None;
         }
-        (_, Some(written)) => normal_unit(reader, written, draws)?,
-        (written, None) => {
-            let written = reader.required(written, "register", "shading normal", opening)?;
+        (_, Some(written)) => {
+            let unit = fields.unit(reader)? as usize;
+            normal_unit(reader, reader.span(written), unit, draws)?
+        }
+        (_, None) => {
+            let written = fields.register(reader)?;
             normal_register(reader, &written)?
         }
     };
@@ -405,14 +365,13 @@ fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>
 }
 
 /// A unit whose dot product reads the normals, in any draw.
-fn normal_unit<'a>(reader: &mut Reader<'a>, written: &Raw<'a, u32>, draws: &[Drawn]) -> Option<NormalHolder> {
-    let unit = reader.whole(written, "a texture unit", 1..=3)? as usize;
+fn normal_unit(reader: &mut Reader<'_>, place: Range<usize>, unit: usize, draws: &[Drawn]) -> Option<NormalHolder> {
     if draws.iter().any(|drawn| drawn.draw.texture_shader[unit].operation.is_dot()) {
         return Some(NormalHolder::DotProduct(unit));
     }
     let message = format!("unit {unit} of the texture shader takes no dot product in any draw");
     let help = "name a unit whose operation is a dot product or a reflection, or write `register` for one that is read in the combiners";
-    refuse_normals(reader, reader.span(written), message, "reads no vector", help);
+    refuse_normals(reader, place, message, "reads no vector", help);
     None
 }
 

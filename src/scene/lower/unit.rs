@@ -3,10 +3,7 @@
 use super::names::Names;
 use super::texture::Textures;
 use super::*;
-use ninebit::state::{
-    AddressMode, ColorKey, Filter, MipFilter, ShaderStage, ShadowComparison, ShadowReference, TEXTURE_UNITS,
-    TextureUnit,
-};
+use ninebit::state::{AddressMode, ColorKey, Filter, ShaderStage, ShadowComparison, TEXTURE_UNITS, TextureUnit};
 
 /// The units of a draw.
 pub(super) struct Units {
@@ -65,49 +62,34 @@ fn unit<'a>(
     index: usize,
 ) -> Option<(TextureUnit, usize, Range<usize>)> {
     let mut unit = TextureUnit::new(0);
-    let mut coordinate_set = index;
     if raw.is_text() {
         unit.texture = textures.find(reader, &raw.as_other())?;
         unit_texture::check(reader, textures, None, &mut unit, reader.span(raw));
-        return Some((unit, coordinate_set, reader.span(raw)));
+        return Some((unit, index, reader.span(raw)));
     }
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
     let fields = reader.read(&raw.as_other::<source::UnitState<'a>>())?;
-    let texture = reader.required(&fields.texture, "texture", "texture unit", opening);
+    let texture = fields.texture(reader);
     let found = texture.as_ref().and_then(|raw| textures.find(reader, raw));
-    if let Some(raw) = &fields.coordinates {
-        coordinate_set = reader.whole(raw, "a set of texture coordinates", 0..=3).unwrap_or(0) as usize;
-    }
-    let both = reader.name_or(&fields.address, AddressMode::Wrap);
-    unit.address_s = reader.name_or(&fields.address_s, both);
-    unit.address_t = reader.name_or(&fields.address_t, both);
-    unit.address_r = reader.name_or(&fields.address_r, both);
+    let coordinate_set = fields.coordinates(reader).map_or(index, |set| set as usize);
+    let both = fields.address(reader);
+    let mut along = |field: &Option<_>| field.and_then(|raw| reader.name(&raw)).unwrap_or(both);
+    unit.address_s = along(&fields.address_s);
+    unit.address_t = along(&fields.address_t);
+    unit.address_r = along(&fields.address_r);
     for (field, mode) in [
         (&fields.address, both),
         (&fields.address_s, unit.address_s),
         (&fields.address_t, unit.address_t),
         (&fields.address_r, unit.address_r),
     ] {
-        if let Some(raw) = field
-            && mode == AddressMode::ClampToBorder
-            && reader.profile == Profile::Nv10
-        {
-            reader.push(target::only_nv2a("NB0317", reader.span(raw), "a border colour", "TEX-7"));
-        }
+        reader.needs_nv2a(field, mode == AddressMode::ClampToBorder, "NB0317", ("a border colour", "TEX-7"));
     }
-    unit.border_color = color::constant_or(reader, names, &fields.border_color, [0; 4]);
-    if let Some(raw) = &fields.border_color
-        && reader.profile == Profile::Nv10
-    {
-        reader.push(target::only_nv2a("NB0317", reader.span(raw), "a border colour", "TEX-7"));
-    }
+    unit.border_color = color::bytes(fields.border_color(reader, names));
+    reader.needs_nv2a(&fields.border_color, true, "NB0317", ("a border colour", "TEX-7"));
     filters(reader, &fields, &mut unit);
-    if let Some(raw) = &fields.signed {
-        unit.signed = raster::four_flags(reader, raw, "signed", false);
-        if unit.signed != [false; 4] && reader.profile == Profile::Nv10 {
-            reader.push(target::only_nv2a("NB0318", reader.span(raw), "a signed texture channel", "TEX-18"));
-        }
-    }
+    unit.signed = fields.signed(reader);
+    let signed = unit.signed != [false; 4];
+    reader.needs_nv2a(&fields.signed, signed, "NB0318", ("a signed texture channel", "TEX-18"));
     lod(reader, &fields, &mut unit);
     sampling(reader, &fields, &mut unit);
     unit.color_key = fields.color_key.as_ref().and_then(|raw| color_key(reader, names, raw, &unit));
@@ -123,32 +105,15 @@ fn filters<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &m
     let mag = fields.mag_filter.as_ref().and_then(|raw| reader.name(raw));
     unit.mag_filter = mag.or(min).unwrap_or(Filter::Linear);
     unit.min_filter = min.or(mag).unwrap_or(Filter::Linear);
-    unit.mip_filter = reader.name_or(&fields.mip_filter, MipFilter::None);
+    unit.mip_filter = fields.mip_filter(reader);
 }
 
 /// NUM-0, TEX-9: bias and limits of the lod as the chip's fields: signed 5.8 and unsigned 4.8, cut off towards zero.
 fn lod<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
-    const MOST: f32 = 4095.0 / 256.0;
-    for (field, slot, what, least) in [
-        (&fields.lod_bias, &mut unit.lod_bias, "a lod bias", -16.0),
-        (&fields.min_lod, &mut unit.min_lod, "a least lod", 0.0),
-        (&fields.max_lod, &mut unit.max_lod, "a greatest lod", 0.0),
-    ] {
-        let Some(raw) = field else { continue };
-        let Some(value) = reader.finite(raw) else { continue };
-        if !(least..=MOST).contains(&value) {
-            reader.push(
-                Diagnostic::error("NB0206", reader.span(raw), format!("{what} cannot be {value}"))
-                    .label("out of range")
-                    .rule("TEX-9")
-                    .help(format!("write {least} to {MOST}")),
-            );
-            continue;
-        }
-        #[allow(clippy::float_arithmetic, reason = "a float of the scene becomes the register's integer")]
-        let register = (256.0 * value) as i32;
-        *slot = register;
-    }
+    let lods = [fields.lod_bias(reader), fields.min_lod(reader), fields.max_lod(reader)];
+    #[allow(clippy::float_arithmetic, reason = "floats of the scene become the registers' integers")]
+    let registers = lods.map(|lod| (256.0 * lod) as i32);
+    [unit.lod_bias, unit.min_lod, unit.max_lod] = registers;
     if let Some(raw) = fields.max_lod.as_ref().or(fields.min_lod.as_ref())
         && unit.min_lod > unit.max_lod
     {
@@ -169,9 +134,8 @@ fn color_key<'a>(
     unit: &TextureUnit,
 ) -> Option<ColorKey> {
     let fields = reader.read(raw)?;
-    let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-    let color = reader.required(&fields.color, "color", "colour key", opening.clone());
-    let mode = reader.required(&fields.mode, "mode", "colour key", opening);
+    let color = fields.color(reader);
+    let mode = fields.mode(reader);
     if !unit.is_nearest() {
         reader.push(
             Diagnostic::error("NB0402", reader.span(raw), "it is not known what a colour key does under a filter")
@@ -186,31 +150,13 @@ fn color_key<'a>(
 
 /// TEX-17, CYL-1, SHD-1, VOL-1: what is known of them, and where they may stand, the plan says.
 fn sampling<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut TextureUnit) {
-    if let Some(raw) = &fields.anisotropy {
-        unit.anisotropy = reader.whole(raw, "anisotropy", 1..=8).unwrap_or(1);
-    }
-    if let Some(raw) = &fields.cylindrical_wrap
-        && let Some(parts) = reader.read(raw)
-    {
-        if let [s, t] = parts.0[..] {
-            unit.cylindrical_wrap = [s, t].map(|part| reader.read(&part).unwrap_or(false));
-        } else {
-            let place = reader.span(raw);
-            let message = format!("`cylindrical_wrap` has two flags, not {}", parts.0.len());
-            reader.push(
-                Diagnostic::error("NB0211", place, message)
-                    .label("for s and t")
-                    .help("write `(true, false)`, for example"),
-            );
-        }
-    }
+    unit.anisotropy = fields.anisotropy(reader);
+    unit.cylindrical_wrap = fields.cylindrical_wrap(reader);
     if let Some(raw) = &fields.shadow
         && let Some(shadow) = reader.read(raw)
     {
-        let opening = reader.range(raw.text.get(..1).unwrap_or(raw.text));
-        let function = reader.required(&shadow.function, "function", "shadow comparison", opening);
-        let reference = reader.name_or(&shadow.reference, ShadowReference::R);
-        unit.shadow =
-            function.and_then(|raw| reader.name(&raw)).map(|function| ShadowComparison { function, reference });
+        let function = shadow.function(reader);
+        let reference = shadow.reference(reader);
+        unit.shadow = function.map(|function| ShadowComparison { function, reference });
     }
 }

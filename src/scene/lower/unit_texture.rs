@@ -18,7 +18,7 @@ pub(super) fn check<'a>(
     let raw = fields.and_then(|fields| fields.palette.as_ref());
     if format == TextureFormat::P8 {
         unit.palette = match raw {
-            Some(raw) => textures.palettes.find(reader, raw),
+            Some(raw) => textures.palettes.index.find(reader, raw),
             None => textures.palette_of[unit.texture],
         };
         if unit.palette.is_none() && raw.is_none() {

@@ -3,7 +3,7 @@
 use super::names::Names;
 use super::*;
 use crate::raw::Numbers;
-use ninebit::state::{Vertex, VertexColor, Vertices};
+use ninebit::state::{Vertex, Vertices};
 
 /// Vertices and where each stands.
 pub(super) struct VertexData {
@@ -63,34 +63,19 @@ fn vertex<'a>(
     names: &Names<'a>,
     raw: &Raw<'a, source::Vertex<'a>>,
 ) -> Option<(Vertex, Extra)> {
-    let place = reader.span(raw);
-    let fields = reader.read(raw)?;
+    let fields = source::Vertex { opening: raw.text, ..reader.read(raw)? };
     let mut vertex = Vertex::default();
-    if let Some(position) = reader.required(&fields.position, "position", "vertex", place)
-        && let Some(values) = reader.numbers(&position, "a position", 2, 4, vertex.position)
+    if let Some(position) = fields.position(reader)
+        && let Some(values) = reader.numbers(&position, "a position", 2..=4, vertex.position)
     {
         vertex.position = values;
     }
-    if let Some(color) = &fields.diffuse {
-        vertex.diffuse = color::vertex_color(reader, names, color).unwrap_or(vertex.diffuse);
-    }
-    if let Some(color) = &fields.specular {
-        // Three numbers leave alpha at its usual 1; an absent specular colour is 0 throughout.
-        vertex.specular = color::vertex_color(reader, names, color).unwrap_or(VertexColor::Bytes([0; 4]));
-    }
-    if let Some(fog) = &fields.fog {
-        vertex.fog = fog_factor(reader, fog).unwrap_or(vertex.fog);
-    }
-    let mut extra = Extra::default();
-    if let Some(raw) = &fields.fog_coordinate {
-        // Not only finite ones: FOG-4 and FOG-5 say what the others give.
-        extra.fog_coordinate = reader.read(raw).unwrap_or(0.0);
-    }
-    if let Some(raw) = &fields.normal
-        && let Some([x, y, z, _]) = reader.numbers(raw, "a normal", 3, 3, [0.0; 4])
-    {
-        extra.normal = [x, y, z];
-    }
+    vertex.diffuse = fields.diffuse(reader, names);
+    vertex.specular = fields.specular(reader, names);
+    vertex.fog = fields.fog(reader);
+    let fog_coordinate = fields.fog_coordinate(reader);
+    let [x, y, z, _] = fields.normal(reader);
+    let mut extra = Extra { normal: [x, y, z], fog_coordinate, ..Extra::default() };
     for (set, field) in [&fields.t0, &fields.t1, &fields.t2, &fields.t3].into_iter().enumerate() {
         if let Some(raw) = field
             && let Some((values, written)) = coordinates(reader, raw)
@@ -104,20 +89,5 @@ fn vertex<'a>(
 
 /// One to four texture coordinates s, t, r, q, and how many are written.
 pub(super) fn coordinates<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>) -> Option<([f32; 4], usize)> {
-    reader.numbers_written(raw, "a set of texture coordinates", 1, 4, [0.0, 0.0, 0.0, 1.0])
-}
-
-fn fog_factor<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, f32>) -> Option<f32> {
-    let value = reader.finite(raw)?;
-    if (0.0..=1.0).contains(&value) {
-        return Some(value);
-    }
-    let place = reader.span(raw);
-    reader.push(
-        Diagnostic::error("NB0206", place, format!("a fog factor cannot be {value}"))
-            .label("out of range")
-            .rule("NUM-6")
-            .help("write 0.0 (all fog) to 1.0 (no fog)"),
-    );
-    None
+    reader.numbers_written(raw, "a set of texture coordinates", 1..=4, [0.0, 0.0, 0.0, 1.0])
 }

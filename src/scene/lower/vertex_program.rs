@@ -24,7 +24,7 @@ pub(super) fn geometry<'a>(
     target: usize,
     text: &'a str,
 ) -> Option<Geometry> {
-    let opening = reader.range(text.get(..1).unwrap_or(text));
+    let opening = reader.opening(text);
     let fields = reader.read(&Raw::<source::ProgramVertices<'a>>::new(text))?;
     let mut viewport = viewport(reader, &fields.viewport, targets, target);
     if clip_depth(reader, &fields.clip_depth) {

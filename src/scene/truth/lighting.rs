@@ -39,6 +39,14 @@ pub(super) fn light(light: &Light, eye: Option<&Eye>, material: &Material, point
 mod tests {
     use super::*;
 
+    const MATTE: Material = Material {
+        ambient: [0.0; 3],
+        diffuse: [1.0; 3],
+        specular: [0.0; 3],
+        exponent: 1,
+        model: Model::Blinn,
+        self_shadowing: false,
+    };
     const UP: Vector = [0.0, 0.0, 1.0];
 
     fn sun(direction: Vector) -> Light {
@@ -47,7 +55,7 @@ mod tests {
 
     #[test]
     fn diffuse_light_is_the_cosine() {
-        let material = Material { diffuse: [0.8, 1.0, 1.0], ..Material::default() };
+        let material = Material { diffuse: [0.8, 1.0, 1.0], ..MATTE };
         // 3-4-5: cosine 0.8, whatever the length.
         let lit = light(&sun([6.0, 0.0, 8.0]), None, &material, [0.0; 3], UP);
         assert_eq!(lit.map(|c| (c * 1e9).round() / 1e9), [0.64, 0.4, 0.2]);
@@ -56,7 +64,7 @@ mod tests {
 
     #[test]
     fn lamps_and_eyes_have_places() {
-        let material = Material { diffuse: [0.0; 3], specular: [1.0; 3], exponent: 2, ..Material::default() };
+        let material = Material { diffuse: [0.0; 3], specular: [1.0; 3], exponent: 2, ..MATTE };
         let lamp = Light { place: Place::Position([1.0, 0.0, 1.0]), color: [1.0; 3] };
         // Light and eye mirror each other: the half vector is the normal, and so the reflection meets the eye.
         let eye = Eye(Place::Position([-1.0, 0.0, 1.0]));
@@ -72,7 +80,7 @@ mod tests {
 
     #[test]
     fn surfaces_that_shade_themselves_have_no_highlight_behind() {
-        let material = Material { diffuse: [0.0; 3], specular: [1.0; 3], exponent: 1, ..Material::default() };
+        let material = Material { diffuse: [0.0; 3], specular: [1.0; 3], exponent: 1, ..MATTE };
         let (eye, behind) = (Eye(Place::Direction(UP)), sun([1.0, 0.0, -0.1]));
         assert!(light(&behind, Some(&eye), &material, [0.0; 3], UP)[0] > 0.6);
         let shading = Material { self_shadowing: true, ..material };

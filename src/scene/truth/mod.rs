@@ -98,12 +98,8 @@ pub struct Material {
     pub self_shadowing: bool,
 }
 
-impl Default for Material {
-    fn default() -> Self {
-        let (ambient, diffuse, specular) = ([0.0; 3], [1.0; 3], [0.0; 3]);
-        Material { ambient, diffuse, specular, exponent: 1, model: Model::Blinn, self_shadowing: false }
-    }
-}
+/// The largest exponent of a highlight.
+pub(crate) const LARGEST_EXPONENT: u32 = 65_536;
 
 /// Where the surface's normals come from. Those of maps stand along tangent, binormal and normal of the mesh.
 #[derive(Clone, Debug, PartialEq)]

@@ -6,6 +6,7 @@ use super::draws::{
 use super::images::{self, checker, four_gradients, solid};
 use super::{Drawn, Frames};
 use ninebit::rop::surface;
+use ninebit::state::Named as _;
 use ninebit::state::{
     AlphaTest, Blend, BlendEquation, BlendFactor, CompareFunction, Draw, FinalRegister, SurfaceFormat, Target, Texture,
     TextureFormat, TextureKind, Topology, VertexColor,
@@ -325,16 +326,8 @@ pub(super) fn surface_formats() -> Frames {
 /// Alpha_func: ramps of alpha, wide and steep, and one value.
 pub(super) fn alpha_function() -> Frames {
     let mut frames = Frames::default();
-    for (name, function) in [
-        ("Never", CompareFunction::Never),
-        ("LessThan", CompareFunction::Less),
-        ("Equal", CompareFunction::Equal),
-        ("LessThanOrEqual", CompareFunction::LessOrEqual),
-        ("GreaterThan", CompareFunction::Greater),
-        ("NotEqual", CompareFunction::NotEqual),
-        ("GreaterThanOrEqual", CompareFunction::GreaterOrEqual),
-        ("Always", CompareFunction::Always),
-    ] {
+    let names = "Never LessThan Equal LessThanOrEqual GreaterThan NotEqual GreaterThanOrEqual Always".split(' ');
+    for (name, function) in names.zip(CompareFunction::ALL.iter().copied()) {
         for (state, enabled) in [("Enabled", true), ("Disabled", false)] {
             let mut canvas = Canvas::new(0xff22_2322);
             let mut top = (480.0 - 256.0) / 3.0 * 2.0;

@@ -93,16 +93,8 @@ pub(super) fn functions() -> Frames {
         }
     }
     let mut frames = Frames::default();
-    for (name, function) in [
-        ("Never", CompareFunction::Never),
-        ("Less", CompareFunction::Less),
-        ("Equal", CompareFunction::Equal),
-        ("LessThanOrEqual", CompareFunction::LessOrEqual),
-        ("Greater", CompareFunction::Greater),
-        ("NotEqual", CompareFunction::NotEqual),
-        ("GreaterThanOrEqual", CompareFunction::GreaterOrEqual),
-        ("Always", CompareFunction::Always),
-    ] {
+    let names = "Never Less Equal LessThanOrEqual Greater NotEqual GreaterThanOrEqual Always".split(' ');
+    for (name, function) in names.zip(CompareFunction::ALL.iter().copied()) {
         let mut last = rectangle([120.0, 40.0, 530.0, 450.0], color(0.0, 0.75, 0.0));
         last.color_mask = [true, true, true, false];
         last.stencil_test = Some(test(function, REFERENCE, Keep));

@@ -19,9 +19,9 @@ fn rectangle(inputs: &[i64]) -> Rectangle {
 
 impl Unit for Clip {
     known_as!(
-        "clip",
-        &["CLP-1", "CLP-2"],
-        "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip"
+        "clip", &["CLP-1", "CLP-2"],
+        "whether a pixel of a surface of 4096 x 4096 is drawn, by the surface clip and two rectangles of the window clip", Geometry;
+        gives [Column::result("out.drawn", Kind::Unsigned(1))]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -34,10 +34,6 @@ impl Unit for Clip {
         }
         columns.extend(["in.column", "in.row"].map(|name| Column::unsigned(name, 12, i64::from(SIDE) - 1)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.drawn", Kind::Unsigned(1))]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
@@ -83,9 +79,5 @@ impl Unit for Clip {
         };
         let found = windows(&Draw { window_clip, ..Draw::default() }, &target).iter().filter(|w| inside(w)).count();
         results[0] = found as i64;
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

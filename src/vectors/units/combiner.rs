@@ -35,18 +35,11 @@ pub(super) struct InputMapping;
 
 impl Unit for InputMapping {
     known_as!(
-        "input-mapping",
-        &["CMB-2", "CMB-3", "CMB-4", "CMB-5"],
-        "a register through one of the eight input mappings becomes a factor"
+        "input-mapping", &["CMB-2", "CMB-3", "CMB-4", "CMB-5"],
+        "a register through one of the eight input mappings becomes a factor";
+        takes [Column::choice::<state::InputMapping>("cfg.mapping"), Column::register("in.x")];
+        gives [Column::result("out.factor", Kind::Halves(11))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::choice::<state::InputMapping>("cfg.mapping"), Column::register("in.x")]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.factor", Kind::Halves(11))]
-    }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let [mapped] = mapping::map([inputs[1] as i32], named(inputs[0]), &conditions.policies);
@@ -64,18 +57,11 @@ pub(super) struct Product;
 
 impl Unit for Product {
     known_as!(
-        "product",
-        &["CMB-6", "NUM-2", "NUM-3"],
-        "AB: the product of two factors, rounded to the nearest 255th, saturated"
+        "product", &["CMB-6", "NUM-2", "NUM-3"],
+        "AB: the product of two factors, rounded to the nearest 255th, saturated";
+        takes [Column::factor("in.a"), Column::factor("in.b")];
+        gives [Column::result("mid.product", WIDE), Column::result("out.ab", Kind::Signed(9))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::factor("in.a"), Column::factor("in.b")]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("mid.product", WIDE), Column::result("out.ab", Kind::Signed(9))]
-    }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let raw = factor(inputs[0]).product(factor(inputs[1]));
@@ -145,17 +131,13 @@ pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
     known_as!(
-        "dot-product",
-        &["CMB-8", "NUM-2", "NUM-3"],
-        "A . B: the sum of three products at full width, rounded once, saturated"
+        "dot-product", &["CMB-8", "NUM-2", "NUM-3"],
+        "A . B: the sum of three products at full width, rounded once, saturated";
+        gives [Column::result("mid.sum", Kind::Signed(20)), Column::result("out.dot", Kind::Signed(9))]
     );
 
     fn inputs(&self) -> Vec<Column> {
         ["in.a.r", "in.a.g", "in.a.b", "in.b.r", "in.b.g", "in.b.b"].map(Column::factor).to_vec()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("mid.sum", Kind::Signed(20)), Column::result("out.dot", Kind::Signed(9))]
     }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
@@ -175,15 +157,11 @@ impl Unit for DotProduct {
 pub(super) struct Mux;
 
 impl Unit for Mux {
-    known_as!("mux", &["CMB-10"], "whether the mux takes CD, by the most or the least significant bit of SPARE0.a");
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::choice::<MuxSelect>("cfg.select"), Column::register("in.spare0.a")]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.takes_cd", Kind::Unsigned(1))]
-    }
+    known_as!(
+        "mux", &["CMB-10"], "whether the mux takes CD, by the most or the least significant bit of SPARE0.a";
+        takes [Column::choice::<MuxSelect>("cfg.select"), Column::register("in.spare0.a")];
+        gives [Column::result("out.takes_cd", Kind::Unsigned(1))]
+    );
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         results[0] = output::mux_takes_cd(inputs[1] as i32, named(inputs[0]), &conditions.policies).into();
@@ -200,28 +178,16 @@ pub(super) struct ScaleBias;
 
 impl Unit for ScaleBias {
     known_as!(
-        "scale-bias",
-        &["CMB-9", "NUM-2", "NUM-3"],
-        "AB through the output of a portion: rounded to the nearest 255th, biased, scaled, saturated"
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
-            Column::choice::<Scale>("cfg.scale"),
-            Column::choice::<Bias>("cfg.bias"),
-            Column::factor("in.a"),
-            Column::factor("in.b"),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
+        "scale-bias", &["CMB-9", "NUM-2", "NUM-3"],
+        "AB through the output of a portion: rounded to the nearest 255th, biased, scaled, saturated";
+        takes [Column::choice::<Scale>("cfg.scale"), Column::choice::<Bias>("cfg.bias"), Column::factor("in.a"), Column::factor("in.b")];
+        gives [
             Column::result("mid.product", WIDE),
             Column::result("mid.rounded", Kind::Signed(10)),
             Column::result("mid.scaled", Kind::Signed(12)),
             Column::result("out.value", Kind::Signed(9)),
         ]
-    }
+    );
 
     fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
         scale_takes_bias(inputs[0], inputs[1])

@@ -251,14 +251,9 @@ fn blue_to_alpha<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &
 
 impl Unit for BlueToAlpha {
     known_as!(
-        "blue-to-alpha",
-        &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"],
-        "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"
+        "blue-to-alpha", &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"],
+        "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"; on &[Profile::Nv2a]
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["cfg.ab_dot", "cfg.ab_to_alpha", "cfg.cd_to_alpha"].map(Column::flag).to_vec();
@@ -334,13 +329,9 @@ fn two_stages<L: Lane, O: Observer>(
 
 impl Unit for TwoStages {
     known_as!(
-        "two-stages",
-        &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"],
-        "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping"
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "two-stages", &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"],
+        "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping";
+        takes [
             Column::choice::<Scale>("cfg.scale"),
             Column::choice::<Bias>("cfg.bias"),
             Column::choice::<InputMapping>("cfg.mapping_spare0"),
@@ -350,7 +341,7 @@ impl Unit for TwoStages {
             Column::register("in.c"),
             Column::register("in.d"),
         ]
-    }
+    );
 
     fn results(&self) -> Vec<Column> {
         let mut columns = vec![Column::result("mid.spare0", Kind::Signed(9))];

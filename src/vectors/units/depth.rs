@@ -53,19 +53,16 @@ fn sized(bits: i64, (first, count): (i64, i64)) -> i64 {
 pub(super) struct DepthWord;
 
 impl Unit for DepthWord {
-    known_as!("depth-word", &["DEP-3"], "the word that stands for a depth of mantissa 2^exponent steps, in a format");
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+    known_as!(
+        "depth-word", &["DEP-3"],
+        "the word that stands for a depth of mantissa 2^exponent steps, in a format", Geometry;
+        takes [
             Column::choice::<DepthFormat>("cfg.format"),
             Column::signed("in.mantissa", 32, -(1 << 31), (1 << 31) - 1),
             Column::signed("in.exponent", 9, -180, 110),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.word", Kind::Hex(24))]
-    }
+        ];
+        gives [Column::result("out.word", Kind::Hex(24))]
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // 1.5; 2^-7; 600; the largest of each format, and what is next to it.
@@ -107,10 +104,6 @@ impl Unit for DepthWord {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = word(named(inputs[0]), Binary { mantissa: inputs[1], exponent: inputs[2] as i32 }).into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The range of depths.
@@ -119,9 +112,13 @@ pub(super) struct DepthRange;
 
 impl Unit for DepthRange {
     known_as!(
-        "depth-range",
-        &["DEP-3", "DEP-4"],
-        "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps"
+        "depth-range", &["DEP-3", "DEP-4"],
+        "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps", Geometry;
+        gives [
+            Column::result("mid.drawn", Kind::Unsigned(1)),
+            Column::result("out.kept", Kind::Unsigned(1)),
+            Column::result("out.word", Kind::Hex(24)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -133,14 +130,6 @@ impl Unit for DepthRange {
         let names = ["in.lowest", "in.highest", "in.z0", "in.z1", "in.z2", "in.depth"];
         columns.extend(names.map(|name| Column::float(name, true, 26)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.drawn", Kind::Unsigned(1)),
-            Column::result("out.kept", Kind::Unsigned(1)),
-            Column::result("out.word", Kind::Hex(24)),
-        ]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
@@ -187,10 +176,6 @@ impl Unit for DepthRange {
         let word = kept.map_or(0, |depth| word(format, depth));
         results.copy_from_slice(&[plane.is_some().into(), kept.is_some().into(), word.into()]);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// A pixel's depth, with bias and slope.
@@ -199,9 +184,13 @@ pub(super) struct PixelDepth;
 
 impl Unit for PixelDepth {
     known_as!(
-        "pixel-depth",
-        &["DEP-1", "DEP-3", "DEP-5"],
-        "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope"
+        "pixel-depth", &["DEP-1", "DEP-3", "DEP-5"],
+        "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope", Geometry;
+        gives [
+            Column::result("mid.slope", Kind::Unsigned(60)),
+            Column::result("mid.exponent", Kind::Signed(10)),
+            Column::result("out.word", Kind::Hex(24)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -211,14 +200,6 @@ impl Unit for PixelDepth {
         columns.push(Column::float("in.bias", true, 16));
         columns.push(Column::float("in.factor", true, 8));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.slope", Kind::Unsigned(60)),
-            Column::result("mid.exponent", Kind::Signed(10)),
-            Column::result("out.word", Kind::Hex(24)),
-        ]
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -247,10 +228,6 @@ impl Unit for PixelDepth {
         let depth = plane.unwrap_or_default().at(triangle.edges(inputs[6], inputs[7]));
         results.copy_from_slice(&[slope.mantissa, slope.exponent.into(), word(format, depth).into()]);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// A pixel of a w buffer.
@@ -259,9 +236,9 @@ pub(super) struct WBuffer;
 
 impl Unit for WBuffer {
     known_as!(
-        "w-buffer",
-        &["DEP-3", "DEP-6"],
-        "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)"
+        "w-buffer", &["DEP-3", "DEP-6"],
+        "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)", Geometry;
+        gives [Column::result("out.word", Kind::Hex(24))]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -270,10 +247,6 @@ impl Unit for WBuffer {
         columns.extend(["in.w0", "in.w1", "in.w2"].map(|name| Column::float(name, false, 25)));
         columns.push(Column::float("in.bias", true, 16));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.word", Kind::Hex(24))]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
@@ -318,9 +291,5 @@ impl Unit for WBuffer {
         let test = DepthTest { w_buffer: true, offset, ..test() };
         let plane = any().and_then(|any| DepthPlane::new(&test, format, &any, ([0.0; 3], w)));
         results[0] = word(format, plane.unwrap_or_default().at([1, 2, 3].map(|n| inputs[n]))).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -25,9 +25,13 @@ pub(super) struct FogFactor;
 
 impl Unit for FogFactor {
     known_as!(
-        "fog-factor",
-        &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
-        "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a"
+        "fog-factor", &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
+        "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a", Geometry;
+        gives [
+            Column::result("mid.passed", Kind::Hex(32)),
+            Column::result("mid.steps", Kind::Signed(20)),
+            Column::result("out.byte", Kind::Unsigned(8)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -35,14 +39,6 @@ impl Unit for FogFactor {
         columns.extend(["in.p0", "in.p1", "in.p2"].map(|name| Column::float(name, true, 8)));
         columns.push(Column::word("in.coordinate", 32));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.passed", Kind::Hex(32)),
-            Column::result("mid.steps", Kind::Signed(20)),
-            Column::result("out.byte", Kind::Unsigned(8)),
-        ]
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -81,10 +77,6 @@ impl Unit for FogFactor {
         };
         results[2] = found.byte.into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The table of the exponential modes.
@@ -92,25 +84,15 @@ impl Unit for FogFactor {
 pub(super) struct FogTable;
 
 impl Unit for FogTable {
-    known_as!("fog-table", &["FOG-4"], "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode");
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
-            Column::names("cfg.mode", &["Exp", "Exp2", "ExpAbs", "Exp2Abs"]),
-            Column::signed("in.steps", 13, -4096, 4095),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.byte", Kind::Unsigned(8))]
-    }
+    known_as!(
+        "fog-table", &["FOG-4"],
+        "FOG.a of the steps by which e lies above 3/2, 4096ths, in an exponential mode", Geometry;
+        takes [Column::names("cfg.mode", &["Exp", "Exp2", "ExpAbs", "Exp2Abs"]), Column::signed("in.steps", 13, -4096, 4095)];
+        gives [Column::result("out.byte", Kind::Unsigned(8))]
+    );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = exponential(CURVES[inputs[0] as usize & 3], inputs[1]).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }
 
@@ -122,7 +104,8 @@ impl Unit for LightUnit {
     known_as!(
         "light-unit",
         &["FOG-1", "FOG-3"],
-        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth"
+        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -151,9 +134,5 @@ impl Unit for LightUnit {
         for (result, word) in results.iter_mut().zip(words.into_iter().chain([product, sum])) {
             *result = word.into();
         }
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

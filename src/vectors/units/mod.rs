@@ -1,8 +1,12 @@
 //! The units that vectors are made of, in the order of the pipe.
 
-/// A unit's name, the rules that it applies, and what it does, in one line.
+/// A unit's name, the rules that it applies, and what it does, in one line. Behind these may stand how a frame buffer shows every row, the chips
+/// that have it, if not both, and the columns that it takes and gives.
 macro_rules! known_as {
-    ($name:expr, $rules:expr, $about:expr $(,)?) => {
+    (
+        $name:expr, $rules:expr, $about:expr $(, $reach:ident)? $(; on $profiles:expr)?
+        $(; takes [$($input:expr),+ $(,)?])? $(; gives [$($result:expr),+ $(,)?])?
+    ) => {
         fn name(&self) -> &'static str {
             $name
         }
@@ -14,7 +18,23 @@ macro_rules! known_as {
         fn rules(&self) -> &'static [&'static str] {
             $rules
         }
-    };
+$(
+        fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
+            Reach::$reach
+        }
+)?$(
+        fn profiles(&self) -> &'static [Profile] {
+            $profiles
+        }
+)?$(
+        fn inputs(&self) -> Vec<Column> {
+            vec![$($input),+]
+        }
+)?$(
+        fn results(&self) -> Vec<Column> {
+            vec![$($result),+]
+        }
+)?    };
 }
 
 mod block;

@@ -106,12 +106,8 @@ impl Unit for Instruction {
             "CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "CMB-11",
             "NUM-2", "NUM-3", "FIN-1", "FIN-2",
         ],
-        "an instruction of ps.1.1 from a = t0, b = t1, c = v0 to r0, after mov r0, t3 (before); the a of cnd is r0.a; with signed textures t0, t1, t3 may be negative"
+        "an instruction of ps.1.1 from a = t0, b = t1, c = v0 to r0, after mov r0, t3 (before); the a of cnd is r0.a; with signed textures t0, t1, t3 may be negative"; on &[Profile::Nv2a]
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![

@@ -68,7 +68,8 @@ impl Unit for Coverage {
     known_as!(
         "coverage",
         &["RAS-2", "RAS-3"],
-        "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel"
+        "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -104,10 +105,6 @@ impl Unit for Coverage {
         results[..3].copy_from_slice(&edges);
         results[3] = triangle.covers(edges).into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The weights of the vertices' colours.
@@ -118,7 +115,8 @@ impl Unit for ColorWeights {
     known_as!(
         "color-weights",
         &["INT-1", "INT-2", "INT-3", "INT-6"],
-        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder"
+        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -174,10 +172,6 @@ impl Unit for ColorWeights {
             (results[6 + n], results[8 + n]) = (weight.lowered, weight.value);
         }
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The depth of a pixel from the depths of three vertices.
@@ -188,7 +182,8 @@ impl Unit for DepthInterpolation {
     known_as!(
         "depth-interpolation",
         &["DEP-1"],
-        "the depth of a covered pixel from three vertex depths in units of the buffer's last bit"
+        "the depth of a covered pixel from three vertex depths in units of the buffer's last bit",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -242,10 +237,6 @@ impl Unit for DepthInterpolation {
         let z = [9, 10, 11].map(|n| inputs[n] as f32);
         results[3] = depth::word(format, depth::interpolate(sample.e, z)).into();
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 const W: [&str; 3] = ["in.w0", "in.w1", "in.w2"];
@@ -262,19 +253,15 @@ pub(super) struct ColorInterpolation;
 
 impl Unit for ColorInterpolation {
     known_as!(
-        "color-interpolation",
-        &["INT-2"],
-        "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths"
+        "color-interpolation", &["INT-2"],
+        "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths";
+        gives [Column::result("out.color", Kind::Unsigned(8))]
     );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["in.c0", "in.c1", "in.c2"].map(Column::byte).to_vec();
         columns.extend(["in.weight0", "in.weight2"].map(|name| Column::unsigned(name, 9, 256)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.color", Kind::Unsigned(8))]
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
@@ -299,7 +286,8 @@ impl Unit for TextureCoordinate {
     known_as!(
         "texture-coordinate",
         &["INT-1", "INT-4", "INT-4t", "INT-6"],
-        "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1"
+        "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -342,9 +330,5 @@ impl Unit for TextureCoordinate {
         let u = sample.coordinate(&g);
         results[..3].copy_from_slice(&g);
         (results[3], results[4]) = (u.lowered, u.value);
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -29,23 +29,15 @@ fn bytes(values: &[i64]) -> [u8; 4] {
 pub(super) struct AlphaTest;
 
 impl Unit for AlphaTest {
-    known_as!("alpha-test", &["ROP-1"], "whether a fragment of this alpha passes");
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.passes", Kind::Unsigned(1))]
-    }
+    known_as!(
+        "alpha-test", &["ROP-1"], "whether a fragment of this alpha passes", Direct;
+        takes [Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")];
+        gives [Column::result("out.passes", Kind::Unsigned(1))]
+    );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let test = state::AlphaTest { function: named(inputs[0]), reference: inputs[1] as u8 };
         results[0] = blend::alpha_test(&test, inputs[2] as i32, &mut Silent).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }
 
@@ -61,7 +53,8 @@ impl Unit for Blend {
     known_as!(
         "blend",
         &["ROP-2", "ROP-3", "ROP-4"],
-        "a fragment blended with what a surface of eight bits a channel holds"
+        "a fragment blended with what a surface of eight bits a channel holds",
+        Direct
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -114,10 +107,6 @@ impl Unit for Blend {
             })
         })
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
-    }
 }
 
 /// Bytes to a surface's word.
@@ -125,7 +114,10 @@ impl Unit for Blend {
 pub(super) struct SurfaceStore;
 
 impl Unit for SurfaceStore {
-    known_as!("surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps");
+    known_as!(
+        "surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps", Direct;
+        gives [Column::result("out.word", Kind::Hex(32))]
+    );
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<SurfaceFormat>("cfg.format")];
@@ -133,16 +125,8 @@ impl Unit for SurfaceStore {
         columns
     }
 
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.word", Kind::Hex(32))]
-    }
-
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = surface::pack(named(inputs[0]), bytes(&inputs[1..])).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }
 
@@ -151,11 +135,10 @@ impl Unit for SurfaceStore {
 pub(super) struct SurfaceLoad;
 
 impl Unit for SurfaceLoad {
-    known_as!("surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads");
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]
-    }
+    known_as!(
+        "surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads", Direct;
+        takes [Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]
+    );
 
     fn results(&self) -> Vec<Column> {
         CHANNELS.map(|channel| Column::result(&format!("out.{channel}"), Kind::Unsigned(8))).to_vec()
@@ -174,9 +157,5 @@ impl Unit for SurfaceLoad {
         for (result, byte) in results.iter_mut().zip(surface::read(named(inputs[0]), inputs[1] as u32)) {
             *result = byte.into();
         }
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }

@@ -43,23 +43,11 @@ pub(super) struct ColorKey;
 
 impl Unit for ColorKey {
     known_as!(
-        "color-key",
-        &["KEY-1"],
-        "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped"
+        "color-key", &["KEY-1"],
+        "what a colour key makes of a texel that a format's word became, both as A8R8G8B8, and whether the fragment is dropped", Geometry;
+        takes [Column::choice::<ColorKeyMode>("cfg.mode"), formats(|_| true), Column::word("in.key", 32), Column::word("in.texel", 32)];
+        gives [Column::result("out.texel", Kind::Hex(32)), Column::result("out.dropped", Kind::Unsigned(1))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
-            Column::choice::<ColorKeyMode>("cfg.mode"),
-            formats(|_| true),
-            Column::word("in.key", 32),
-            Column::word("in.texel", 32),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.texel", Kind::Hex(32)), Column::result("out.dropped", Kind::Unsigned(1))]
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // In each mode and format equal, and different in one bit of each channel.
@@ -101,10 +89,6 @@ impl Unit for ColorKey {
         let [r, g, b, a] = keyed.map(i64::from);
         results.copy_from_slice(&[a << 24 | r << 16 | g << 8 | b, dropped.into()]);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// A depth that is compared.
@@ -122,17 +106,9 @@ fn of_word(format: DepthFormat, depth: u32) -> f32 {
 
 impl Unit for ShadowComparison {
     known_as!(
-        "shadow-comparison",
-        &["DEP-3", "SHD-1"],
-        "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth"
-    );
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
-    }
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "shadow-comparison", &["DEP-3", "SHD-1"],
+        "what a texture of depths yields: r/q (floats) as a word of its format, compared with a texel's depth", Geometry; on &[Profile::Nv2a];
+        takes [
             Column::choice::<CompareFunction>("cfg.function"),
             Column::choice::<ShadowReference>("cfg.reference"),
             Column::choice::<DepthFormat>("cfg.format"),
@@ -140,12 +116,9 @@ impl Unit for ShadowComparison {
             Column::float("in.q", true, 8),
             Column::word("in.depth", 24),
             Column::word("in.stencil", 8),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("mid.reference", Kind::Hex(24)), Column::result("out.value", Kind::Unsigned(8))]
-    }
+        ];
+        gives [Column::result("mid.reference", Kind::Hex(24)), Column::result("out.value", Kind::Unsigned(8))]
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // The handbook's example and its neighbours, by all functions.
@@ -193,10 +166,6 @@ impl Unit for ShadowComparison {
             results[1] = value[0].into();
         });
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The layer of a volume.
@@ -205,31 +174,20 @@ pub(super) struct VolumeLayer;
 
 impl Unit for VolumeLayer {
     known_as!(
-        "volume-layer",
-        &["INT-4", "TEX-7", "TEX-15", "VOL-1"],
-        "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour"
-    );
-
-    fn profiles(&self) -> &'static [Profile] {
-        &[Profile::Nv2a]
-    }
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "volume-layer", &["INT-4", "TEX-7", "TEX-15", "VOL-1"],
+        "the layer of a volume that r/q (floats) meets, by the address mode of r; not inside: the border colour", Geometry; on &[Profile::Nv2a];
+        takes [
             Column::choice::<AddressMode>("cfg.mode"),
             Column::listed("cfg.layers", Kind::Unsigned(10), &[1, 2, 4, 8, 16, 64, 512]),
             Column::float("in.r", true, 7),
             Column::float("in.q", true, 7),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
+        ];
+        gives [
             Column::result("mid.w", Kind::Signed(26)),
             Column::result("out.inside", Kind::Unsigned(1)),
             Column::result("out.layer", Kind::Unsigned(9)),
         ]
-    }
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Layers 0 to 3 of four, their borders, and what lies beyond, in every mode.
@@ -263,10 +221,6 @@ impl Unit for VolumeLayer {
             (results[1], results[2]) = (found.is_some().into(), found.unwrap_or(0) as i64);
         });
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// The taps of a footprint.
@@ -280,7 +234,8 @@ impl Unit for AnisotropyTaps {
     known_as!(
         "anisotropy-taps",
         &["TEX-11", "TEX-17"],
-        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel"
+        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -343,10 +298,6 @@ impl Unit for AnisotropyTaps {
             result.copy_from_slice(&[u, v, taps.weights[2 * pair].into()]);
         }
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// Coordinates that go the shorter way around.
@@ -357,7 +308,8 @@ impl Unit for CylindricalWrap {
     known_as!(
         "cylindrical-wrap",
         &["CYL-1"],
-        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign"
+        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -399,9 +351,5 @@ impl Unit for CylindricalWrap {
             // Which zero it is depends on the machine, and nothing depends on it.
             *result = if s == 0.0 { 0 } else { s.to_bits().into() };
         }
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

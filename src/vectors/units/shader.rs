@@ -31,14 +31,8 @@ pub(super) struct Remap;
 
 impl Unit for Remap {
     known_as!(
-        "shader-remap",
-        &["TSH-1", "TSH-2", "TSH-3"],
-        "a colour's bytes as the three floats that the dot unit reads"
+        "shader-remap", &["TSH-1", "TSH-2", "TSH-3"], "a colour's bytes as the three floats that the dot unit reads"; on NV2A
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         [vec![Column::choice::<DotMapping>("cfg.mapping")], color()].concat()
@@ -61,14 +55,9 @@ pub(super) struct DotProduct;
 
 impl Unit for DotProduct {
     known_as!(
-        "shader-dot-product",
-        &["TSH-1", "TSH-2", "TSH-3", "TSH-4"],
-        "the dot product of float coordinates and a remapped colour, in single precision"
+        "shader-dot-product", &["TSH-1", "TSH-2", "TSH-3", "TSH-4"],
+        "the dot product of float coordinates and a remapped colour, in single precision"; on NV2A
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::choice::<DotMapping>("cfg.mapping")];
@@ -97,14 +86,10 @@ pub(super) struct BumpOffset;
 
 impl Unit for BumpOffset {
     known_as!(
-        "bump-offset",
-        &["TSH-7"],
-        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel"
+        "bump-offset", &["TSH-7"],
+        "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel", Geometry; on NV2A;
+        gives [Column::result("out.offset", Kind::Signed(56))]
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = vec![Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 64, 256, 4096])];
@@ -113,17 +98,9 @@ impl Unit for BumpOffset {
         columns
     }
 
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.offset", Kind::Signed(56))]
-    }
-
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let entries = [1, 2].map(|n| float(inputs[n]));
         results[0] = shader::offset(entries, [inputs[3] as u8, inputs[4] as u8], inputs[0] as u32);
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }
 
@@ -133,14 +110,10 @@ pub(super) struct Luminance;
 
 impl Unit for Luminance {
     known_as!(
-        "bump-luminance",
-        &["TSH-8", "NUM-6"],
-        "a channel times R / 255 scale + offset, in 4096ths and as a byte"
+        "bump-luminance", &["TSH-8", "NUM-6"],
+        "a channel times R / 255 scale + offset, in 4096ths and as a byte", Direct; on NV2A;
+        gives [Column::result("mid.value", Kind::Unsigned(21)), Column::result("out.byte", Kind::Unsigned(8))]
     );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
 
     fn inputs(&self) -> Vec<Column> {
         let mut columns = ["in.channel", "in.red"].map(Column::byte).to_vec();
@@ -148,17 +121,9 @@ impl Unit for Luminance {
         columns
     }
 
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("mid.value", Kind::Unsigned(21)), Column::result("out.byte", Kind::Unsigned(8))]
-    }
-
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = shader::luminance(inputs[0] as i32, inputs[1] as u8, [2, 3].map(|n| float(inputs[n])));
         results[1] = shader::luminance_byte(results[0]).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }
 
@@ -168,26 +133,15 @@ pub(super) struct Dependent;
 
 impl Unit for Dependent {
     known_as!(
-        "dependent-coordinate",
-        &["TSH-4", "TSH-6"],
-        "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel"
-    );
-
-    fn profiles(&self) -> &'static [Profile] {
-        NV2A
-    }
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![
+        "dependent-coordinate", &["TSH-4", "TSH-6"],
+        "a byte as a coordinate of a dependent read, and a float as one of the dot unit, in 1/256 texel", Geometry; on NV2A;
+        takes [
             Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 1024, 4096]),
             Column::byte("in.byte"),
             Column::float("in.float", true, 6),
-        ]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.of_byte", Kind::Unsigned(21)), Column::result("out.of_float", Kind::Signed(28))]
-    }
+        ];
+        gives [Column::result("out.of_byte", Kind::Unsigned(21)), Column::result("out.of_float", Kind::Signed(28))]
+    );
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         // A float whose coordinate fits: all of the domain do.
@@ -198,9 +152,5 @@ impl Unit for Dependent {
         let size = inputs[0] as u32;
         results[0] = shader::dependent(inputs[1] as u8, size, conditions.policies.dependent_scale);
         results[1] = shader::coordinate(float(inputs[2]), size);
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

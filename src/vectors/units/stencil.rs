@@ -12,9 +12,13 @@ pub(super) struct StencilTest;
 
 impl Unit for StencilTest {
     known_as!(
-        "stencil-test",
-        &["STN-1"],
-        "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says"
+        "stencil-test", &["STN-1"],
+        "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says", Geometry;
+        gives [
+            Column::result("mid.operation", Kind::Name(StencilOperation::NAMES)),
+            Column::result("out.passes", Kind::Unsigned(1)),
+            Column::result("out.stored", Kind::Unsigned(8)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -23,14 +27,6 @@ impl Unit for StencilTest {
         columns.extend(["in.reference", "in.mask", "in.write_mask", "in.stored"].map(Column::byte));
         columns.push(Column::flag("in.depth_passes"));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.operation", Kind::Name(StencilOperation::NAMES)),
-            Column::result("out.passes", Kind::Unsigned(1)),
-            Column::result("out.stored", Kind::Unsigned(8)),
-        ]
     }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
@@ -71,9 +67,5 @@ impl Unit for StencilTest {
         results[0] = operation as i64;
         results[1] = passes.into();
         results[2] = stencil::written(&test, operation, stored).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

@@ -28,11 +28,10 @@ fn is_compressed(format: TextureFormat) -> bool {
 pub(super) struct TexelExpansion;
 
 impl Unit for TexelExpansion {
-    known_as!("texel-expansion", &["TEX-1"], "the word of a texel as the bytes that a unit reads");
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)]
-    }
+    known_as!(
+        "texel-expansion", &["TEX-1"], "the word of a texel as the bytes that a unit reads", Direct;
+        takes [formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)]
+    );
 
     fn results(&self) -> Vec<Column> {
         channels()
@@ -51,10 +50,6 @@ impl Unit for TexelExpansion {
             *result = byte.into();
         }
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
-    }
 }
 
 /// A texel of a compressed block.
@@ -65,7 +60,8 @@ impl Unit for CompressedBlock {
     known_as!(
         "compressed-block",
         &["TEX-2", "TEX-3", "TEX-4"],
-        "the texel in a column and row of a DXT block; DXT1 has two words, the others four"
+        "the texel in a column and row of a DXT block; DXT1 has two words, the others four",
+        Direct
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -98,9 +94,5 @@ impl Unit for CompressedBlock {
         for (result, byte) in results.iter_mut().zip(decoded.bytes) {
             *result = byte.into();
         }
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }

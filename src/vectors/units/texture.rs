@@ -60,21 +60,17 @@ pub(super) struct NearestAddress;
 
 impl Unit for NearestAddress {
     known_as!(
-        "nearest-address",
-        &["TEX-5", "TEX-7", "TEX-8"],
-        "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour"
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        addressing()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
+        "nearest-address", &["TEX-5", "TEX-7", "TEX-8"],
+        "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour", Geometry;
+        gives [
             Column::result("mid.index", Kind::Signed(17)),
             Column::result("out.inside", Kind::Unsigned(1)),
             Column::result("out.texel", Kind::Signed(14)),
         ]
+    );
+
+    fn inputs(&self) -> Vec<Column> {
+        addressing()
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -84,10 +80,6 @@ impl Unit for NearestAddress {
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = filter::nearest(inputs[3]);
         [results[1], results[2]] = place(inputs, results[0]);
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }
 
@@ -99,7 +91,8 @@ impl Unit for LinearAddress {
     known_as!(
         "linear-address",
         &["TEX-6", "TEX-7", "TEX-8"],
-        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths"
+        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -128,10 +121,6 @@ impl Unit for LinearAddress {
         [results[2], results[3]] = place(inputs, index);
         [results[4], results[5]] = place(inputs, index + 1);
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// One linear step.
@@ -140,25 +129,14 @@ pub(super) struct LinearStep;
 
 impl Unit for LinearStep {
     known_as!(
-        "linear-step",
-        &["TEX-6", "TEX-9"],
-        "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)"
+        "linear-step", &["TEX-6", "TEX-9"],
+        "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)", Direct;
+        takes [Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")];
+        gives [Column::result("out.value", Kind::Unsigned(8))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        vec![Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")]
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![Column::result("out.value", Kind::Unsigned(8))]
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = filter::lerp(inputs[0] as i32, inputs[1] as i32, inputs[2] as i32).into();
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }
 
@@ -219,7 +197,8 @@ impl Unit for CubeFace {
     known_as!(
         "cube-face",
         &["TEX-12", "TEX-13"],
-        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel"
+        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel",
+        Geometry
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -251,10 +230,6 @@ impl Unit for CubeFace {
             *result = shader::face_coordinate(minor, m, inputs[0] as u32, 8);
         }
     }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
-    }
 }
 
 /// Filter and levels for a lod.
@@ -263,9 +238,16 @@ pub(super) struct LevelChoice;
 
 impl Unit for LevelChoice {
     known_as!(
-        "level-choice",
-        &["TEX-9", "TEX-10", "TEX-11"],
-        "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight"
+        "level-choice", &["TEX-9", "TEX-10", "TEX-11"],
+        "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight", Geometry;
+        gives [
+            Column::result("mid.log2_ratio", Kind::Signed(16)),
+            Column::result("mid.lod", Kind::Signed(16)),
+            Column::result("out.filter", Kind::Name(Filter::NAMES)),
+            Column::result("out.level", Kind::Unsigned(4)),
+            Column::result("out.next_level", Kind::Unsigned(4)),
+            Column::result("out.weight", Kind::Unsigned(8)),
+        ]
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -281,17 +263,6 @@ impl Unit for LevelChoice {
         let names = ["in.u_right", "in.v_right", "in.u_lower", "in.v_lower"];
         columns.extend(names.map(|name| Column::signed(name, 34, -(1 << 32), 1 << 32)));
         columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        vec![
-            Column::result("mid.log2_ratio", Kind::Signed(16)),
-            Column::result("mid.lod", Kind::Signed(16)),
-            Column::result("out.filter", Kind::Name(Filter::NAMES)),
-            Column::result("out.level", Kind::Unsigned(4)),
-            Column::result("out.next_level", Kind::Unsigned(4)),
-            Column::result("out.weight", Kind::Unsigned(8)),
-        ]
     }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
@@ -331,9 +302,5 @@ impl Unit for LevelChoice {
         let numbers =
             [log2_ratio.into(), biased.into(), choice.filter as i64, choice.level as i64, next as i64, weight.into()];
         results.copy_from_slice(&numbers);
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Geometry
     }
 }

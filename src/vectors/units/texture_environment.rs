@@ -75,7 +75,8 @@ impl Unit for Classic {
     known_as!(
         "texture-environment",
         RULES,
-        "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format"
+        "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format",
+        Direct
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -105,10 +106,6 @@ impl Unit for Classic {
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         block(inputs, varying, 2, conditions, out, |inputs| classic(inputs, conditions.profile))
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }
 
@@ -155,7 +152,8 @@ impl Unit for Combine {
     known_as!(
         "texture-combine",
         RULES,
-        "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone"
+        "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone",
+        Direct
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -196,9 +194,5 @@ impl Unit for Combine {
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         block(inputs, varying, 7, conditions, out, |inputs| combine(inputs, conditions.profile))
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }

@@ -75,7 +75,8 @@ impl Unit for Stage {
     known_as!(
         "texture-stage",
         RULES,
-        "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current"
+        "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current",
+        Direct
     );
 
     fn inputs(&self) -> Vec<Column> {
@@ -126,9 +127,5 @@ impl Unit for Stage {
         let colors = [127, 128, 129, 64, 128, 127, 255, 200, 90, 60, 30, 128, 255, 127, 1, 100];
         let rows = (0..).zip(Operation::ALL).filter(|(_, operation)| combines(**operation));
         rows.map(|(n, _)| [vec![n, 0, 0, 0, 0], colors.to_vec()].concat()).collect()
-    }
-
-    fn reach(&self, _: &[i64], _: &[i64]) -> Reach {
-        Reach::Direct
     }
 }

@@ -11,27 +11,15 @@ use serde_json::json;
 
 use super::super::Context;
 use super::super::exit::Failure;
-use super::super::scene::PolicyArguments;
 use super::super::template::Template;
-use super::ProfileArgument;
-use super::inputs::{self, Assignment, Numbers};
-use super::operation::{Column, Common, Operation, Results, drive};
-use super::words::{self, Input};
+use super::inputs::{self, Contents, FourInputs};
+use super::operation::{Column, Operation, Results, drive};
+use super::words;
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Input A [default: zero]
-    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
-    a: Option<Input<Register>>,
-    /// Input B
-    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
-    b: Option<Input<Register>>,
-    /// Input C
-    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
-    c: Option<Input<Register>>,
-    /// Input D
-    #[arg(long, value_name = "INPUT", value_parser = words::general_input)]
-    d: Option<Input<Register>>,
+    #[command(flatten)]
+    inputs: FourInputs<Register>,
     /// AB is a dot product
     #[arg(long, visible_alias = "dot")]
     ab_dot: bool,
@@ -68,21 +56,8 @@ pub(crate) struct Arguments {
     /// CD's blue also goes to the alpha of its destination (nv2a)
     #[arg(long)]
     cd_blue_to_alpha: bool,
-    /// What a register holds, -256 to 255: REGISTER=N, =R,G,B or =R,G,B,A; REGISTER.CHANNEL=N. The rest holds 0
-    #[arg(long = "in", value_name = "REGISTER=VALUES", value_parser = inputs::assignment)]
-    registers: Vec<Assignment>,
-    /// Constant colour 0, 0 to 255
-    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
-    const0: Option<Numbers>,
-    /// Constant colour 1, 0 to 255
-    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
-    const1: Option<Numbers>,
     #[command(flatten)]
-    profile: ProfileArgument,
-    #[command(flatten)]
-    policies: PolicyArguments,
-    #[command(flatten)]
-    common: Common,
+    contents: Contents,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -105,12 +80,10 @@ struct Stage {
 
 /// Runs one general stage.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let policies = arguments.policies.policies()?;
-    let mut columns = inputs::register_columns();
-    inputs::assign(&mut columns, &arguments.registers)?;
-    constants(&mut columns, [&arguments.const0, &arguments.const1])?;
+    let Contents { profile, common, policies, .. } = &arguments.contents;
+    let (policies, columns) = (policies.policies()?, arguments.contents.columns()?);
     let template = Template { draw: program(arguments), ..Template::default() };
-    let combiners = template.combiners(arguments.profile.profile, context)?;
+    let combiners = template.combiners(profile.profile, context)?;
     let stage = combiners.stages.first().copied();
     let none = GeneralStage {
         rgb: Portion::idle(Component::Rgb),
@@ -122,28 +95,16 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         half: arguments.portion,
         mux_select: combiners.mux_select,
         columns,
-        profile: arguments.profile.profile,
+        profile: profile.profile,
         policies,
     };
-    drive(&operation, &arguments.common)
-}
-
-/// Puts `--const0` and `--const1` into the columns.
-pub(super) fn constants(columns: &mut [Column], constants: [&Option<Numbers>; 2]) -> Result<(), Failure> {
-    for (register, numbers) in [Register::ConstantColor0, Register::ConstantColor1].into_iter().zip(constants) {
-        if let Some(numbers) = numbers {
-            inputs::color_columns(columns, 4 * register as usize, numbers.rgba())?;
-        }
-    }
-    Ok(())
+    drive(&operation, common)
 }
 
 /// The stage as a scene writes it, one field a line.
 fn program(arguments: &Arguments) -> String {
     let mut fields: Vec<(&str, String)> = Vec::new();
-    for (name, input) in [("a", &arguments.a), ("b", &arguments.b), ("c", &arguments.c), ("d", &arguments.d)] {
-        fields.extend(input.map(|input| (name, input.scene())));
-    }
+    fields.extend(arguments.inputs.fields());
     for (name, output) in ["ab", "cd", "sum"].into_iter().zip(outputs(arguments)) {
         let word = |register: Register| if register == Register::Zero { "Discard" } else { register.name() };
         fields.extend(output.map(|output| (name, word(output).to_owned())));
@@ -180,7 +141,7 @@ fn outputs(arguments: &Arguments) -> [Option<Register>; 3] {
     if given != [None; 3] {
         return given;
     }
-    let second = arguments.c.is_some() || arguments.d.is_some();
+    let second = arguments.inputs.c.is_some() || arguments.inputs.d.is_some();
     let dot = arguments.ab_dot || arguments.cd_dot;
     match (second && !dot, second) {
         (true, _) => [None, None, Some(Register::Spare0)],

@@ -11,36 +11,23 @@ use serde_json::json;
 
 use super::super::Context;
 use super::super::exit::Failure;
-use super::super::scene::PolicyArguments;
 use super::super::template::Template;
-use super::ProfileArgument;
-use super::combiner::constants;
-use super::inputs::{self, Assignment, Numbers};
-use super::operation::{Column, Common, Operation, Results, drive};
+use super::inputs::{self, Contents, FourInputs};
+use super::operation::{Column, Operation, Results, drive};
 use super::words::{self, Input};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Input A [default: zero]
-    #[arg(long, value_name = "INPUT", value_parser = words::final_input)]
-    a: Option<Input<FinalRegister>>,
-    /// Input B
-    #[arg(long, value_name = "INPUT", value_parser = words::final_input)]
-    b: Option<Input<FinalRegister>>,
-    /// Input C
-    #[arg(long, value_name = "INPUT", value_parser = words::final_input)]
-    c: Option<Input<FinalRegister>>,
-    /// Input D
-    #[arg(long, value_name = "INPUT", value_parser = words::final_input)]
-    d: Option<Input<FinalRegister>>,
+    #[command(flatten)]
+    inputs: FourInputs<FinalRegister>,
     /// Input E
-    #[arg(long, value_name = "INPUT", value_parser = words::final_input)]
+    #[arg(long, value_name = "INPUT", value_parser = words::input::<FinalRegister>)]
     e: Option<Input<FinalRegister>>,
     /// Input F
-    #[arg(long, value_name = "INPUT", value_parser = words::final_input)]
+    #[arg(long, value_name = "INPUT", value_parser = words::input::<FinalRegister>)]
     f: Option<Input<FinalRegister>>,
     /// Input G: alpha; left out, alpha is not computed
-    #[arg(long, value_name = "INPUT", value_parser = words::final_input)]
+    #[arg(long, value_name = "INPUT", value_parser = words::input::<FinalRegister>)]
     g: Option<Input<FinalRegister>>,
     /// spare0 + secondary may pass 1.0; otherwise it is limited
     #[arg(long)]
@@ -51,21 +38,8 @@ pub(crate) struct Arguments {
     /// 1 - secondary enters the sum
     #[arg(long)]
     invert_secondary: bool,
-    /// What a register holds, -256 to 255: REGISTER=N, =R,G,B or =R,G,B,A; REGISTER.CHANNEL=N. The rest holds 0
-    #[arg(long = "in", value_name = "REGISTER=VALUES", value_parser = inputs::assignment)]
-    registers: Vec<Assignment>,
-    /// Constant colour 0, 0 to 255
-    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
-    const0: Option<Numbers>,
-    /// Constant colour 1, 0 to 255
-    #[arg(long, value_name = "R,G,B,A", value_parser = inputs::color)]
-    const1: Option<Numbers>,
     #[command(flatten)]
-    profile: ProfileArgument,
-    #[command(flatten)]
-    policies: PolicyArguments,
-    #[command(flatten)]
-    common: Common,
+    contents: Contents,
 }
 
 /// The final combiner with register contents.
@@ -78,32 +52,21 @@ struct Final {
 
 /// Runs the final combiner.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
-    let policies = arguments.policies.policies()?;
-    let mut columns = inputs::register_columns();
-    inputs::assign(&mut columns, &arguments.registers)?;
-    constants(&mut columns, [&arguments.const0, &arguments.const1])?;
+    let Contents { profile, common, policies, .. } = &arguments.contents;
+    let (policies, columns) = (policies.policies()?, arguments.contents.columns()?);
     let template = Template { draw: program(arguments), ..Template::default() };
-    let profile = arguments.profile.profile;
+    let profile = profile.profile;
     let state = template.combiners(profile, context)?.final_combiner;
-    drive(&Final { planned: planned(state, arguments.g.is_some()), columns, profile, policies }, &arguments.common)
+    drive(&Final { planned: planned(state, arguments.g.is_some()), columns, profile, policies }, common)
 }
 
 /// The final combiner as a scene writes it, one field a line.
 fn program(arguments: &Arguments) -> String {
-    let inputs = [
-        ("a", &arguments.a),
-        ("b", &arguments.b),
-        ("c", &arguments.c),
-        ("d", &arguments.d),
-        ("e", &arguments.e),
-        ("f", &arguments.f),
-        ("g", &arguments.g),
-    ];
+    let others = [("e", &arguments.e), ("f", &arguments.f), ("g", &arguments.g)];
+    let others = others.into_iter().filter_map(|(name, input)| Some((name, input.as_ref()?.scene())));
     let mut text = String::new();
-    for (name, input) in inputs {
-        if let Some(input) = input {
-            let _ = writeln!(text, "                {name}: {},", input.scene());
-        }
+    for (name, input) in arguments.inputs.fields().chain(others) {
+        let _ = writeln!(text, "                {name}: {input},");
     }
     for (name, value) in [
         ("color_sum_clamp", !arguments.no_color_sum_clamp),

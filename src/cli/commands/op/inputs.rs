@@ -2,13 +2,16 @@
 
 use std::ops::RangeInclusive;
 
+use clap::Args;
 use ninebit::combiner::registers::{self, Registers, channel_name};
 use ninebit::number::Paired;
 use ninebit::state::{Named, Register};
 
 use super::super::exit::Failure;
-use super::operation::Column;
-use super::words;
+use super::super::scene::PolicyArguments;
+use super::ProfileArgument;
+use super::operation::{Column, Common};
+use super::words::{self, Input};
 
 /// What the name of `--in` and the four numbers after it give.
 #[derive(Clone, Debug)]
@@ -22,6 +25,65 @@ pub(super) fn assignment(text: &str) -> Result<Assignment, String> {
     let form = "write REGISTER=N, REGISTER=R,G,B or REGISTER=R,G,B,A, for example tex0=128,128,255";
     let (name, values) = text.split_once('=').ok_or(form)?;
     Ok(Assignment { name: name.trim().to_owned(), values: numbers(values)? })
+}
+
+/// Inputs A to D of a stage.
+#[derive(Debug, Args)]
+pub(super) struct FourInputs<R: Named + Send + Sync> {
+    /// Input A [default: zero]
+    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    a: Option<Input<R>>,
+    /// Input B
+    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    b: Option<Input<R>>,
+    /// Input C
+    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    pub(super) c: Option<Input<R>>,
+    /// Input D
+    #[arg(long, value_name = "INPUT", value_parser = words::input::<R>)]
+    pub(super) d: Option<Input<R>>,
+}
+
+impl<R: Named + Send + Sync> FourInputs<R> {
+    /// Those that are given, as fields of a scene.
+    pub(super) fn fields(&self) -> impl Iterator<Item = (&'static str, String)> {
+        let all = [("a", &self.a), ("b", &self.b), ("c", &self.c), ("d", &self.d)];
+        all.into_iter().filter_map(|(name, input)| Some((name, input.as_ref()?.scene())))
+    }
+}
+
+/// What the registers hold, and on which chip.
+#[derive(Debug, Args)]
+pub(super) struct Contents {
+    /// What a register holds, -256 to 255: REGISTER=N, =R,G,B or =R,G,B,A; REGISTER.CHANNEL=N. The rest holds 0
+    #[arg(long = "in", value_name = "REGISTER=VALUES", value_parser = assignment)]
+    registers: Vec<Assignment>,
+    /// Constant colour 0, 0 to 255
+    #[arg(long, value_name = "R,G,B,A", value_parser = color)]
+    const0: Option<Numbers>,
+    /// Constant colour 1, 0 to 255
+    #[arg(long, value_name = "R,G,B,A", value_parser = color)]
+    const1: Option<Numbers>,
+    #[command(flatten)]
+    pub(super) profile: ProfileArgument,
+    #[command(flatten)]
+    pub(super) policies: PolicyArguments,
+    #[command(flatten)]
+    pub(super) common: Common,
+}
+
+impl Contents {
+    /// All registers as columns.
+    pub(super) fn columns(&self) -> Result<Vec<Column>, Failure> {
+        let mut columns = register_columns();
+        assign(&mut columns, &self.registers)?;
+        for (register, color) in [(Register::ConstantColor0, &self.const0), (Register::ConstantColor1, &self.const1)] {
+            if let Some(color) = color {
+                color_columns(&mut columns, 4 * register as usize, color.rgba())?;
+            }
+        }
+        Ok(columns)
+    }
 }
 
 /// Reads one, three or four whole numbers.

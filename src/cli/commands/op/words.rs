@@ -1,8 +1,8 @@
 //! Words of the command line: the names of the state's enumerations, those of the vendor's extensions, and short ones.
 
 use ninebit::state::{
-    AddressMode, BlendEquation, BlendFactor, Component, FinalRegister, InputMapping, MuxSelect, Named, Profile,
-    Register, Scale, SurfaceFormat,
+    AddressMode, BlendEquation, BlendFactor, Component, InputMapping, MuxSelect, Named, Profile, Register, Scale,
+    SurfaceFormat,
 };
 
 /// A word without what only decorates it: `GL_SPARE0_NV`, `Spare0` and `spare0` are one.
@@ -111,7 +111,8 @@ impl<R: Named> Input<R> {
     }
 }
 
-fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
+/// An input of a general stage or of the final combiner.
+pub(super) fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
     let (place, mapping) = match text.split_once(':') {
         Some((place, mapping)) => (place, Some(named("mapping", mapping, MAPPINGS)?)),
         None => (text, None),
@@ -124,16 +125,6 @@ fn input<R: Named>(text: &str) -> Result<Input<R>, String> {
         None => (place, None),
     };
     Ok(Input { register: named("register", name, REGISTERS)?, component, mapping })
-}
-
-/// An input of a general stage.
-pub(super) fn general_input(text: &str) -> Result<Input<Register>, String> {
-    input(text)
-}
-
-/// An input of the final combiner.
-pub(super) fn final_input(text: &str) -> Result<Input<FinalRegister>, String> {
-    input(text)
 }
 
 /// An output scale.
@@ -197,6 +188,7 @@ pub(super) fn address_mode(word: &str) -> Result<AddressMode, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use ninebit::state::FinalRegister;
 
     #[test]
     fn one_register_by_all_its_names() {
@@ -205,7 +197,7 @@ mod tests {
         }
         assert_eq!(register("GL_CONSTANT_COLOR1_NV"), Ok(Register::ConstantColor1));
         assert_eq!(
-            final_input("SPARE0_PLUS_SECONDARY_COLOR_NV").map(|i| i.register),
+            input::<FinalRegister>("SPARE0_PLUS_SECONDARY_COLOR_NV").map(|i| i.register),
             Ok(FinalRegister::Spare0PlusSecondary)
         );
         assert!(register("tex9").is_err_and(|e| e.contains("tex0, tex1") && e.contains("spare0")));
@@ -214,7 +206,7 @@ mod tests {
 
     #[test]
     fn inputs_are_taken_apart_and_written_as_scenes_do() {
-        let scene = |text: &str| general_input(text).map(|input| input.scene());
+        let scene = |text: &str| input::<Register>(text).map(|input| input.scene());
         assert_eq!(scene("tex0").as_deref(), Ok("Texture0"));
         assert_eq!(scene("tex0.a").as_deref(), Ok("(Texture0, Alpha)"));
         assert_eq!(scene("zero:invert").as_deref(), Ok("UnsignedInvert(Zero)"));

@@ -5,6 +5,7 @@ use std::ops::Range;
 use crate::Aside;
 use crate::calls::{Part, PartKind, Value, without_prefix};
 use ninebit::diagnostic::Diagnostic;
+use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named as _, StencilOperation};
 
 /// A field of the draw, and the states that it holds: name and D3DRS value.
 struct Group {
@@ -259,33 +260,43 @@ fn off(values: &Values, name: &str) -> bool {
     }
 }
 
-/// The scene's word for a value: `names` in the order of the API's numbers from 1, each as the API and as the scene has it.
-fn named(values: &Values, state: &str, names: &[(&str, &'static str)], default: &'static str) -> String {
+/// Values of a state: as the API has them, in the order of its numbers from 1, and as the scene has them.
+type Named = (&'static [&'static str], &'static [&'static str]);
+
+const FACTORS: Named = (
+    &[
+        "ZERO",
+        "ONE",
+        "SRCCOLOR",
+        "INVSRCCOLOR",
+        "SRCALPHA",
+        "INVSRCALPHA",
+        "DESTALPHA",
+        "INVDESTALPHA",
+        "DESTCOLOR",
+        "INVDESTCOLOR",
+        "SRCALPHASAT",
+    ],
+    BlendFactor::NAMES,
+);
+const EQUATIONS: Named = (&["ADD", "SUBTRACT", "REVSUBTRACT", "MIN", "MAX"], BlendEquation::NAMES);
+const FUNCTIONS: Named =
+    (&["NEVER", "LESS", "EQUAL", "LESSEQUAL", "GREATER", "NOTEQUAL", "GREATEREQUAL", "ALWAYS"], CompareFunction::NAMES);
+const OPERATIONS: Named =
+    (&["KEEP", "ZERO", "REPLACE", "INCRSAT", "DECRSAT", "INVERT", "INCR", "DECR"], StencilOperation::NAMES);
+
+/// The scene's word for a value.
+fn named(values: &Values, state: &str, (api, scene): Named, default: &'static str) -> String {
     let found = match find(values, state) {
-        Some(Told::Number(number)) => names.get((*number as usize).wrapping_sub(1)).map(|(_, name)| *name),
-        Some(Told::Word(word)) => names.iter().find(|(known, _)| known == word).map(|(_, name)| *name),
+        Some(Told::Number(number)) => Some((*number as usize).wrapping_sub(1)).filter(|number| *number < api.len()),
+        Some(Told::Word(word)) => api.iter().position(|known| known == word),
         Some(Told::Other) => None,
-        None => Some(default),
+        None => return default.to_owned(),
     };
-    found.unwrap_or("...").to_owned()
+    found.and_then(|number| scene.get(number)).copied().unwrap_or("...").to_owned()
 }
 
 fn blend(values: &Values) -> Option<String> {
-    const FACTORS: &[(&str, &str)] = &[
-        ("ZERO", "Zero"),
-        ("ONE", "One"),
-        ("SRCCOLOR", "SourceColor"),
-        ("INVSRCCOLOR", "OneMinusSourceColor"),
-        ("SRCALPHA", "SourceAlpha"),
-        ("INVSRCALPHA", "OneMinusSourceAlpha"),
-        ("DESTALPHA", "DestinationAlpha"),
-        ("INVDESTALPHA", "OneMinusDestinationAlpha"),
-        ("DESTCOLOR", "DestinationColor"),
-        ("INVDESTCOLOR", "OneMinusDestinationColor"),
-        ("SRCALPHASAT", "SourceAlphaSaturate"),
-    ];
-    const EQUATIONS: &[(&str, &str)] =
-        &[("ADD", "Add"), ("SUBTRACT", "Subtract"), ("REVSUBTRACT", "ReverseSubtract"), ("MIN", "Min"), ("MAX", "Max")];
     if off(values, "AlphaBlendEnable") {
         return None;
     }
@@ -297,17 +308,6 @@ fn blend(values: &Values) -> Option<String> {
         [("SrcBlend", "One"), ("DestBlend", "Zero")].map(|(state, default)| named(values, state, FACTORS, default));
     Some(format!("blend: ({equation}source: {source}, destination: {destination})"))
 }
-
-const FUNCTIONS: &[(&str, &str)] = &[
-    ("NEVER", "Never"),
-    ("LESS", "Less"),
-    ("EQUAL", "Equal"),
-    ("LESSEQUAL", "LessOrEqual"),
-    ("GREATER", "Greater"),
-    ("NOTEQUAL", "NotEqual"),
-    ("GREATEREQUAL", "GreaterOrEqual"),
-    ("ALWAYS", "Always"),
-];
 
 fn alpha_test(values: &Values) -> Option<String> {
     if off(values, "AlphaTestEnable") {
@@ -331,40 +331,30 @@ fn depth_test(values: &Values) -> Option<String> {
 }
 
 fn stencil_test(values: &Values) -> Option<String> {
-    const OPERATIONS: &[(&str, &str)] = &[
-        ("KEEP", "Keep"),
-        ("ZERO", "Zero"),
-        ("REPLACE", "Replace"),
-        ("INCRSAT", "IncrementSaturate"),
-        ("DECRSAT", "DecrementSaturate"),
-        ("INVERT", "Invert"),
-        ("INCR", "Increment"),
-        ("DECR", "Decrement"),
-    ];
     if off(values, "StencilEnable") {
         return None;
     }
     let mut fields = Vec::new();
-    let mut field = |name: &str, state: &'static str, names: &[(&str, &'static str)]| {
+    let mut field = |name: &str, state: &'static str, names: Option<Named>| {
         let Some(told) = find(values, state) else { return };
-        fields.push(match told {
-            _ if !names.is_empty() => format!("{name}: {}", named(values, state, names, "...")),
-            Told::Number(number) => format!("{name}: {}", number & 255),
-            Told::Word(_) | Told::Other => format!("{name}: ..."),
+        fields.push(match (names, told) {
+            (Some(names), _) => format!("{name}: {}", named(values, state, names, "...")),
+            (None, Told::Number(number)) => format!("{name}: {}", number & 255),
+            (None, Told::Word(_) | Told::Other) => format!("{name}: ..."),
         });
     };
-    field("function", "StencilFunc", FUNCTIONS);
-    field("reference", "StencilRef", &[]);
-    field("mask", "StencilMask", &[]);
-    field("write_mask", "StencilWriteMask", &[]);
-    field("fail", "StencilFail", OPERATIONS);
-    field("depth_fail", "StencilZFail", OPERATIONS);
-    field("pass", "StencilPass", OPERATIONS);
+    field("function", "StencilFunc", Some(FUNCTIONS));
+    field("reference", "StencilRef", None);
+    field("mask", "StencilMask", None);
+    field("write_mask", "StencilWriteMask", None);
+    field("fail", "StencilFail", Some(OPERATIONS));
+    field("depth_fail", "StencilZFail", Some(OPERATIONS));
+    field("pass", "StencilPass", Some(OPERATIONS));
     Some(format!("stencil_test: ({})", fields.join(", ")))
 }
 
 fn fog(values: &Values) -> Option<String> {
-    const MODES: &[(&str, &str)] = &[("EXP", "Exp"), ("EXP2", "Exp2"), ("LINEAR", "Linear")];
+    const MODES: Named = (&["EXP", "EXP2", "LINEAR"], &["Exp", "Exp2", "Linear"]);
     if off(values, "FogEnable") {
         return None;
     }
@@ -398,9 +388,8 @@ fn fog(values: &Values) -> Option<String> {
 }
 
 fn cull(values: &Values) -> Option<String> {
-    match named(values, "CullMode", &[("NONE", "None"), ("CW", "Clockwise"), ("CCW", "CounterClockwise")], "None")
-        .as_str()
-    {
+    let names: Named = (&["NONE", "CW", "CCW"], &["None", "Clockwise", "CounterClockwise"]);
+    match named(values, "CullMode", names, "None").as_str() {
         "None" => None,
         // What is culled is the back: the front faces the other way round.
         "Clockwise" => Some("cull: Back".to_owned()),
@@ -410,7 +399,8 @@ fn cull(values: &Values) -> Option<String> {
 }
 
 fn shade_model(values: &Values) -> Option<String> {
-    let mode = named(values, "ShadeMode", &[("FLAT", "Flat"), ("GOURAUD", "Smooth"), ("PHONG", "Smooth")], "Smooth");
+    let names: Named = (&["FLAT", "GOURAUD", "PHONG"], &["Flat", "Smooth", "Smooth"]);
+    let mode = named(values, "ShadeMode", names, "Smooth");
     (mode != "Smooth").then(|| format!("shade_model: {mode}, provoking_vertex: First"))
 }
 

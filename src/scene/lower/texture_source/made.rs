@@ -23,25 +23,19 @@ pub(super) fn picture<'a>(
     request: &Request,
 ) -> Option<Picture> {
     let names = sources.names;
-    let opening = reader.range(text.get(..1).unwrap_or(text));
-    let color = |reader: &mut Reader<'a>, field: &Option<Raw<'a, source::Color>>, name: &str| {
-        let raw = reader.required(field, name, "texture", opening.clone())?;
-        color::constant(reader, names, &raw)
-    };
     let ((width, height, place), pixel): ((u32, u32, Range<usize>), PixelAt) = match variant {
         Variant::Solid => {
             let fields = reader.read(&Raw::<source::SolidImage<'a>>::new(text))?;
-            let sides = sources.sides(reader, text, &fields.width, &fields.height, request)?;
-            let color = color(reader, &fields.color, "color")?;
+            let sides = (fields.width(reader), fields.height(reader));
+            let sides = sources.sides(reader, sides, request)?;
+            let color = fields.color(reader).and_then(|raw| color::constant(reader, names, &raw))?;
             (sides, Box::new(move |_, _| color))
         }
         Variant::Checker => {
             let fields = reader.read(&Raw::<source::CheckerImage<'a>>::new(text))?;
-            let sides = sources.sides(reader, text, &fields.width, &fields.height, request)?;
-            let cell = match &fields.cell {
-                Some(raw) => reader.whole(raw, "the side of a cell", 1..=4096)?,
-                None => 1,
-            };
+            let sides = (fields.width(reader), fields.height(reader));
+            let sides = sources.sides(reader, sides, request)?;
+            let cell = fields.cell(reader);
             let [first, second] = match &fields.colors {
                 Some(raw) => color::constants(reader, names, raw),
                 None => [[255; 4], [0, 0, 0, 255]],
@@ -50,8 +44,10 @@ pub(super) fn picture<'a>(
         }
         _ => {
             let fields = reader.read(&Raw::<source::RampImage<'a>>::new(text))?;
-            let sides = sources.sides(reader, text, &fields.width, &fields.height, request)?;
-            let (from, to) = (color(reader, &fields.from, "from"), color(reader, &fields.to, "to"));
+            let sides = (fields.width(reader), fields.height(reader));
+            let sides = sources.sides(reader, sides, request)?;
+            let from = fields.from(reader).and_then(|raw| color::constant(reader, names, &raw));
+            let to = fields.to(reader).and_then(|raw| color::constant(reader, names, &raw));
             let vertical = match &fields.axis {
                 Some(raw) => reader.variant(raw, "axis", &["Horizontal", "Vertical"])?.0 == 1,
                 None => false,

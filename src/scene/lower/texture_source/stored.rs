@@ -3,7 +3,7 @@
 use super::*;
 use crate::image::{self, Contents, ImageError, ImageLimits};
 use ninebit::limits::FileLimit;
-use ninebit::state::{LARGEST_VOLUME, Level};
+use ninebit::state::Level;
 
 impl<'a> Sources<'_, 'a> {
     /// A picture, or a DDS file with its levels and faces.
@@ -53,18 +53,15 @@ impl<'a> Sources<'_, 'a> {
     /// Texels as they lie in memory.
     pub(super) fn memory(&mut self, reader: &mut Reader<'a>, text: &'a str, request: &Request) -> Option<Given> {
         let fields = reader.read(&Raw::<source::RawFile<'a>>::new(text))?;
-        let opening = reader.range(text.get(..1).unwrap_or(text));
-        let file = reader.required(&fields.file, "file", "texture", opening)?;
-        let (width, height, place) = self.sides(reader, text, &fields.width, &fields.height, request)?;
+        let file = fields.file(reader)?;
+        let sides = (fields.width(reader), fields.height(reader));
+        let (width, height, place) = self.sides(reader, sides, request)?;
         let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
         let beyond = texture_levels::beyond(request.border);
         let inside = [width.saturating_sub(beyond).max(1), height.saturating_sub(beyond).max(1)];
         let levels = texture_levels::number(reader, request.levels, inside, place.clone())?;
         let (_, face) = Level::chain(format, inside[0], inside[1], levels, request.border);
-        let layers = match &fields.layers {
-            Some(raw) => Some(reader.whole(raw, "the layers", 1..=LARGEST_VOLUME)?),
-            None => request.volume.then_some(1),
-        };
+        let layers = fields.layers(reader).or(request.volume.then_some(1));
         let pictures = layers.unwrap_or(request.faces);
         let words = u64::from(pictures) * face as u64;
         self.afford(reader, place.clone(), words)?;

@@ -168,7 +168,7 @@ fn index(key: &str) -> Option<usize> {
 
 fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::ShaderConstant>) -> Option<Value> {
     if raw.text.starts_with('(') || raw.is_text() {
-        return reader.numbers(&raw.as_other::<Numbers>(), "a constant", 1, 4, [0.0; 4]).map(Value::Vector);
+        return reader.numbers(&raw.as_other::<Numbers>(), "a constant", 1..=4, [0.0; 4]).map(Value::Vector);
     }
     let (kind, rest) = reader.variant(raw, "constant", &["Matrix", "Color"])?;
     let list = reader.read(&Raw::<Tuple<'a, source::Matrix>>::new(rest))?;
@@ -184,6 +184,6 @@ fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::S
     if kind == 0 {
         return names.matrix(reader, &part).map(Value::Rows);
     }
-    let color = color::vertex_color(reader, names, &part.as_other())?;
+    let color = names.color(reader, &part.as_other())?;
     Some(Value::Vector(color::floats(color)))
 }

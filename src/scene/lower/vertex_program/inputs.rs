@@ -81,8 +81,12 @@ pub(super) fn sources<'a>(
     given: &Given,
     (written, text): (&Written, &ProgramText),
 ) -> Vec<Input> {
-    let fields = raw.as_ref().and_then(|raw| reader.read(raw));
-    let fields = fields.map(|fields| fields.list()).unwrap_or([None; INPUTS]);
+    let mut fields = [None; INPUTS];
+    for (name, text) in raw.as_ref().and_then(|raw| reader.read(raw)).unwrap_or_default().written() {
+        if let Some(field) = name[1..].parse().ok().and_then(|register: usize| fields.get_mut(register)) {
+            *field = Some(Raw::new(text));
+        }
+    }
     let mesh = given.mesh.is_some();
     let mut inputs = Vec::with_capacity(INPUTS);
     for (register, (field, read)) in fields.iter().zip(written.inputs_read()).enumerate() {

@@ -1,0 +1,222 @@
+//! What is declared of a field of a scene beside its type: how it is read, its default, what the document says of it.
+
+use std::ops::RangeInclusive;
+
+use super::outline::{Described, Form, Kind};
+use super::raw::Raw;
+use super::reader::{Name, Reader};
+use super::source::Color;
+use ninebit::limits::Limits;
+use ninebit::state::{Named, VertexColor};
+
+/// A structure has no field of this name.
+pub(super) const UNKNOWN: &str = "NB0201";
+/// A field is missing that has no default.
+pub(super) const MISSING: &str = "NB0202";
+/// A field is given twice.
+pub(super) const TWICE: &str = "NB0203";
+/// A value is none of the words.
+pub(super) const WORD: &str = "NB0204";
+/// A value is of another kind.
+pub(super) const KIND: &str = "NB0205";
+/// A value is out of range.
+pub(super) const RANGE: &str = "NB0206";
+/// A number is not finite.
+pub(super) const FINITE: &str = "NB0207";
+/// There are too few values or too many.
+pub(super) const COUNT: &str = "NB0211";
+
+/// Words beyond so many stand in the text of the document.
+const MOST_WORDS: usize = 9;
+
+/// What a text stands for that needs nothing but itself.
+pub(super) trait Valued<'a>: Sized {
+    /// What is read of it.
+    type Value;
+
+    /// Reads it; `None` once the reason has been recorded.
+    fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<Self::Value>;
+
+    /// A value as it is written.
+    fn shown(value: &Self::Value) -> String;
+}
+
+macro_rules! valued {
+    ($($type:ty: $read:ident),+) => { $(impl<'a> Valued<'a> for $type {
+        type Value = $type;
+        fn value(reader: &mut Reader<'a>, raw: &Raw<'a, $type>) -> Option<$type> {
+            reader.$read(raw)
+        }
+        fn shown(value: &$type) -> String {
+            value.to_string()
+        }
+    })+ };
+}
+valued!(bool: read, u8: read, u32: read, f32: finite);
+
+impl<'a, T: Named> Valued<'a> for Name<T> {
+    type Value = T;
+
+    fn value(reader: &mut Reader<'a>, raw: &Raw<'a, Self>) -> Option<T> {
+        reader.name(raw)
+    }
+
+    fn shown(value: &T) -> String {
+        value.name().to_owned()
+    }
+}
+
+/// Who knows the colours that have names.
+pub(super) trait Colors<'a> {
+    /// A colour that stays as it was given, or that has this name; `None` once the reason that it is none has been recorded.
+    fn color(&self, reader: &mut Reader<'a>, raw: &Raw<'a, Color>) -> Option<VertexColor>;
+}
+
+/// Numbers as they are written in parentheses.
+pub(super) fn listed(values: &[impl ToString]) -> String {
+    format!("({})", values.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "))
+}
+
+/// What the document says of a field.
+pub(super) struct Field {
+    pub(super) name: &'static str,
+    /// Of this and the fields behind it that have none.
+    pub(super) meaning: &'static str,
+    /// What it may be, where that is neither told by its meaning nor by its type.
+    pub(super) values: String,
+    pub(super) default: String,
+}
+
+impl Field {
+    pub(super) fn new<T: Described>(name: &'static str, meaning: &'static str) -> Self {
+        let values = match T::form() {
+            Form::Value(Kind::Choice(words)) if words.len() <= MOST_WORDS && words != ["false", "true"] => {
+                words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
+            }
+            Form::Value(Kind::Whole { most: 255 }) => "0 to 255".to_owned(),
+            _ => String::new(),
+        };
+        Field { name, meaning: meaning.trim(), values, default: String::new() }
+    }
+
+    pub(super) fn or(self, default: impl Into<String>) -> Self {
+        Field { default: default.into(), ..self }
+    }
+
+    /// With a default as it is written.
+    pub(super) fn written(self, default: &str) -> Self {
+        self.or(format!("`{default}`"))
+    }
+
+    pub(super) fn within<T: ToString>(self, range: &RangeInclusive<T>) -> Self {
+        Field { values: format!("{} to {}", range.start().to_string(), range.end().to_string()), ..self }
+    }
+
+    pub(super) fn up_to(self, limit: impl ToString) -> Self {
+        self.within(&RangeInclusive::new("1".to_owned(), limit.to_string()))
+    }
+}
+
+/// What the document says of a limit.
+pub(super) fn limit(of: fn(&Limits) -> u32) -> u32 {
+    of(&Limits::default())
+}
+
+/// The method by which a field is read, as its declaration says.
+macro_rules! read_field {
+    ($field:ident $type:ty, [$(or $words:literal)?]) => {};
+    ($field:ident $type:ty, [] $default:expr) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> <$type as Valued<'a>>::Value {
+            self.$field.as_ref().and_then(|raw| Valued::value(reader, raw)).unwrap_or($default)
+        }
+    };
+    ($field:ident $type:ty, [any] $default:expr) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> $type {
+            self.$field.as_ref().and_then(|raw| reader.read(raw)).unwrap_or($default)
+        }
+    };
+    ($field:ident $type:ty, [required]) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<Raw<'a, $type>> {
+            reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening))
+        }
+    };
+    ($field:ident $type:ty, [required value]) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<<$type as Valued<'a>>::Value> {
+            let raw = reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening))?;
+            Valued::value(reader, &raw)
+        }
+    };
+    ($field:ident $type:ty, [required numbers $range:expr, $what:literal]) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<[f32; 4]> {
+            let raw = reader.required(&self.$field, stringify!($field), self.called, reader.range(self.opening))?;
+            reader.numbers(&raw, $what, $range, [0.0; 4])
+        }
+    };
+    ($field:ident $type:ty, [$(or $words:literal)? in $range:expr, $what:literal $(, $more:ident($said:expr))*]) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<$type> {
+            let said = |finding: Diagnostic| finding$(.$more($said))*;
+            self.$field.as_ref().and_then(|raw| reader.within(raw, $what, $range, said))
+        }
+    };
+    ($field:ident $type:ty, [in $range:expr, $what:literal $(, $more:ident($said:expr))*] $default:expr) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> $type {
+            let said = |finding: Diagnostic| finding$(.$more($said))*;
+            self.$field.as_ref().and_then(|raw| reader.within(raw, $what, $range, said)).unwrap_or($default)
+        }
+    };
+    ($field:ident $type:ty, [up to $limit:ident, $code:literal, $what:literal] $default:expr) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> $type {
+            let limit = reader.limits.$limit;
+            self.$field.as_ref().and_then(|raw| reader.up_to(raw, $what, limit, $code)).unwrap_or($default)
+        }
+    };
+    ($field:ident $type:ty, [$(or $words:literal)? numbers $range:expr, $what:literal]) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> Option<[f32; 4]> {
+            self.$field.as_ref().and_then(|raw| reader.numbers(raw, $what, $range, [0.0; 4]))
+        }
+    };
+    ($field:ident $type:ty, [numbers $range:expr, $what:literal] $default:expr) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> [f32; 4] {
+            self.$field.as_ref().and_then(|raw| reader.numbers(raw, $what, $range, $default)).unwrap_or($default)
+        }
+    };
+    ($field:ident $type:ty, [flags $count:literal $(, $more:ident($said:expr))*] $default:expr) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>) -> [bool; <[bool]>::len(&$default)] {
+            let counted = concat!("`", stringify!($field), "` has ", $count, " flags");
+            let said = |finding: Diagnostic| finding$(.$more($said))*;
+            self.$field.as_ref().and_then(|raw| reader.flags(raw, counted, $default, said)).unwrap_or($default)
+        }
+    };
+    ($field:ident $type:ty, [color] $default:expr) => {
+        pub(crate) fn $field(&self, reader: &mut Reader<'a>, names: &impl Colors<'a>) -> VertexColor {
+            let written = self.$field.as_ref().and_then(|raw| names.color(reader, raw));
+            written.unwrap_or(VertexColor::Bytes($default))
+        }
+    };
+}
+pub(super) use read_field;
+
+/// What the document says of a field, as its declaration does.
+macro_rules! described_field {
+    ($field:expr, $type:ty, []) => { $field };
+    ($field:expr, $type:ty, [or $words:literal]) => { $field.or($words) };
+    ($field:expr, $type:ty, [] $default:expr) => { $field.written(&<$type as Valued<'_>>::shown(&$default)) };
+    ($field:expr, $type:ty, [any] $default:expr) => { described_field!($field, $type, [] $default) };
+    ($field:expr, $type:ty, [required $($more:tt)*]) => { $field.or("required") };
+    ($field:expr, $type:ty, [$(or $words:literal)? in $range:expr, $what:literal $(, $more:ident($said:expr))*]) => {
+        $field.within(&$range)$(.or($words))?
+    };
+    ($field:expr, $type:ty, [in $range:expr, $what:literal $(, $more:ident($said:expr))*] $default:expr) => {
+        described_field!($field.within(&$range), $type, [] $default)
+    };
+    ($field:expr, $type:ty, [up to $limit:ident, $code:literal, $what:literal] $default:expr) => {
+        described_field!($field.up_to(limit(|limits| limits.$limit)), $type, [] $default)
+    };
+    ($field:expr, $type:ty, [$(or $words:literal)? numbers $range:expr, $what:literal]) => { $field$(.or($words))? };
+    ($field:expr, $type:ty, [numbers $range:expr, $what:literal] $default:expr) => {
+        $field.written(&listed(&$default[..*$range.end()]))
+    };
+    ($field:expr, $type:ty, [flags $($more:tt)*] $default:expr) => { $field.written(&listed(&$default)) };
+    ($field:expr, $type:ty, [color] $default:expr) => { $field.written(&listed(&$default)) };
+}
+pub(super) use described_field;
