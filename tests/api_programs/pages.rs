@@ -26,7 +26,9 @@ fn portion(combiners: &Combiners, stage: usize) -> String {
 /// The comments on the variants of an enumeration, in their order, without the full stop.
 fn comments(file: &str, enumeration: &str) -> Vec<String> {
     let source = fs::read_to_string(file).unwrap();
-    let body = source.split(&format!("pub enum {enumeration} {{")).nth(1).unwrap().split("\n    }").next().unwrap();
+    // What may stand between is a value of each variant, with a comment of its own.
+    let (_, rest) = source.split_once(&format!("pub enum {enumeration} ")).unwrap();
+    let body = rest.split_once("{\n").unwrap().1.split("\n    }").next().unwrap();
     let lines = body.lines().filter_map(|line| line.trim().strip_prefix("/// "));
     lines.map(|line| line.trim_end_matches('.').to_owned()).collect()
 }

@@ -56,19 +56,19 @@ impl Measured {
         let charted: Vec<&Light<'_>> =
             if several(true).count() > 0 { several(true).collect() } else { several(false).collect() };
         let mut files = Vec::new();
-        let mut add = |name: &str, picture: Picture| {
-            files.push(File::text(format!("{FOLDER}/{name}.svg"), picture.svg));
-            files.push(File { path: format!("{FOLDER}/{name}.png"), bytes: picture.png });
-        };
-        add("speed-accuracy", dots::overview(&charted).draw()?);
+        let lines = |name: &str, svg: String| File::text(format!("{FOLDER}/{name}.svg"), svg);
+        let pixels = |name: &str, png: Vec<u8>| File { path: format!("{FOLDER}/{name}.png"), bytes: png };
+        let both = |name: &str, picture: Picture| [lines(name, picture.svg), pixels(name, picture.png)];
+        files.extend(both("speed-accuracy", dots::overview(&charted).draw()?));
         for light in &charted {
-            add(&format!("{}-chip", light.name), dots::of_light(light).draw()?);
-            add(&format!("{}-here", light.name), time_drawing(light).draw()?);
-            add(&format!("{}-pictures", light.name), strip::of_light(light).draw()?);
+            files.extend(both(&format!("{}-chip", light.name), dots::of_light(light).draw()?));
+            files.extend(both(&format!("{}-here", light.name), time_drawing(light).draw()?));
+            // Nothing in it would be lines.
+            files.push(pixels(&format!("{}-pictures", light.name), strip::of_light(light).draw()?.png));
         }
-        add("evaluators", self.evaluators_drawing().draw()?);
+        files.extend(both("evaluators", self.evaluators_drawing().draw()?));
         for (name, drawing) in curves::drawings(&self.curves) {
-            add(name, drawing.draw()?);
+            files.push(lines(name, drawing.draw()?.svg));
         }
         let mut parts = Vec::new();
         let mut part = |name: &str, text: String| parts.push((name.to_owned(), text));
@@ -83,7 +83,7 @@ impl Measured {
         part("columns", words(&self.column_rows()));
         files.push(File::text(format!("{FOLDER}.md"), fill(TEMPLATE, &parts)));
         files.push(File::text(format!("{FOLDER}/techniques.csv"), comma_separated(&self.data_rows(&lights))));
-        files.push(File::text(format!("{FOLDER}/figures.json"), format!("{:#}\n", self.document(&lights))));
+        files.push(File::text(format!("{FOLDER}/figures.json"), format!("{}\n", self.document(&lights))));
         Ok(files)
     }
 
