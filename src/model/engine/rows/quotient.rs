@@ -487,7 +487,7 @@ pub(super) fn correct<const ROW: bool>(
     }
 }
 
-/// INT-3 on floors of 256 b0 and 256 b2 and what [`settle`] said of them.
+/// INT-3 on floors of 256 b0 and 256 b2 and what [`correct`] said of them.
 ///
 /// A tied weight is a multiple of 1/256 above 0, so the class of each weight is told by its ceiling in 256ths: the next power of two.
 #[inline(always)]
