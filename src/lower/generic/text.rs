@@ -546,21 +546,18 @@ fn operands(inputs: Mapped) -> String {
     let is_alpha = is_set("byte", layout::ALPHA);
     let (mapping, invert) = (field("byte", layout::MAPPING), field("byte", layout::INVERT));
     let one = format!("r[{register}][{is_alpha} ? {alpha} : {blue}]");
-    // Of an RGB portion's input, each channel by `of`.
+    // An RGB portion's input: `of` is what stands for a channel.
     let all = |of: &dyn Fn(&str) -> String| {
-        let each = |channel: &str| {
-            format!("for (@int c = 0; c < 3; c++) x[c] = {};", of(&format!("r[{register}][{channel}]")))
-        };
+        let each = |channel: &str| format!("for (@int c = 0; c < 3; c++) x[c] = {};", of(channel));
         let (same, own) = (each(&alpha.to_string()), each("c"));
         format!("    if ({is_alpha}) {{\n        {same}\n    }} else {{\n        {own}\n    }}\n")
     };
-    let plain = all(&str::to_owned);
+    let plain = all(&|channel| format!("r[{register}][{channel}]"));
     let looked = format!("nb_mapping[{mapping}][{one} + 256]");
     // A pointer to what a register of 0 is mapped to, another to the register: the fields are taken apart once for three channels.
     let looked_rgb = format!(
-        "    const int16_t *mapped = nb_mapping[{mapping}] + 256;\n    @in @int *given = r[{register}];\n\
-         \x20   if ({is_alpha}) {{\n        for (@int c = 0; c < 3; c++) x[c] = mapped[given[{alpha}]];\n    }} else {{\n\
-         \x20       for (@int c = 0; c < 3; c++) x[c] = mapped[given[c]];\n    }}\n"
+        "    const int16_t *mapped = nb_mapping[{mapping}] + 256;\n    @in @int *given = r[{register}];\n{}",
+        all(&|channel| format!("mapped[given[{channel}]]"))
     );
     let (mapped_rgb, mapped) = match inputs {
         Mapped::Computed => {

@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use ninebit::engine::{self, RenderOptions};
+use ninebit::plan::texture_size;
 use ninebit::rop::surface;
 use ninebit::shown;
 use ninebit::state::{CUBE_FACES, Named, Profile, Scene, Texels, TextureFormat, TextureImage, TextureKind};
@@ -129,12 +130,12 @@ fn of_scene(
         TextureImage::Target { target } | TextureImage::Depth { target } => {
             let mut frames = engine::render(&plan, &RenderOptions { threads: 0, ..RenderOptions::default() });
             let surface = frames.surfaces.swap_remove(*target);
-            let (width, height) = (surface.width, surface.height);
+            let (width, height) = texture_size(&scene, index);
             let depths = matches!(texture.image, TextureImage::Depth { .. });
-            let (pixel, texel) = (surface.format.bytes(), texture.format.bytes());
-            let (width, words) = match surface::texel_columns(width, pixel, texel).filter(|_| !depths) {
-                Some(columns) => (columns, surface::texels(&surface.words, pixel, texel).into()),
-                None => (width, surface.depth.into()),
+            let words = if depths {
+                surface.depth.into()
+            } else {
+                surface::texels(&surface.words, surface.format.bytes(), texture.format.bytes()).into()
             };
             let name = scene.targets[*target].name.clone();
             (Texels { width, height, levels: 1, layers: 1, border: false, words }, Some(name))
