@@ -96,11 +96,11 @@ fn wider_random_scenes_agree() {
 fn wider_random_scenes_sample_in_every_way() {
     let strategy = random_scene::wide::scene();
     let mut runner = runner(400);
-    model::tally::take();
-    for _ in 0..400 {
-        model::render(&strategy.new_tree(&mut runner).unwrap().current(), &Policies::DEFAULT);
-    }
-    let tally = model::tally::take();
+    let ((), tally) = model::tally::during(|| {
+        for _ in 0..400 {
+            model::render(&strategy.new_tree(&mut runner).unwrap().current(), &Policies::DEFAULT);
+        }
+    });
     println!("{tally:#?}");
     let mut missing = Vec::new();
     let mut need = |group: &'static str, names: &[&'static str]| {
@@ -122,27 +122,22 @@ fn wider_random_scenes_sample_in_every_way() {
 fn random_scenes_draw_something_of_everything() {
     let strategy = random_scene::scene();
     let mut runner = runner(400);
-    model::tally::take();
-    let rich = (0..400)
-        .filter(|_| {
-            let scene = strategy.new_tree(&mut runner).unwrap().current();
-            let plain = Scene { draws: Vec::new(), ..scene.clone() };
-            let (before, after) =
-                (model::render(&plain, &Policies::DEFAULT), model::render(&scene, &Policies::DEFAULT));
-            let mut words: Vec<u32> = Vec::new();
-            let mut changed = 0;
-            for (b, a) in before.iter().zip(&after) {
-                changed += b.words.iter().zip(&a.words).filter(|(b, a)| b != a).count();
-                words.extend(&a.words);
-            }
-            words.sort_unstable();
-            words.dedup();
-            changed > 10 && words.len() > 3
-        })
-        .count();
-    println!("{rich} of 400 scenes are rich");
-    let tally = model::tally::take();
-    println!("{tally:#?}");
+    let mut rich = || {
+        let scene = strategy.new_tree(&mut runner).unwrap().current();
+        let plain = Scene { draws: Vec::new(), ..scene.clone() };
+        let (before, after) = (model::render(&plain, &Policies::DEFAULT), model::render(&scene, &Policies::DEFAULT));
+        let mut words: Vec<u32> = Vec::new();
+        let mut changed = 0;
+        for (b, a) in before.iter().zip(&after) {
+            changed += b.words.iter().zip(&a.words).filter(|(b, a)| b != a).count();
+            words.extend(&a.words);
+        }
+        words.sort_unstable();
+        words.dedup();
+        changed > 10 && words.len() > 3
+    };
+    let (rich, tally) = model::tally::during(|| (0..400).filter(|_| rich()).count());
+    println!("{rich} of 400 scenes are rich\n{tally:#?}");
     assert!(rich >= 200, "{rich} of 400");
     let mut missing = Vec::new();
     let mut need = |group: &'static str, names: &[&'static str]| {

@@ -515,7 +515,7 @@ fn hurt_draw(draw: &mut Draw, r: &mut Random) {
 }
 
 /// Frames of more pixels are not drawn here: the definition takes too long.
-const MOST_PIXELS: u64 = 1 << 17;
+const MAX_PIXELS: u64 = 1 << 17;
 
 #[test]
 fn hostile_scenes_are_planned_or_refused() {
@@ -540,7 +540,7 @@ fn hostile_scenes_are_planned_or_refused() {
                     return false;
                 }
             };
-            if plan.targets.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>() > MOST_PIXELS {
+            if plan.targets.iter().map(|t| u64::from(t.width) * u64::from(t.height)).sum::<u64>() > MAX_PIXELS {
                 return false;
             }
             let frames = render(&plan, &RenderOptions::default());

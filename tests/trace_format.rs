@@ -12,8 +12,8 @@ use ninebit::limits::Limits;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::random::Random;
 use ninebit::state::{POLICIES, Policies};
-use ninebit_report::trace_json;
 use ninebit_report::vocabulary;
+use ninebit_report::{trace_json, trace_value};
 use ninebit_scene as scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
@@ -93,80 +93,76 @@ impl Page {
 #[derive(Default)]
 struct Seen {
     operations: Words,
-    /// Block and name.
-    names: BTreeSet<[String; 2]>,
+    /// By block.
+    names: BTreeMap<String, Words>,
     fragments: usize,
 }
 
-fn keys(value: &Value) -> Words {
-    value.as_object().unwrap().keys().cloned().collect()
+/// All fields of the page are there, of the optional ones those that are said to be.
+fn fields(value: &Value, page: &Words, optional: &[(&str, bool)]) {
+    let left_out = |name: &str| optional.iter().any(|(optional, there)| *optional == name && !there);
+    assert!(optional.iter().all(|(name, _)| page.contains(*name)), "not all on the page: {optional:?}");
+    let fields = value.as_object().unwrap();
+    let missing: Vec<_> = page.iter().filter(|name| !fields.contains_key(*name) && !left_out(name)).collect();
+    let more: Vec<_> = fields.keys().filter(|name| !page.contains(*name) || left_out(name)).collect();
+    assert!(missing.is_empty() && more.is_empty(), "without {missing:?}, with {more:?}: {value:#}");
 }
 
-/// All fields of the page are there; the optional ones only with these values.
-fn with_optional(value: &Value, page: &Words, optional: &[(&str, Option<String>)]) {
-    let mut expected = page.clone();
-    for (name, text) in optional {
-        assert!(page.contains(*name), "{name} is not on the page");
-        match text {
-            Some(text) => assert_eq!(value[*name], text.as_str(), "{value:#}"),
-            None => drop(expected.remove(*name)),
-        }
-    }
-    assert_eq!(keys(value), expected);
+/// The same of what has a value, and a text of it where it is too large to be a number everywhere.
+fn fields_with_value(value: &Value, page: &Words, optional: (&str, bool)) {
+    let text = value_text(value);
+    fields(value, page, &[("value_text", text.is_some()), optional]);
+    assert!(text.is_none_or(|text| value["value_text"] == text), "{value:#}");
 }
 
 /// A value that 31 bits and a sign do not hold, as text.
 fn value_text(value: &Value) -> Option<String> {
     let integer = value["value"].as_i64().unwrap();
-    let text = if value["per_one"] == 0 { format!("{integer:#010x}") } else { integer.to_string() };
-    i32::try_from(integer).is_err().then_some(text)
+    let text = || if value["per_one"] == 0 { format!("{integer:#010x}") } else { integer.to_string() };
+    i32::try_from(integer).is_err().then(text)
 }
 
 impl Seen {
     /// A document: its fields against the page, its operations and names for later.
     fn document(&mut self, page: &Page, document: &Value) {
         let word = document["word"].as_u64().unwrap();
-        let word_text = (word >> 31 != 0).then(|| format!("{word:#010x}"));
-        with_optional(document, &page.document, &[("left_out", None), ("word_text", word_text)]);
+        let long = word >> 31 != 0;
+        fields(document, &page.document, &[("left_out", false), ("word_text", long)]);
+        assert!(!long || document["word_text"] == format!("{word:#010x}"));
         assert_eq!((&document["format"], &document["version"]), (&"ninebit-trace".into(), &1.into()));
         for draw in document["draws"].as_array().unwrap() {
             self.fragments += 1;
             // Only pieces of clipped triangles say of what they are pieces.
-            let mut fragment = page.fragment.clone();
-            if draw.get("clipped").is_none() {
-                fragment.remove("clipped");
-            }
-            assert_eq!(keys(draw), fragment);
+            fields(draw, &page.fragment, &[("clipped", draw.get("clipped").is_some())]);
             let mut made = BTreeMap::new();
             for (number, step) in draw["steps"].as_array().unwrap().iter().enumerate() {
                 let fetched = step["operation"] == "fetch";
-                let word = fetched.then(|| format!("{:#010x}", step["value"].as_u64().unwrap()));
-                let mut step = step.clone();
                 assert_eq!(step["id"], number);
+                fields_with_value(step, &page.step, ("texel", fetched));
+                let inputs = step["inputs"].as_array().unwrap();
                 if fetched {
-                    assert_eq!(keys(&step["texel"]), page.texel);
-                    assert_eq!(step["texel"]["word"], word.clone().unwrap());
+                    fields(&step["texel"], &page.texel, &[]);
+                    assert_eq!(step["texel"]["word"], format!("{:#010x}", step["value"].as_u64().unwrap()));
                     // The place is that of the operands, if they are coordinates.
-                    for (axis, input) in ["x", "y"].into_iter().zip(step["inputs"].as_array().unwrap()) {
+                    for (axis, input) in ["x", "y"].into_iter().zip(inputs) {
                         assert_eq!(step["texel"][axis], input["value"], "{step:#}");
                     }
-                    step["texel"] = "a place".into();
                 }
-                let texel = fetched.then(|| "a place".to_string());
-                with_optional(&step, &page.step, &[("value_text", value_text(&step)), ("texel", texel)]);
-                for input in step["inputs"].as_array().unwrap() {
+                for input in inputs {
                     // What no step makes is a parameter.
-                    let mut input = input.clone();
-                    let step = made.get(input["name"].as_str().unwrap());
-                    assert_eq!(input.get("step").and_then(Value::as_u64), step.map(|step: &usize| *step as u64));
-                    let step = input.get_mut("step").map(|step| *step = "a step".into()).map(|()| "a step".to_string());
-                    with_optional(&input, &page.input, &[("value_text", value_text(&input)), ("step", step)]);
+                    let maker = made.get(input["name"].as_str().unwrap());
+                    assert_eq!(input.get("step").and_then(Value::as_u64), maker.map(|step: &usize| *step as u64));
+                    fields_with_value(input, &page.input, ("step", maker.is_some()));
                 }
-                made.insert(step["name"].as_str().unwrap().to_string(), number);
-                let word = |field: &str| step[field].as_str().unwrap().to_string();
-                assert!(page.operations.contains(&word("operation")), "not on the page: {step:#}");
-                self.operations.insert(word("operation"));
-                self.names.insert([word("block"), word("name")]);
+                let word = |field: &str| step[field].as_str().unwrap();
+                made.insert(word("name"), number);
+                if !self.operations.contains(word("operation")) {
+                    assert!(page.operations.contains(word("operation")), "not on the page: {step:#}");
+                    self.operations.insert(word("operation").to_owned());
+                }
+                if self.names.get(word("block")).is_none_or(|names| !names.contains(word("name"))) {
+                    self.names.entry(word("block").to_owned()).or_default().insert(word("name").to_owned());
+                }
             }
         }
     }
@@ -174,6 +170,11 @@ impl Seen {
 
 /// The document of a pixel.
 fn trace(plan: &Plan, target: usize, pixel: (u32, u32)) -> Value {
+    trace_value(plan, &engine::trace(plan, target, pixel, None).unwrap())
+}
+
+/// The same, as its text says it.
+fn trace_of_text(plan: &Plan, target: usize, pixel: (u32, u32)) -> Value {
     serde_json::from_str(&trace_json(plan, &engine::trace(plan, target, pixel, None).unwrap())).unwrap()
 }
 
@@ -240,8 +241,8 @@ fn traces_and_the_page_agree() {
     for path in files {
         let plan = plan_of(&path);
         for (target, size) in plan.targets.iter().map(|t| (t.width, t.height)).enumerate() {
-            seen.document(&page, &trace(&plan, target, (size.0 / 2, size.1 / 2)));
-            seen.document(&page, &trace(&plan, target, (size.0 / 3, size.1 * 2 / 3)));
+            seen.document(&page, &trace_of_text(&plan, target, (size.0 / 2, size.1 / 2)));
+            seen.document(&page, &trace_of_text(&plan, target, (size.0 / 3, size.1 * 2 / 3)));
         }
     }
     println!("{} fragments", seen.fragments);
@@ -250,11 +251,16 @@ fn traces_and_the_page_agree() {
     let fits = |[block, name]: &[String; 2], [of_block, of_name]: &[String; 2]| {
         page.fits(block, of_block) && page.fits(name, of_name)
     };
-    for step in &seen.names {
+    let names: Vec<[String; 2]> = seen
+        .names
+        .into_iter()
+        .flat_map(|(block, names)| names.into_iter().map(move |name| [block.clone(), name]))
+        .collect();
+    for step in &names {
         assert!(page.names.iter().any(|row| fits(row, step)), "not on the page: {step:?}");
     }
     for row in &page.names {
-        assert!(seen.names.iter().any(|step| fits(row, step)), "no trace has {row:?}");
+        assert!(names.iter().any(|step| fits(row, step)), "no trace has {row:?}");
     }
 }
 
@@ -263,7 +269,7 @@ fn the_example_is_a_step_of_its_trace() {
     let page = Page::read();
     let example: Value =
         serde_json::from_str(page.text.split("```json\n").nth(1).unwrap().split("```").next().unwrap()).unwrap();
-    let document = trace(&plan_of(Path::new("vectors/scenes/dot3/constant-light.ron")), 0, (200, 300));
+    let document = trace_of_text(&plan_of(Path::new("vectors/scenes/dot3/constant-light.ron")), 0, (200, 300));
     assert!(document["draws"][0]["steps"].as_array().unwrap().contains(&example), "{example:#}");
 }
 

@@ -9,7 +9,7 @@ use ninebit_vectors::cases::{self, Level};
 use ninebit_vectors::pack::{self, Options};
 use ninebit_vectors::unit::Conditions;
 use ninebit_vectors::view::View;
-use ninebit_vectors::{sweep::Sweep, tree, units};
+use ninebit_vectors::{exhaustive::Exhaustive, tree, units};
 use serde_json::Value;
 
 fn json(path: impl AsRef<Path>) -> Value {
@@ -122,7 +122,7 @@ fn documents_have_the_properties_of_their_schemas() {
         let rows = std::fs::read_to_string(place.join(format!("units/{unit}.jsonl"))).unwrap();
         rows.lines().for_each(|row| fits(&schema("row"), &serde_json::from_str(row).unwrap(), unit));
     }
-    tree::work(place, &Sweep::new(units::by_name("mux").unwrap(), Profile::Nv2a).unwrap(), 0).unwrap();
+    tree::work(place, &Exhaustive::new(units::by_name("mux").unwrap(), Profile::Nv2a).unwrap(), 0).unwrap();
     fits(&schema("leaf"), &json(place.join("leaf-0000.json")), "leaf");
     let list = |folder: &Path| std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     for path in list(Path::new("vectors/digests")) {

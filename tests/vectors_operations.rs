@@ -11,7 +11,7 @@ use ninebit::random::Random;
 use ninebit::state::{BlendEquation, BlendFactor, Named, Policies, Profile, TextureFormat};
 use ninebit::texture::compressed;
 use ninebit_vectors::column::{Column, Kind};
-use ninebit_vectors::sweep::Sweep;
+use ninebit_vectors::exhaustive::Exhaustive;
 use ninebit_vectors::tree::Tree;
 use ninebit_vectors::unit::{Conditions, Unit};
 use ninebit_vectors::units;
@@ -25,7 +25,7 @@ struct Row {
 }
 
 /// All trees under `vectors/digests`, by their name: the path without the ending.
-fn trees() -> BTreeMap<String, Sweep> {
+fn trees() -> BTreeMap<String, Exhaustive> {
     let folder = Path::new("vectors/digests");
     let list = |folder: &Path| -> Vec<PathBuf> {
         std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect()
@@ -39,7 +39,7 @@ fn trees() -> BTreeMap<String, Sweep> {
 }
 
 /// The operations with the names of their trees.
-fn table(trees: &BTreeMap<String, Sweep>) -> Vec<Row> {
+fn table(trees: &BTreeMap<String, Exhaustive>) -> Vec<Row> {
     let named = |name: &&str| match name.strip_suffix('*') {
         Some(folder) => trees.keys().filter(|tree| tree.starts_with(folder)).cloned().collect(),
         None => vec![(*name).to_owned()],
@@ -97,7 +97,7 @@ fn every_operation_of_up_to_32_bits_has_its_tree() {
         assert!(!own.is_empty(), "{} has no operation", unit.name());
         let whole = bits(&unit.inputs());
         let above = own.iter().filter(|row| row.trees.is_empty());
-        let swept: Vec<&Sweep> = own.iter().flat_map(|row| &row.trees).map(|name| &trees[name]).collect();
+        let swept: Vec<&Exhaustive> = own.iter().flat_map(|row| &row.trees).map(|name| &trees[name]).collect();
         assert!(whole > 32 || !swept.is_empty(), "{} has {whole} bits and no tree", unit.name());
         let above: Vec<&Row> = above.copied().collect();
         if swept.is_empty() {
@@ -140,7 +140,7 @@ fn both_chips_have_the_same_trees() {
         if sweep.unit.profiles().len() == 1 || sweep.unit.name() == "compressed-block" {
             continue;
         }
-        let other = Sweep::of(sweep.unit, Profile::Nv10, sweep.part.clone()).unwrap();
+        let other = Exhaustive::of(sweep.unit, Profile::Nv10, sweep.part.clone()).unwrap();
         let rows = sweep.size.min(500);
         for _ in 0..3 {
             let start = random.below(u128::from(sweep.size - rows + 1)) as u64;

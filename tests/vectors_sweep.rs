@@ -9,20 +9,20 @@ use std::sync::LazyLock;
 
 use ninebit::random::Random;
 use ninebit::state::{Policies, Profile};
+use ninebit_vectors::exhaustive::Exhaustive;
 use ninebit_vectors::part::Part;
-use ninebit_vectors::sweep::Sweep;
 use ninebit_vectors::tree::{self, Tree};
 use ninebit_vectors::unit::{Conditions, Unit};
 use ninebit_vectors::{cases, units};
 use rayon::prelude::*;
 
-fn sweep(unit: &str) -> Sweep {
-    Sweep::new(units::by_name(unit).unwrap(), Profile::Nv2a).unwrap()
+fn sweep(unit: &str) -> Exhaustive {
+    Exhaustive::new(units::by_name(unit).unwrap(), Profile::Nv2a).unwrap()
 }
 
-fn part(unit: &str, only: &[&str]) -> Sweep {
+fn part(unit: &str, only: &[&str]) -> Exhaustive {
     let unit = units::by_name(unit).unwrap();
-    Sweep::of(unit, Profile::Nv2a, Part::new(unit, only).unwrap()).unwrap()
+    Exhaustive::of(unit, Profile::Nv2a, Part::new(unit, only).unwrap()).unwrap()
 }
 
 fn ninebit(arguments: &[&str]) -> Output {
@@ -236,7 +236,7 @@ const QUICK: [&str; 6] =
 /// Trees of parts: those of a few rows whole, and a leaf of one of the others of each unit.
 #[test]
 fn committed_trees_of_parts_are_what_the_model_says() {
-    let mut large: BTreeMap<String, Vec<(Tree, Sweep)>> = BTreeMap::new();
+    let mut large: BTreeMap<String, Vec<(Tree, Exhaustive)>> = BTreeMap::new();
     for path in trees() {
         let (tree, sweep) = Tree::read(&path).unwrap();
         if tree.of.only.is_empty() {
@@ -319,7 +319,7 @@ fn committed_trees_are_what_the_model_says() {
         names.push(tree.of.unit.clone());
         let drawn = Random::new(11, &tree.of.unit).below(u128::from(sweep.leaves)) as u64;
         let chosen: Vec<u64> = if sweep.size <= 1 << 23 { (0..sweep.leaves).collect() } else { vec![drawn] };
-        let nv10 = Sweep::new(sweep.unit, Profile::Nv10).unwrap();
+        let nv10 = Exhaustive::new(sweep.unit, Profile::Nv10).unwrap();
         chosen.into_par_iter().for_each(|leaf| {
             assert_eq!(sweep.leaf(leaf), tree.leaf[leaf as usize], "{} leaf {leaf}", tree.of.unit);
             if sweep.size <= 1 << 23 {
@@ -329,7 +329,7 @@ fn committed_trees_are_what_the_model_says() {
     }
     // Every unit of at most 2^32 rows has one, and the product sum.
     let mut expected: Vec<&str> = vec!["depth", "sum"];
-    let all = units::all().into_iter().filter_map(|unit| Sweep::new(unit, Profile::Nv2a));
+    let all = units::all().into_iter().filter_map(|unit| Exhaustive::new(unit, Profile::Nv2a));
     expected.extend(all.filter(|sweep| sweep.size <= 1 << 32).map(|sweep| sweep.unit.name()));
     expected.sort_unstable();
     assert_eq!(names, expected);

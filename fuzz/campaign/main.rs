@@ -34,9 +34,9 @@ use ninebit::random::Random;
 /// Runs in the test suite.
 const RUNS: u64 = 300;
 /// Memory of a run, KiB.
-const MOST_MEMORY: u64 = 1_000_000;
+const MAX_MEMORY: u64 = 1_000_000;
 /// Time of a run.
-const MOST_TIME: Duration = Duration::from_secs(10);
+const MAX_TIME: Duration = Duration::from_secs(10);
 /// Time after which a worker is ended.
 const LAST_TIME: Duration = Duration::from_secs(120);
 /// For each shaded pixel.
@@ -159,10 +159,10 @@ fn finding(outcome: &Outcome, folder: &Path, case: &Case) -> Option<String> {
         Some(6) => return Some("exit status 6".to_owned()),
         Some(_) => {}
     }
-    if outcome.peak > MOST_MEMORY {
+    if outcome.peak > MAX_MEMORY {
         return Some(format!("{} MB", outcome.peak / 1000));
     }
-    let slow = outcome.time > MOST_TIME && outcome.time > explained(folder, case);
+    let slow = outcome.time > MAX_TIME && outcome.time > explained(folder, case);
     slow.then(|| format!("{:.1} s", outcome.time.as_secs_f64()))
 }
 
@@ -181,7 +181,7 @@ fn prepared(folder: &Path) -> Corpus {
     })
 }
 
-/// A panic is noted, and nothing is printed. Decoders' panics that the program expects do not come here: `guard` silences them.
+/// A panic is noted, and nothing is printed. Decoders' panics that the program expects do not come here: `catch_panic` silences them.
 fn note_panics() {
     std::panic::set_hook(Box::new(|info| {
         PANIC.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert_with(|| info.to_string());

@@ -13,7 +13,7 @@ use ninebit::combiner::registers::Registers;
 use ninebit::engine::{self, RenderOptions};
 use ninebit::limits::Limits;
 use ninebit::state::{Policies, Profile, Register};
-use ninebit_files::guard::{Panic, caught};
+use ninebit_files::catch_panic::{Panic, catch_panic};
 use ninebit_program::registers::{RegisterWords, Word, decode};
 use ninebit_report::trace_json;
 use ninebit_scene::{ErrorKind, Loaded, SceneError};
@@ -103,7 +103,7 @@ impl From<SceneError> for Failure {
 fn call(message: *mut *mut c_char, work: impl FnOnce() -> Result<(), Failure>) -> NinebitStatus {
     // SAFETY: the caller of every function promises that `message` is null or may be written.
     unsafe { put(message, ptr::null_mut()) };
-    let failure = match caught(work) {
+    let failure = match catch_panic(work) {
         Ok(Ok(())) => return NinebitStatus::Ok,
         Ok(Err(failure)) => failure,
         Err(panic) => Failure {

@@ -9,7 +9,7 @@ use super::lexer::length;
 use ninebit::diagnostic::{Diagnostic, shorten};
 
 /// Names within names.
-const MOST_NESTED: usize = 16;
+const MAX_NESTING: usize = 16;
 
 /// How a language stands in C.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -167,8 +167,8 @@ impl<'t> Walk<'t> {
 
     /// What a name stands for.
     fn value(&mut self, value: &'t str, word: &str, place: usize, depth: usize) -> Result<(), Diagnostic> {
-        if depth >= MOST_NESTED {
-            let message = format!("the value of `{}` leads to more than {MOST_NESTED} others", shorten(word));
+        if depth >= MAX_NESTING {
+            let message = format!("the value of `{}` leads to more than {MAX_NESTING} others", shorten(word));
             let help = "write the value itself";
             return Err(finding("NB0109", place..place + 1, message, "used here", help));
         }

@@ -74,8 +74,9 @@ pub fn trace_value(plan: &Plan, trace: &PixelTrace) -> Value {
         "cleared": trace.cleared,
         "shown": trace.shown,
         "word": trace.word,
-        "draws": trace.draws.iter().map(|fragment| draw(plan, fragment)).collect::<Vec<_>>(),
     });
+    // Values that `json!` is given are copied, with all that they hold.
+    value["draws"] = trace.draws.iter().map(|fragment| draw(plan, fragment)).collect();
     if trace.left_out > 0 {
         value["left_out"] = json!(trace.left_out);
     }
@@ -121,8 +122,8 @@ fn draw(plan: &Plan, draw: &DrawTrace) -> Value {
         "stored": draw.stored,
         "shown": draw.shown,
         "program_origin": origins(&draw.program_origin),
-        "steps": numbered(&draw.steps, &plan.textures),
     });
+    value["steps"] = numbered(&draw.steps, &plan.textures);
     if let Some(piece) = &draw.piece {
         let planes: Vec<&str> = ClipPlane::of(piece.planes).map(|plane| plane.name()).collect();
         value["clipped"] = json!({ "triangle": piece.of, "planes": planes });
@@ -142,13 +143,13 @@ fn step(step: &Step, id: usize, made: &HashMap<&str, usize>, textures: &[Texture
         "rule": step.rule,
         "name": step.name,
         "operation": step.operation,
-        "inputs": step.inputs.iter().map(|input| operand(input, made.get(input.name.as_str()))).collect::<Vec<_>>(),
         "value": step.value,
         "per_one": step.per_one,
         "real": step.real(),
         "ideal": step.ideal,
         "note": step.note,
     });
+    value["inputs"] = step.inputs.iter().map(|input| operand(input, made.get(input.name.as_str()))).collect();
     if let Some(text) = beyond_31_bits(step.value, step.per_one) {
         value["value_text"] = json!(text);
     }

@@ -27,7 +27,7 @@ pub(super) const FINITE: &str = "NB0207";
 pub(super) const COUNT: &str = "NB0211";
 
 /// Words beyond so many stand in the text of the document.
-const MOST_WORDS: usize = 9;
+const MAX_WORDS: usize = 9;
 
 /// What a text stands for that needs nothing but itself.
 pub(super) trait Valued<'a>: Sized {
@@ -90,7 +90,7 @@ pub(super) struct Field {
 impl Field {
     pub(super) fn new<T: Described>(name: &'static str, meaning: &'static str) -> Self {
         let values = match T::form() {
-            Form::Value(Kind::Choice(words)) if words.len() <= MOST_WORDS && words != ["false", "true"] => {
+            Form::Value(Kind::Choice(words)) if words.len() <= MAX_WORDS && words != ["false", "true"] => {
                 words.iter().map(|word| format!("`{word}`")).collect::<Vec<_>>().join(", ")
             }
             Form::Value(Kind::Whole { most: 255 }) => "0 to 255".to_owned(),

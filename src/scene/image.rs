@@ -1,7 +1,7 @@
 //! Reads PNG, TGA and DDS files that nobody has looked at before.
 //!
-//! The order matters: kind of file and its size, then the header against the limits, then the decoder, which runs under a
-//! guard because decoders panic on bytes nobody thought of. Of a PNG only the chunks that decide the pixels reach the decoder,
+//! The order matters: kind of file and its size, then the header against the limits, then the decoder, which runs under
+//! [`catch_panic`] because decoders panic on bytes nobody thought of. Of a PNG only the chunks that decide the pixels reach the decoder,
 //! so compressed text and profiles are never unpacked. Bytes come out as they are stored: no gamma, no colour management.
 
 use std::io::{self, Cursor};
@@ -13,7 +13,7 @@ use thiserror::Error;
 use super::assets::{Assets, Folder};
 use super::dds::{self, Dds};
 use ninebit::limits::{FileLimit, Limits};
-use ninebit_files::guard;
+use ninebit_files::catch_panic;
 use ninebit_files::read::ReadError;
 
 mod png;
@@ -265,7 +265,7 @@ pub fn decode(bytes: &[u8], path: &Path, limits: &ImageLimits) -> Result<Rgba, I
     allowed.max_image_height = Some(limits.maximum_side);
     // The decoder's own row buffers come on top of the pixels.
     allowed.max_alloc = Some(limits.maximum_decoded_bytes.saturating_add(4 << 20));
-    let decoded = guard::quietly(|| {
+    let decoded = catch_panic::quietly(|| {
         let mut reader = image::ImageReader::with_format(Cursor::new(&*bytes), format);
         reader.limits(allowed);
         reader.decode()

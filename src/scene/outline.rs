@@ -12,7 +12,7 @@ use super::reader::Name;
 use ninebit::state::Named;
 
 /// Values beyond so many are left out: of a mesh of ten thousand vertices nobody wants a form.
-const MOST: usize = 4000;
+const MAX_VALUES: usize = 4000;
 
 /// A name, and what its value may be.
 type Entry = (&'static str, fn() -> Form);
@@ -96,7 +96,7 @@ pub fn outline(text: &str) -> Node {
     let mut notation = Notation::new(text);
     // What is not well formed is one value.
     let scene = notation.check(0..text.len(), usize::MAX).unwrap_or(text);
-    Walker { notation, left: MOST }.node("scene".to_owned(), scene, source::Scene::form())
+    Walker { notation, left: MAX_VALUES }.node("scene".to_owned(), scene, source::Scene::form())
 }
 
 impl Node {

@@ -15,7 +15,7 @@ use ninebit::limits::Limits;
 use ninebit::state::{Named, Profile};
 
 /// Findings beyond this many are only counted.
-const MOST_DIAGNOSTICS: usize = 64;
+const MAX_DIAGNOSTICS: usize = 64;
 
 /// The text under examination and the findings so far.
 pub(super) struct Reader<'a> {
@@ -57,7 +57,7 @@ impl<'a> Reader<'a> {
             return;
         }
         self.errors += usize::from(error);
-        if self.diagnostics.len() < MOST_DIAGNOSTICS {
+        if self.diagnostics.len() < MAX_DIAGNOSTICS {
             self.diagnostics.push(diagnostic);
         } else {
             self.suppressed += 1;
@@ -66,7 +66,7 @@ impl<'a> Reader<'a> {
 
     /// Whether a further error would only be counted: its words need not be chosen.
     fn is_full(&self) -> bool {
-        self.errors > 0 && self.diagnostics.len() >= MOST_DIAGNOSTICS
+        self.errors > 0 && self.diagnostics.len() >= MAX_DIAGNOSTICS
     }
 
     /// Where in the file a part of its text lies.

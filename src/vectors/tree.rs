@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
 use super::error::{VectorError, read_text};
+use super::exhaustive::{Exhaustive, Leaf};
 use super::part::Part;
-use super::sweep::{Leaf, Sweep};
 use super::{BEHAVIOUR, units};
 use ninebit::limits;
 use ninebit::state::{Named, Profile};
@@ -45,7 +45,7 @@ pub struct Of {
 
 impl Of {
     /// A sweep, by this program.
-    pub fn new(sweep: &Sweep) -> Of {
+    pub fn new(sweep: &Exhaustive) -> Of {
         Of {
             unit: sweep.unit.name().to_owned(),
             only: sweep.part.texts().to_vec(),
@@ -119,7 +119,7 @@ pub struct Done {
 ///
 /// # Errors
 /// The folder has that leaf of another sweep, or cannot be written.
-pub fn work(folder: &Path, sweep: &Sweep, index: u64) -> Result<bool, VectorError> {
+pub fn work(folder: &Path, sweep: &Exhaustive, index: u64) -> Result<bool, VectorError> {
     let (path, of) = (place(folder, index), Of::new(sweep));
     if path.exists()
         && let Ok(Some((found, leaf))) = read_leaf(&path)
@@ -243,7 +243,7 @@ impl Tree {
     ///
     /// # Errors
     /// There is no such file, it is no tree or was changed, or it is of a unit, chip or number of rows that this program does not have.
-    pub fn read(path: &Path) -> Result<(Tree, Sweep), VectorError> {
+    pub fn read(path: &Path) -> Result<(Tree, Exhaustive), VectorError> {
         let text = read_text(path, Kind::Stream, limits::TREE, "name a tree: `ninebit vectors merge` writes one")?;
         let help = "merge the leaves again";
         let wrong = |message: String| invalid(path, "NB1023", message, help);
@@ -269,7 +269,7 @@ impl Tree {
         let sweep = sweep.filter(|(unit, profile)| unit.profiles().contains(profile));
         let sweep = sweep.and_then(|(unit, profile)| {
             let part = Part::new(unit, &tree.of.only).ok().filter(|part| part.texts() == tree.of.only)?;
-            Sweep::of(unit, profile, part)
+            Exhaustive::of(unit, profile, part)
         });
         match sweep {
             Some(sweep) if (sweep.size, sweep.leaves) == (tree.of.size, tree.of.leaves) => Ok((tree, sweep)),

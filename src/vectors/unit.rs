@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::column::Column;
-use super::sweep::Digesting;
+use super::exhaustive::Digesting;
 use ninebit::state::{POLICIES, Policies, Profile};
 
 /// What holds besides a row's own numbers.

@@ -4,13 +4,20 @@ use ninebit::state::Named;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
+type Tally = BTreeMap<(&'static str, &'static str), u64>;
+
 thread_local! {
-    static TALLY: RefCell<BTreeMap<(&'static str, &'static str), u64>> = const { RefCell::new(BTreeMap::new()) };
+    /// Nothing is counted where nobody asked for it: that takes longer than to render.
+    static TALLY: RefCell<Option<Tally>> = const { RefCell::new(None) };
 }
 
 /// Counts one occurrence.
 pub fn count(group: &'static str, what: &'static str) {
-    TALLY.with_borrow_mut(|tally| *tally.entry((group, what)).or_default() += 1);
+    TALLY.with_borrow_mut(|tally| {
+        if let Some(tally) = tally {
+            *tally.entry((group, what)).or_default() += 1;
+        }
+    });
 }
 
 /// Counts one occurrence of a variant.
@@ -18,7 +25,9 @@ pub fn count_named<T: Named>(variant: T) {
     count(T::TYPE, variant.name());
 }
 
-/// Everything counted on this thread since the last call.
-pub fn take() -> BTreeMap<(&'static str, &'static str), u64> {
-    TALLY.take()
+/// What occurs on this thread while `work` is done.
+pub fn during<T>(work: impl FnOnce() -> T) -> (T, Tally) {
+    TALLY.replace(Some(Tally::new()));
+    let done = work();
+    (done, TALLY.take().unwrap_or_default())
 }

@@ -15,13 +15,13 @@ mod view;
 
 mod compressed;
 mod cube;
+mod experiments;
 mod far;
 mod lengths;
 mod level_of_detail;
 mod minified;
 mod near_eye;
 mod one_texel;
-mod sweeps;
 
 #[test]
 fn textures() {
@@ -50,10 +50,10 @@ fn page_shows_no_other_files() {
 
 #[test]
 fn methods_work_and_fail_where_they_did() {
-    sweeps::both_sides();
+    experiments::both_sides();
 }
 
 #[test]
-fn the_section_on_methods_is_what_sweeps_yield() {
-    sweeps::page();
+fn the_section_on_methods_is_what_experiments_yield() {
+    experiments::page();
 }

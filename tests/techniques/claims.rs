@@ -1,17 +1,12 @@
 //! The scenes by which claims of 2002 are decided, and rows of published texts that fail: held to coarse bounds.
 
+use super::pinned;
 use ninebit::limits::Limits;
-use ninebit_lab::accuracy::{Accuracy, measure};
+use ninebit_lab::accuracy::measure;
 use ninebit_scene as scene;
 
-fn accuracy(name: &str) -> Accuracy {
-    let path = super::folder().join(name).with_extension("ron");
-    let loaded = scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
-    measure(&loaded.scene, &loaded.plan, loaded.truth.as_ref().unwrap()).unwrap()
-}
-
 fn rms(name: &str) -> f64 {
-    accuracy(name).errors.rms()
+    pinned(name).rms
 }
 
 /// Stages beat a cube map of eight bits, sixteen bits beat both; all beat nothing and the light of the vertices.
@@ -25,24 +20,29 @@ fn sixteen_bits_then_stages_then_eight_bits() {
 
 #[test]
 fn a_table_keeps_the_levels_that_squaring_loses() {
-    let levels = |name: &str| accuracy(&format!("normalisation/smooth-{name}")).banding;
+    let levels = |name: &str| {
+        let figures = pinned(&format!("normalisation/smooth-{name}"));
+        (figures.levels, figures.truth_levels)
+    };
     let (squared, table) = (levels("cube-8"), levels("cube-8-table"));
-    assert!(squared.levels < 40 && table.levels > 110 && table.truth_levels > 110, "{squared:?} {table:?}");
+    assert!(squared.0 < 40 && table.0 > 110 && table.1 > 110, "{squared:?} {table:?}");
 }
 
 #[test]
 fn the_neutral_normal_is_upright() {
-    let accuracy = accuracy("normalisation/neutral");
+    let path = super::folder().join("normalisation/neutral.ron");
+    let loaded = scene::load(&path, &Limits::default()).unwrap_or_else(|error| panic!("{error}"));
+    let accuracy = measure(&loaded.scene, &loaded.plan, loaded.truth.as_ref().unwrap()).unwrap();
     assert_eq!(accuracy.normals.unwrap().degrees.max(), 0.0);
 }
 
 /// What saturates before one half is added ends at one half: off by up to half of what lies between sky and ground.
 #[test]
 fn a_listing_that_saturates_too_early_fails_below_the_horizon() {
-    let of = |name: &str| accuracy(&format!("per-pixel-lighting/{name}")).errors;
+    let of = |name: &str| pinned(&format!("per-pixel-lighting/{name}"));
     let (early, right) = (of("hemisphere-pixel-saturated"), of("hemisphere-pixel"));
-    assert!(early.max() > 80.0 && early.max() <= 105.0, "{}", early.max());
-    assert!(early.rms() > 20.0 * right.rms() && early.bias() > 0.0);
+    assert!(early.max > 80.0 && early.max <= 105.0, "{}", early.max);
+    assert!(early.rms > 20.0 * right.rms && early.bias > 0.0);
 }
 
 #[test]
@@ -53,10 +53,7 @@ fn a_ceiling_may_be_lit_with_its_own_normal() {
 /// Twelve passes are asked for and paid by a chip, five are left here, and three do with two units.
 #[test]
 fn passes_as_asked_and_after_pruning() {
-    let passes = |name: &str| {
-        let cost = accuracy(&format!("orthogonal-illumination-mapping/{name}")).cost;
-        (cost.asked.passes, cost.pruned.passes)
-    };
+    let passes = |name: &str| pinned(&format!("orthogonal-illumination-mapping/{name}")).passes;
     assert_eq!(["height-12", "height-5", "height-3"].map(passes), [(12, 5), (5, 5), (3, 3)]);
     assert_eq!(["dot-12", "illumination"].map(passes), [(12, 9), (26, 20)]);
 }

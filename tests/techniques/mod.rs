@@ -7,8 +7,10 @@ mod listings;
 mod passes;
 mod per_pixel_lighting;
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use ninebit::limits::Limits;
 use ninebit_lab::accuracy::measure;
@@ -49,6 +51,38 @@ fn figures(path: &Path) -> String {
         "{name}\t{rms:.3}\t{max:.2}\t{bias:.3}\t{degrees}\t{}\t{}\t{}\t{}\t{}\t{:.1}",
         b.levels, b.truth_levels, b.flat_run, c.asked.passes, c.pruned.passes, c.asked.frame_buffer_bytes
     )
+}
+
+/// What `figures.tsv` says of a scene. Other tests read it instead of measuring anew: `techniques_are_as_exact_as_they_were` holds it.
+#[derive(Clone, Copy)]
+struct Figures {
+    rms: f64,
+    max: f64,
+    bias: f64,
+    levels: u32,
+    truth_levels: u32,
+    /// As asked for, and after pruning.
+    passes: (u32, u32),
+}
+
+/// The pinned figures of every scene, by folder and name.
+fn all_pinned() -> &'static BTreeMap<String, Figures> {
+    static PINNED: OnceLock<BTreeMap<String, Figures>> = OnceLock::new();
+    PINNED.get_or_init(|| {
+        let text = std::fs::read_to_string(folder().join("../../../tests/techniques/figures.tsv")).unwrap();
+        let figures = text.lines().skip(1).map(|row| {
+            let columns: Vec<&str> = row.split('\t').collect();
+            let [rms, max, bias] = [1, 2, 3].map(|column| columns[column].parse().unwrap());
+            let [levels, truth_levels, asked, left] = [5, 6, 8, 9].map(|column| columns[column].parse().unwrap());
+            (columns[0].to_owned(), Figures { rms, max, bias, levels, truth_levels, passes: (asked, left) })
+        });
+        figures.collect()
+    })
+}
+
+/// The pinned figures of a scene: its folder and name.
+fn pinned(name: &str) -> Figures {
+    *all_pinned().get(name).unwrap_or_else(|| panic!("no figures of {name}"))
 }
 
 #[test]

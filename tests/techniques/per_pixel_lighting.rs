@@ -1,16 +1,12 @@
 //! Per-pixel lighting and renormalisation: how far each picture is from its truth, and where a technique breaks.
 //!
-//! The figures are those of `figures.tsv`, which `techniques_are_as_exact_as_they_were` holds against the scenes. Bounds are coarse, in
-//! steps of 1/255: they say what a technique is good for, not which bits it has.
-
-use std::collections::BTreeMap;
-use std::path::Path;
+//! Bounds of pinned figures are coarse, in steps of 1/255: they say what a technique is good for, not which bits it has.
 
 use ninebit::engine::{RenderOptions, render};
 use ninebit::limits::Limits;
 use ninebit_scene as scene;
 
-use super::folder;
+use super::{Figures, all_pinned, folder, pinned};
 
 /// Scene, and between which RMS errors it lies.
 const BOUNDS: &[(&str, f64, f64)] = &[
@@ -70,29 +66,8 @@ const BOUNDS: &[(&str, f64, f64)] = &[
     ("world-space-diffuse", 1.1, 1.7),
 ];
 
-/// What `figures.tsv` says of a scene.
-#[derive(Clone, Copy)]
-struct Figures {
-    rms: f64,
-    levels: u32,
-    truth_levels: u32,
-}
-
-/// The figures of the scenes of a folder, by name.
-fn pinned(folder: &str) -> BTreeMap<String, Figures> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/techniques/figures.tsv");
-    let text = std::fs::read_to_string(path).unwrap();
-    let rows = text.lines().filter_map(|line| line.strip_prefix(folder)?.strip_prefix('/'));
-    let figures = rows.map(|row| {
-        let columns: Vec<&str> = row.split('\t').collect();
-        let [levels, truth_levels] = [5, 6].map(|column| columns[column].parse().unwrap());
-        (columns[0].to_owned(), Figures { rms: columns[1].parse().unwrap(), levels, truth_levels })
-    });
-    figures.collect()
-}
-
 fn of(name: &str) -> Figures {
-    *pinned("per-pixel-lighting").get(name).unwrap_or_else(|| panic!("no figures of {name}"))
+    pinned(&format!("per-pixel-lighting/{name}"))
 }
 
 fn rms(name: &str) -> f64 {
@@ -116,13 +91,14 @@ fn difference(names: [&str; 2]) -> (usize, u8) {
 
 #[test]
 fn techniques_are_as_exact_as_they_ought_to_be() {
-    let figures = pinned("per-pixel-lighting");
     let names: Vec<&str> = BOUNDS.iter().map(|(name, ..)| *name).collect();
-    assert_eq!(figures.keys().collect::<Vec<_>>(), names);
+    let known = all_pinned();
+    assert_eq!(known.keys().filter_map(|name| name.strip_prefix("per-pixel-lighting/")).collect::<Vec<_>>(), names);
     let outside: Vec<String> = BOUNDS
         .iter()
-        .filter(|(name, least, most)| !(*least..=*most).contains(&figures[*name].rms))
-        .map(|(name, least, most)| format!("{name}: {:.3}, not {least} to {most}", figures[*name].rms))
+        .map(|(name, least, most)| (name, least..=most, rms(name)))
+        .filter(|(_, bounds, rms)| !bounds.contains(&rms))
+        .map(|(name, bounds, rms)| format!("{name}: {rms:.3}, not {bounds:?}"))
         .collect();
     assert!(outside.is_empty(), "{}", outside.join("\n"));
 }
@@ -178,9 +154,8 @@ fn vectors_brought_back_to_length_pay() {
         let [without, with] = [name.to_owned(), format!("{name}-renormalised")].map(|name| rms(&name));
         assert!(with < most * without, "{name}: {without} {with}");
     }
-    let figures = pinned("renormalisation");
     for name in ["diffuse", "specular"] {
-        let [without, with] = ["plain", "renormalised"].map(|end| figures[&format!("{name}-{end}")].rms);
+        let [without, with] = ["plain", "renormalised"].map(|end| pinned(&format!("renormalisation/{name}-{end}")).rms);
         assert!(with < 0.4 * without, "{name}: {without} {with}");
     }
 }

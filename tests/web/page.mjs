@@ -109,6 +109,7 @@ async function tests() {
   await pause(300);
   assert.equal(await text("regions-sum"), expected.against_literal);
   await compare("");
+  assert.equal(await text("regions-sum"), "", "what was compared before is still there to be read");
 
   // A picture dropped: it differs in one region, or nowhere.
   const drop = (bytes) => `(async () => { const bytes = Uint8Array.from(atob("${bytes}"), (c) => c.charCodeAt(0)); const data = new DataTransfer();

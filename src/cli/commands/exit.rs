@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use ninebit::shown;
-use ninebit_files::guard::Panic;
+use ninebit_files::catch_panic::Panic;
 use ninebit_files::output::OutputError;
 use ninebit_scene::SceneError;
 use ninebit_scene::image::ImageError;

@@ -37,8 +37,8 @@ use std::process::ExitCode;
 
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use ninebit::shown;
+use ninebit_files::catch_panic::catch_panic;
 use ninebit_files::files;
-use ninebit_files::guard::caught;
 use ninebit_files::output::OutputError;
 
 use exit::{Exit, Failure};
@@ -233,7 +233,7 @@ fn complain(error: &clap::Error, arguments: &[OsString]) -> Result<(), Failure> 
 
 /// Runs `work`; a panic becomes a message that says how to report it.
 fn guarded(color: bool, work: impl FnOnce() -> Exit) -> Exit {
-    caught(work).unwrap_or_else(|panic| ended(Err(panic.into()), color))
+    catch_panic(work).unwrap_or_else(|panic| ended(Err(panic.into()), color))
 }
 
 /// The value of `--color`, found before the arguments are parsed because it also governs the parser's complaints.

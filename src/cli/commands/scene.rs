@@ -7,7 +7,7 @@ use ninebit::limits::Limits;
 use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit::state::{Draw, Policies, Scene};
-use ninebit_files::guard::caught;
+use ninebit_files::catch_panic::catch_panic;
 use ninebit_scene::truth::Truth;
 use ninebit_scene::{self as scene, ErrorKind, Loaded, SceneError};
 use serde::Serialize;
@@ -153,7 +153,7 @@ impl<T> Each<T> {
 
 /// Runs `work`; a panic becomes a failure that names the scene.
 pub(crate) fn apart<T>(scene: &Path, work: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
-    caught(work).unwrap_or_else(|mut panic| {
+    catch_panic(work).unwrap_or_else(|mut panic| {
         panic.message = format!("{}, of `{}`", panic.message, shown::path(scene));
         Err(panic.into())
     })

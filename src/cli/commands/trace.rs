@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
 }
 
 /// Pixels that a rectangle may have.
-const MOST: u64 = 4096;
+const MAX_PIXELS: u64 = 4096;
 
 fn rectangle(text: &str) -> Result<[u32; 4], String> {
     let numbers: Option<Vec<u32>> = text.split(',').map(|number| number.trim().parse().ok()).collect();
@@ -70,7 +70,7 @@ fn rectangle(text: &str) -> Result<[u32; 4], String> {
     };
     match u64::from(columns) * u64::from(rows) {
         0 => Err("it has no pixels".to_string()),
-        pixels if pixels > MOST => Err(format!("it has {pixels} pixels; {MOST} are the most")),
+        pixels if pixels > MAX_PIXELS => Err(format!("it has {pixels} pixels; {MAX_PIXELS} are the most")),
         _ => Ok([x, y, columns, rows]),
     }
 }

@@ -19,7 +19,7 @@ use rayon::prelude::*;
 use ninebit::engine::RenderOptions;
 use ninebit::state::{Policies, Profile};
 use ninebit::threads::on_threads;
-use ninebit_files::guard::caught;
+use ninebit_files::catch_panic::catch_panic;
 
 pub use cause::Cause;
 pub use find::{Entry, EntryKind, Filter, FilterError, FindError, find, part};
@@ -60,7 +60,7 @@ fn each(
 ) -> Vec<Replayed> {
     let done = std::sync::atomic::AtomicUsize::new(0);
     let one = |entry: &Entry| {
-        let replayed = caught(|| work(entry)).unwrap_or_else(|panic| Replayed {
+        let replayed = catch_panic(|| work(entry)).unwrap_or_else(|panic| Replayed {
             name: entry.name.clone(),
             path: entry.path.clone(),
             outcome: Outcome::Failed(Problem::internal(&panic)),

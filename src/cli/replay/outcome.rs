@@ -8,8 +8,8 @@ use super::cause::Cause;
 use crate::expectation::Mismatch;
 use ninebit::diagnostic::ErrorKind;
 use ninebit::shown;
-use ninebit_files::guard::Panic;
-use ninebit_report::BesideLine;
+use ninebit_files::catch_panic::Panic;
+use ninebit_report::SideBySideLine;
 use ninebit_scene::diff::{self, CHANNELS, histogram_text, pixels, share};
 
 /// A scene that was replayed.
@@ -168,7 +168,7 @@ pub struct Traces {
     /// Both as one text; or only the first, where it is not known how the expected pixel comes to be.
     pub text: String,
     /// Both side by side; empty if only one is known.
-    pub lines: Vec<BesideLine>,
+    pub lines: Vec<SideBySideLine>,
     /// The trace of the drawn pixel as a document.
     pub drawn: Value,
     /// The trace of the expected one.

@@ -17,7 +17,7 @@ use ninebit::plan::Plan;
 use ninebit::shown;
 use ninebit::state::Named;
 use ninebit_files::output::{Compression, OutputError, encode_png, write_below};
-use ninebit_report::{beside, beside_text, trace_text, trace_value};
+use ninebit_report::{side_by_side, side_by_side_text, trace_text, trace_value};
 use ninebit_scene as scene;
 use ninebit_scene::SceneError;
 use ninebit_scene::diff;
@@ -263,14 +263,14 @@ impl Subject<'_> {
         let other = found.and_then(|found| Some((found, engine::trace(&found.plan, self.target, at, None).ok()?)));
         Some(match other {
             Some((found, expected)) if found.plan.policies != self.plan.policies => {
-                let lines = beside(&expected, &drawn);
+                let lines = side_by_side(&expected, &drawn);
                 let parted = lines.iter().find(|line| line.differs());
                 let text = format!(
                     "pixel {},{}: as expected, and as it is drawn; `>` where they differ{}\n{}",
                     first.x,
                     first.y,
                     parted.map_or(String::new(), |line| format!(", first in {} ({})", line.name, line.rule)),
-                    beside_text(["expected", "drawn"], &lines)
+                    side_by_side_text(["expected", "drawn"], &lines)
                 );
                 Traces { text, lines, drawn: value, expected: Some(trace_value(&found.plan, &expected)) }
             }

@@ -7,7 +7,7 @@
 //! | `surfaces.rs` | one surface with more and more state |
 //! | `curves.rs` | how cost grows with pixels, draws, triangles and stages |
 //! | `timing.rs` | medians of frames |
-//! | `front.rs` | what nothing beats at both |
+//! | `pareto.rs` | what nothing beats at both |
 //! | `questions.rs` | which techniques mean the same picture, and what is asked about it |
 //! | `dots.rs`, `strip.rs` | what a chip pays for a light, and the pictures of all ways to it |
 //! | `picture.rs`, `labels.rs`, `canvas.rs` | drawings in both formats, and names that do not overlap |
@@ -22,9 +22,9 @@ pub mod curves;
 pub mod data;
 pub mod dots;
 pub mod evaluators;
-pub mod front;
 pub mod labels;
 pub mod page;
+pub mod pareto;
 pub mod picture;
 pub mod questions;
 pub mod report;

@@ -1,6 +1,6 @@
 //! Which methods mean the same picture: the lights of charts, and the questions that they answer.
 
-use super::front::front;
+use super::pareto::pareto_front;
 use super::techniques::Technique;
 
 /// A light that is asked for, and what is asked.
@@ -45,7 +45,7 @@ pub const QUESTIONS: [Question; 6] = [
 ];
 
 /// The most methods that a chart shows; the most exact ones of more.
-pub const MOST: usize = 12;
+pub const MAX_SHOWN: usize = 12;
 
 /// What some techniques all mean to show.
 #[derive(Clone, Debug)]
@@ -97,7 +97,7 @@ pub fn lights<'a>(techniques: &'a [Technique], title: impl Fn(&str) -> String) -
 impl<'a> Light<'a> {
     /// The ways that a chart shows.
     pub fn shown(&self) -> &[&'a Technique] {
-        &self.ways[..self.ways.len().min(MOST)]
+        &self.ways[..self.ways.len().min(MAX_SHOWN)]
     }
 
     /// Which of the shown ways nothing beats at all of error, passes, stages, fetches and blended pixels.
@@ -106,12 +106,12 @@ impl<'a> Light<'a> {
             let cost = &way.accuracy.cost.asked;
             [way.rms(), cost.passes as f64, cost.stages, cost.fetches, cost.blends]
         };
-        front(&self.shown().iter().map(point).collect::<Vec<_>>())
+        pareto_front(&self.shown().iter().map(point).collect::<Vec<_>>())
     }
 
     /// Which of the shown ways nothing beats at both error and time, from the fastest on.
     pub fn front_by_time(&self) -> Vec<usize> {
-        front(&self.shown().iter().map(|way| [way.time.median, way.rms()]).collect::<Vec<_>>())
+        pareto_front(&self.shown().iter().map(|way| [way.time.median, way.rms()]).collect::<Vec<_>>())
     }
 
     /// The way of that name.

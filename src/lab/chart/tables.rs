@@ -2,7 +2,7 @@
 
 use super::evaluators::Evaluator;
 use super::page::{number, table};
-use super::questions::{Light, MOST};
+use super::questions::{Light, MAX_SHOWN};
 use super::report::{FOLDER, Measured};
 use super::surfaces::SurfaceCost;
 use super::techniques::Technique;
@@ -21,7 +21,7 @@ impl Measured {
         let (name, title) = (&light.name, &light.title);
         let picture = |end: &str, what: &str| format!("![{title}: {what}]({FOLDER}/{name}-{end}.png)\n\n");
         let more = match light.ways.len() {
-            n if n > MOST => format!("The {MOST} most exact of {n} ways.\n\n"),
+            n if n > MAX_SHOWN => format!("The {MAX_SHOWN} most exact of {n} ways.\n\n"),
             _ => String::new(),
         };
         format!(

@@ -2,14 +2,14 @@
 
 use super::portable::pow;
 use super::strip::{WIDTH, byte, byte_texels, centre, draw, errors, largest, row, scene};
-use super::{Method, Scale, Sweep};
+use super::{Experiment, Method, Scale};
 
 /// Toward the middle of the highlight.
 const AXIS: [f64; 3] = [0.3, 0.1, 1.0];
 /// The directions end before the face does: what happens at its edges is another matter.
 const REACH: f64 = 0.8;
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |exponent: i32| Method {
         name: format!("exponent {exponent}"),
         measure: Box::new(move |side| {
@@ -19,7 +19,7 @@ pub(super) fn sweep() -> Sweep {
         works: 256.0,
         fails: 4.0,
     };
-    Sweep {
+    Experiment {
         name: "cube-resolution",
         title: "A highlight in a cube map",
         parameter: "texels along a face's side",

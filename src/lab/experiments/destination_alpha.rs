@@ -2,9 +2,9 @@
 
 use super::portable::pow;
 use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, scene, whole_row};
-use super::{Method, Scale, Sweep};
+use super::{Experiment, Method, Scale};
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, blend: &'static str, part: fn(f64, f64) -> f64| Method {
         name: name.to_owned(),
         measure: Box::new(move |passes| {
@@ -14,7 +14,7 @@ pub(super) fn sweep() -> Sweep {
         works: 1.0,
         fails: 128.0,
     };
-    Sweep {
+    Experiment {
         name: "destination-alpha",
         title: "A number gathered in destination alpha",
         parameter: "passes",

@@ -2,7 +2,7 @@
 
 use super::portable::{cos, sin};
 use super::strip::{WIDTH, byte, bytes, draw, errors, largest, row, scene};
-use super::{Method, Scale, Sweep};
+use super::{Experiment, Method, Scale};
 
 /// Texels of the height field, and of one wave of it.
 const TEXELS: usize = 64;
@@ -10,7 +10,7 @@ const WAVE: f64 = 16.0;
 /// Height of the waves, half of it above and half below the middle.
 const AMPLITUDE: f64 = 0.4;
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, back: f64| Method {
         name: name.to_owned(),
         measure: Box::new(move |offset| {
@@ -23,7 +23,7 @@ pub(super) fn sweep() -> Sweep {
         works: 1.0,
         fails: 7.0,
     };
-    Sweep {
+    Experiment {
         name: "emboss",
         title: "Embossing with offsets of several texels",
         parameter: "offset, texels",

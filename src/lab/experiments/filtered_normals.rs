@@ -2,7 +2,7 @@
 
 use super::portable::{cos, pow, sin};
 use super::strip::{WIDTH, colors, draw, errors, largest, row, scene};
-use super::{Method, Scale, Sweep, steps};
+use super::{Experiment, Method, Scale, steps};
 use ninebit_scene::generate::normal_map::encode;
 
 const DOT: &str = "(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true)), ";
@@ -13,7 +13,7 @@ const RENORMALISED: &str = "(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(Te
      (rgb: (a: SignedIdentity(Spare0), b: ExpandNormal(ConstantColor0), ab: Spare0, ab_dot: true)), ";
 const SQUARE: &str = "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ";
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, dot: &'static str, squarings: usize| Method {
         name: name.to_owned(),
         measure: Box::new(move |degrees: f64| {
@@ -28,7 +28,7 @@ pub(super) fn sweep() -> Sweep {
         works: 5.0,
         fails: 120.0,
     };
-    Sweep {
+    Experiment {
         name: "filtered-normals",
         title: "A highlight between two texels of a normal map",
         parameter: "angle between neighbouring normals, degrees",

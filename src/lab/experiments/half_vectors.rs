@@ -2,7 +2,7 @@
 
 use super::portable::{exp2, pow};
 use super::strip::{WIDTH, draw, errors, largest, scene};
-use super::{Method, Scale, Sweep};
+use super::{Experiment, Method, Scale};
 use std::fmt::Write;
 
 /// Where light and viewer stand over a floor, x and height.
@@ -11,7 +11,7 @@ const EYE: [f64; 2] = [-0.6, 1.0];
 /// log2 of the exponent.
 const SQUARINGS: usize = 3;
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, parts: usize| Method {
         name: name.to_owned(),
         measure: Box::new(move |extent| {
@@ -21,7 +21,7 @@ pub(super) fn sweep() -> Sweep {
         works: 0.1,
         fails: 8.0,
     };
-    Sweep {
+    Experiment {
         name: "half-vectors",
         title: "Half vectors of the vertices across triangles",
         parameter: "length of the floor, heights of the lamp",

@@ -2,7 +2,7 @@
 
 use super::portable::{cos, sin};
 use super::strip::{WIDTH, angle, centre, colors, draw, errors, largest, root_mean_square, scene, whole_row};
-use super::{Method, Scale, Sweep, steps};
+use super::{Experiment, Method, Scale, steps};
 use ninebit_scene::SceneError;
 use ninebit_scene::generate::normal_map::encode;
 
@@ -15,14 +15,14 @@ enum Shadow {
     Term,
 }
 
-pub(super) fn behind() -> Sweep {
+pub(super) fn behind() -> Experiment {
     let method = |name: &str, shadow: Shadow, works: f64| Method {
         name: name.to_owned(),
         measure: Box::new(move |elevation| Ok(largest(&light(elevation, 30.0, shadow)?.0))),
         works,
         fails: -15.0,
     };
-    Sweep {
+    Experiment {
         name: "light-behind",
         title: "A light that sinks below the surface",
         parameter: "height of the light, degrees",
@@ -37,7 +37,7 @@ pub(super) fn behind() -> Sweep {
     }
 }
 
-pub(super) fn grazing() -> Sweep {
+pub(super) fn grazing() -> Experiment {
     let method = |name: &str, bumps: f64| Method {
         name: name.to_owned(),
         measure: Box::new(move |elevation| {
@@ -47,7 +47,7 @@ pub(super) fn grazing() -> Sweep {
         works: 60.0,
         fails: 0.25,
     };
-    Sweep {
+    Experiment {
         name: "light-grazing",
         title: "A light that grazes the surface",
         parameter: "height of the light, degrees",

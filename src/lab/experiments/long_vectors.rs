@@ -3,13 +3,13 @@
 use super::order::pass;
 use super::portable::{cos, sin};
 use super::strip::{WIDTH, angle, byte, bytes, centre, colors, draw, errors, largest, scene, whole_row};
-use super::{Method, Scale, Sweep, steps};
+use super::{Experiment, Method, Scale, steps};
 use ninebit_scene::generate::normal_map::encode;
 
 /// The light stands in the middle of an octant.
 const THIRD: f64 = 0.577_350_269_189_625_8;
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, text: fn(f64) -> String| Method {
         name: name.to_owned(),
         measure: Box::new(move |length| {
@@ -21,7 +21,7 @@ pub(super) fn sweep() -> Sweep {
         works: 1.0,
         fails: 1.9,
     };
-    Sweep {
+    Experiment {
         name: "long-vectors",
         title: "Light vectors longer than one",
         parameter: "length of the light vector",

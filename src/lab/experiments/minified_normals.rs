@@ -2,7 +2,7 @@
 
 use super::portable::{cos, exp2, pow, sin};
 use super::strip::{angle, centre, colors, draw, errors, root_mean_square, row, scene};
-use super::{Method, Scale, Sweep};
+use super::{Experiment, Method, Scale};
 use ninebit_scene::generate::normal_map::encode;
 
 const PIXELS: usize = 256;
@@ -11,7 +11,7 @@ const TEXELS: usize = 512;
 /// Degrees by which normals lean at most.
 const TILT: f64 = 35.0;
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, squarings: u32, filter: &'static str| Method {
         name: name.to_owned(),
         measure: Box::new(move |texels| {
@@ -21,7 +21,7 @@ pub(super) fn sweep() -> Sweep {
         works: 1.0,
         fails: 12.0,
     };
-    Sweep {
+    Experiment {
         name: "minified-normals",
         title: "A highlight on bumps that get smaller",
         parameter: "texels a pixel",

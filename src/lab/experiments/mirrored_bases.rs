@@ -2,7 +2,7 @@
 
 use super::portable::{cos, sin};
 use super::strip::{WIDTH, colors, draw, errors, root_mean_square, scene};
-use super::{Method, Scale, Sweep, steps};
+use super::{Experiment, Method, Scale, steps};
 use ninebit_scene::generate::normal_map::encode;
 
 /// Toward the light: along the binormal and up.
@@ -13,7 +13,7 @@ const LEFT: &str = "(position: (-1, -1), normal: (0, 0, 1), t0: (1, 1)), (positi
 const RIGHT: &str = "(position: (0, -1), normal: (0, 0, 1), t0: (0, 1)), (position: (1, -1), normal: (0, 0, 1), t0: (1, 1)), \
      (position: (1, 1), normal: (0, 0, 1), t0: (1, 0)), (position: (0, 1), normal: (0, 0, 1), t0: (0, 0)), ";
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, vertices: fn() -> String| Method {
         name: name.to_owned(),
         measure: Box::new(move |degrees: f64| {
@@ -24,7 +24,7 @@ pub(super) fn sweep() -> Sweep {
         works: 0.05,
         fails: 45.0,
     };
-    Sweep {
+    Experiment {
         name: "mirrored-bases",
         title: "Tangent bases where a texture is mirrored",
         parameter: "tilt of the mapped normal, degrees",

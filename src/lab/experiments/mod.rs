@@ -1,6 +1,6 @@
 //! Where methods fail: the parameter that breaks each, and from which value on.
 //!
-//! A [`Sweep`] makes a small scene for every value of its parameter, draws it with the engine, and measures how far the picture is from a
+//! An [`Experiment`] makes a small scene for every value of its parameter, draws it with the engine, and measures how far the picture is from a
 //! formula in float64. [`threshold`] halves an interval, between a value at which a method works and one at which it fails, until the place
 //! is found. Nothing about the outcome is written down here: thresholds, curves and their page come from the model.
 #![allow(clippy::float_arithmetic, reason = "measures pictures against formulas; nothing of this is stored")]
@@ -59,7 +59,7 @@ pub enum Scale {
 
 /// A parameter that is moved until methods fail.
 #[derive(Debug)]
-pub struct Sweep {
+pub struct Experiment {
     /// Name of its files, and of its place in the page.
     pub name: &'static str,
     /// Above its picture.
@@ -122,9 +122,9 @@ impl Scale {
 /// Finds where a method's error crosses the limit, by halving the interval between where it works and where it fails.
 ///
 /// # Errors
-/// A scene of the sweep is not accepted: a fault of the sweep.
-pub fn threshold(sweep: &Sweep, method: &Method) -> Result<Threshold, Box<SceneError>> {
-    let works_at = |value: f64| Ok::<bool, Box<SceneError>>((method.measure)(value)? <= sweep.limit);
+/// A scene of the experiment is not accepted: a fault of the experiment.
+pub fn threshold(experiment: &Experiment, method: &Method) -> Result<Threshold, Box<SceneError>> {
+    let works_at = |value: f64| Ok::<bool, Box<SceneError>>((method.measure)(value)? <= experiment.limit);
     if !works_at(method.works)? {
         return Ok(Threshold::Fails);
     }
@@ -132,7 +132,7 @@ pub fn threshold(sweep: &Sweep, method: &Method) -> Result<Threshold, Box<SceneE
         return Ok(Threshold::Holds);
     }
     let (mut works, mut fails) = (method.works, method.fails);
-    while let Some(middle) = sweep.scale.between(works, fails) {
+    while let Some(middle) = experiment.scale.between(works, fails) {
         if works_at(middle)? {
             works = middle;
         } else {
@@ -142,23 +142,23 @@ pub fn threshold(sweep: &Sweep, method: &Method) -> Result<Threshold, Box<SceneE
     Ok(Threshold::Between { works, fails })
 }
 
-/// Every sweep, in the order of the page.
-pub fn sweeps() -> Vec<Sweep> {
+/// Every experiment, in the order of the page.
+pub fn experiments() -> Vec<Experiment> {
     vec![
-        squaring::sweep(),
-        power_table::sweep(),
-        subtraction::sweep(),
-        order::sweep(),
-        long_vectors::sweep(),
+        squaring::experiment(),
+        power_table::experiment(),
+        subtraction::experiment(),
+        order::experiment(),
+        long_vectors::experiment(),
         light::grazing(),
         light::behind(),
-        filtered_normals::sweep(),
-        minified_normals::sweep(),
-        cube_resolution::sweep(),
-        half_vectors::sweep(),
-        destination_alpha::sweep(),
-        emboss::sweep(),
-        mirrored_bases::sweep(),
+        filtered_normals::experiment(),
+        minified_normals::experiment(),
+        cube_resolution::experiment(),
+        half_vectors::experiment(),
+        destination_alpha::experiment(),
+        emboss::experiment(),
+        mirrored_bases::experiment(),
     ]
 }
 
@@ -172,8 +172,8 @@ fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {
 mod tests {
     use super::*;
 
-    fn sweep(scale: Scale, method: Method) -> Sweep {
-        Sweep {
+    fn experiment(scale: Scale, method: Method) -> Experiment {
+        Experiment {
             name: "",
             title: "",
             parameter: "",
@@ -187,8 +187,8 @@ mod tests {
 
     fn found(scale: Scale, works: f64, fails: f64, measure: fn(f64) -> f64) -> Threshold {
         let measure = Box::new(move |value| Ok(measure(value)));
-        let sweep = sweep(scale, Method { name: String::new(), measure, works, fails });
-        threshold(&sweep, &sweep.methods[0]).unwrap()
+        let experiment = experiment(scale, Method { name: String::new(), measure, works, fails });
+        threshold(&experiment, &experiment.methods[0]).unwrap()
     }
 
     #[test]

@@ -2,9 +2,9 @@
 
 use super::portable::{cos, sin};
 use super::strip::{WIDTH, angle, byte, bytes, centre, draw, errors, largest, scene, whole_row};
-use super::{Method, Scale, Sweep, steps};
+use super::{Experiment, Method, Scale, steps};
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, additions_first: bool| Method {
         name: name.to_owned(),
         measure: Box::new(move |tilt: f64| {
@@ -14,7 +14,7 @@ pub(super) fn sweep() -> Sweep {
         works: 0.0,
         fails: 45.0,
     };
-    Sweep {
+    Experiment {
         name: "order",
         title: "Passes of a signed dot product in two orders",
         parameter: "tilt of the light, degrees",

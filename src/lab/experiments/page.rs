@@ -1,8 +1,8 @@
-//! The page of the sweeps: prose of `page.md`, with what was measured in its places.
+//! The page of the experiments: prose of `page.md`, with what was measured in its places.
 
 use serde::Serialize;
 
-use super::{Sweep, Threshold, sweeps, threshold};
+use super::{Experiment, Threshold, experiments, threshold};
 use crate::chart::page::{File, comma_separated, fill, number, plain, table};
 use crate::chart::picture::{Axis, COLORS, Drawing, Join, Mark, Series, Shape};
 use ninebit_files::output::OutputError;
@@ -13,35 +13,35 @@ const TEMPLATE: &str = include_str!("page.md");
 /// The folder of the files, beside the page.
 const FOLDER: &str = "stability";
 
-/// What a sweep yielded.
+/// What an experiment yielded.
 #[derive(Debug)]
 pub struct Measured {
-    /// The sweep.
-    pub sweep: Sweep,
+    /// The experiment.
+    pub experiment: Experiment,
     /// The errors of each method at the values that are shown.
     pub curves: Vec<Vec<f64>>,
     /// Where each method stops working.
     pub thresholds: Vec<Threshold>,
 }
 
-/// Runs every sweep. `progress` is told how many of how many methods are done.
+/// Runs every experiment. `progress` is told how many of how many methods are done.
 ///
 /// # Errors
-/// A scene of a sweep is not accepted: a fault of the sweep.
+/// A scene of an experiment is not accepted: a fault of the experiment.
 pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<SceneError>> {
-    let sweeps = sweeps();
-    let total = sweeps.iter().map(|sweep| sweep.methods.len()).sum();
+    let experiments = experiments();
+    let total = experiments.iter().map(|experiment| experiment.methods.len()).sum();
     let mut done = 0;
-    let mut all = Vec::with_capacity(sweeps.len());
-    for sweep in sweeps {
+    let mut all = Vec::with_capacity(experiments.len());
+    for experiment in experiments {
         let (mut curves, mut thresholds) = (Vec::new(), Vec::new());
-        for method in &sweep.methods {
+        for method in &experiment.methods {
             progress(done, total);
-            curves.push(sweep.shown.iter().map(|value| (method.measure)(*value)).collect::<Result<_, _>>()?);
-            thresholds.push(threshold(&sweep, method)?);
+            curves.push(experiment.shown.iter().map(|value| (method.measure)(*value)).collect::<Result<_, _>>()?);
+            thresholds.push(threshold(&experiment, method)?);
             done += 1;
         }
-        all.push(Measured { sweep, curves, thresholds });
+        all.push(Measured { experiment, curves, thresholds });
     }
     progress(done, total);
     Ok(all)
@@ -54,16 +54,16 @@ pub fn measure(progress: &dyn Fn(usize, usize)) -> Result<Vec<Measured>, Box<Sce
 pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
     let (mut parts, mut files) = (Vec::new(), Vec::new());
     for measured in all {
-        let sweep = &measured.sweep;
-        let path = format!("{FOLDER}/{}.svg", sweep.name);
+        let experiment = &measured.experiment;
+        let path = format!("{FOLDER}/{}.svg", experiment.name);
         files.push(File::text(path.clone(), drawing(measured).draw()?.svg));
-        let text = format!("![{}]({path})\n\n{}", sweep.title, table(&measured.rows()));
-        parts.push((sweep.name.to_owned(), text));
-        parts.push((format!("{}.limit", sweep.name), plain(sweep.limit)));
-        for (n, (method, threshold)) in sweep.methods.iter().zip(&measured.thresholds).enumerate() {
+        let text = format!("![{}]({path})\n\n{}", experiment.title, table(&measured.rows()));
+        parts.push((experiment.name.to_owned(), text));
+        parts.push((format!("{}.limit", experiment.name), plain(experiment.limit)));
+        for (n, (method, threshold)) in experiment.methods.iter().zip(&measured.thresholds).enumerate() {
             let (works, fails) = threshold.ends(method);
-            parts.push((format!("{}.{n}.works", sweep.name), works.map_or("nowhere".to_owned(), plain)));
-            parts.push((format!("{}.{n}.fails", sweep.name), fails.map_or("nowhere".to_owned(), plain)));
+            parts.push((format!("{}.{n}.works", experiment.name), works.map_or("nowhere".to_owned(), plain)));
+            parts.push((format!("{}.{n}.fails", experiment.name), fails.map_or("nowhere".to_owned(), plain)));
         }
     }
     files.push(File::text(format!("{FOLDER}/curves.csv"), comma_separated(&curve_rows(all))));
@@ -78,10 +78,10 @@ pub fn files(all: &[Measured]) -> Result<(String, Vec<File>), OutputError> {
 impl Measured {
     /// The table of the thresholds.
     fn rows(&self) -> Vec<Vec<String>> {
-        let works = format!("{}: works at", self.sweep.parameter);
+        let works = format!("{}: works at", self.experiment.parameter);
         let heading = vec!["method".to_owned(), works, "fails at".to_owned()];
         let mut rows = vec![heading];
-        for (method, threshold) in self.sweep.methods.iter().zip(&self.thresholds) {
+        for (method, threshold) in self.experiment.methods.iter().zip(&self.thresholds) {
             let (works, fails) = threshold.ends(method);
             let works = works.map_or("nowhere".to_owned(), plain);
             rows.push(vec![method.name.clone(), works, fails.map_or("holds".to_owned(), plain)]);
@@ -92,10 +92,17 @@ impl Measured {
 
 fn curve_rows(all: &[Measured]) -> Vec<Vec<String>> {
     let mut rows = vec![["sweep", "method", "parameter", "value", "error", "unit"].map(str::to_owned).to_vec()];
-    for Measured { sweep, curves, .. } in all {
-        for (method, curve) in sweep.methods.iter().zip(curves) {
-            for (value, error) in sweep.shown.iter().zip(curve) {
-                let cells = [sweep.name, &method.name, sweep.parameter, &plain(*value), &number(*error), sweep.error];
+    for Measured { experiment, curves, .. } in all {
+        for (method, curve) in experiment.methods.iter().zip(curves) {
+            for (value, error) in experiment.shown.iter().zip(curve) {
+                let cells = [
+                    experiment.name,
+                    &method.name,
+                    experiment.parameter,
+                    &plain(*value),
+                    &number(*error),
+                    experiment.error,
+                ];
                 rows.push(cells.map(str::to_owned).to_vec());
             }
         }
@@ -103,41 +110,42 @@ fn curve_rows(all: &[Measured]) -> Vec<Vec<String>> {
     rows
 }
 
-/// The picture of a sweep.
+/// The picture of an experiment.
 pub fn drawing(measured: &Measured) -> Drawing {
-    let Measured { sweep, curves, .. } = measured;
-    let series = sweep.methods.iter().zip(curves).enumerate().map(|(n, (method, curve))| Series {
+    let Measured { experiment, curves, .. } = measured;
+    let series = experiment.methods.iter().zip(curves).enumerate().map(|(n, (method, curve))| Series {
         label: method.name.clone(),
         color: COLORS[n % COLORS.len()],
-        shape: if sweep.shown.len() <= 24 { Shape::ALL[n % Shape::ALL.len()] } else { Shape::None },
+        shape: if experiment.shown.len() <= 24 { Shape::ALL[n % Shape::ALL.len()] } else { Shape::None },
         join: Join::Solid,
-        marks: sweep.shown.iter().zip(curve).map(|(x, y)| Mark { x: *x, y: *y, name: String::new() }).collect(),
+        marks: experiment.shown.iter().zip(curve).map(|(x, y)| Mark { x: *x, y: *y, name: String::new() }).collect(),
     });
-    let errors = || curves.iter().flatten().copied().chain([sweep.limit]);
-    let wide = match sweep.shown[..] {
+    let errors = || curves.iter().flatten().copied().chain([experiment.limit]);
+    let wide = match experiment.shown[..] {
         [first, .., last] => first > 0.0 && last / first > 30.0,
         _ => false,
     };
-    let x = match sweep.shown[..] {
+    let x = match experiment.shown[..] {
         [low, .., high] if wide => {
-            Axis { label: sweep.parameter.to_owned(), low: low / 1.04, high: high * 1.04, logarithmic: true }
+            Axis { label: experiment.parameter.to_owned(), low: low / 1.04, high: high * 1.04, logarithmic: true }
         }
-        _ => Axis::linear(sweep.parameter, sweep.shown.iter().copied(), false),
+        _ => Axis::linear(experiment.parameter, experiment.shown.iter().copied(), false),
     };
     Drawing {
-        title: sweep.title.to_owned(),
+        title: experiment.title.to_owned(),
         x,
-        y: Axis::linear(sweep.error, errors(), true),
+        y: Axis::linear(experiment.error, errors(), true),
         series: series.collect(),
-        levels: vec![(sweep.limit, format!("limit {}", plain(sweep.limit)))],
+        levels: vec![(experiment.limit, format!("limit {}", plain(experiment.limit)))],
         size: [860.0, 380.0],
     }
 }
 
-/// A sweep for programs.
+/// An experiment for programs.
 #[derive(Serialize)]
 struct Record {
-    sweep: &'static str,
+    #[serde(rename = "sweep")]
+    experiment: &'static str,
     parameter: &'static str,
     error: &'static str,
     limit: f64,
@@ -155,11 +163,11 @@ struct MethodRecord {
 
 impl Record {
     fn of(measured: &Measured) -> Record {
-        let Sweep { name, parameter, error, limit, ref methods, .. } = measured.sweep;
+        let Experiment { name, parameter, error, limit, ref methods, .. } = measured.experiment;
         let methods = methods.iter().zip(&measured.thresholds).map(|(method, threshold)| {
             let (works, fails) = threshold.ends(method);
             MethodRecord { method: method.name.clone(), works, fails }
         });
-        Record { sweep: name, parameter, error, limit, methods: methods.collect() }
+        Record { experiment: name, parameter, error, limit, methods: methods.collect() }
     }
 }

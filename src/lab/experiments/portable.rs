@@ -1,4 +1,4 @@
-//! Sine, cosine, powers and logarithms of sweeps: one implementation, so that figures are the same bytes on every platform. The standard
+//! Sine, cosine, powers and logarithms of experiments: one implementation, so that figures are the same bytes on every platform. The standard
 //! library takes those of the system.
 
 pub(super) use libm::{cos, exp2, log2, pow, sin};
@@ -6,9 +6,9 @@ pub(super) use libm::{cos, exp2, log2, pow, sin};
 #[cfg(test)]
 #[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
-    /// What the standard library leaves to the platform occurs in no sweep.
+    /// What the standard library leaves to the platform occurs in no experiment.
     #[test]
-    fn no_sweep_asks_the_platform() {
+    fn no_experiment_asks_the_platform() {
         let methods = [
             "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "powf", "powi", "exp", "exp2", "ln",
             "log2", "log10",

@@ -2,14 +2,14 @@
 
 use super::portable::{exp2, pow};
 use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, row, scene};
-use super::{Method, Scale, Sweep};
+use super::{Experiment, Method, Scale};
 
 /// Pixels: more than the largest table has texels.
 const PIXELS: usize = 8 * WIDTH;
 /// The smallest cosine that is looked up; the steep end of a power is the other one.
 const FROM: f64 = 0.75;
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |texels: usize| Method {
         name: format!("{texels} texels, filtered"),
         measure: Box::new(move |exponent| {
@@ -19,7 +19,7 @@ pub(super) fn sweep() -> Sweep {
         works: 1.0,
         fails: 4096.0,
     };
-    Sweep {
+    Experiment {
         name: "power-table",
         title: "Highlight by a table of powers",
         parameter: "exponent",

@@ -2,7 +2,7 @@
 
 use super::portable::{cos, log2, pow, sin};
 use super::strip::{self, WIDTH, angle, colors, draw, errors, largest, scene, whole_row};
-use super::{Method, Scale, Sweep};
+use super::{Experiment, Method, Scale};
 use ninebit_scene::generate::normal_map::encode;
 
 /// Pixels: several for each byte of the dot product.
@@ -10,14 +10,14 @@ const PIXELS: usize = 4 * WIDTH;
 /// Degrees of the normals at the ends.
 const TILT: f64 = 50.0;
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, of: fn(&[[u8; 4]], f64) -> f64| Method {
         name: name.to_owned(),
         measure: Box::new(move |exponent| Ok(of(&draw(&text(log2(exponent).round() as usize))?, exponent))),
         works: 2.0,
         fails: 128.0,
     };
-    Sweep {
+    Experiment {
         name: "squaring",
         title: "Highlight by repeated squaring",
         parameter: "exponent",

@@ -1,4 +1,4 @@
-//! What the scenes of sweeps are made of: strips of pixels, rows of texels, and the errors of what is drawn.
+//! What the scenes of experiments are made of: strips of pixels, rows of texels, and the errors of what is drawn.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -13,7 +13,7 @@ pub(super) const WIDTH: usize = 256;
 
 /// Draws a scene; R, G, B, A of its first target.
 pub(super) fn draw(text: &str) -> Result<Vec<[u8; 4]>, Box<SceneError>> {
-    let loaded = parse(text, Path::new("sweep.ron"), &Limits::default())?;
+    let loaded = parse(text, Path::new("experiment.ron"), &Limits::default())?;
     let frames = render(&loaded.plan, &RenderOptions::default());
     Ok(frames.surfaces.first().map(ninebit::frame::Surface::rgba8).unwrap_or_default())
 }

@@ -1,16 +1,16 @@
 //! Subtracting a pass without a subtracting blend: a (1 - b) in place of a - b.
 
 use super::strip::{WIDTH, bytes, draw, scene, whole_row};
-use super::{Method, Scale, Sweep, steps};
+use super::{Experiment, Method, Scale, steps};
 
-pub(super) fn sweep() -> Sweep {
+pub(super) fn experiment() -> Experiment {
     let method = |name: &str, blend: &'static str| Method {
         name: name.to_owned(),
         measure: Box::new(move |gap| error(gap as u8, blend)),
         works: 255.0,
         fails: 0.0,
     };
-    Sweep {
+    Experiment {
         name: "subtraction",
         title: "Approximate subtraction of a pass",
         parameter: "a - b, 8-bit steps",

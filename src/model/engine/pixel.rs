@@ -132,8 +132,8 @@ impl<'a> TriangleContext<'a> {
         if bottom <= rows.0.max(top) || top >= rows.1 {
             return false;
         }
-        let w = corners.map(|c| c.w);
-        if !self.triangle.set(x, y, w, draw.perspective, plan.profile) {
+        let (left, right) = centres(x);
+        if left >= right || !self.triangle.place(x, y) {
             return false;
         }
         let front = self.triangle.counter_clockwise == (draw.front_face == FrontFace::CounterClockwise);
@@ -142,6 +142,8 @@ impl<'a> TriangleContext<'a> {
             Cull::Back if !front => return false,
             Cull::None | Cull::Front | Cull::Back => {}
         }
+        // Half of a closed mesh does not get here.
+        self.triangle.weigh(corners.map(|c| c.w), draw.perspective, plan.profile);
         (self.number, self.complete) = (number, false);
         let colored = match draw.shade_model {
             ShadeModel::Smooth => corners,

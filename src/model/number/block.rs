@@ -21,26 +21,26 @@ impl Blend for u16 {
 
 /// Two 8-bit channels in one word, 16 bits apart: one multiplication serves both. The range of `u16` holds for each, so no carry crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Two(pub u32);
+pub struct Swar2(pub u32);
 
-impl Add for Two {
-    type Output = Two;
+impl Add for Swar2 {
+    type Output = Swar2;
     #[inline(always)]
-    fn add(self, other: Two) -> Two {
-        Two(self.0 + other.0)
+    fn add(self, other: Swar2) -> Swar2 {
+        Swar2(self.0 + other.0)
     }
 }
 
-impl Blend for Two {
+impl Blend for Swar2 {
     type Weight = u32;
     const WHOLE: u32 = 256;
     #[inline(always)]
-    fn times(self, weight: u32) -> Two {
-        Two(self.0 * weight)
+    fn times(self, weight: u32) -> Swar2 {
+        Swar2(self.0 * weight)
     }
     #[inline(always)]
-    fn round8(self) -> Two {
-        Two((self.0 + 0x0080_0080) >> 8 & 0x00ff_00ff)
+    fn round8(self) -> Swar2 {
+        Swar2((self.0 + 0x0080_0080) >> 8 & 0x00ff_00ff)
     }
 }
 
@@ -222,12 +222,12 @@ mod tests {
     /// Every pair of bytes and every weight in one half, their complements in the other.
     #[test]
     fn two_channels_do_not_meet() {
-        let step = |a: Two, b: Two, w: u32| (a.times(Two::WHOLE - w) + b.times(w)).round8();
+        let step = |a: Swar2, b: Swar2, w: u32| (a.times(Swar2::WHOLE - w) + b.times(w)).round8();
         let one = |a: u32, b: u32, w: u32| (a * (256 - w) + b * w + 128) >> 8;
         for w in 0..=256 {
             for a in 0..=255 {
                 for b in 0..=255 {
-                    let (low, high) = (Two(a | (255 - a) << 16), Two(b | (255 - b) << 16));
+                    let (low, high) = (Swar2(a | (255 - a) << 16), Swar2(b | (255 - b) << 16));
                     assert_eq!(step(low, high, w).0, one(a, b, w) | one(255 - a, 255 - b, w) << 16);
                 }
             }

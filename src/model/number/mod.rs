@@ -12,8 +12,8 @@
 //! | [`Paired`] of [`IdealTracks`] | the definition and several ideals, which tell the errors of the rules apart | comparisons |
 //! | `i16`, `u16` | the definition in 16 bits, for loops over blocks of pixels | the fast engine |
 //! | [`Narrow`] | `i16` whose expanded products stay in 16 bits | the fast engine |
-//! | [`Each`] of `i32` | sixteen of the definition side by side | sweeps of vectors |
-//! | [`Two`] | two 8-bit channels in one word | the fast engine's filter |
+//! | [`Lanes16`] of `i32` | sixteen of the definition side by side | sweeps of vectors |
+//! | [`Swar2`] | two 8-bit channels in one word | the fast engine's filter |
 //!
 //! All lanes count in steps of 1/255 (NUM-1): 1.0 is 255.
 
@@ -45,17 +45,17 @@ macro_rules! componentwise {
 
 mod block;
 pub mod convert;
-mod each;
 mod ideal_tracks;
+mod lanes16;
 pub mod light;
 mod paired;
 mod part;
 mod real;
 mod scalar;
 
-pub use block::{Halved, Narrow, Quarter, Two, byte_product};
-pub use each::{EACH, Each};
+pub use block::{Halved, Narrow, Quarter, Swar2, byte_product};
 pub use ideal_tracks::{IDEAL_TRACKS, IdealTracks};
+pub use lanes16::{LANES, Lanes16};
 pub use paired::{Paired, PairedFactor, PairedSum};
 pub use part::Part;
 pub use scalar::{Halves, Quarters};

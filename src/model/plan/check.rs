@@ -18,7 +18,7 @@ use crate::state::{
 };
 
 /// At most this many errors of one kind of thing: the rest would say the same.
-const MOST_ERRORS: usize = 8;
+const MAX_ERRORS: usize = 8;
 
 /// Everything that is wrong with a scene, but for where its vertices lie.
 pub(super) fn check(scene: &Scene, limits: &Limits) -> Vec<PlanError> {
@@ -28,7 +28,7 @@ pub(super) fn check(scene: &Scene, limits: &Limits) -> Vec<PlanError> {
     check.palettes();
     check.textures();
     for (index, draw) in scene.draws.iter().enumerate() {
-        if check.errors.len() >= MOST_ERRORS {
+        if check.errors.len() >= MAX_ERRORS {
             break;
         }
         check.draw = Some(index);
@@ -161,7 +161,7 @@ impl Check<'_> {
 
     fn textures(&mut self) {
         for texture in &self.scene.textures {
-            if self.errors.len() >= MOST_ERRORS {
+            if self.errors.len() >= MAX_ERRORS {
                 return;
             }
             let name = &texture.name;
@@ -366,7 +366,7 @@ impl Check<'_> {
     fn combiners(&mut self, draw: &Draw) {
         let checked = legality::check(&draw.combiners, self.scene.profile, &Places::default(), &Words);
         for finding in
-            checked.findings.into_iter().filter(|finding| finding.severity == Severity::Error).take(MOST_ERRORS)
+            checked.findings.into_iter().filter(|finding| finding.severity == Severity::Error).take(MAX_ERRORS)
         {
             self.refuse(finding.rule, finding.message, finding.help.unwrap_or_default());
         }

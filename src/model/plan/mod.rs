@@ -286,7 +286,7 @@ pub fn texture_size(scene: &Scene, texture: usize) -> (u32, u32) {
 
 /// RAS-0 for texture coordinates: finite, and at most 65536 texels where q is 1 and they do not give a direction.
 fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<PlanError>) {
-    const MOST_ERRORS: usize = 8;
+    const MAX_ERRORS: usize = 8;
     let mut found = 0;
     let moves = |stage: &ShaderStage| matches!(stage.operation, ShaderOperation::BumpEnvironment { .. });
     for (unit, stage) in draw.textures.iter().zip(&draw.texture_shader) {
@@ -314,7 +314,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                 }
                 _ => false,
             };
-            if turns && finite && set[3] != 1.0 && found < MOST_ERRORS {
+            if turns && finite && set[3] != 1.0 && found < MAX_ERRORS {
                 found += 1;
                 errors.push(PlanError {
                     draw: Some(index),
@@ -326,7 +326,7 @@ fn check_coordinates(scene: &Scene, index: usize, draw: &Draw, errors: &mut Vec<
                     help: "what comes out of projected coordinates is not known: take q = 1".to_string(),
                 });
             }
-            if outside && found < MOST_ERRORS {
+            if outside && found < MAX_ERRORS {
                 found += 1;
                 let what = match texture {
                     Some((Texture { kind: TextureKind::TwoDimensional, name, .. }, (width, height))) if finite => {

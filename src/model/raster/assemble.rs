@@ -85,7 +85,7 @@ pub struct PositionError {
 }
 
 /// At most this many errors are reported for a draw.
-const MOST_ERRORS: usize = 8;
+const MAX_ERRORS: usize = 8;
 
 /// Forms the triangles of a draw.
 ///
@@ -133,7 +133,7 @@ fn finish(
         if errors.iter().all(|error| error.vertex != vertex) {
             errors.push(PositionError { vertex, window: vertices.position(v) });
         }
-        if errors.len() == MOST_ERRORS {
+        if errors.len() == MAX_ERRORS {
             break;
         }
     }

@@ -42,12 +42,17 @@ impl Triangle {
     pub fn new(positions: [[f32; 4]; 3], perspective: bool, profile: Profile) -> Option<Triangle> {
         let (x, y) = (positions.map(|p| snap(p[0])), positions.map(|p| snap(p[1])));
         let mut triangle = Triangle::default();
-        triangle.set(x, y, positions.map(|p| p[3]), perspective, profile).then_some(triangle)
+        if !triangle.place(x, y) {
+            return None;
+        }
+        triangle.weigh(positions.map(|p| p[3]), perspective, profile);
+        Some(triangle)
     }
 
-    /// Becomes the triangle of these x and y after RAS-1, 1/16 pixel, and w. `false`, and worth nothing: zero area.
+    /// Becomes the triangle of these x and y after RAS-1, 1/16 pixel, but for what [depends on w](Self::weigh). `false`, and worth nothing: zero
+    /// area.
     #[inline(always)]
-    pub fn set(&mut self, x: [i64; 3], y: [i64; 3], w: [f32; 3], perspective: bool, profile: Profile) -> bool {
+    pub fn place(&mut self, x: [i64; 3], y: [i64; 3]) -> bool {
         debug_assert!(x.iter().chain(&y).all(|n| n.abs() < GUARD));
         let (mut a, mut b, mut c) = ([0; 3], [0; 3], [0; 3]);
         let mut area = 0;
@@ -67,15 +72,20 @@ impl Triangle {
             // RAS-2: from 1/16 pixel to the centre (16 i + 8, 16 j + 8) of pixel (i, j).
             (self.a[k], self.b[k], self.c[k]) = (16 * da, 16 * db, dc + 8 * da + 8 * db);
         }
-        let w = if profile == Profile::Nv10 { [w_16_bits(w[0]), w_16_bits(w[1]), w_16_bits(w[2])] } else { w };
-        self.p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
         self.doubled_area = area.abs();
         (self.rows, self.columns) = (centres(y), centres(x));
         // y points down, so a positive area turns clockwise for the viewer.
         self.counter_clockwise = area < 0;
+        true
+    }
+
+    /// Sets what depends on the w of its vertices.
+    #[inline(always)]
+    pub fn weigh(&mut self, w: [f32; 3], perspective: bool, profile: Profile) {
+        let w = if profile == Profile::Nv10 { [w_16_bits(w[0]), w_16_bits(w[1]), w_16_bits(w[2])] } else { w };
+        self.p = if perspective { perspective_weights(w) } else { [1 << (PERSPECTIVE_BITS - 1); 3] };
         let equal = w[0] == w[1] && w[1] == w[2];
         self.exact_reciprocal = self.doubled_area.count_ones() == 1 && (!perspective || equal);
-        true
     }
 
     /// The three edge functions at the centre of pixel (i, j).

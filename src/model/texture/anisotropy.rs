@@ -3,7 +3,7 @@
 use super::lod::Quad;
 
 /// Most taps of a footprint.
-pub const MOST_TAPS: usize = 8;
+pub const MAX_TAPS: usize = 8;
 
 /// One level-0 texel in the coordinates of a [`Quad`].
 const TEXEL: u32 = 65536;
@@ -11,17 +11,17 @@ const TEXEL: u32 = 65536;
 /// Taps of a footprint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Taps<Offset, Weight> {
-    /// How many, 1 to [`MOST_TAPS`].
+    /// How many, 1 to [`MAX_TAPS`].
     pub count: usize,
     /// Where they lie from the pixel's coordinates, u and v in 1/256 texel.
-    pub offsets: [[Offset; 2]; MOST_TAPS],
+    pub offsets: [[Offset; 2]; MAX_TAPS],
     /// What they weigh, 256 together.
-    pub weights: [Weight; MOST_TAPS],
+    pub weights: [Weight; MAX_TAPS],
 }
 
 impl Taps<i64, i32> {
     /// One tap, where the pixel is.
-    const ONE: Self = Taps { count: 1, offsets: [[0; 2]; MOST_TAPS], weights: [256, 0, 0, 0, 0, 0, 0, 0] };
+    const ONE: Self = Taps { count: 1, offsets: [[0; 2]; MAX_TAPS], weights: [256, 0, 0, 0, 0, 0, 0, 0] };
 }
 
 /// The taps of a quad's footprint, whose longer side counts as at most `limit` times the shorter one. `None`: a pixel of the quad lies behind the
@@ -60,7 +60,7 @@ macro_rules! taps_in {
             let step = if pairs == 1 { long - width } else { width };
             // To nearest; what the outermost two weigh is not negative.
             let inner = ((512 * width / long).div_ceil(2) as i32).min(128 / (pairs as i32 - 1).max(1));
-            let mut taps = Taps { count: 2 * pairs, weights: [0; MOST_TAPS], ..Taps::ONE };
+            let mut taps = Taps { count: 2 * pairs, weights: [0; MAX_TAPS], ..Taps::ONE };
             for pair in 0..pairs {
                 let reach = ((2 * pair as $signed + 1) * step as $signed, 2 * long as $signed);
                 let offset = axis.map(|n| (n * reach.0 / reach.1 / 256) as i64);
@@ -79,7 +79,7 @@ taps_in!(taps_of_far, i128, u128);
 /// The same of real numbers: s and t at the quad, sides in texels.
 #[allow(clippy::float_arithmetic, reason = "the ideal's footprint")]
 pub fn real_taps(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2], limit: u32) -> Taps<f64, f64> {
-    let mut taps = Taps { count: 1, offsets: [[0.0; 2]; MOST_TAPS], weights: [0.0; MOST_TAPS] };
+    let mut taps = Taps { count: 1, offsets: [[0.0; 2]; MAX_TAPS], weights: [0.0; MAX_TAPS] };
     taps.weights[0] = 256.0;
     let Some([origin, right, lower]) = quad else { return taps };
     let along = |to: [f64; 2]| [0, 1].map(|n| (to[n] - origin[n]) * f64::from(sides[n]));
@@ -91,7 +91,7 @@ pub fn real_taps(quad: Option<[[f64; 2]; 3]>, sides: [u32; 2], limit: u32) -> Ta
     if long.is_nan() || long <= width {
         return taps;
     }
-    let pairs = ((long / (2.0 * width)).ceil() as usize).clamp(1, MOST_TAPS / 2);
+    let pairs = ((long / (2.0 * width)).ceil() as usize).clamp(1, MAX_TAPS / 2);
     let step = if pairs == 1 { long - width } else { width };
     let inner = 256.0 * width / long;
     taps.count = 2 * pairs;

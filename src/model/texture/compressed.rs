@@ -7,7 +7,7 @@ use super::format::{replicate5, replicate6};
 use crate::state::TextureFormat;
 
 /// Largest value of red, green and blue in a block's end points.
-const MOST: [i32; 3] = [31, 63, 31];
+const MAX_CHANNELS: [i32; 3] = [31, 63, 31];
 
 /// TEX-3: what is added to red before it is cut to five bits, by row and column of the texel. Blue takes the rows upside down.
 const DITHER_5: [[i32; 4]; 4] = [[0, 4, 7, 3], [6, 2, 5, 1], [3, 7, 4, 0], [1, 5, 2, 6]];
@@ -105,7 +105,7 @@ impl Mix {
     /// These bytes with alpha 255, beside the mix as real numbers.
     #[inline]
     fn opaque(&self, [r, g, b]: [i32; 3]) -> Decoded {
-        let ideal = |n: usize| (self.a * self.first[n] + self.b * self.second[n], (self.a + self.b) * MOST[n]);
+        let ideal = |n: usize| (self.a * self.first[n] + self.b * self.second[n], (self.a + self.b) * MAX_CHANNELS[n]);
         Decoded { bytes: [r as u8, g as u8, b as u8, 255], ideal: [ideal(0), ideal(1), ideal(2), (1, 1)] }
     }
 }

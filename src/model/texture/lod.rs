@@ -82,10 +82,8 @@ impl Choice {
 }
 
 /// TEX-9: bias, then the limits.
-#[inline(always)]
 pub fn biased(unit: &PlannedUnit, log2_ratio: i32) -> i32 {
-    let state = &unit.state;
-    (log2_ratio + state.lod_bias).max(state.min_lod).min(state.max_lod)
+    Selection::of(unit).biased(log2_ratio)
 }
 
 /// TEX-9: filter and levels for a lod in 1/256.
@@ -100,14 +98,49 @@ pub fn choose(unit: &PlannedUnit, lod: i32) -> Choice {
 }
 
 /// TEX-9: the level, the one that is mixed in, which may be the same, and its weight, 0..=255, for a lod that is not negative.
-#[inline(always)]
 pub fn levels(unit: &PlannedUnit, lod: i32) -> (i32, i32, i32) {
-    let last = unit.levels.len() as i32 - 1;
-    let nearest = ((lod + 128) >> 8).min(last);
-    match unit.state.mip_filter {
-        MipFilter::None => (0, 0, 0),
-        MipFilter::Nearest => (nearest, nearest, 0),
-        MipFilter::Linear => ((lod >> 8).min(last), ((lod >> 8) + 1).min(last), lod & 255),
+    Selection::of(unit).levels(lod)
+}
+
+/// What of a unit selects levels, as numbers: a loop over lanes that compares or branches by a filter would not become one over vectors.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Selection {
+    bias: i32,
+    min_lod: i32,
+    max_lod: i32,
+    /// The last level.
+    last: i32,
+    /// What is added to a lod before its fraction is cut off.
+    rounding: i32,
+    /// By how many levels what is mixed in lies further.
+    step: i32,
+    /// The bits of a lod that make the weight.
+    fraction: i32,
+}
+
+impl Selection {
+    pub(crate) fn of(unit: &PlannedUnit) -> Selection {
+        let (state, last) = (&unit.state, unit.levels.len() as i32 - 1);
+        let (last, rounding, step, fraction) = match state.mip_filter {
+            MipFilter::None => (0, 0, 0, 0),
+            MipFilter::Nearest => (last, 128, 0, 0),
+            MipFilter::Linear => (last, 0, 1, 255),
+        };
+        let (bias, min_lod, max_lod) = (state.lod_bias, state.min_lod, state.max_lod);
+        Selection { bias, min_lod, max_lod, last, rounding, step, fraction }
+    }
+
+    /// [`biased`].
+    #[inline(always)]
+    pub(crate) fn biased(self, log2_ratio: i32) -> i32 {
+        (log2_ratio + self.bias).max(self.min_lod).min(self.max_lod)
+    }
+
+    /// [`levels`].
+    #[inline(always)]
+    pub(crate) fn levels(self, lod: i32) -> (i32, i32, i32) {
+        let level = (lod + self.rounding) >> 8;
+        (level.min(self.last), (level + self.step).min(self.last), lod & self.fraction)
     }
 }
 

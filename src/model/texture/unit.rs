@@ -1,7 +1,7 @@
 //! One texture unit: place, level, address, fetch, filter, register.
 
 use super::address::address;
-use super::anisotropy::{self, MOST_TAPS};
+use super::anisotropy::{self, MAX_TAPS};
 use super::color_key;
 use super::cube::Face;
 use super::fetch::{Slice, Texel, lanes};
@@ -201,7 +201,7 @@ fn taps<L: Lane, O: Observer>(
     (coordinates, wanted): ([i64; 2], [f64; 2]),
     observer: &mut O,
 ) -> [L; 4] {
-    const PREFIXES: [&str; MOST_TAPS] = ["tap0.", "tap1.", "tap2.", "tap3.", "tap4.", "tap5.", "tap6.", "tap7."];
+    const PREFIXES: [&str; MAX_TAPS] = ["tap0.", "tap1.", "tap2.", "tap3.", "tap4.", "tap5.", "tap6.", "tap7."];
     let unit = slice.unit;
     let limit = unit.state.anisotropy;
     let quad = place.quad();

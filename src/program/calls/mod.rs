@@ -16,7 +16,7 @@ use ninebit::diagnostic::{Diagnostic, shorten};
 pub(super) use value::{Part, PartKind, Value, integer, known, one, out_of_range, without_prefix, wrong_kind};
 
 /// Findings beyond this many are not gathered.
-const MOST_FINDINGS: usize = 32;
+const MAX_FINDINGS: usize = 32;
 
 /// What a language reads of a text.
 #[derive(Debug)]
@@ -113,7 +113,7 @@ impl<'t> Reader<'t> {
 
     /// The next statement that is read; `None` at the end.
     pub(super) fn next(&mut self) -> Option<Statement<'t>> {
-        while !self.cursor.is_done() && self.findings.len() < MOST_FINDINGS {
+        while !self.cursor.is_done() && self.findings.len() < MAX_FINDINGS {
             if self.cursor.at < self.until {
                 if !self.is_call(self.cursor.at) {
                     self.cursor.advance();
@@ -138,7 +138,7 @@ impl<'t> Reader<'t> {
 
     /// Notes something that is no part of the program, once for each name.
     pub(super) fn pass(&mut self, place: Range<usize>, name: &'t str, message: &str, label: &str, help: &str) {
-        if self.asides.len() >= MOST_FINDINGS || self.passed.contains(&name) {
+        if self.asides.len() >= MAX_FINDINGS || self.passed.contains(&name) {
             return;
         }
         self.passed.push(name);

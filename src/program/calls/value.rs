@@ -8,7 +8,7 @@ use crate::spelling::closest;
 use ninebit::diagnostic::{Diagnostic, shorten};
 
 /// Brackets and casts around one value.
-const MOST_BRACKETS: usize = 8;
+const MAX_BRACKET_DEPTH: usize = 8;
 
 /// One part of a value.
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ impl<'t> Reader<'t> {
     }
 
     fn part(&mut self, parts: &mut Vec<Part<'t>>, depth: usize) -> Option<()> {
-        if depth > MOST_BRACKETS {
+        if depth > MAX_BRACKET_DEPTH {
             self.expected("a value in fewer brackets");
             return None;
         }

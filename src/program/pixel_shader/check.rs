@@ -6,10 +6,10 @@ use super::*;
 use crate::finding::finding;
 
 /// Arithmetic instructions, or pairs of them, that a shader can have.
-const MOST_ARITHMETIC: usize = 8;
+const MAX_ARITHMETIC_SLOTS: usize = 8;
 
 /// Findings beyond this many are not gathered.
-const MOST_FINDINGS: usize = 64;
+const MAX_FINDINGS: usize = 64;
 
 /// Holds a shader against the rules.
 pub(super) fn check(program: &PixelShader) -> Vec<Diagnostic> {
@@ -28,7 +28,7 @@ pub(super) fn check(program: &PixelShader) -> Vec<Diagnostic> {
         }
     }
     check.result();
-    check.findings.truncate(MOST_FINDINGS);
+    check.findings.truncate(MAX_FINDINGS);
     check.findings
 }
 
@@ -209,8 +209,8 @@ impl Check<'_> {
 
     fn count(&mut self) {
         let slots = self.program.slots().count();
-        if let Some(slot) = self.program.slots().nth(MOST_ARITHMETIC).and_then(<[Arithmetic]>::first) {
-            let message = format!("{slots} arithmetic instructions; ps.1.1 has {MOST_ARITHMETIC}");
+        if let Some(slot) = self.program.slots().nth(MAX_ARITHMETIC_SLOTS).and_then(<[Arithmetic]>::first) {
+            let message = format!("{slots} arithmetic instructions; ps.1.1 has {MAX_ARITHMETIC_SLOTS}");
             let help =
                 "a colour and an alpha instruction count as one if paired by `+`; or draw in two passes with `blend`";
             self.push("NB0374", &slot.place, message, "the first too many", help);

@@ -11,7 +11,7 @@ use crate::spelling::closest;
 use ninebit::diagnostic::shorten;
 
 /// Findings beyond this many are not gathered.
-const MOST_FINDINGS: usize = 32;
+const MAX_FINDINGS: usize = 32;
 
 /// Reads the notation alone.
 pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
@@ -21,7 +21,7 @@ pub(super) fn read(text: &str) -> (PixelShader, Vec<Diagnostic>) {
     if let Some(place) = header(text) {
         parser.findings.push(foreign(text, place, "NB0370", "a pixel shader begins with `ps.1.1`"));
     } else if parser.version().is_some() {
-        while !parser.cursor.is_done() && parser.findings.len() < MOST_FINDINGS {
+        while !parser.cursor.is_done() && parser.findings.len() < MAX_FINDINGS {
             if parser.instruction().is_none() {
                 parser.recover();
             }

@@ -17,7 +17,7 @@ use ninebit::number::convert::constant;
 use ninebit::state::{Combiners, Component, FinalRegister, GeneralStage, MuxSelect, Portion};
 
 /// Findings beyond this many are not looked for.
-const MOST_FINDINGS: usize = 64;
+const MAX_FINDINGS: usize = 64;
 
 /// A register as an input names it.
 pub(super) struct Source {
@@ -69,7 +69,7 @@ impl<'t> Parser<'t> {
         let mut stages: Vec<(GeneralStage, [Written; 2])> = Vec::new();
         let mut mux: Option<Range<usize>> = None;
         let mut last = Final::default();
-        while self.cursor.kind().is_some() && self.findings.len() < MOST_FINDINGS {
+        while self.cursor.kind().is_some() && self.findings.len() < MAX_FINDINGS {
             let outcome = match self.cursor.word() {
                 _ if self.cursor.is('{') => self.stage(&mut stages),
                 "const0" => self.constant(&mut shared[0]),
@@ -134,7 +134,7 @@ impl<'t> Parser<'t> {
         self.places.set(Place::Stage(index), opening.clone());
         let mut own: [Written; 2] = [None, None];
         let mut portions: [Option<(Portion, Range<usize>)>; 2] = [None, None];
-        while !self.cursor.is('}') && self.findings.len() < MOST_FINDINGS {
+        while !self.cursor.is('}') && self.findings.len() < MAX_FINDINGS {
             if self.cursor.kind().is_none() {
                 return Err(self.unclosed(opening));
             }
@@ -175,7 +175,7 @@ impl<'t> Parser<'t> {
         let opening = self.cursor.place();
         self.sign('{')?;
         let mut reader = PortionReader::new(stage, alpha);
-        while !self.cursor.is('}') && self.findings.len() < MOST_FINDINGS {
+        while !self.cursor.is('}') && self.findings.len() < MAX_FINDINGS {
             if self.cursor.kind().is_none() {
                 return Err(self.unclosed(opening));
             }

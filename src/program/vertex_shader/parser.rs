@@ -12,10 +12,10 @@ use ninebit::diagnostic::{Diagnostic, shorten};
 use ninebit::vertex::shader::{Instruction, Opcode, SourceRegister, VertexShader};
 
 /// Findings beyond this many are not looked for.
-const MOST_FINDINGS: usize = 64;
+const MAX_FINDINGS: usize = 64;
 
 /// Instructions beyond this many are not read; no program so long is legal.
-const MOST_INSTRUCTIONS: usize = 1024;
+const MAX_INSTRUCTIONS: usize = 1024;
 
 /// What is known while a program is read.
 pub(super) struct Parser<'t> {
@@ -53,8 +53,8 @@ pub(super) fn lines(text: &str) -> (Written, Vec<Diagnostic>) {
         return (parser.written, parser.findings);
     }
     while !parser.cursor.is_done()
-        && parser.findings.len() < MOST_FINDINGS
-        && parser.written.shader.instructions.len() < MOST_INSTRUCTIONS
+        && parser.findings.len() < MAX_FINDINGS
+        && parser.written.shader.instructions.len() < MAX_INSTRUCTIONS
     {
         parser.start = parser.cursor.at;
         let _given_up = parser.line().is_err();

@@ -4,7 +4,7 @@ use super::*;
 use ninebit::state::{AddressMode, LARGEST_VOLUME, MipFilter, ShadowReference};
 
 /// The largest of an unsigned 4.8: limits and biases of the lod (TEX-9).
-const MOST_LOD: f32 = 4095.0 / 256.0;
+const MAX_LOD: f32 = 4095.0 / 256.0;
 
 source! {
     struct ColorKey "colour key" {
@@ -96,10 +96,10 @@ source! {
         /// `(red, green, blue, alpha)`: channels read as two's complement (TEX-18; Nv2a)
         signed: Tuple<'a, bool> [flags "four", help(super::scene::CHANNELS)] = [false; 4],
         /// added to the lod, cut to 1/256 toward zero
-        lod_bias: f32 [in -16.0..=MOST_LOD, "a lod bias", rule("TEX-9")] = 0.0,
+        lod_bias: f32 [in -16.0..=MAX_LOD, "a lod bias", rule("TEX-9")] = 0.0,
         /// limits of the lod; with a `min_lod` above 0 nothing is magnified
-        min_lod: f32 [in 0.0..=MOST_LOD, "a least lod", rule("TEX-9")] = 0.0,
-        max_lod: f32 [in 0.0..=MOST_LOD, "a greatest lod", rule("TEX-9")] = MOST_LOD,
+        min_lod: f32 [in 0.0..=MAX_LOD, "a least lod", rule("TEX-9")] = 0.0,
+        max_lod: f32 [in 0.0..=MAX_LOD, "a greatest lod", rule("TEX-9")] = MAX_LOD,
         /// 1, 2, 4 or 8: how many times as long as wide a footprint may be; several taps along its longer axis (TEX-17). One filter, no levels, a flat
         /// texture; 4 and 8 on Nv2a
         anisotropy: u32 [in 1..=8, "anisotropy"] = 1,

@@ -14,7 +14,7 @@ use ninebit::state::{
 use std::sync::Arc;
 
 /// The most columns or rows of a rectangle.
-const MOST_CLIPPED: u32 = 65535;
+const MAX_CLIP_COORDINATE: u32 = 65535;
 
 /// Reads a blend function.
 pub(super) fn blend_function<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::BlendSource>) -> Option<Blend> {
@@ -234,7 +234,7 @@ fn rectangle<'a>(
     let fields = source::Rectangle { called: what, ..reader.read(raw)? };
     let (x, y, width, height) = (fields.x(reader), fields.y(reader), fields.width(reader), fields.height(reader));
     let mut side = |raw: Option<Raw<'a, u32>>, side: &str| {
-        reader.within(&raw?, &format!("the {side} of a {what}"), least..=MOST_CLIPPED, |finding| finding)
+        reader.within(&raw?, &format!("the {side} of a {what}"), least..=MAX_CLIP_COORDINATE, |finding| finding)
     };
     let (width, height) = (side(width, "width"), side(height, "height"));
     Some(Rectangle { x, y, width: width?, height: height? })

@@ -9,10 +9,10 @@ use obj::{IndexTuple, ObjData, ObjError};
 
 use super::Surface;
 use ninebit::diagnostic::{Diagnostic, shorten};
-use ninebit_files::guard;
+use ninebit_files::catch_panic;
 
 /// Findings beyond this many are not looked for.
-const MOST_FINDINGS: usize = 16;
+const MAX_FINDINGS: usize = 16;
 
 /// Statements that say nothing about triangles.
 const WITHOUT_TRIANGLES: &[&str] = &["o", "g", "s", "usemtl", "mtllib", "l", "p", "vp"];
@@ -94,7 +94,7 @@ impl<'t> File<'t> {
             reduced.push_str(statement);
             reduced.push('\n');
         }
-        match guard::quietly(|| ObjData::load_buf(reduced.as_bytes())) {
+        match catch_panic::quietly(|| ObjData::load_buf(reduced.as_bytes())) {
             Ok(Ok(data)) => Ok(data),
             Ok(Err(error)) => Err(Box::new(self.explain(&error))),
             Err(panic) => {
@@ -139,7 +139,7 @@ impl<'t> File<'t> {
             .chain(lines("vt", data.texture.iter().map(|coordinates| finite(coordinates)).collect()))
             .chain(lines("vn", data.normal.iter().map(|normal| finite(normal)).collect()))
             .map(|(line, _)| self.refused(line, "a number is not finite", "write decimal numbers"))
-            .take(MOST_FINDINGS)
+            .take(MAX_FINDINGS)
             .collect()
     }
 
@@ -149,7 +149,7 @@ impl<'t> File<'t> {
         let mut known = HashMap::new();
         let polygons = data.objects.iter().flat_map(|object| &object.groups).flat_map(|group| &group.polys);
         for (face, polygon) in self.named("f").zip(polygons) {
-            if findings.len() >= MOST_FINDINGS {
+            if findings.len() >= MAX_FINDINGS {
                 break;
             }
             let count = corners(face);
@@ -277,7 +277,7 @@ mod tests {
             assert_eq!(refusal(&format!("{triangle}{line}")), (code, part.to_owned()), "{line}");
         }
         let many = "f 7 8 9\n".repeat(100);
-        assert_eq!(read(&many, 5, 300).expect_err("no positions").len(), MOST_FINDINGS);
+        assert_eq!(read(&many, 5, 300).expect_err("no positions").len(), MAX_FINDINGS);
     }
 
     #[test]
@@ -299,7 +299,7 @@ mod tests {
             }
             Err(findings) => {
                 let placed = |finding: &Diagnostic| finding.span.clone().is_some_and(|place| text.get(place).is_some());
-                proptest::prop_assert!((1..=MOST_FINDINGS).contains(&findings.len()) && findings.iter().all(placed));
+                proptest::prop_assert!((1..=MAX_FINDINGS).contains(&findings.len()) && findings.iter().all(placed));
             }
         }
         Ok(())

@@ -3,7 +3,7 @@
 use multiversion::multiversion;
 
 use ninebit::combiner::output::finished;
-use ninebit::number::{EACH, Each, Factor, Sum};
+use ninebit::number::{Factor, LANES, Lanes16, Sum};
 use ninebit::state::{Bias, RegisterFloor, Scale};
 
 /// `sum` + `c` d, rounded and saturated, for d from `first` on; low byte first. Returns how many results are -256, and how many are 255.
@@ -27,20 +27,20 @@ pub(super) fn multiply_add(sum: i32, c: i16, first: i16, out: &mut [[u8; 2]]) ->
 pub(super) struct Sixteen<'i> {
     inputs: &'i [i64],
     varying: usize,
-    numbers: Each<i32>,
+    numbers: Lanes16<i32>,
 }
 
 impl Sixteen<'_> {
     /// The input that counts up.
     #[inline(always)]
-    pub(super) fn numbers(&self) -> Each<i32> {
+    pub(super) fn numbers(&self) -> Lanes16<i32> {
         self.numbers
     }
 
     /// An input.
     #[inline(always)]
-    pub(super) fn at(&self, n: usize) -> Each<i32> {
-        if n == self.varying { self.numbers } else { Each::all(self.inputs[n] as i32) }
+    pub(super) fn at(&self, n: usize) -> Lanes16<i32> {
+        if n == self.varying { self.numbers } else { Lanes16::all(self.inputs[n] as i32) }
     }
 }
 
@@ -52,7 +52,7 @@ pub(super) fn bytes<const N: usize>(
     inputs: &[i64],
     varying: usize,
     out: &mut [u8],
-    rows: impl FnMut(&Sixteen) -> [Each<i32>; N],
+    rows: impl FnMut(&Sixteen) -> [Lanes16<i32>; N],
 ) -> [u64; 2] {
     run::<N, 1>(inputs, varying, out, [0, 255], rows)
 }
@@ -63,7 +63,7 @@ pub(super) fn registers<const N: usize>(
     inputs: &[i64],
     varying: usize,
     out: &mut [u8],
-    rows: impl FnMut(&Sixteen) -> [Each<i32>; N],
+    rows: impl FnMut(&Sixteen) -> [Lanes16<i32>; N],
 ) -> [u64; 2] {
     run::<N, 2>(inputs, varying, out, [-256, 255], rows)
 }
@@ -74,17 +74,17 @@ fn run<const N: usize, const WIDTH: usize>(
     varying: usize,
     out: &mut [u8],
     [least, greatest]: [i32; 2],
-    mut rows: impl FnMut(&Sixteen) -> [Each<i32>; N],
+    mut rows: impl FnMut(&Sixteen) -> [Lanes16<i32>; N],
 ) -> [u64; 2] {
     let mut ends = [0; 2];
     let mut first = inputs[varying] as i32;
-    for out in out.chunks_mut(EACH * N * WIDTH) {
-        let mut numbers = [first; EACH];
+    for out in out.chunks_mut(LANES * N * WIDTH) {
+        let mut numbers = [first; LANES];
         for (n, number) in (0..).zip(&mut numbers) {
             *number += n;
         }
-        let values = rows(&Sixteen { inputs, varying, numbers: Each(numbers) });
-        first += EACH as i32;
+        let values = rows(&Sixteen { inputs, varying, numbers: Lanes16(numbers) });
+        first += LANES as i32;
         for (row, out) in out.chunks_exact_mut(N * WIDTH).enumerate() {
             let (mut low, mut high) = (false, false);
             for (value, out) in values.iter().zip(out.chunks_exact_mut(WIDTH)) {

@@ -5,7 +5,7 @@ use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::registers::Registers;
-use ninebit::number::{Each, Lane};
+use ninebit::number::{Lane, Lanes16};
 use ninebit::state::{self, Component, FinalInput, FinalRegister, Register, named as enumeration};
 use ninebit::trace::{Recorder, Silent};
 
@@ -128,7 +128,7 @@ impl Unit for FinalCombiner {
         let own = varying.checked_sub(CONFIGURATION)?;
         let (planned, mut file) = (planned(inputs, false), Registers::new());
         for (n, value) in inputs[CONFIGURATION..].iter().enumerate() {
-            load(&mut file, n, Each::all(*value as i32));
+            load(&mut file, n, Lanes16::all(*value as i32));
         }
         Some(block::bytes(inputs, varying, out, |rows| {
             load(&mut file, own, rows.numbers());

@@ -6,7 +6,7 @@ use crate::unit::Conditions;
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::Registers;
-use ninebit::number::{Each, Lane};
+use ninebit::number::{Lane, Lanes16};
 use ninebit::state::{Combiners, FinalRegister, MuxSelect, Register};
 use ninebit::trace::Silent;
 
@@ -187,7 +187,7 @@ pub(super) fn block(
     if through == Through::Decision {
         let template = file(places, |n| inputs[n] as i32);
         return Some(block::bytes(inputs, varying, out, |rows| {
-            let mut out = [Each::all(0); 4];
+            let mut out = [Lanes16::all(0); 4];
             for (row, number) in rows.numbers().0.into_iter().enumerate() {
                 let mut file = template;
                 slot.into_iter().for_each(|(register, channel)| file.write(register, channel, number));
@@ -198,12 +198,12 @@ pub(super) fn block(
             out
         }));
     }
-    let template = file(places, |n| Each::all(inputs[n] as i32));
+    let template = file(places, |n| Lanes16::all(inputs[n] as i32));
     Some(block::bytes(inputs, varying, out, |rows| {
         let mut file = template;
         slot.into_iter().for_each(|(register, channel)| file.write(register, channel, rows.numbers()));
         let constant = |stage: usize, n: usize, channel: usize| match counts(stage, n, channel) {
-            [a, b] if a == b => Each::all(i32::from(a)),
+            [a, b] if a == b => Lanes16::all(i32::from(a)),
             _ => rows.numbers(),
         };
         program.run(constant, &mut file, conditions)

@@ -4,7 +4,7 @@ use super::{block, named};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::combiner::direct::Direct;
-use ninebit::number::Each;
+use ninebit::number::Lanes16;
 use ninebit::rop::{blend, surface};
 use ninebit::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
 use ninebit::trace::Silent;
@@ -94,10 +94,10 @@ impl Unit for Blend {
     fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         let state = blend_state(inputs);
         (varying >= 3).then(|| {
-            let mut lanes: [Each<i32>; 12] = std::array::from_fn(|n| Each::all(inputs[3 + n] as i32));
+            let mut lanes: [Lanes16<i32>; 12] = std::array::from_fn(|n| Lanes16::all(inputs[3 + n] as i32));
             block::bytes(inputs, varying, out, |rows| {
                 lanes[varying - 3] = rows.numbers();
-                let [source, destination, constant] = lanes.as_chunks().0 else { return [Each::all(0); 4] };
+                let [source, destination, constant] = lanes.as_chunks().0 else { return [Lanes16::all(0); 4] };
                 let channel = |channel: usize| {
                     let mut silent = Silent;
                     let mut direct = Direct::plain(&mut silent);

@@ -228,7 +228,7 @@ impl Unit for VolumeLayer {
 pub(super) struct AnisotropyTaps;
 
 /// Pairs of taps at most.
-const PAIRS: usize = anisotropy::MOST_TAPS / 2;
+const PAIRS: usize = anisotropy::MAX_TAPS / 2;
 
 impl Unit for AnisotropyTaps {
     known_as!(

@@ -294,7 +294,7 @@ class Page {
   differences(heat) {
     $("regions-part").hidden = !heat;
     $("legend").replaceChildren(...(heat ? heat.classes.map(({ label, color }) => el("span", {}, swatch(color), label)) : []));
-    if (!heat) return;
+    if (!heat) return $("regions-sum").replaceChildren();
     const left = heat.diverged ? `; ${heat.diverged} more went another way` : "";
     $("regions-sum").textContent = `${heat.differing} pixels differ${heat.region_count > heat.regions.length ? `; the ${heat.regions.length} largest of ${heat.region_count} regions` : ""}${left}`;
     const item = (region) => el("li", {}, el("button", { onclick: () => { this.choose(region.first); this.view.reveal(); } }, region.worst

@@ -50,7 +50,7 @@ struct Cube {
 const COLUMNS: [(&str, &str); 3] = [("unit0.N_x0", "x"), ("unit0.N_y0", "y"), ("unit0.N_z0", "z")];
 
 /// Numbers of a direction have as many bits as those of the chip's (TEX-12).
-const MOST: i64 = 1 << 28;
+const MAX_COMPONENT: i64 = 1 << 28;
 
 /// Looks up a cube map.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     };
     let column = |name: &str| Column {
         name: name.to_owned(),
-        range: -MOST..=MOST,
+        range: -MAX_COMPONENT..=MAX_COMPONENT,
         per_one: 1,
         signed_texel: false,
         value: None,

@@ -14,7 +14,7 @@ use super::super::exit::{Exit, Failure, Report};
 use super::operation::{Operation, shown as written};
 
 /// Broken rows that are named.
-const MOST_ERRORS: usize = 16;
+const MAX_ERRORS: usize = 16;
 
 /// Runs an operation on each line of a table.
 pub(super) fn run(operation: &impl Operation, path: &Path, output: Option<&OsStr>) -> Result<(), Failure> {
@@ -158,7 +158,7 @@ struct Errors {
 impl Errors {
     fn push(&mut self, line: usize, reason: &str) {
         self.rows += 1;
-        if self.shown.len() < MOST_ERRORS {
+        if self.shown.len() < MAX_ERRORS {
             self.shown.push(format!("  line {line}: {reason}"));
         }
     }

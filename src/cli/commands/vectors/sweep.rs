@@ -10,8 +10,8 @@ use ninebit::state::{Named, Profile};
 use ninebit::threads::on_threads;
 use ninebit_files::output::{Destination, make_folder, write_text};
 use ninebit_vectors::error::VectorError;
+use ninebit_vectors::exhaustive::{Exhaustive, MAX_ROWS};
 use ninebit_vectors::part::Part;
-use ninebit_vectors::sweep::{MOST_ROWS, Sweep};
 use ninebit_vectors::tree::{self, Done, Of, Tree};
 use ninebit_vectors::{BEHAVIOUR, Unit};
 use rayon::prelude::*;
@@ -54,9 +54,9 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
             "`ninebit vectors list --format json` has the columns of every unit",
         )
     })?;
-    let Some(sweep) = Sweep::of(*unit, *profile, part) else {
+    let Some(sweep) = Exhaustive::of(*unit, *profile, part) else {
         return Err(Failure::usage(
-            format!("`{}` has more than {MOST_ROWS} rows", [&[unit.name().to_owned()], &only[..]].concat().join(" ")),
+            format!("`{}` has more than {MAX_ROWS} rows", [&[unit.name().to_owned()], &only[..]].concat().join(" ")),
             "a sweep has every row; `--only COLUMN=NUMBERS` takes a part, `ninebit vectors export` boundaries and random ones",
         ));
     };

@@ -4,13 +4,13 @@ use crate::replay::{Outcome, Replayed, Summary};
 use ninebit::shown;
 
 /// Annotations of one kind that GitHub keeps of a step.
-const MOST: usize = 10;
+const MAX_ANNOTATIONS: usize = 10;
 
 /// Lines that GitHub Actions turns into annotations: an error for each scene that is not as expected, ten at most, as more are dropped
 /// there.
 pub fn annotations(all: &[Replayed]) -> String {
     let wrong: Vec<&Replayed> = all.iter().filter(|one| one.exit_code() != 0).collect();
-    let shown = if wrong.len() > MOST { MOST - 1 } else { wrong.len() };
+    let shown = if wrong.len() > MAX_ANNOTATIONS { MAX_ANNOTATIONS - 1 } else { wrong.len() };
     let mut out: String = wrong.iter().take(shown).map(|one| annotation(one)).collect();
     if wrong.len() > shown {
         let message = format!("{} more scenes are not as expected; the log names them all", wrong.len() - shown);

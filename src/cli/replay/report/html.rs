@@ -7,7 +7,7 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 use crate::replay::panels::GAP;
 use crate::replay::{Difference, Known, Origin, Outcome, Replayed, Summary, Traces};
 use ninebit::shown;
-use ninebit_report::BesideLine;
+use ninebit_report::SideBySideLine;
 use ninebit_scene::diff::{CHANNELS, Histogram, ranges};
 
 const STYLE: &str = include_str!("style.css");
@@ -135,7 +135,7 @@ fn histogram(known: &Known) -> Markup {
 fn traces(known: &Known, traces: &Traces) -> Markup {
     let first = &known.first;
     // What both traces have before they part is there to be looked up; the block in which they part is shown whole.
-    let parted = traces.lines.iter().position(BesideLine::differs).unwrap_or(0);
+    let parted = traces.lines.iter().position(SideBySideLine::differs).unwrap_or(0);
     let begin = traces.lines.iter().take(parted + 1).rposition(|line| line.heading.is_some()).unwrap_or(0);
     html! {
         details open[!traces.lines.is_empty()] {
@@ -153,7 +153,7 @@ fn traces(known: &Known, traces: &Traces) -> Markup {
     }
 }
 
-fn table(lines: &[BesideLine]) -> Markup {
+fn table(lines: &[SideBySideLine]) -> Markup {
     html! {
         div.scroll { table.trace {
             tr { th { "what" } th.number { "expected" } th.number { "drawn" } th { "rule" } th { "how" } }

@@ -15,7 +15,7 @@ const WIDEST: i64 = 64;
 const WIDEST_FLAT: i64 = SIDE;
 
 /// Most pixels of a box, and what whole steps write past them.
-const MOST: usize = (SIDE * SIDE) as usize + 2 * STEP;
+const MAX_LANES: usize = (SIDE * SIDE) as usize + 2 * STEP;
 
 /// Whether a triangle is handled as boxes, or as one, instead of row by row.
 #[inline(always)]
@@ -46,8 +46,8 @@ pub(super) struct BoxCoverage {
     /// Column and row of the first pixel.
     pub(super) first: (i64, i64),
     /// Where the others lie from it; past the end the last one again.
-    pub(super) x: [i32; MOST],
-    pub(super) y: [i32; MOST],
+    pub(super) x: [i32; MAX_LANES],
+    pub(super) y: [i32; MAX_LANES],
     pub(super) count: usize,
     /// Row, first column and number of the pixels of each row.
     pub(super) runs: [(i64, i64, usize); SIDE as usize],
@@ -56,7 +56,14 @@ pub(super) struct BoxCoverage {
 
 impl Default for BoxCoverage {
     fn default() -> Self {
-        BoxCoverage { first: (0, 0), x: [0; MOST], y: [0; MOST], count: 0, runs: [(0, 0, 0); SIDE as usize], filled: 0 }
+        BoxCoverage {
+            first: (0, 0),
+            x: [0; MAX_LANES],
+            y: [0; MAX_LANES],
+            count: 0,
+            runs: [(0, 0, 0); SIDE as usize],
+            filled: 0,
+        }
     }
 }
 
@@ -155,8 +162,11 @@ mod tests {
             if thin < size {
                 y = [0, 1, 2].map(|k| y0 + (x[k] - x0) / 2 + random(thin) / 2);
             }
-            let w = [1.0, 1.5, 2.0];
-            if !triangle.set(x, y, w, true, Profile::Nv2a) || !is_small(&triangle) {
+            if !triangle.place(x, y) {
+                continue;
+            }
+            triangle.weigh([1.0, 1.5, 2.0], true, Profile::Nv2a);
+            if !is_small(&triangle) {
                 continue;
             }
             drawn += 1;

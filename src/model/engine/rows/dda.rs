@@ -13,7 +13,7 @@ use crate::raster::setup::Triangle;
 use crate::state::TEXTURE_UNITS;
 
 /// Magnitudes that quotients stay below.
-const MOST: f64 = (1_u32 << 29) as f64;
+const MAX_QUOTIENT: f64 = (1_u32 << 29) as f64;
 
 /// Bits that a divisor has where lanes compare remainders.
 const BITS: u32 = 29;
@@ -46,7 +46,7 @@ struct Divided {
 }
 
 impl Divided {
-    /// Of a numerator modulo 2^64, given the quotient more or less, whose magnitude is below [`MOST`]. The divisor is positive.
+    /// Of a numerator modulo 2^64, given the quotient more or less, whose magnitude is below [`MAX_QUOTIENT`]. The divisor is positive.
     #[inline(always)]
     fn new(numerator: i64, real: f64, divisor: i64) -> Divided {
         // The nearest, or as near as makes no difference: what remains lies within half a divisor and a little more.
@@ -110,7 +110,7 @@ impl Dda {
         let all = (columns + 2 * STEP as i64) as f64;
         let real = numerator as f64 * reciprocal;
         // Also refuses what is no number.
-        let fits = divisor > 0 && real.abs() + (slope as f64 * reciprocal).abs() * all + all < MOST;
+        let fits = divisor > 0 && real.abs() + (slope as f64 * reciprocal).abs() * all + all < MAX_QUOTIENT;
         if !fits {
             return false;
         }
@@ -309,7 +309,7 @@ impl Setup<'_> {
                 narrow(w0, narrow0);
                 narrow(w2, narrow2);
             } else if found && !triangle.exact_reciprocal {
-                steady_ties([first, third], batch.count, narrow0, narrow2);
+                break_dda_ties([first, third], batch.count, narrow0, narrow2);
             }
         }
     }
@@ -339,7 +339,7 @@ impl Setup<'_> {
 
 /// INT-3 of weights that are exact where something is tied.
 #[inline(always)]
-fn steady_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
+fn break_dda_ties([first, third]: [&Dda; 2], count: usize, w0: &mut [u16], w2: &mut [u16]) {
     let ((w0, _), (w2, _)) = (w0.as_chunks_mut::<STEP>(), w2.as_chunks_mut::<STEP>());
     for (step, (w0, w2)) in w0.iter_mut().zip(w2.iter_mut()).enumerate() {
         let (whole0, whole2) = (first.whole(step), third.whole(step));

@@ -4,11 +4,10 @@
     reason = "whole numbers, and cuts at powers of two, of which docs/exactness.md gives account"
 )]
 
-use super::fetch::PerLane;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
-use super::triangle::PixelBatch;
+use super::triangle::{PixelBatch, Varying};
 use crate::engine::pixel::TriangleContext;
-use crate::raster::depth::w_ratio;
+use crate::raster::depth::{difference, w_ratio};
 use crate::raster::interpolate::most_dominant;
 use crate::state::{DepthFormat, DepthRange, VertexDepths};
 
@@ -30,10 +29,40 @@ pub(super) const UNKNOWN: u32 = u32::MAX;
 /// A depth that no buffer has: the pixel is outside the draw's range, and dropped (DEP-4).
 pub(super) const OUTSIDE: u32 = u32::MAX - 1;
 
+/// Lanes of which one step is computed before the next: what a lane waits for is long, and processors find other lanes' work beside it only
+/// where a step is short.
+const CHUNK: usize = 64;
+
+/// What the steps of a chunk leave for the next. Aligned: vectors are stored and loaded.
+#[derive(Clone, Debug)]
+#[repr(C, align(64))]
+pub(super) struct Steps {
+    /// Edge numbers as multiples of 2^(X-28), X being the exponent of the largest: those of the two vertices that are not the reference. In a
+    /// w buffer those of vertices 0 and 2, and then of 1.
+    edges: [[f64; CHUNK]; 3],
+    /// The sum of all three, each floored.
+    sums: [f64; CHUNK],
+    /// The depth of the reference.
+    references: [f64; CHUNK],
+    /// What the two others' depths differ from it by; then those differences times their weights.
+    terms: [[f64; CHUNK]; 2],
+    /// 1 where the definition has to decide.
+    close: [u64; CHUNK],
+}
+
+impl Default for Steps {
+    fn default() -> Self {
+        let zeros = [0.0; CHUNK];
+        Steps { edges: [zeros; 3], sums: zeros, references: zeros, terms: [zeros; 2], close: [0; CHUNK] }
+    }
+}
+
 /// Depths at the vertices of a triangle, the largest depth, and what happens to depths that are not just floored.
 #[derive(Clone, Copy, Debug)]
 struct Depths<'a> {
     z: [f64; 3],
+    /// Differences: of vertex 0 and 2 from 1, of 1 and 2 from 0, of 0 and 1 from 2.
+    differences: [[f64; 2]; 3],
     /// In a w buffer, what edge numbers are multiplied by (DEP-6); `z` holds w there.
     ratios: [f64; 3],
     full: f64,
@@ -47,7 +76,7 @@ struct Depths<'a> {
 pub(super) fn depths<const FMA: bool, const ROW: bool>(
     context: &TriangleContext<'_>,
     batch: PixelBatch<'_>,
-    out: &mut PerLane<u32>,
+    varying: &mut Varying,
 ) {
     let (triangle, plane, draw) = (&context.triangle, &context.depth, context.draw);
     let Some(test) = &draw.depth_test else { return };
@@ -55,9 +84,13 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let edge = |k: usize| Line { c: e[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
     let format = draw.depth_format;
     let offset = plane.offset.mantissa as f64 * power_of_two(plane.offset.exponent);
-    let (z, full) = (plane.z.map(f64::from), f64::from(format.largest()));
+    let full = f64::from(format.largest());
     let range = test.range.as_ref();
-    let depths = Depths { z, ratios: [1.0; 3], full, offset, range, format };
+    let z = plane.w.unwrap_or(plane.z);
+    let from = |reference: usize, others: [usize; 2]| others.map(|k| f64::from(difference(z[k], z[reference])));
+    let differences = [from(1, [0, 2]), from(0, [1, 2]), from(2, [0, 1])];
+    let depths = Depths { z: z.map(f64::from), differences, ratios: [1.0; 3], full, offset, range, format };
+    let Varying { depth: out, depth_steps: steps, .. } = varying;
     let out = &mut out[batch.lanes()];
     let edges = [edge(0), edge(1), edge(2)];
     let whole = |z: &f32| *z >= 0.0 && *z < 16_777_216.0 && z.fract() == 0.0;
@@ -70,20 +103,20 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
         if exact_offset && w.iter().all(|w| *w > 0.0 && moderate(w)) {
             let ratio = |(mantissa, exponent): (i64, i32)| mantissa as f64 * power_of_two(exponent);
             let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
-            let depths = Depths { z: w.map(f64::from), ratios, ..depths };
+            let depths = Depths { ratios, ..depths };
             if is_plain {
-                depths.along::<FMA, ROW, false, true>(batch.at, edges, out)
+                depths.along::<FMA, ROW, false, true>(batch.at, edges, steps, out)
             } else {
-                depths.along::<FMA, ROW, true, true>(batch.at, edges, out)
+                depths.along::<FMA, ROW, true, true>(batch.at, edges, steps, out)
             }
         } else {
             out.fill(UNKNOWN);
             true
         }
     } else if is_plain && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole)) {
-        depths.along::<FMA, ROW, false, false>(batch.at, edges, out)
+        depths.along::<FMA, ROW, false, false>(batch.at, edges, steps, out)
     } else if exact_offset && plane.z.iter().all(moderate) {
-        depths.along::<FMA, ROW, true, false>(batch.at, edges, out)
+        depths.along::<FMA, ROW, true, false>(batch.at, edges, steps, out)
     } else {
         out.fill(UNKNOWN);
         true
@@ -111,11 +144,45 @@ impl Depths<'_> {
         &self,
         at: Positions<'_>,
         edges: [Line; 3],
+        steps: &mut Steps,
         out: &mut [u32],
     ) -> bool {
-        let lanes = out.len();
-        let (last, [z0, z1, z2], [r0, r1, r2]) = (f64::from(at.last), self.z, self.ratios);
-        let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+        let mut unknown = false;
+        for (n, out) in out.chunks_mut(CHUNK).enumerate() {
+            let lanes = n * CHUNK..n * CHUNK + out.len();
+            let last = f64::from(at.last);
+            let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes]);
+            self.sums::<FMA, ROW, W>(last, positions, edges, steps);
+            let close = self.terms::<FMA, W>(out.len(), steps);
+            self.words::<FMA, GENERAL>(steps, out);
+            if close {
+                for (out, close) in out.iter_mut().zip(&steps.close) {
+                    // All bits of UNKNOWN are set.
+                    *out |= (*close as u32).wrapping_neg();
+                }
+            }
+            unknown |= (close | GENERAL) && out.contains(&UNKNOWN);
+        }
+        unknown
+    }
+
+    /// Edge numbers, their sum, and what depends on the reference.
+    #[inline(always)]
+    fn sums<const FMA: bool, const ROW: bool, const W: bool>(
+        &self,
+        last: f64,
+        (xs, ys, iota): (&[i32], &[i32], &[f64]),
+        edges: [Line; 3],
+        steps: &mut Steps,
+    ) {
+        let lanes = xs.len();
+        let ([z0, z1, z2], [r0, r1, r2]) = (self.z, self.ratios);
+        let [[a1, b1], [a0, b0], [a2, b2]] = self.differences;
+        let (xs, ys, iota) = (&xs[..lanes], &ys[..lanes], &iota[..lanes]);
+        let Steps { edges: [one, other, middle], sums, references, terms: [of_one, of_other], .. } = steps;
+        let (one, other, middle) = (&mut one[..lanes], &mut other[..lanes], &mut middle[..lanes]);
+        let (sums, references) = (&mut sums[..lanes], &mut references[..lanes]);
+        let (of_one, of_other) = (&mut of_one[..lanes], &mut of_other[..lanes]);
         for n in 0..lanes {
             let (x, y) = position::<ROW>(n, last, xs, ys, iota);
             let e0 = edges[0].at::<FMA, ROW>(x, y);
@@ -124,56 +191,85 @@ impl Depths<'_> {
             let (e0, e1, e2) =
                 if W { (cut24(cut24(e0) * r0), cut24(cut24(e1) * r1), cut24(cut24(e2) * r2)) } else { (e0, e1, e2) };
             let (x0, x1, x2) = (power(e0), power(e1), power(e2));
-            let second = (x1 >= x0) & (x1 >= x2);
-            let first = x0 >= x2;
-            let z = if first { z0 } else { z2 };
-            let z = if W | second { z1 } else { z };
             let top = if x0 > x2 { x0 } else { x2 };
             let top = if x1 > top { x1 } else { top };
-            // The edge numbers as multiples of 2^(X-28), X being the exponent of the largest.
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
             let (e0, e1, e2) = (cut24(e0) * scale, cut24(e1) * scale, cut24(e2) * scale);
             // The definition has 61 bits of the largest.
             let (e0, e1, e2) = if W { (kept(e0, 32), kept(e1, 32), kept(e2, 32)) } else { (e0, e1, e2) };
-            let sum = floor(e0) + floor(e1) + floor(e2);
+            sums[n] = floor::<FMA>(e0) + floor::<FMA>(e1) + floor::<FMA>(e2);
+            if W {
+                (one[n], other[n], middle[n]) = (e0, e2, e1);
+                (references[n], of_one[n], of_other[n]) = (z1, a1, b1);
+                continue;
+            }
+            // One choice at a time: nested ones would become branches.
+            let second = (x1 >= x0) & (x1 >= x2);
+            let first = x0 >= x2;
+            let (e_one, e_other) = (if first { e1 } else { e0 }, if first { e2 } else { e1 });
+            let (d_one, d_other) = (if first { a0 } else { a2 }, if first { b0 } else { b2 });
+            let reference = if first { z0 } else { z2 };
+            one[n] = if second { e0 } else { e_one };
+            other[n] = if second { e2 } else { e_other };
+            of_one[n] = if second { a1 } else { d_one };
+            of_other[n] = if second { b1 } else { d_other };
+            references[n] = if second { z1 } else { reference };
+        }
+    }
+
+    /// Differences times their weights. Whether some are too close to call.
+    #[inline(always)]
+    fn terms<const FMA: bool, const W: bool>(&self, lanes: usize, steps: &mut Steps) -> bool {
+        let Steps { edges: [one, other, middle], sums, terms: [of_one, of_other], close, .. } = steps;
+        let (one, other, middle, sums) = (&one[..lanes], &other[..lanes], &middle[..lanes], &sums[..lanes]);
+        let (of_one, of_other, closes) = (&mut of_one[..lanes], &mut of_other[..lanes], &mut close[..lanes]);
+        let mut some = 0;
+        for n in 0..lanes {
+            let sum = sums[n];
             let length = power(sum);
             let quotient = length * (1_i64 << 29) as f64 / sum;
             let low = quotient - 0.1875;
-            let reciprocal = floor(low);
+            let reciprocal = floor::<FMA>(low);
             let exact = length == sum;
             // A quotient that was rounded to the border of two reciprocals.
             let close = (reciprocal == low) & !exact;
             let reciprocal = if exact { (1_i64 << 29) as f64 } else { reciprocal };
             // What makes weights of them.
             let unit = f64::from_bits((2 * ONE - (29 << 52)).wrapping_sub(length.to_bits()));
-            let b0 = cut24(e0 * reciprocal) * unit;
-            let b1 = cut24(e1 * reciprocal) * unit;
-            let b2 = cut24(e2 * reciprocal) * unit;
-            let (b0, b2, close) = if W { with_rest([b0, b1, b2], close) } else { (b0, b2, close) };
-            // Of the reference vertex: 0.
-            let (d0, d1, d2) = (z0 - z, z1 - z, z2 - z);
-            // Differences of whole numbers need no rounding.
-            let rounded = |d: f64| if GENERAL | W { f64::from(d as f32) } else { d };
-            let (t0, t1, t2) = (b0 * rounded(d0), b1 * rounded(d1), b2 * rounded(d2));
-            let largest = if t0.abs() > t1.abs() { t0.abs() } else { t1.abs() };
-            let largest = if t2.abs() > largest { t2.abs() } else { largest };
+            let (a, b) = (cut24(one[n] * reciprocal) * unit, cut24(other[n] * reciprocal) * unit);
+            let (a, b, close) =
+                if W { with_rest([a, cut24(middle[n] * reciprocal) * unit, b], close) } else { (a, b, close) };
+            of_one[n] *= a;
+            of_other[n] *= b;
+            closes[n] = u64::from(close);
+            some |= closes[n];
+        }
+        some != 0
+    }
+
+    /// The sum of the terms and of the reference's depth as a word.
+    #[inline(always)]
+    fn words<const FMA: bool, const GENERAL: bool>(&self, steps: &Steps, out: &mut [u32]) {
+        let lanes = out.len();
+        let Steps { references, terms: [one, other], .. } = steps;
+        let (references, one, other) = (&references[..lanes], &one[..lanes], &other[..lanes]);
+        for n in 0..lanes {
+            let (a, b, z) = (one[n], other[n], references[n]);
+            let largest = if a.abs() > b.abs() { a.abs() } else { b.abs() };
             let largest = if z.abs() > largest { z.abs() } else { largest };
             // Terms that small make no depth.
             let top = power(if largest > 1e-200 { largest } else { 1e-200 });
             let scale = f64::from_bits((2 * ONE + (28 << 52)).wrapping_sub(top.to_bits()));
-            let sum = cut(t0 * scale) + cut(t1 * scale) + cut(t2 * scale) + cut(z * scale);
+            let sum = cut::<FMA>(a * scale) + cut::<FMA>(b * scale) + cut::<FMA>(z * scale);
             let depth = sum * (top * STEP);
             if GENERAL {
-                out[n] = if close { UNKNOWN } else { self.word(depth) };
+                out[n] = self.word(depth);
                 continue;
             }
-            let depth = floor(depth);
             let depth = if depth > 0.0 { depth } else { 0.0 };
             let depth = if depth < self.full { depth } else { self.full };
-            // -1 is UNKNOWN.
-            out[n] = nearest(if close { -1.0 } else { depth }) as u32;
+            out[n] = nearest(floor::<FMA>(depth)) as u32;
         }
-        out.contains(&UNKNOWN)
     }
 
     /// DEP-3 to DEP-5 of an interpolated depth.
@@ -245,7 +341,7 @@ const ROUNDINGS: f64 = 1.0 / (1_u64 << 50) as f64;
 fn kept(n: f64, bits: u32) -> f64 {
     let steps = n * (1_u64 << bits) as f64;
     // All others are whole; not all of them could be floored.
-    let floored = floor(steps) * (1.0 / (1_u64 << bits) as f64);
+    let floored = floor::<false>(steps) * (1.0 / (1_u64 << bits) as f64);
     if steps < (1_u64 << 40) as f64 { floored } else { n }
 }
 
@@ -261,16 +357,22 @@ fn cut24(n: f64) -> f64 {
     f64::from_bits(n.to_bits() & !BELOW)
 }
 
-/// The largest whole number that is not above another number of less than 51 bits.
+/// The largest whole number that is not above another number of less than 51 bits. `WIDE`: the instruction set has it as an instruction.
 #[inline(always)]
-pub(super) fn floor(n: f64) -> f64 {
+pub(super) fn floor<const WIDE: bool>(n: f64) -> f64 {
+    if WIDE {
+        return n.floor();
+    }
     let near = whole(n);
     if near > n { near - 1.0 } else { near }
 }
 
 /// Cut toward zero.
 #[inline(always)]
-fn cut(n: f64) -> f64 {
-    let magnitude = floor(n.abs());
+fn cut<const WIDE: bool>(n: f64) -> f64 {
+    if WIDE {
+        return n.trunc();
+    }
+    let magnitude = floor::<false>(n.abs());
     if n < 0.0 { -magnitude } else { magnitude }
 }

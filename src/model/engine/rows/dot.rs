@@ -157,18 +157,19 @@ fn floor(t: f64) -> i32 {
 /// TEX-12 and TEX-13 of vectors: the face, and u and v on it, floors in 1/256 texel less `bias`.
 ///
 /// With the major component m, K = 128 `size` and n the whole number nearest to K (s + m) / m, however roughly that is computed, the floor is
-/// n or n - 1: n if s K is not below (n - K) m. Both products have at most 44 bits, so the comparison is exact.
+/// n or n - 1: n if s K is not below (n - K) m. Both products have at most 44 bits, so the comparison is exact. The fourth argument is a place to
+/// work in.
 #[inline(always)]
 pub(super) fn on_faces(
-    [x, y, z]: &[Floats; 3],
+    [x, y, z]: [&Floats; 3],
     size: u32,
     bias: i32,
+    [along, down, majors]: &mut [Floats; 3],
     u: &mut [i32; BLOCK],
     v: &mut [i32; BLOCK],
     faces: &mut [u32; BLOCK],
 ) {
     let k = 128.0 * f64::from(size);
-    let (mut along, mut down, mut majors) = ([0.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
     for n in 0..BLOCK {
         let (x, y, z) = (x[n], y[n], z[n]);
         let (ax, ay, az) = (x.abs(), y.abs(), z.abs());
@@ -190,10 +191,11 @@ pub(super) fn on_faces(
         let axis = if on_y { Face::PositiveY as u32 as f32 } else { Face::PositiveZ as u32 as f32 };
         let axis = if on_x { Face::PositiveX as u32 as f32 } else { axis };
         let face = if negative { axis + 1.0 } else { axis };
-        faces[n] = nearest_32(if finite { face } else { 0.0 }) as u32;
-        along[n] = if finite { s } else { 0.0 };
-        down[n] = if finite { t } else { 0.0 };
-        majors[n] = if finite { major.abs() } else { 0.0 };
+        // By bits: compilers make masked stores of choices, which are slow.
+        let kept = if finite { u32::MAX } else { 0 };
+        let kept = |v: f32| f32::from_bits(v.to_bits() & kept);
+        faces[n] = nearest_32(kept(face)) as u32;
+        (along[n], down[n], majors[n]) = (kept(s), kept(t), kept(major.abs()));
     }
     for n in 0..BLOCK {
         let (s, t, m) = (f64::from(along[n]), f64::from(down[n]), f64::from(majors[n]));
@@ -262,11 +264,12 @@ mod tests {
     #[test]
     fn places_are_those_of_the_definition() {
         let mut state = 7;
+        let mut scratch = [[0.0; BLOCK]; 3];
         for round in 0..2_000 {
             let vector = [floats(&mut state), floats(&mut state), floats(&mut state)];
             let (size, bias) = (1_u32 << (round % 13), [0, 128][round % 2]);
             let (mut u, mut v, mut faces) = ([0; BLOCK], [0; BLOCK], [0; BLOCK]);
-            on_faces(&vector, size, bias, &mut u, &mut v, &mut faces);
+            on_faces(vector.each_ref(), size, bias, &mut scratch, &mut u, &mut v, &mut faces);
             let mut plain = [0; BLOCK];
             coordinate(&vector[0], size, COORDINATE_LIMIT as i32, bias, &mut plain);
             for n in 0..BLOCK {

@@ -6,7 +6,7 @@ use super::levels::Reads;
 use super::store;
 use super::table::{Axis, Table, Texels};
 use super::taps::Pair;
-use crate::number::{Lane, Two};
+use crate::number::{Lane, Swar2};
 use crate::texture::filter::{bilinear, lerp};
 
 /// One number for each pixel of a block.
@@ -223,21 +223,16 @@ pub(super) fn sample_levels(
     let slot = |n: usize| wanted[n].map_or(n, usize::from);
     let Ok([red, green, blue, alpha]) = rows.get_disjoint_mut([slot(0), slot(1), slot(2), slot(3)]) else { return };
     let (red, green, blue, alpha) = (red.block_mut(), green.block_mut(), blue.block_mut(), alpha.block_mut());
-    let block = |of: &PerLane<i32>| -> [i32; BLOCK] { *of.first_chunk().unwrap_or(&[0; BLOCK]) };
+    let Some(weights) = reads.weights.first_chunk::<BLOCK>() else { return };
     if is_wide {
-        let weights = block(&reads.weights);
         for (lane, signed) in [(0, signed[3]), (1, signed[1])] {
             for which in 0..1 + usize::from(both) {
-                let Some(found) = reads.entries[which].first_chunk::<BLOCK>() else { return };
-                for n in 0..BLOCK {
-                    entries[n] = found[n] as u32;
-                }
-                let (u, v) = (block(&reads.coordinates[which][0]), block(&reads.coordinates[which][1]));
+                let Some((u, v)) = reads.of_level(which, entries) else { return };
                 fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
                 if lane == 0 {
-                    filter_half::<16>(upper, lower, (&u, &v), -1, &mut halves[which]);
+                    filter_half::<16>(upper, lower, (u, v), -1, &mut halves[which]);
                 } else {
-                    filter_half::<0>(upper, lower, (&u, &v), -1, &mut halves[which]);
+                    filter_half::<0>(upper, lower, (u, v), -1, &mut halves[which]);
                 }
             }
             let [half, next] = &mut *halves;
@@ -250,29 +245,32 @@ pub(super) fn sample_levels(
         }
         return;
     }
-    for which in (0..1 + usize::from(both)).rev() {
-        let Some(found) = reads.entries[which].first_chunk::<BLOCK>() else { return };
-        for n in 0..BLOCK {
-            entries[n] = found[n] as u32;
-        }
-        let (u, v) = (block(&reads.coordinates[which][0]), block(&reads.coordinates[which][1]));
-        fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
-        filter::<4>(upper, lower, &u, &v, red, green, blue, alpha);
-        if which == 1 {
-            for (next, now) in next.iter_mut().zip([&*red, &*green, &*blue, &*alpha]) {
-                *next = *now;
-            }
-        }
-    }
+    let Some((u, v)) = reads.of_level(0, entries) else { return };
+    fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
+    filter::<4>(upper, lower, u, v, red, green, blue, alpha);
     if both {
-        let weights = block(&reads.weights);
+        let Some((u, v)) = reads.of_level(1, entries) else { return };
+        fetch_footprints(texels, table.pitch as usize, entries, upper, lower);
         let [next_red, next_green, next_blue, next_alpha] = next;
-        mix(red, next_red, &weights);
-        mix(green, next_green, &weights);
-        mix(blue, next_blue, &weights);
-        mix(alpha, next_alpha, &weights);
+        filter::<4>(upper, lower, u, v, next_red, next_green, next_blue, next_alpha);
+        mix(red, next_red, weights);
+        mix(green, next_green, weights);
+        mix(blue, next_blue, weights);
+        mix(alpha, next_alpha, weights);
     }
     load(signed, wanted, rows);
+}
+
+impl Reads {
+    /// The entries of what is read of one of two levels, and the coordinates that weights come from.
+    #[inline(always)]
+    fn of_level(&self, which: usize, entries: &mut [u32; BLOCK]) -> Option<(&[i32; BLOCK], &[i32; BLOCK])> {
+        for (entry, found) in entries.iter_mut().zip(&self.entries[which]) {
+            *entry = *found as u32;
+        }
+        let [u, v] = &self.coordinates[which];
+        Some((u.first_chunk()?, v.first_chunk()?))
+    }
 }
 
 /// TEX-9: two levels of a channel.
@@ -399,7 +397,7 @@ fn filter<const COUNT: usize>(
 fn filter_one(texels: &[u32; BLOCK], u: &[i32; BLOCK], v: &[i32; BLOCK], out: &mut [i16; BLOCK]) {
     for n in 0..BLOCK {
         let rows = lerp(first(texels[n]), first(texels[n] >> 8), weight(u[n]));
-        out[n] = lerp(Two(rows.0 & 255), Two(rows.0 >> 16), weight(v[n])).0 as i16;
+        out[n] = lerp(Swar2(rows.0 & 255), Swar2(rows.0 >> 16), weight(v[n])).0 as i16;
     }
 }
 
@@ -432,8 +430,8 @@ fn bytes(half: &[i32; BLOCK], signed: bool, high: &mut [i16; BLOCK], low: &mut [
 
 /// R and B of a texel, of one shifted by 8, G and A; likewise the left and the right texels of a footprint.
 #[inline(always)]
-fn first(texel: u32) -> Two {
-    Two(texel & 0x00ff_00ff)
+fn first(texel: u32) -> Swar2 {
+    Swar2(texel & 0x00ff_00ff)
 }
 
 /// The first `COUNT` channels.

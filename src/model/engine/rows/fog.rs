@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, nearest, position};
+use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, nearest, position, whole};
 use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
 use crate::number::convert::factor_byte;
@@ -43,8 +43,8 @@ enum Kind {
     Table(&'static Bytes),
 }
 
-/// Bytes of FOG-4 from [`FIRST`] on.
-type Bytes = [u8; (2 * TABLE_END + 1) as usize];
+/// Bytes of FOG-4 from [`FIRST`] on, and the last one as often as makes the length a power of two: an index needs no comparison then.
+type Bytes = [u8; (4 * TABLE_END) as usize];
 
 /// The least q that is looked up: all below it have this one's byte, as all above the table's last have that one's.
 const FIRST: i64 = -TABLE_END;
@@ -55,6 +55,12 @@ static EXP2: LazyLock<Bytes> = LazyLock::new(|| bytes(FogMode::Exp2));
 
 fn bytes(mode: FogMode) -> Bytes {
     std::array::from_fn(|n| exponential(mode, FIRST + n as i64))
+}
+
+/// That of an index.
+#[inline(always)]
+fn byte(table: &Bytes, index: i32) -> u8 {
+    table[index as usize & (table.len() - 1)]
 }
 
 /// How far linear arguments are off, relative to themselves: a coordinate keeps 24 bits, toward zero.
@@ -151,13 +157,14 @@ impl Setup<'_> {
                     }
                     Kind::Table(table) => {
                         let close = steps::<FMA, ROW>(at, lines, off, values, spare);
-                        let byte = |index: i32| table.get(index as usize).copied().unwrap_or(0);
                         for (out, value) in out.iter_mut().zip(&*values) {
-                            *out = i16::from(byte(*value));
+                            *out = i16::from(byte(table, *value));
                         }
                         if close {
-                            for (value, other) in values.iter_mut().zip(&mut *spare) {
-                                (*value, *other) = (i32::from(byte(*value)), i32::from(byte(*other)));
+                            // Where its neighbours' bytes are its own, a step need not be known.
+                            for (value, spare) in values.iter_mut().zip(&mut *spare) {
+                                let bytes = [byte(table, *value - 1), byte(table, *value), byte(table, *value + 1)];
+                                (*value, *spare) = (0, i32::from(*spare < 0 && bytes != [bytes[1]; 3]));
                             }
                         }
                         close
@@ -218,34 +225,32 @@ fn limited(v: f64) -> i32 {
     nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
 }
 
-/// FOG-4: indices into the table of the least and of the largest q that a lane can have. Says whether some differ.
+/// FOG-4: indices into the table, and as negative numbers which are not proved. Says whether some are not.
 ///
-/// `lines` make up e in 4096ths, which is off by `off`. A tie may be one step lower (INT-4t): it is among what differs, for `off` is not 0.
+/// `lines` make up e in 4096ths, which is off by `off`. A tie may be one step lower (INT-4t): it is not proved, for `off` is not 0.
 #[inline(always)]
 fn steps<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
     lines: (Line, Line),
     off: f64,
-    least: &mut [i32],
-    most: &mut [i32],
+    steps: &mut [i32],
+    unknown: &mut [i32],
 ) -> bool {
     let mut close = 0;
-    let lanes = least.len();
+    let lanes = steps.len();
     let last = f64::from(at.last);
-    let (most, xs, ys, iota) = (&mut most[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let (unknown, xs, ys, iota) = (&mut unknown[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
     // The index of q is q - FIRST; the floor is the nearest number to what lies half a step below.
     let ends = (-(CENTRE + FIRST) as f64 - 0.5, (2 * TABLE_END) as f64);
-    let error = off + ROUNDED * 8192.0;
+    let limit = 0.5 - (off + ROUNDED * 8192.0);
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let index = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y) + ends.0;
-        let within = |v: f64| {
-            let v = if v > 0.0 { v } else { 0.0 };
-            nearest(if v < ends.1 { v } else { ends.1 })
-        };
-        let (low, high) = (within(index - error), within(index + error));
-        (least[n], most[n]) = (low, high);
-        close |= low ^ high;
+        let index = if index > 0.0 { index } else { 0.0 };
+        let index = if index < ends.1 { index } else { ends.1 };
+        steps[n] = nearest(index);
+        unknown[n] = ((limit - (index - whole(index)).abs()).to_bits() >> 32) as i32;
+        close |= unknown[n];
     }
-    close != 0
+    close < 0
 }

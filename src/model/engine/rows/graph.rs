@@ -3,7 +3,7 @@
 //! Each value has a range, found when it is made. A clamp that cannot clamp and a maximum that is never taken disappear by it.
 
 use super::kernels;
-use super::node::{Input, MOST, Mapping, Mux, Node, Pairs, Value};
+use super::node::{Input, MAX_PRODUCTS, Mapping, Mux, Node, Pairs, Value};
 use crate::algebra::Algebra;
 use crate::state::{Bias, ExpandCentre, HalfBiasConstant, InputMapping, MuxNegative, MuxSelect, Policies, Scale};
 use crate::trace::Rule;
@@ -29,7 +29,7 @@ pub(super) enum Total {
 
 /// Products that are added; as many as are told.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Products(usize, [(Factor, Factor); MOST]);
+pub(super) struct Products(usize, [(Factor, Factor); MAX_PRODUCTS]);
 
 /// What a mux takes, by a value.
 #[derive(Clone, Copy, Debug)]
@@ -49,7 +49,7 @@ impl Total {
 
 impl Products {
     fn one(a: Factor, b: Factor) -> Products {
-        Products(1, [(a, b); MOST])
+        Products(1, [(a, b); MAX_PRODUCTS])
     }
 
     fn all(&self) -> &[(Factor, Factor)] {

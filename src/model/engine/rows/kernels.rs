@@ -1,7 +1,7 @@
 //! The rules on rows: each kernel is a rule's text in a loop over the pixels of a block.
 
 use super::BLOCK;
-use super::node::{MOST, Mapping, Mux, Node, Pairs, Value};
+use super::node::{MAX_PRODUCTS, Mapping, Mux, Node, Pairs, Value};
 use crate::combiner::general::dot_product;
 use crate::combiner::mapping::{expand_normal, map_one, unsigned_identity};
 use crate::combiner::output;
@@ -147,7 +147,7 @@ fn map_row_by_policy(mapping: Mapping, v: &[i16; BLOCK], out: &mut [i16; BLOCK])
 #[inline(always)]
 fn sum_row(pairs: &Pairs, before: &[Lanes256], out: &mut [i16; BLOCK], of: impl Fn(i32) -> i16) {
     // Past the last pair nothing is added, whatever the rows hold that nobody reads.
-    let mut all: [&[i16; BLOCK]; 2 * MOST] = [&ZEROS; 2 * MOST];
+    let mut all: [&[i16; BLOCK]; 2 * MAX_PRODUCTS] = [&ZEROS; 2 * MAX_PRODUCTS];
     for (factor, value) in all.iter_mut().zip(&pairs.values[..2 * pairs.count]) {
         *factor = before[usize::from(value.0)].block();
     }
@@ -289,9 +289,9 @@ mod tests {
     /// Sums of one to six products, with other numbers in the rows that nobody reads.
     #[test]
     fn sums_have_as_many_products_as_they_say() {
-        for count in 1..=MOST {
+        for count in 1..=MAX_PRODUCTS {
             let mut rows = vec![Lanes256::of(99); 4];
-            let mut values = [Value(0); 2 * MOST];
+            let mut values = [Value(0); 2 * MAX_PRODUCTS];
             let mut wanted = 0;
             for (n, value) in values[..2 * count].iter_mut().enumerate() {
                 *value = Value(rows.len() as u16);

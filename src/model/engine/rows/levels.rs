@@ -4,7 +4,7 @@
 use super::fetch::{PerLane, entry};
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quads::{AtQuads, Known, Measure, Quads, floor};
+use super::quads::{AtQuads, Known, Measure, Quads, any_negative, floor};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::short::Short;
 use super::table::{Placed, Table};
@@ -70,7 +70,7 @@ impl Default for Placing {
 /// Coordinates of a quad that are further apart than this have their lod from the definition, 1/65536 texel.
 const FARTHEST: f64 = (1 << 26) as f64;
 
-/// Mantissas closer to 2 than this are too close to call: seven squarings multiply roundings by 128.
+/// Mantissas closer to a power of two than this are too close to call: seven squarings multiply roundings by 128.
 const CLOSE: f64 = 1.0 / (1_u64 << 40) as f64;
 
 impl Setup<'_> {
@@ -98,9 +98,7 @@ impl Setup<'_> {
         };
         let lanes = batch.at.x.len();
         let spread = self.of_quads::<FMA, ROW, i32>(batch, (unit, &ground), e, quads, &mut reads.known);
-        for n in 0..lanes {
-            placing.lods[n] = reads.known.each[spread.quad(n)];
-        }
+        spread.hand_out(&reads.known.each, batch.count, &mut placing.lods[..lanes]);
         let (at, denominator) = (batch.at, ground.denominator);
         let [at_u, at_v] = &mut placing.at;
         let (lines, (u, v)) = ([ground.along, ground.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
@@ -109,15 +107,9 @@ impl Setup<'_> {
             None => quotients::<FMA, ROW>(at, lines, u, v),
         }
         placing.open[..lanes].fill(false);
-        let [low, high] =
-            choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[batch.lanes()]);
-        for which in 0..2 {
-            reads.entries[which][batch.lanes()].fill(0);
-            reads.coordinates[which][0][batch.lanes()].fill(0);
-            reads.coordinates[which][1][batch.lanes()].fill(0);
-        }
+        let ranges = choose(unit, lanes, &mut placing.lods, &mut placing.levels, &mut reads.weights[batch.lanes()]);
         let mut opens = false;
-        for level in low..=high {
+        for level in ranges[0][0]..=ranges[1][1] {
             let shifts = unit.plane_shifts(&unit.levels[level as usize]);
             let Placing { at, lods, levels, read, close, open } = &mut *placing;
             for axis in 0..2 {
@@ -125,11 +117,9 @@ impl Setup<'_> {
                 let off = ground.off * scale + if shifts[axis] > 0 { ground.floors } else { 0.0 };
                 on_level(&at[axis][..lanes], scale, off, &mut read[axis], &mut close[axis]);
             }
-            let mut any = 0;
-            for n in 0..lanes {
-                any |= close[0][n] | close[1][n];
-            }
-            for n in (0..batch.count).filter(|n| any >> 63 != 0 && (close[0][*n] | close[1][*n]) >> 63 != 0) {
+            let some = any_negative(&close[0][..lanes]) | any_negative(&close[1][..lanes]);
+            let count = if some { batch.count } else { 0 };
+            for n in (0..count).filter(|n| (close[0][*n] | close[1][*n]) >> 63 != 0) {
                 if levels[0][n] != level && levels[1][n] != level {
                     continue;
                 }
@@ -147,15 +137,23 @@ impl Setup<'_> {
             let placed = table.placed(level as usize, ground.face as u32);
             let filters = [Taken::by(unit.state.mag_filter), Taken::by(unit.state.min_filter)];
             places(&placed, filters, &lods[..lanes], u, v, entries);
-            for which in 0..2 {
-                let levels = &levels[which][..lanes];
+            for (which, [low, high]) in ranges.into_iter().enumerate() {
+                if level < low || level > high {
+                    continue;
+                }
                 let [to_u, to_v] = &mut reads.coordinates[which];
-                put(level, levels, entries, &mut reads.entries[which][batch.lanes()]);
-                put(level, levels, u, &mut to_u[batch.lanes()]);
-                put(level, levels, v, &mut to_v[batch.lanes()]);
+                let to = [&mut reads.entries[which], to_u, to_v];
+                for (to, from) in to.into_iter().zip([&*entries, &*u, &*v]) {
+                    let to = &mut to[batch.lanes()];
+                    match level == low {
+                        true => to.copy_from_slice(from),
+                        false => put(level, &levels[which][..lanes], from, to),
+                    }
+                }
             }
         }
-        for n in (0..batch.count).filter(|n| opens && placing.open[*n]) {
+        let count = if opens { batch.count } else { 0 };
+        for n in (0..count).filter(|n| placing.open[*n]) {
             self.defined_reads(batch, n, sampler, table, reads);
         }
     }
@@ -239,16 +237,16 @@ fn log_ratios(at: &AtQuads, lanes: usize, lods: &mut [i32], unknown: &mut [u64])
         let (right, lower) = (a * a + b * b, c * c + d * d);
         let largest = if right > lower { right } else { lower };
         let bits = largest.to_bits();
-        let mut mantissa = f64::from_bits(bits & ((1 << 52) - 1) | 1.0_f64.to_bits());
-        let mut log = (bits >> 52) as i64 - 1023;
+        // Its 128th power, whose exponent is the logarithm. What is hardly above 1 is moved away from it; the exponent is 0 all the same.
+        let mut power = f64::from_bits(bits & ((1 << 52) - 1) | 1.0_f64.to_bits());
         for _ in 0..7 {
-            let square = mantissa * mantissa;
-            open |= ((square - 2.0).abs() - CLOSE).to_bits();
-            let large = square >= 2.0;
-            mantissa = if large { square * 0.5 } else { square };
-            log = 2 * log + i64::from(large);
+            power *= power;
         }
-        lods[n] = if largest > 0.0 { log as i32 - 128 * 32 } else { lod::LEAST };
+        let power = if power > 1.0 + 2.0 * CLOSE { power } else { 1.0 + 2.0 * CLOSE };
+        let log = 128 * ((bits >> 52) as i32 - 1023) + (power.to_bits() >> 52) as i32 - 1023;
+        let mantissa = f64::from_bits(power.to_bits() & ((1 << 52) - 1) | 1.0_f64.to_bits());
+        open |= (mantissa - (1.0 + CLOSE)).to_bits() | (2.0 - CLOSE - mantissa).to_bits();
+        lods[n] = if largest > 0.0 { log - 128 * 32 } else { lod::LEAST };
         unknown[n] |= open;
     }
 }
@@ -282,7 +280,8 @@ fn on_level(at: &[f64], scale: f64, off: f64, out: &mut PerLane<i32>, close: &mu
     }
 }
 
-/// TEX-9: levels and weight of each lane; `lods` become biased. The least level that is read, and the largest.
+/// TEX-9: levels and weight of each lane; `lods` become biased. The least and the largest level that is read, and likewise of those that are
+/// mixed in.
 #[inline(always)]
 fn choose(
     unit: &PlannedUnit,
@@ -290,17 +289,20 @@ fn choose(
     lods: &mut PerLane<i32>,
     [levels, nexts]: &mut [PerLane<i32>; 2],
     weights: &mut [i32],
-) -> [i32; 2] {
-    let (mut low, mut high) = (i32::MAX, 0);
-    let (lods, levels, nexts) = (&mut lods[..lanes], &mut levels[..lanes], &mut nexts[..lanes]);
+) -> [[i32; 2]; 2] {
+    let selection = lod::Selection::of(unit);
+    let (lods, weights) = (&mut lods[..lanes], &mut weights[..lanes]);
+    let (levels, nexts) = (&mut levels[..lanes], &mut nexts[..lanes]);
+    let mut ends = [i32::MAX, i32::MIN];
     for n in 0..lanes {
-        let lod = lod::biased(unit, lods[n]);
-        let (level, next, weight) = lod::levels(unit, lod.max(0));
-        (lods[n], levels[n], nexts[n], weights[n]) = (lod, level, next, weight);
-        low = low.min(level);
-        high = high.max(next);
+        let lod = selection.biased(lods[n]);
+        (levels[n], nexts[n], weights[n]) = selection.levels(lod.max(0));
+        lods[n] = lod;
+        ends = [ends[0].min(lod), ends[1].max(lod)];
     }
-    [low, high]
+    // Levels never fall where lods rise.
+    let [(low, next_low, _), (high, next_high, _)] = ends.map(|lod| selection.levels(lod.max(0)));
+    [[low, high], [next_low, next_high]]
 }
 
 /// What a filter takes of a coordinate: what is subtracted, and the bits that are kept.
@@ -344,12 +346,11 @@ fn places(placed: &Placed, [mag, min]: [Taken; 2], lods: &[i32], u: &mut [i32], 
     }
 }
 
-/// What is read of a level, for the lanes that read it; they hold 0 before. Each lane reads one level, so that adding is choosing: compilers make
-/// masked stores of a choice, which are slow.
+/// What is read of a level, for the lanes that read it. By bits: compilers make masked loads and stores of a choice, which are slow.
 #[inline(always)]
 fn put(level: i32, levels: &[i32], from: &[i32], to: &mut [i32]) {
     let (from, to) = (&from[..levels.len()], &mut to[..levels.len()]);
     for n in 0..levels.len() {
-        to[n] += if levels[n] == level { from[n] } else { 0 };
+        to[n] ^= (to[n] ^ from[n]) & -i32::from(levels[n] == level);
     }
 }

@@ -99,7 +99,7 @@ const SPARE: usize = 4;
 const PAYS: u64 = 8;
 
 /// Most entries of all tables, of four bytes each.
-const MOST_ENTRIES: u64 = 1 << 25;
+const MAX_ENTRIES: u64 = 1 << 25;
 
 /// A unit that rows sample.
 #[derive(Clone, Debug)]
@@ -340,7 +340,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
         let known = tables.iter().find(|(other, _)| *other == table_key).map(|(_, table)| Arc::clone(table));
         let size = table::size(unit, &axes);
         let held: u64 = tables.iter().map(|(_, table)| table.entries()).sum();
-        if known.is_none() && (size > PAYS * pixels || size + held > MOST_ENTRIES) {
+        if known.is_none() && (size > PAYS * pixels || size + held > MAX_ENTRIES) {
             return None;
         }
         let table = match (&texture.image, known) {

@@ -24,7 +24,7 @@ pub(super) enum Input {
 }
 
 /// Most products in one sum: two dot products.
-pub(super) const MOST: usize = 6;
+pub(super) const MAX_PRODUCTS: usize = 6;
 
 /// Pairs whose products are added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,12 +32,12 @@ pub(super) struct Pairs {
     /// How many.
     pub(super) count: usize,
     /// The pairs, first and second factor in turn; zeros past the end.
-    pub(super) values: [Value; 2 * MOST],
+    pub(super) values: [Value; 2 * MAX_PRODUCTS],
 }
 
 impl Pairs {
     pub(super) fn new(pairs: &[(Value, Value)]) -> Pairs {
-        let mut values = [Value(0); 2 * MOST];
+        let mut values = [Value(0); 2 * MAX_PRODUCTS];
         for (n, (a, b)) in pairs.iter().enumerate() {
             (values[2 * n], values[2 * n + 1]) = (*a.min(b), *a.max(b));
         }

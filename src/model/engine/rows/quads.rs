@@ -78,10 +78,32 @@ impl Spread {
     pub(super) fn quad(&self, lane: usize) -> usize {
         self.first + ((lane + self.odd) >> self.shift).min(self.last)
     }
+
+    /// What is known of the quads of all lanes, of which the first `count` have pixels; the others repeat the last one's.
+    #[inline(always)]
+    pub(super) fn hand_out<T: Copy>(&self, known: &[T], count: usize, out: &mut [T]) {
+        let known = &known[self.first..];
+        if self.shift == 0 || count == 0 {
+            match self.last {
+                0 => out.fill(known[0]),
+                _ => out.copy_from_slice(&known[..out.len()]),
+            }
+            return;
+        }
+        let (out, beyond) = out.split_at_mut(count);
+        let (head, pairs) = out.split_at_mut(self.odd);
+        head.fill(known[0]);
+        let mut pairs = pairs.chunks_exact_mut(2);
+        for (pair, known) in (&mut pairs).zip(&known[self.odd..]) {
+            [pair[0], pair[1]] = [*known; 2];
+        }
+        pairs.into_remainder().fill(known[self.last]);
+        beyond.fill(known[self.last]);
+    }
 }
 
 /// Coordinates, 1/256 texel, whose multiples are far from the ends of what doubles hold exactly.
-const MOST: f64 = (1_u64 << 36) as f64;
+const MAX_COORDINATE: f64 = (1_u64 << 36) as f64;
 
 /// What an estimate of a coordinate may be off by, its own steps.
 const COARSEST: f64 = 0.125;
@@ -186,7 +208,7 @@ impl Setup<'_> {
         // Also refuses what is no number.
         let proves = lowest > 0.0
             && least(ground.denominator) > 0.0
-            && range < MOST
+            && range < MAX_COORDINATE
             && ground.off < COARSEST / 256.0
             && ground.floors < COARSEST;
         proves.then_some(ground)
@@ -232,9 +254,12 @@ impl Setup<'_> {
             let next = known.columns.end;
             let count = ((wanted.end - next) as usize).min(BLOCK);
             let [xs, ys] = &mut quads.origins;
-            for k in 0..whole_steps(count) {
-                (xs[k], ys[k]) = ((2 * (next + k.min(count - 1) as i64) - i) as f64, above as f64);
+            let lanes = whole_steps(count);
+            let (first, above, last) = ((2 * next - i) as i32, above as f64, count as i32 - 1);
+            for (k, x) in xs[..lanes].iter_mut().enumerate() {
+                *x = f64::from(first + 2 * (k as i32).min(last));
             }
+            ys[..lanes].fill(above);
             let first = (next - known.columns.start) as usize;
             room(known, first + LANES);
             self.measured::<FMA, T>(batch, (unit, ground), e, count, quads, &mut known.each[first..]);
@@ -263,7 +288,9 @@ impl Setup<'_> {
         for ((x, y), [u, v]) in PIXELS.into_iter().zip(&mut *coordinates) {
             corners::<FMA>(ground, [xs, ys], [x as f64, y as f64], &mut u[..rounded], &mut v[..rounded], unknown);
         }
-        if let Some(planes) = ground.planes {
+        if let Some(planes) = ground.planes
+            && any_negative(unknown)
+        {
             for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
                 for ((x, y), at) in PIXELS.into_iter().zip(&mut *coordinates) {
                     let (x, y) = (xs[n] as i64 + x, ys[n] as i64 + y);
@@ -276,6 +303,9 @@ impl Setup<'_> {
             unknown.fill(0);
         }
         T::measure(unit, coordinates, count, &mut out[..rounded], unknown);
+        if !any_negative(unknown) {
+            return;
+        }
         for n in (0..count).filter(|n| unknown[*n] >> 63 != 0) {
             let pixel = (batch.first.0 + xs[n] as i64, batch.first.1 + ys[n] as i64);
             out[n] = self.defined_quad(batch, unit, pixel);
@@ -289,6 +319,16 @@ impl Setup<'_> {
         let sample = self.sample(batch, 0);
         T::defined(unit, self.context.place(unit, &sample, pixel).and_then(|place| place.quad()))
     }
+}
+
+/// Whether the sign bit of some is set. Most often of none, and one lane after the other is a slow way to find that out.
+#[inline(always)]
+pub(super) fn any_negative(lanes: &[u64]) -> bool {
+    let mut all = 0;
+    for lane in lanes {
+        all |= lane;
+    }
+    all >> 63 != 0
 }
 
 /// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.

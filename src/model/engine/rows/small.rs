@@ -159,7 +159,7 @@ pub(super) fn interpolate<const FMA: bool>(
         return false;
     }
     if context.draw.depth_test.is_some() {
-        depths::<FMA, false>(context, batch, &mut varying.depth);
+        depths::<FMA, false>(context, batch, varying);
     }
     if weighted {
         narrow_weights(batch, varying);

@@ -9,6 +9,7 @@ use super::dot::{self, Floats};
 use super::fetch;
 use super::kernels::{LANES, Lanes256};
 use super::planes::{Plane, inverse};
+use super::quads::any_negative;
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, nearest_32, position};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::Short;
@@ -88,6 +89,12 @@ impl Open {
     fn is(&self, lane: usize) -> bool {
         self.narrow[lane] != 0 || self.wide[lane] >> 63 != 0
     }
+
+    /// Whether there are some among the first lanes.
+    fn any(&self, lanes: usize) -> bool {
+        let narrow = self.narrow[..lanes].iter().fold(0, |all, open| all | open);
+        narrow != 0 || any_negative(&self.wide[..lanes])
+    }
 }
 
 /// What a texture shader works in.
@@ -106,6 +113,10 @@ pub(super) struct Workshop {
     is_remapped: Vec<bool>,
     dots: Vec<Floats>,
     reflected: Vec<[Floats; 3]>,
+    /// The eye where it is the same everywhere.
+    eye: Vec<[Floats; 3]>,
+    /// What a stage works in.
+    scratch: Vec<[Floats; 3]>,
 }
 
 impl Workshop {
@@ -121,6 +132,13 @@ impl Workshop {
         self.is_remapped.resize(shader.vectors.len(), false);
         self.dots.resize(TEXTURE_UNITS, [0.0; BLOCK]);
         self.reflected.resize(1, [[0.0; BLOCK]; 3]);
+        self.scratch.resize(1, [[0.0; BLOCK]; 3]);
+        self.eye.clear();
+        for stage in &shader.stages {
+            if let ShaderOperation::DotReflectConstantEye { eye } = stage.state.operation {
+                self.eye.push(eye.map(|component| [component; BLOCK]));
+            }
+        }
     }
 }
 
@@ -242,7 +260,7 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
             ShaderOperation::PassThrough => {
                 for n in 0..4 {
                     if let Some(slot) = wanted[n]
-                        && let Some(number) = workshop.number(stage.numbers[n])
+                        && let Some(number) = number(&workshop.numbers, &workshop.same, stage.numbers[n])
                     {
                         let out = rows[usize::from(slot)].block_mut();
                         for k in 0..BLOCK {
@@ -253,7 +271,7 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
             }
             ShaderOperation::CullFragment { drops_not_negative } => {
                 for n in 0..4 {
-                    let Some(number) = workshop.number(stage.numbers[n]) else { continue };
+                    let Some(number) = number(&workshop.numbers, &workshop.same, stage.numbers[n]) else { continue };
                     for (alive, number) in alive.iter_mut().zip(number) {
                         *alive &= (*number < 0.0) == drops_not_negative[n];
                     }
@@ -284,16 +302,11 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                         let doubled = shader.stages[stage.state.previous].doubled;
                         let moved = &workshop.moved[stage.moved];
                         let [_, green, blue, _] = earlier.map(|slot| slot.map(|slot| rows[usize::from(slot)].block()));
-                        if let (Some(blue), Some(green)) = (blue, green) {
-                            bump(
-                                sampler,
-                                matrix,
-                                (blue, doubled[2]),
-                                (green, doubled[1]),
-                                moved,
-                                numbers,
-                                &mut workshop.open,
-                            );
+                        if let (Some(blue), Some(green), Some([along, ..])) =
+                            (blue, green, workshop.scratch.first_mut())
+                        {
+                            let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
+                            bump(sampler, matrix, blue, green, moved, along, numbers, &mut workshop.open);
                         }
                     }
                     ShaderOperation::DependentAlphaRed | ShaderOperation::DependentGreenBlue => {
@@ -326,12 +339,12 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                         for n in 1..4 {
                             dot_product(job.compiled, shader, n, &mut dotted, workshop, rows);
                         }
-                        workshop.vector(shader, &operation);
+                        let Some((vector, scratch)) = workshop.vector(shader, &operation) else { continue };
                         let [u, v] = numbers;
                         if let (Some(u), Some(v), Some(faces)) =
                             (u.first_chunk_mut(), v.first_chunk_mut(), faces.first_chunk_mut())
                         {
-                            dot::on_faces(&workshop.reflected[0], sampler.sides[0], sampler.bias(), u, v, faces);
+                            dot::on_faces(vector, sampler.sides[0], sampler.bias(), scratch, u, v, faces);
                         }
                     }
                 }
@@ -340,14 +353,13 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                 let (at, references) = (&varying.coordinates[at], &varying.references[at]);
                 fetch::sample(table, at, references, sampler.signed, wanted, work, rows);
                 if let Some(factors) = stage.luminance.first_chunk::<256>()
-                    && let Some(red) = earlier[0]
+                    && let (Some(red), Some([products, ..])) = (earlier[0], workshop.scratch.first_mut())
                 {
                     let doubled = shader.stages[stage.state.previous].doubled[0];
-                    let mut products = [0.0; BLOCK];
-                    look_up(factors, rows[usize::from(red)].block(), doubled, &mut products);
+                    look_up(factors, rows[usize::from(red)].block(), doubled, products);
                     for slot in wanted[..3].iter().flatten() {
                         let channel = rows[usize::from(*slot)].block_mut();
-                        luminance(&products, channel, &mut workshop.open.narrow);
+                        luminance(products, channel, &mut workshop.open.narrow);
                     }
                 }
             }
@@ -356,36 +368,33 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
     defined[Reason::Shader as usize] += define(job, runs, varying.alive.as_mut_slice(), workshop, rows, band);
 }
 
-impl Workshop {
-    fn number(&self, number: Number) -> Option<&Floats> {
-        match number {
-            Number::Unread => None,
-            Number::Same(n) => Some(&self.same[n]),
-            Number::Varying(n) => self.numbers[n].first_chunk(),
-        }
+/// A number of the block's pixels, by what varies and what does not.
+#[inline(always)]
+fn number<'w>(varying: &'w [[f32; LANES]], same: &'w [Floats], number: Number) -> Option<&'w Floats> {
+    match number {
+        Number::Unread => None,
+        Number::Same(n) => Some(&same[n]),
+        Number::Varying(n) => varying[n].first_chunk(),
     }
+}
 
-    /// The vector that a cube map is looked up with.
+impl Workshop {
+    /// The vector that a cube map is looked up with, and what is worked in meanwhile.
     #[inline(always)]
-    fn vector(&mut self, shader: &Shader, operation: &ShaderOperation) {
-        let constant: [Floats; 3];
-        let number = |work: &Workshop, n: usize| *work.number(shader.stages[n].numbers[3]).unwrap_or(&[0.0; BLOCK]);
+    fn vector(&mut self, shader: &Shader, operation: &ShaderOperation) -> Option<([&Floats; 3], &mut [Floats; 3])> {
+        let Workshop { numbers, same, dots, reflected, eye, scratch, .. } = self;
+        let (scratch, reflected) = (scratch.first_mut()?, reflected.first_mut()?);
+        let dots = [&dots[1], &dots[2], &dots[3]];
         let eye = match operation {
             ShaderOperation::DotReflectSpecular => {
-                constant = [number(self, 1), number(self, 2), number(self, 3)];
-                Some(&constant)
+                let component = |n: usize| number(numbers, same, shader.stages[n].numbers[3]);
+                [component(1)?, component(2)?, component(3)?]
             }
-            ShaderOperation::DotReflectConstantEye { eye } => {
-                constant = [[eye[0]; BLOCK], [eye[1]; BLOCK], [eye[2]; BLOCK]];
-                Some(&constant)
-            }
-            _ => None,
+            ShaderOperation::DotReflectConstantEye { .. } => eye.first()?.each_ref(),
+            _ => return Some((dots, scratch)),
         };
-        let (dots, Some(out)) = (&self.dots, self.reflected.first_mut()) else { return };
-        match eye {
-            Some([a, b, c]) => dot::reflect([&dots[1], &dots[2], &dots[3]], [a, b, c], out),
-            None => *out = [dots[1], dots[2], dots[3]],
-        }
+        dot::reflect(dots, eye, reflected);
+        Some((reflected.each_ref(), scratch))
     }
 }
 
@@ -410,31 +419,31 @@ fn dot_product(
         let registers = [register(r), register(g), register(b), register(a)];
         remap.run(registers, *doubled, &mut work.vectors[stage.vector]);
     }
-    let mut out = work.dots[index];
-    if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| work.number(stage.numbers[n])) {
-        dot::products([s, t, r], &work.vectors[stage.vector], &mut out);
+    let Workshop { numbers, same, vectors, dots, .. } = work;
+    if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| number(numbers, same, stage.numbers[n])) {
+        dot::products([s, t, r], &vectors[stage.vector], &mut dots[index]);
     }
-    work.dots[index] = out;
 }
 
 /// TSH-7: coordinates moved by blue and green; lanes that are not proved are left open.
 #[inline(always)]
+#[allow(clippy::too_many_arguments, reason = "what the caller has computed, and each result apart")]
 fn bump(
     sampler: &Sampler,
     [m0, m1, m2, m3]: [f32; 4],
     blue: (&[i16; BLOCK], bool),
     green: (&[i16; BLOCK], bool),
     moved: &Moved,
+    along: &mut Floats,
     [u, v]: &mut [fetch::PerLane<i32>; 2],
     open: &mut Open,
 ) {
     let (Some(u), Some(v)) = (u.first_chunk_mut(), v.first_chunk_mut()) else { return };
-    let mut along = [0.0; BLOCK];
     for (entries, side, at, out) in
         [([m0, m3], sampler.sides[0], &moved.u, u), ([m1, m2], sampler.sides[1], &moved.v, v)]
     {
-        dot::moved(entries, blue, green, &mut along, &mut open.narrow);
-        place(&along, side, (at, &moved.off), sampler.bias(), &mut open.wide, out);
+        dot::moved(entries, blue, green, along, &mut open.narrow);
+        place(along, side, (at, &moved.off), sampler.bias(), &mut open.wide, out);
     }
 }
 
@@ -499,6 +508,9 @@ fn define(
     band: &Band<'_>,
 ) -> u64 {
     let mut count = 0;
+    let lanes = runs.last().map_or(0, |run| run.lane + run.count);
+    // Most blocks have none.
+    let runs = if work.open.any(lanes) { runs } else { &[] };
     const UNITS: [Register; TEXTURE_UNITS] =
         [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
     let mut known: Option<(usize, TriangleContext<'_>)> = None;

@@ -294,7 +294,7 @@ fn floors<const FMA: bool, const DIVIDES: bool>(
 #[inline(always)]
 fn floored(full: f64, depth: f64) -> u32 {
     let depth = if depth > 0.0 { depth } else { 0.0 };
-    nearest(floor(if depth < full { depth } else { full })) as u32
+    nearest(floor::<false>(if depth < full { depth } else { full })) as u32
 }
 
 /// DEP-3 of quotients that are off by less than `off`; whether some are unknown. `FLOAT`: the format is one of floats.

@@ -3,7 +3,7 @@
 
 use super::color::{colors, narrow_weights};
 use super::dda::DdaRow;
-use super::depth::depths;
+use super::depth::{Steps, depths};
 use super::direction::{Looking, only_face, positive};
 use super::fetch::PerLane;
 use super::fog::Fog;
@@ -82,6 +82,7 @@ pub(super) struct Varying {
     pub(super) layers: [PerLane<i32>; 2],
     /// Depth, where it is tested.
     pub(super) depth: PerLane<u32>,
+    pub(super) depth_steps: Box<Steps>,
     /// The texture shader lets the pixel live.
     pub(super) alive: PerLane<bool>,
     /// What samplers read whose levels count; as many as are wanted.
@@ -111,6 +112,7 @@ impl Default for Varying {
             references: [[0; LANES]; TEXTURE_UNITS],
             layers: [[0; LANES]; 2],
             depth: [0; LANES],
+            depth_steps: Box::default(),
             alive: [true; LANES],
             reads: Vec::new(),
             quads: Box::default(),
@@ -357,7 +359,7 @@ impl<'a> Setup<'a> {
             narrow_weights(batch, varying);
         }
         if self.context.draw.depth_test.is_some() {
-            depths::<FMA, ROW>(self.context, batch, &mut varying.depth);
+            depths::<FMA, ROW>(self.context, batch, varying);
         }
         if let Some(slot) = compiled.fog {
             let Varying { whole: [values, spare], .. } = &mut *varying;

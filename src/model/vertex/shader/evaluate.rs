@@ -151,9 +151,9 @@ fn dot(a: &[f32], b: &[f32; 4]) -> f32 {
 }
 
 /// Largest magnitude of the power that `lit` raises to.
-const MOST_POWER: f32 = 128.0 - 1.0 / 256.0;
+const MAX_POWER: f32 = 128.0 - 1.0 / 256.0;
 
 fn lit([x, y, _, w]: [f32; 4]) -> [f32; 4] {
-    let specular = if x > 0.0 && y > 0.0 { power(y, w.clamp(-MOST_POWER, MOST_POWER)) } else { 0.0 };
+    let specular = if x > 0.0 && y > 0.0 { power(y, w.clamp(-MAX_POWER, MAX_POWER)) } else { 0.0 };
     [1.0, if x > 0.0 { x } else { 0.0 }, specular, 1.0]
 }

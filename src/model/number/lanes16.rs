@@ -5,40 +5,40 @@ use crate::state::RegisterFloor;
 use std::ops::{Add, Sub};
 
 /// How many there are.
-pub const EACH: usize = 16;
+pub const LANES: usize = 16;
 
 /// A value of each of sixteen evaluations that take the same decisions: [`decision`](Lane::decision) and what observers see is that of the first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Each<T>(pub [T; EACH]);
+pub struct Lanes16<T>(pub [T; LANES]);
 
-impl<T: Copy> Each<T> {
+impl<T: Copy> Lanes16<T> {
     /// The same value everywhere.
     #[inline(always)]
-    pub fn all(value: T) -> Each<T> {
-        Each([value; EACH])
+    pub fn all(value: T) -> Lanes16<T> {
+        Lanes16([value; LANES])
     }
 
     // Plain loops: they become vector instructions.
     #[inline(always)]
-    fn map<U: Copy>(self, f: impl Fn(T) -> U) -> Each<U> {
-        let mut out = [f(self.0[0]); EACH];
-        for n in 1..EACH {
+    fn map<U: Copy>(self, f: impl Fn(T) -> U) -> Lanes16<U> {
+        let mut out = [f(self.0[0]); LANES];
+        for n in 1..LANES {
             out[n] = f(self.0[n]);
         }
-        Each(out)
+        Lanes16(out)
     }
 
     #[inline(always)]
-    fn zip<V: Copy, U: Copy>(self, other: Each<V>, f: impl Fn(T, V) -> U) -> Each<U> {
-        let mut out = [f(self.0[0], other.0[0]); EACH];
-        for n in 1..EACH {
+    fn zip<V: Copy, U: Copy>(self, other: Lanes16<V>, f: impl Fn(T, V) -> U) -> Lanes16<U> {
+        let mut out = [f(self.0[0], other.0[0]); LANES];
+        for n in 1..LANES {
             out[n] = f(self.0[n], other.0[n]);
         }
-        Each(out)
+        Lanes16(out)
     }
 }
 
-impl<T: Copy + Add<Output = T>> Add for Each<T> {
+impl<T: Copy + Add<Output = T>> Add for Lanes16<T> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -46,7 +46,7 @@ impl<T: Copy + Add<Output = T>> Add for Each<T> {
     }
 }
 
-impl<T: Copy + Sub<Output = T>> Sub for Each<T> {
+impl<T: Copy + Sub<Output = T>> Sub for Lanes16<T> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -54,25 +54,25 @@ impl<T: Copy + Sub<Output = T>> Sub for Each<T> {
     }
 }
 
-impl Blend for Each<i32> {
-    type Weight = Each<i32>;
-    const WHOLE: Self = Each([i32::WHOLE; EACH]);
+impl Blend for Lanes16<i32> {
+    type Weight = Lanes16<i32>;
+    const WHOLE: Self = Lanes16([i32::WHOLE; LANES]);
     componentwise! {
         times(weight: Self) -> Self = i32::times;
         round8() -> Self = i32::round8;
     }
 }
 
-impl Register for Each<i32> {
-    type Factor = Each<Halves>;
-    type Expanded = Each<Halves>;
-    const ZERO: Self = Each([i32::ZERO; EACH]);
-    const ONE: Self = Each([i32::ONE; EACH]);
-    const HALF: Self = Each([i32::HALF; EACH]);
+impl Register for Lanes16<i32> {
+    type Factor = Lanes16<Halves>;
+    type Expanded = Lanes16<Halves>;
+    const ZERO: Self = Lanes16([i32::ZERO; LANES]);
+    const ONE: Self = Lanes16([i32::ONE; LANES]);
+    const HALF: Self = Lanes16([i32::HALF; LANES]);
     componentwise! {
         max0() -> Self = i32::max0;
-        factor() -> Each<Halves> = i32::factor;
-        twice() -> Each<Halves> = i32::twice;
+        factor() -> Lanes16<Halves> = i32::factor;
+        twice() -> Lanes16<Halves> = i32::twice;
         halved() -> Self = i32::halved;
     }
     #[inline(always)]
@@ -81,11 +81,11 @@ impl Register for Each<i32> {
     }
 }
 
-impl Factor for Each<Halves> {
-    type Sum = Each<Quarters>;
-    type Register = Each<i32>;
+impl Factor for Lanes16<Halves> {
+    type Sum = Lanes16<Quarters>;
+    type Register = Lanes16<i32>;
     #[inline(always)]
-    fn product(self, other: Self) -> Each<Quarters> {
+    fn product(self, other: Self) -> Lanes16<Quarters> {
         self.zip(other, Halves::product)
     }
 }
@@ -97,25 +97,25 @@ fn rounded(q: Quarters) -> i32 {
     (m * 257 + (m >> 8) + 32646) >> 16
 }
 
-impl Sum for Each<Quarters> {
-    type Register = Each<i32>;
+impl Sum for Lanes16<Quarters> {
+    type Register = Lanes16<i32>;
     #[inline(always)]
-    fn rounded(self) -> Each<i32> {
+    fn rounded(self) -> Lanes16<i32> {
         self.map(rounded)
     }
 }
 
-impl Lane for Each<i32> {
-    type Mapped = Each<Halves>;
-    type Full = Each<Quarters>;
-    const STEP: Self = Each([i32::STEP; EACH]);
+impl Lane for Lanes16<i32> {
+    type Mapped = Lanes16<Halves>;
+    type Full = Lanes16<Quarters>;
+    const STEP: Self = Lanes16([i32::STEP; LANES]);
     #[inline(always)]
     fn byte(value: u8) -> Self {
-        Each::all(i32::byte(value))
+        Lanes16::all(i32::byte(value))
     }
     #[inline(always)]
     fn texel(value: i32, numerator: i32, denominator: i32) -> Self {
-        Each::all(i32::texel(value, numerator, denominator))
+        Lanes16::all(i32::texel(value, numerator, denominator))
     }
     #[inline(always)]
     fn signed_texel(self) -> Self {
@@ -123,30 +123,30 @@ impl Lane for Each<i32> {
     }
     #[inline(always)]
     fn weight(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
-        Each::all(i32::weight(fixed, ideal))
+        Lanes16::all(i32::weight(fixed, ideal))
     }
     #[inline(always)]
     fn value(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
-        Each::all(i32::value(fixed, ideal))
+        Lanes16::all(i32::value(fixed, ideal))
     }
     #[inline(always)]
     fn multiplied(self, fixed: i32, _factor: impl FnOnce() -> f64) -> Self {
-        Each::all(fixed)
+        Lanes16::all(fixed)
     }
     #[inline(always)]
-    fn halfway(a: Self, b: Self) -> Each<Halves> {
+    fn halfway(a: Self, b: Self) -> Lanes16<Halves> {
         a.zip(b, i32::halfway)
     }
     #[inline(always)]
-    fn negated(factor: Each<Halves>) -> Each<Halves> {
+    fn negated(factor: Lanes16<Halves>) -> Lanes16<Halves> {
         factor.map(i32::negated)
     }
     #[inline(always)]
-    fn widened(self) -> Each<Quarters> {
+    fn widened(self) -> Lanes16<Quarters> {
         self.map(i32::widened)
     }
     #[inline(always)]
-    fn rounded_half(sum: Each<Quarters>) -> Self {
+    fn rounded_half(sum: Lanes16<Quarters>) -> Self {
         sum.map(i32::rounded_half)
     }
     componentwise! {
@@ -169,10 +169,10 @@ impl Lane for Each<i32> {
     fn observe(self) -> (i64, Option<f64>) {
         self.0[0].observe()
     }
-    fn observe_factor(factor: Each<Halves>) -> (i64, Option<f64>) {
+    fn observe_factor(factor: Lanes16<Halves>) -> (i64, Option<f64>) {
         i32::observe_factor(factor.0[0])
     }
-    fn observe_sum(sum: Each<Quarters>) -> (i64, Option<f64>) {
+    fn observe_sum(sum: Lanes16<Quarters>) -> (i64, Option<f64>) {
         i32::observe_sum(sum.0[0])
     }
     fn observe_weight(weight: Self) -> (i64, Option<f64>) {
@@ -195,18 +195,18 @@ mod tests {
     /// A few numbers through every operation that a rule of combiners or blending uses: as the definition has them, one by one.
     #[test]
     fn each_is_the_definition() {
-        let numbers: Each<i32> = Each(std::array::from_fn(|n| n as i32 * 37 - 256));
+        let numbers: Lanes16<i32> = Lanes16(std::array::from_fn(|n| n as i32 * 37 - 256));
         let others = numbers.map(|v| 99 - v / 2);
         for (n, (a, b)) in numbers.0.into_iter().zip(others.0).enumerate() {
             let product = numbers.factor().product(others.twice());
             let one = a.factor().product(b.twice());
             assert_eq!((product.0[n], product.rounded().0[n]), (one, one.rounded()));
             assert_eq!((product + product - numbers.widened()).0[n], one + one - a.widened());
-            assert_eq!(<Each<i32> as Lane>::rounded_half(product).0[n], i32::rounded_half(one));
+            assert_eq!(<Lanes16<i32> as Lane>::rounded_half(product).0[n], i32::rounded_half(one));
             assert_eq!((numbers - others).saturated(RegisterFloor::Full).0[n], (a - b).saturated(RegisterFloor::Full));
             assert_eq!(numbers.max0().halved().clamped().0[n], a.max0().halved().clamped());
             assert_eq!((numbers.least(others).0[n], numbers.greatest(others).0[n]), (a.min(b), a.max(b)));
-            assert_eq!(<Each<i32> as Lane>::negated(numbers.factor()).0[n], i32::negated(a.factor()));
+            assert_eq!(<Lanes16<i32> as Lane>::negated(numbers.factor()).0[n], i32::negated(a.factor()));
             assert_eq!(Lane::halfway(numbers, others).0[n], <i32 as Lane>::halfway(a, b));
             assert_eq!(numbers.truncated(3).0[n], a.truncated(3));
             assert_eq!(numbers.signed_byte().0[n], a.signed_byte());

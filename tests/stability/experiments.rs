@@ -1,7 +1,7 @@
-//! Where methods fail: each threshold is held from both sides, and the page is what the sweeps yield.
+//! Where methods fail: each threshold is held from both sides, and the page is what the experiments yield.
 
 use ninebit_lab::chart::page::{plain, replace_section};
-use ninebit_lab::experiments::{self, Sweep, Threshold, sweeps};
+use ninebit_lab::experiments::{self, Experiment, Threshold, experiments};
 use std::fs;
 
 /// A method works at the first value and fails at the second; `None`: it does not fail where it ought to.
@@ -46,24 +46,25 @@ const PINNED: [(&str, &str, f64, Option<f64>); 38] = [
     ("mirrored-bases", "one basis for both sides of the seam", 1.7, Some(1.87)),
 ];
 
-fn find<'a>(sweeps: &'a [Sweep], name: &str, method: &str) -> (&'a Sweep, &'a experiments::Method) {
-    let sweep = sweeps.iter().find(|sweep| sweep.name == name).unwrap_or_else(|| panic!("no sweep {name}"));
-    let method = sweep.methods.iter().find(|known| known.name == method).unwrap_or_else(|| panic!("no {method}"));
-    (sweep, method)
+fn find<'a>(experiments: &'a [Experiment], name: &str, method: &str) -> (&'a Experiment, &'a experiments::Method) {
+    let experiment =
+        experiments.iter().find(|experiment| experiment.name == name).unwrap_or_else(|| panic!("no experiment {name}"));
+    let method = experiment.methods.iter().find(|known| known.name == method).unwrap_or_else(|| panic!("no {method}"));
+    (experiment, method)
 }
 
 pub fn both_sides() {
-    let sweeps = sweeps();
-    let methods: usize = sweeps.iter().map(|sweep| sweep.methods.len()).sum();
+    let experiments = experiments();
+    let methods: usize = experiments.iter().map(|experiment| experiment.methods.len()).sum();
     assert_eq!(PINNED.len(), methods, "every method is pinned");
     for (name, method, works, fails) in PINNED {
-        let (sweep, method) = find(&sweeps, name, method);
+        let (experiment, method) = find(&experiments, name, method);
         let error = |value: f64| (method.measure)(value).unwrap_or_else(|error| panic!("{}", error.render(false)));
         let at = |value: f64| format!("{name}, {}, at {}: {}", method.name, plain(value), error(value));
-        assert!(error(works) <= sweep.limit, "{}", at(works));
+        assert!(error(works) <= experiment.limit, "{}", at(works));
         match fails {
-            Some(value) => assert!(error(value) > sweep.limit, "{}", at(value)),
-            None => assert!(error(method.fails) <= sweep.limit, "{}", at(method.fails)),
+            Some(value) => assert!(error(value) > experiment.limit, "{}", at(value)),
+            None => assert!(error(method.fails) <= experiment.limit, "{}", at(method.fails)),
         }
     }
 }
@@ -71,9 +72,9 @@ pub fn both_sides() {
 pub fn page() {
     let measured = experiments::page::measure(&|_, _| {}).unwrap_or_else(|error| panic!("{}", error.render(false)));
     for one in &measured {
-        assert!(!one.thresholds.contains(&Threshold::Fails), "{}: a method works nowhere", one.sweep.name);
+        assert!(!one.thresholds.contains(&Threshold::Fails), "{}: a method works nowhere", one.experiment.name);
         let fails = one.thresholds.iter().any(|threshold| matches!(threshold, Threshold::Between { .. }));
-        assert!(fails, "{}: nothing fails", one.sweep.name);
+        assert!(fails, "{}: nothing fails", one.experiment.name);
     }
     let (section, files) = experiments::page::files(&measured).unwrap();
     assert!(!section.contains("{{"), "a place of the template was not filled");

@@ -11,7 +11,7 @@ use ninebit::trace::Step;
 
 /// A line of two traces: what one of them, or both, computed.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BesideLine {
+pub struct SideBySideLine {
     /// The draw and the hardware block, where they begin with this line.
     pub heading: Option<String>,
     /// What was computed.
@@ -24,7 +24,7 @@ pub struct BesideLine {
     pub second: Option<(String, String)>,
 }
 
-impl BesideLine {
+impl SideBySideLine {
     /// Whether the traces differ here in what they yield.
     pub fn differs(&self) -> bool {
         let integer = |side: &Option<(String, String)>| side.as_ref().map(|(_, integer)| integer.clone());
@@ -33,7 +33,7 @@ impl BesideLine {
 }
 
 /// The lines of two traces of the same pixel, steps of the same name on one line.
-pub fn beside(first: &PixelTrace, second: &PixelTrace) -> Vec<BesideLine> {
+pub fn side_by_side(first: &PixelTrace, second: &PixelTrace) -> Vec<SideBySideLine> {
     let mut lines = Vec::new();
     let same = |a: &DrawTrace, b: &DrawTrace| (a.draw, a.triangle) == (b.draw, b.triangle);
     for draw in &first.draws {
@@ -46,7 +46,7 @@ pub fn beside(first: &PixelTrace, second: &PixelTrace) -> Vec<BesideLine> {
     lines
 }
 
-fn draw_lines(lines: &mut Vec<BesideLine>, draw: &DrawTrace, first: &[Step], second: &[Step]) {
+fn draw_lines(lines: &mut Vec<SideBySideLine>, draw: &DrawTrace, first: &[Step], second: &[Step]) {
     let names = |steps: &[Step]| -> Vec<(String, String)> {
         steps.iter().map(|step| (step.block.clone(), step.name.clone())).collect()
     };
@@ -59,7 +59,7 @@ fn draw_lines(lines: &mut Vec<BesideLine>, draw: &DrawTrace, first: &[Step], sec
         });
         block = Some(step.block.clone());
         let side = |step: &Step| (expression(step), integer(step.value, step.per_one));
-        lines.push(BesideLine {
+        lines.push(SideBySideLine {
             heading,
             name: step.name.clone(),
             rule: step.rule,
@@ -88,17 +88,17 @@ fn draw_lines(lines: &mut Vec<BesideLine>, draw: &DrawTrace, first: &[Step], sec
 
 /// The lines as a table for people. `titles` head the columns of the first and the second trace. Lines in which they differ begin
 /// with `>`.
-pub fn beside_text(titles: [&str; 2], lines: &[BesideLine]) -> String {
+pub fn side_by_side_text(titles: [&str; 2], lines: &[SideBySideLine]) -> String {
     let mut out = String::new();
     // Writing to a string cannot fail.
     let _ = write(&mut out, titles, lines);
     out
 }
 
-fn write(out: &mut String, titles: [&str; 2], lines: &[BesideLine]) -> std::fmt::Result {
+fn write(out: &mut String, titles: [&str; 2], lines: &[SideBySideLine]) -> std::fmt::Result {
     let integer =
         |side: &Option<(String, String)>| side.as_ref().map_or("-".to_owned(), |(_, integer)| integer.clone());
-    let widest = |f: &dyn Fn(&BesideLine) -> usize, least: usize| lines.iter().map(f).max().unwrap_or(0).max(least);
+    let widest = |f: &dyn Fn(&SideBySideLine) -> usize, least: usize| lines.iter().map(f).max().unwrap_or(0).max(least);
     let name = widest(&|line| line.name.chars().count(), 4);
     let a = widest(&|line| integer(&line.first).len(), titles[0].len());
     let b = widest(&|line| integer(&line.second).len(), titles[1].len());

@@ -1,4 +1,4 @@
-//! Sweeps: every row of a unit, as digests.
+//! Exhaustive vectors: every row of a unit, as digests. `ninebit vectors sweep` writes them, so one run is called a sweep.
 //!
 //! All rows of a unit, in the order of [`cases::nth`], are cut into leaves: ranges whose number depends on nothing but the
 //! unit. A leaf is the SHA-256 of the rows' `out.` columns, each number in as many whole bytes as its bits need, low byte first; rows whose
@@ -16,14 +16,14 @@ use super::unit::{Conditions, Unit};
 use ninebit::state::{Policies, Profile};
 use ninebit_files::picture::hexadecimal;
 
-/// Rows of a leaf, unless the sweep has more than [`MOST_LEAVES`] times as many.
+/// Rows of a leaf, unless the sweep has more than [`MAX_LEAVES`] times as many.
 const LEAF_ROWS: u64 = 1 << 23;
 
 /// The most leaves.
-pub const MOST_LEAVES: u64 = 1024;
+pub const MAX_LEAVES: u64 = 1024;
 
 /// The most rows that a sweep may have: beyond it nobody waits for the end.
-pub const MOST_ROWS: u64 = 1 << 40;
+pub const MAX_ROWS: u64 = 1 << 40;
 
 /// Bytes that are hashed at once.
 const BUFFER: usize = 1 << 16;
@@ -46,7 +46,7 @@ pub struct Leaf {
 
 /// All rows of a unit, or of a part of it, on a chip.
 #[derive(Debug)]
-pub struct Sweep {
+pub struct Exhaustive {
     /// The unit.
     pub unit: &'static dyn Unit,
     /// The chip.
@@ -90,18 +90,18 @@ impl Output {
     }
 }
 
-impl Sweep {
-    /// Of a whole unit; `None` if it has more than [`MOST_ROWS`] rows.
-    pub fn new(unit: &'static dyn Unit, profile: Profile) -> Option<Sweep> {
-        Sweep::of(unit, profile, Part::whole(unit))
+impl Exhaustive {
+    /// Of a whole unit; `None` if it has more than [`MAX_ROWS`] rows.
+    pub fn new(unit: &'static dyn Unit, profile: Profile) -> Option<Exhaustive> {
+        Exhaustive::of(unit, profile, Part::whole(unit))
     }
 
-    /// Of a part of a unit; `None` if that has more than [`MOST_ROWS`] rows.
-    pub fn of(unit: &'static dyn Unit, profile: Profile, part: Part) -> Option<Sweep> {
+    /// Of a part of a unit; `None` if that has more than [`MAX_ROWS`] rows.
+    pub fn of(unit: &'static dyn Unit, profile: Profile, part: Part) -> Option<Exhaustive> {
         let results = unit.results();
-        let size = u64::try_from(cases::size(part.columns())).ok().filter(|size| *size <= MOST_ROWS)?;
-        let leaves = size.div_ceil(LEAF_ROWS).clamp(1, MOST_LEAVES);
-        Some(Sweep { unit, profile, part, size, leaves, outputs: Output::of(&results), results: results.len() })
+        let size = u64::try_from(cases::size(part.columns())).ok().filter(|size| *size <= MAX_ROWS)?;
+        let leaves = size.div_ceil(LEAF_ROWS).clamp(1, MAX_LEAVES);
+        Some(Exhaustive { unit, profile, part, size, leaves, outputs: Output::of(&results), results: results.len() })
     }
 
     /// The rows of a leaf, by their places among all.
@@ -129,7 +129,7 @@ impl Sweep {
 /// A digest under way.
 #[derive(Debug)]
 pub struct Digesting<'s> {
-    sweep: &'s Sweep,
+    sweep: &'s Exhaustive,
     hash: Sha256,
     /// Longer than [`BUFFER`] by a row, each number of which is written as eight bytes.
     buffer: Vec<u8>,
@@ -145,7 +145,7 @@ pub struct Digesting<'s> {
 }
 
 impl<'s> Digesting<'s> {
-    fn new(sweep: &'s Sweep) -> Self {
+    fn new(sweep: &'s Exhaustive) -> Self {
         Digesting {
             sweep,
             hash: Sha256::new(),
@@ -252,8 +252,8 @@ mod tests {
     #[test]
     fn leaves_cover_all_rows_once() {
         for unit in units::all() {
-            let Some(sweep) = Sweep::new(unit, Profile::Nv2a) else { continue };
-            assert!((1..=MOST_LEAVES).contains(&sweep.leaves));
+            let Some(sweep) = Exhaustive::new(unit, Profile::Nv2a) else { continue };
+            assert!((1..=MAX_LEAVES).contains(&sweep.leaves));
             let ends: Vec<Range<u64>> = (0..sweep.leaves).map(|leaf| sweep.range(leaf)).collect();
             assert_eq!((ends[0].start, ends[ends.len() - 1].end), (0, sweep.size), "{}", unit.name());
             assert!(ends.windows(2).all(|pair| pair[0].end == pair[1].start && pair[0].start < pair[0].end));
@@ -261,7 +261,7 @@ mod tests {
     }
 
     /// Block lanes yield what the definition yields, row by row, over ranges that begin and end anywhere.
-    fn compare(sweep: &Sweep, starts: usize) {
+    fn compare(sweep: &Exhaustive, starts: usize) {
         let mut random = Random::new(3, sweep.unit.name());
         let rows = sweep.size.min(700);
         let drawn = (0..starts).map(|_| random.below(u128::from(sweep.size - rows + 1)) as u64);
@@ -284,7 +284,7 @@ mod tests {
         {
             let unit = units::by_name(unit).expect("a unit");
             let part = Part::new(unit, only).expect("a part");
-            compare(&Sweep::of(unit, Profile::Nv2a, part).expect("not too large"), 20);
+            compare(&Exhaustive::of(unit, Profile::Nv2a, part).expect("not too large"), 20);
         }
     }
 

@@ -1,8 +1,8 @@
-//! Which of several ways nothing else beats.
+//! The Pareto front: which of several ways nothing else beats.
 
 /// Indices of the points that no other point equals or beats in every coordinate, smaller being better, from the smallest first coordinate
 /// to the largest. Of equal points the first counts; points with a NaN never do.
-pub fn front<const N: usize>(points: &[[f64; N]]) -> Vec<usize> {
+pub fn pareto_front<const N: usize>(points: &[[f64; N]]) -> Vec<usize> {
     let valid = |n: &usize| points[*n].iter().all(|value| !value.is_nan());
     let covers = |a: usize, b: usize| points[a].iter().zip(&points[b]).all(|(a, b)| a <= b);
     let beaten = |n: usize| (0..points.len()).filter(valid).any(|k| k != n && covers(k, n) && (!covers(n, k) || k < n));
@@ -21,16 +21,16 @@ mod tests {
     #[test]
     fn only_what_nothing_beats_is_left() {
         let points = [[3.0, 1.0], [1.0, 5.0], [2.0, 5.0], [2.0, 2.0], [4.0, 1.0], [1.0, 5.0], [f64::NAN, 0.0]];
-        assert_eq!(front(&points), [1, 3, 0]);
-        assert_eq!(front(&[[1.0, 2.0, 3.0], [1.0, 3.0, 2.0], [1.0, 3.0, 3.0]]), [0, 1]);
-        assert!(front::<2>(&[]).is_empty());
+        assert_eq!(pareto_front(&points), [1, 3, 0]);
+        assert_eq!(pareto_front(&[[1.0, 2.0, 3.0], [1.0, 3.0, 2.0], [1.0, 3.0, 3.0]]), [0, 1]);
+        assert!(pareto_front::<2>(&[]).is_empty());
     }
 
     proptest::proptest! {
         #[test]
         fn every_point_is_on_the_front_or_beaten(points: Vec<(u8, u8)>) {
             let points: Vec<[f64; 2]> = points.iter().map(|(x, y)| [f64::from(*x), f64::from(*y)]).collect();
-            let front = front(&points);
+            let front = pareto_front(&points);
             for (n, [x, y]) in points.iter().enumerate() {
                 let beaten = front.iter().any(|k| *k != n && points[*k][0] <= *x && points[*k][1] <= *y);
                 proptest::prop_assert!(front.contains(&n) != beaten);

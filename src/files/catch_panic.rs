@@ -1,6 +1,6 @@
 //! Catches panics.
 //!
-//! A panic is a fault of this program, and one scene's fault is no reason to say nothing of the others: [`caught`] turns it into a
+//! A panic is a fault of this program, and one scene's fault is no reason to say nothing of the others: [`catch_panic`] turns it into a
 //! [`Panic`] that reports show. Decoders of other people's files panic now and then on bytes nobody thought of; a scene with such a file is an
 //! ordinary error, not a crash, so decoders run under `quietly`.
 //!
@@ -20,8 +20,8 @@ thread_local! {
     static QUIET: Cell<bool> = const { Cell::new(false) };
 }
 
-/// How many [`caught`] are at work: panics of any thread are theirs.
-static GUARDS: AtomicUsize = AtomicUsize::new(0);
+/// How many [`catch_panic`] are at work: panics of any thread are theirs.
+static CATCHERS: AtomicUsize = AtomicUsize::new(0);
 
 /// The latest panics, for those who catch them: what is thrown does not say where it was thrown, and threads that do the work of others panic
 /// elsewhere than they are caught.
@@ -65,12 +65,12 @@ impl fmt::Display for Panic {
 ///
 /// # Errors
 /// The panic.
-pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
+pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
     install();
-    GUARDS.fetch_add(1, Ordering::Relaxed);
+    CATCHERS.fetch_add(1, Ordering::Relaxed);
     // Nothing that `work` touches survives a panic: the callers hand in their data by reference and drop what was made of it.
     let result = catch_unwind(AssertUnwindSafe(work));
-    GUARDS.fetch_sub(1, Ordering::Relaxed);
+    CATCHERS.fetch_sub(1, Ordering::Relaxed);
     result.map_err(|payload| {
         let message = message(payload.as_ref());
         let mut latest = LATEST.lock().unwrap_or_else(PoisonError::into_inner);
@@ -89,7 +89,7 @@ pub fn caught<T>(work: impl FnOnce() -> T) -> Result<T, Panic> {
 pub fn quietly<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     install();
     let outer = QUIET.replace(true);
-    // As in `caught`.
+    // As in `catch_panic`.
     let result = catch_unwind(AssertUnwindSafe(work));
     QUIET.set(outer);
     result.map_err(|payload| message(payload.as_ref()))
@@ -103,7 +103,7 @@ fn install() {
             if QUIET.get() {
                 return;
             }
-            if GUARDS.load(Ordering::Relaxed) == 0 {
+            if CATCHERS.load(Ordering::Relaxed) == 0 {
                 return previous(info);
             }
             let mut latest = LATEST.lock().unwrap_or_else(PoisonError::into_inner);
@@ -140,10 +140,10 @@ mod tests {
     }
 
     #[test]
-    fn guards_nest() {
+    fn quiet_work_nests() {
         let outer = quietly(|| {
             let inner = quietly(|| -> u32 { panic!("inner") });
-            assert!(QUIET.get(), "still inside the outer guard");
+            assert!(QUIET.get(), "still inside the outer one");
             inner
         });
         assert_eq!(outer, Ok(Err("inner".to_owned())));
@@ -151,20 +151,20 @@ mod tests {
 
     #[test]
     fn a_caught_panic_says_where() {
-        let panic = caught(|| -> u32 { panic!("table of {} rows", 3) }).expect_err("it panicked");
+        let panic = catch_panic(|| -> u32 { panic!("table of {} rows", 3) }).expect_err("it panicked");
         let text = panic.to_string();
         assert!(
-            text.starts_with("internal error: src/files/guard.rs:") && text.ends_with(": table of 3 rows"),
+            text.starts_with("internal error: src/files/catch_panic.rs:") && text.ends_with(": table of 3 rows"),
             "{text}"
         );
-        assert_eq!(caught(|| 7), Ok(7));
+        assert_eq!(catch_panic(|| 7), Ok(7));
     }
 
     #[test]
     fn a_panic_of_another_thread_says_where() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a pool");
-        let panic = caught(|| pool.install(|| -> u32 { panic!("of a worker") })).expect_err("it panicked");
+        let panic = catch_panic(|| pool.install(|| -> u32 { panic!("of a worker") })).expect_err("it panicked");
         assert_eq!(panic.message, "of a worker");
-        assert!(panic.place.is_some_and(|place| place.starts_with("src/files/guard.rs:")));
+        assert!(panic.place.is_some_and(|place| place.starts_with("src/files/catch_panic.rs:")));
     }
 }
