@@ -1,11 +1,12 @@
 //! Triangles to batches, batches to blocks, blocks to the surface.
 
 use super::boxes::{BoxCoverage, SIDE, boxes, is_box, is_small};
+use super::depth::depths;
 use super::fetch::{self, Workspace};
 use super::isa::Text;
 use super::kernels::{self, LANES, Lanes256};
 use super::levels::Reads;
-use super::quotient::{IOTA, Positions};
+use super::quotient::{FEW, IOTA, Positions};
 use super::stages::{self, Workshop};
 use super::taps::Footprints;
 use super::triangle::{PixelBatch, Planes, Setup, Varying, whole_steps};
@@ -178,7 +179,10 @@ fn draw_window<T: Text>(
                         let batch = PixelBatch { first: (i, j), at, count, lane: block.used, extent: (last, 0) };
                         T::row(&setup, batch, job, block);
                         if compiled.shader.is_some() {
-                            T::row_attributes(&setup, batch, job, block);
+                            T::row_attributes(context, batch, job, block);
+                        }
+                        if job.draw.depth_test.is_some() {
+                            T::row_depths(context, batch, block);
                         }
                         block.append(band, (i, j), count, compiled.reads_surface);
                         shaded += count as u64;
@@ -212,6 +216,12 @@ fn draw_patch<T: Text>(job: Job<'_>, context: &mut TriangleContext<'_>, band: &m
     if !(compiled.plain && T::plain(context, compiled, block)) {
         context.complete();
         T::coverage(context, job, block);
+    }
+    if compiled.shader.is_some() {
+        T::box_attributes(context, job, block);
+    }
+    if job.draw.depth_test.is_some() {
+        T::box_depths(context, block);
     }
     for n in 0..block.coverage.filled {
         let (j, i, count) = block.coverage.runs[n];
@@ -283,18 +293,15 @@ pub(super) fn plain<const FMA: bool>(
     block: &mut Block,
 ) -> bool {
     let Block { varying, rows, coverage, used, planes, .. } = block;
-    small::interpolate::<FMA>(context, compiled, batch(coverage, *used), varying, rows, planes)
+    small::interpolate::<FMA>(context, compiled, few(coverage, *used), varying, rows, planes)
 }
 
 /// The same for any draw.
 #[inline(always)]
 pub(super) fn coverage<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
-    let Block { varying, rows, coverage, used, planes, workshop, defined, .. } = block;
+    let Block { varying, rows, coverage, used, planes, defined, .. } = block;
     let setup = Setup::new(context, job.compiled, std::mem::take(planes));
     setup.interpolate::<FMA, false>(batch(coverage, *used), job.compiled, job.textures, varying, rows);
-    if let Some(shader) = &job.compiled.shader {
-        setup.attributes::<FMA, false>(batch(coverage, *used), shader, workshop);
-    }
     *planes = setup.given_back(defined);
 }
 
@@ -304,6 +311,14 @@ pub(super) fn batch(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
     let lanes = whole_steps(coverage.count);
     let at = Positions { x: &coverage.x[..lanes], y: &coverage.y[..lanes], last: i32::MAX };
     PixelBatch { first: coverage.first, at, count: coverage.count, lane, extent: (SIDE as i32, SIDE as i32) }
+}
+
+/// The same, of fewer than a whole step where those suffice.
+#[inline(always)]
+pub(super) fn few(coverage: &BoxCoverage, lane: usize) -> PixelBatch<'_> {
+    let all = batch(coverage, lane);
+    let Positions { x, y, last } = all.at;
+    if all.count <= FEW { PixelBatch { at: Positions { x: &x[..FEW], y: &y[..FEW], last }, ..all } } else { all }
 }
 
 /// What varies along a batch of a row.
@@ -316,14 +331,34 @@ pub(super) fn row<const FMA: bool>(setup: &Setup<'_>, batch: PixelBatch<'_>, job
 /// What the vertices give a texture shader along a batch of a row.
 #[inline(always)]
 pub(super) fn row_attributes<const FMA: bool>(
-    setup: &Setup<'_>,
+    context: &TriangleContext<'_>,
     batch: PixelBatch<'_>,
     job: Job<'_>,
     block: &mut Block,
 ) {
     if let Some(shader) = &job.compiled.shader {
-        setup.attributes::<FMA, true>(batch, shader, &mut block.workshop);
+        block.workshop.attributes::<FMA, true>(context, batch, shader);
     }
+}
+
+/// The same in the box that the block has.
+#[inline(always)]
+pub(super) fn box_attributes<const FMA: bool>(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block) {
+    if let Some(shader) = &job.compiled.shader {
+        block.workshop.attributes::<FMA, false>(context, few(&block.coverage, block.used), shader);
+    }
+}
+
+/// Depths along a batch of a row.
+#[inline(always)]
+pub(super) fn row_depths<const FMA: bool>(context: &TriangleContext<'_>, batch: PixelBatch<'_>, block: &mut Block) {
+    depths::<FMA, true>(context, batch, &mut block.varying);
+}
+
+/// The same in the box that the block has.
+#[inline(always)]
+pub(super) fn box_depths<const FMA: bool>(context: &TriangleContext<'_>, block: &mut Block) {
+    depths::<FMA, false>(context, few(&block.coverage, block.used), &mut block.varying);
 }
 
 /// The stages of a texture shader.

@@ -263,7 +263,7 @@ impl Setup<'_> {
         let e = triangle.edges(i, j);
         let d = self.denominator.exact(&e).c;
         *undivided = compiled.fog.is_none() && !compiled.estimates;
-        *complete = *undivided && self.context.draw.depth_test.is_none();
+        *complete = *undivided;
         for ((sampler, planes), ([u, v], is)) in compiled.samplers.iter().zip(&self.samplers).zip(samplers) {
             if let (Planes::Plane(planes), false) = (planes, sampler.mixes) {
                 let bias = sampler.bias();

@@ -4,15 +4,16 @@
 //! the variable a small part of it runs.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, reason = "choosing triangles; a test fails by panicking")]
 
-use super::band::{batch, common};
+use super::band::{batch, common, few};
 use super::boxes::{BoxCoverage, boxes, is_small};
 use super::kernels::Lanes256;
 use super::levels::Reads;
 use super::quotient::{self, IOTA};
 use super::taps::{Footprints, Pair};
 use super::triangle::{PixelBatch, Setup, Varying, whole_steps};
-use super::{BLOCK, Reasons, Rows};
+use super::{BLOCK, Isa, Reason, Reasons, Rows};
 use crate::engine::pixel::TriangleContext;
+use crate::engine::{Engine, RenderOptions, Renderer};
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
@@ -280,6 +281,7 @@ fn compare_small<const FMA: bool>(
     rows: &mut [Lanes256],
 ) -> bool {
     let done = super::small::interpolate::<FMA>(context, plain, batch, varying, rows, &mut Vec::new());
+    super::depth::depths::<FMA, false>(context, batch, varying);
     for n in (0..batch.count).filter(|_| done) {
         let (sample, lane) = (batch.sample(n, &context.triangle), batch.lane + n);
         for (index, sampler) in plain.samplers.iter().enumerate() {
@@ -311,6 +313,7 @@ fn compare<const FMA: bool, const ROW: bool>(
     // What an earlier batch left must not pass for this one's.
     varying.reads.iter_mut().for_each(|reads| reads.weights.fill(-1));
     setup.interpolate::<FMA, ROW>(batch, compiled, &[], varying, rows);
+    super::depth::depths::<FMA, ROW>(setup.context, batch, varying);
     let (context, mut wanted, mut taps) = (&setup.context, Reads::default(), Footprints::default());
     for n in 0..batch.count {
         let (i, j) = (batch.first.0 + i64::from(batch.at.x[n]), batch.first.1 + i64::from(batch.at.y[n]));
@@ -431,10 +434,11 @@ fn rows_interpolate_what_the_definition_does() {
                     }
                     let batch = batch(&coverage, 0);
                     let mut alone = TriangleContext::new(&plan, draw, number, whole).unwrap();
+                    let few = few(&coverage, 0);
                     let four = if round.is_multiple_of(4) {
-                        compare_small::<true>(&mut alone, &plain, batch, &mut varying, &mut rows)
+                        compare_small::<true>(&mut alone, &plain, few, &mut varying, &mut rows)
                     } else {
-                        compare_small::<false>(&mut alone, &plain, batch, &mut varying, &mut rows)
+                        compare_small::<false>(&mut alone, &plain, few, &mut varying, &mut rows)
                     };
                     fours += u64::from(four);
                     if round.is_multiple_of(4) {
@@ -477,4 +481,72 @@ fn rows_interpolate_what_the_definition_does() {
     println!(
         "{pixels} pixels, {drawn} boxes of small triangles, {fours} of them set up four quotients at a time; definition: {reasons:?}"
     );
+}
+
+/// A number of any size, or one of a few.
+fn wild(r: &mut Random) -> f32 {
+    let sign = if r.below(2) == 0 { 1.0 } else { -1.0 };
+    match r.below(8) {
+        0 => r.of(&[0.0, -0.0, 1.0, -1.0, 0.5, 1e-45, 3e38, -3e38]),
+        1 => sign * (r.unit() * 1e30 + 1.0),
+        2 => sign * r.unit() * 1e-30,
+        3 => sign * 2_f32.powi(r.below(200) as i32 - 100) * (1.0 + r.unit()),
+        _ => sign * r.unit() * 2.0,
+    }
+}
+
+/// Numbers that the vertices give texture shaders, of any size, and coordinates that stages move, on triangles of all kinds.
+#[test]
+fn texture_shaders_take_what_the_definition_takes() {
+    use ShaderOperation as O;
+    let mut random = Random(crate::random::Random::seeded(0xd1b5_4a32_d192_ed03));
+    let bump = O::BumpEnvironment { matrix: [3.0, -2.0, 0.5, 8.0], luminance: Some([1.0, 0.25]) };
+    let cull = O::CullFragment { drops_not_negative: [true, false, true, true] };
+    let programs = [
+        [O::Sample, bump, O::DotProduct, O::DotProduct2D],
+        [O::Sample, O::PassThrough, O::PassThrough, O::PassThrough],
+        [O::Sample, cull, bump, O::PassThrough],
+    ];
+    let (mut pixels, mut defined) = (0, 0);
+    for round in 0..24 {
+        let small = round % 2 == 0;
+        let mut vertices: Vec<Vertex> =
+            (0..if small { 1024 } else { 6 }).flat_map(|_| triangle(&mut random, small)).collect();
+        let program = programs[round / 2 % programs.len()];
+        let tame = random.below(2) == 0;
+        for (n, operation) in program.iter().enumerate().filter(|(_, operation)| !operation.samples()) {
+            for vertex in &mut vertices {
+                vertex.texture_coordinates[n] = match operation {
+                    _ if tame => [0; 4].map(|_| random.unit() * 2.0 - 0.5),
+                    _ => [0; 4].map(|_| wild(&mut random)),
+                };
+            }
+        }
+        let filter = random.of(&[Filter::Linear, Filter::Nearest]);
+        let mut scene =
+            scene(vertices, filter, DepthFormat::Z24S8, None, [false; 2], (Third::Nothing, round % 3 == 0, 1));
+        let draw = &mut scene.draws[0];
+        // What has been drawn before shows wherever a fragment is dropped.
+        draw.depth_test = if round % 4 < 2 { None } else { draw.depth_test.take() };
+        let unit = |bound| if bound { draw.textures[0].clone() } else { None };
+        draw.textures = program.map(|operation| unit(operation.samples()));
+        draw.texture_shader =
+            [0, 1, 2, 3].map(|n| ShaderStage { operation: program[n], ..ShaderStage::conventional(n, true) });
+        draw.texture_shader[3].previous = 0;
+        draw.texture_shader[2].previous = 0;
+        let plan = Plan::compile(&scene, &PlanOptions::default()).unwrap();
+        let draw_by =
+            |engine, isa| Renderer::new(&plan, &RenderOptions { engine, isa, ..RenderOptions::default() }).render();
+        let (wanted, _) = draw_by(Engine::Scalar, None);
+        for isa in Isa::ALL {
+            let (got, statistics) = draw_by(Engine::Fast, Some(*isa));
+            assert!(got == wanted, "{isa:?}, {program:?}, round {round}: {:?}", scene.draws[0].vertices);
+            pixels += statistics.shaded_pixels.iter().sum::<u64>();
+            let by_shader = |(reason, _): &&(Reason, u64)| *reason == Reason::Shader;
+            defined += statistics.defined_pixels.iter().find(by_shader).map_or(0, |(_, count)| *count);
+            assert!(!statistics.defined_pixels.iter().any(|(reason, _)| *reason == Reason::Textures));
+        }
+    }
+    println!("{pixels} pixels, {defined} of them by the definition");
+    assert!(defined < pixels / 2);
 }

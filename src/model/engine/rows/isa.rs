@@ -117,7 +117,13 @@ text! {
         /// [`band::row`].
         fn row(setup: &Setup<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
         /// [`band::row_attributes`].
-        fn row_attributes(setup: &Setup<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
+        fn row_attributes(context: &TriangleContext<'_>, batch: PixelBatch<'_>, job: Job<'_>, block: &mut Block);
+        /// [`band::box_attributes`].
+        fn box_attributes(context: &TriangleContext<'_>, job: Job<'_>, block: &mut Block);
+        /// [`band::row_depths`].
+        fn row_depths(context: &TriangleContext<'_>, batch: PixelBatch<'_>, block: &mut Block);
+        /// [`band::box_depths`].
+        fn box_depths(context: &TriangleContext<'_>, block: &mut Block);
         /// [`band::shade`].
         fn shade(job: Job<'_>, block: &mut Block, band: &mut Band<'_>);
     }

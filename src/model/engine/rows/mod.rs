@@ -165,7 +165,7 @@ pub(crate) struct CompiledDraw {
     shader: Option<Arc<shader::Shader>>,
     /// Something is estimated at every pixel besides coordinates: taps, layers, depths to compare with.
     estimates: bool,
-    /// Nothing varies but colours, depth and coordinates of textures on planes, of one level.
+    /// Nothing varies but colours, depth, what a texture shader's stages take, and coordinates of textures on planes, of one level.
     plain: bool,
     /// Texture units are the definition's, pixel by pixel.
     samples_pixels: bool,
@@ -299,12 +299,8 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
     compiled.estimates = compiled.samplers.iter().any(|sampler| sampler.pairs > 0 || sampler.third.is_some());
-    let planes = compiled.samplers.iter().all(|sampler| !(sampler.mixes || sampler.cube));
-    compiled.plain = planes
-        && !compiled.estimates
-        && compiled.shader.is_none()
-        && compiled.fog.is_none()
-        && !compiled.samples_pixels;
+    let planes = compiled.samplers.iter().all(|sampler| sampler.depends || !(sampler.mixes || sampler.cube));
+    compiled.plain = planes && !compiled.estimates && compiled.fog.is_none() && !compiled.samples_pixels;
     compiled.read = [compiled.primary, compiled.secondary]
         .map(|slots| u32::from_le_bytes(slots.map(|slot| if slot.is_some() { 255 } else { 0 })));
     compiled

@@ -126,6 +126,56 @@ impl Plane {
     }
 }
 
+/// sum g_k E_k in double precision, of g_k that are not floored.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct RealPlane {
+    g: [f64; 3],
+    /// How it changes along x and y.
+    slope: [f64; 2],
+    /// The magnitudes of what slopes are the sums of.
+    sizes: [f64; 2],
+    /// The largest magnitude of its quotient by D, and somewhat more.
+    pub(super) reach: f64,
+}
+
+impl RealPlane {
+    /// `inverse`: that of the triangle. `more`: what quotients are set off by, at most.
+    #[inline(always)]
+    pub(super) fn new(triangle: &Triangle, inverse: &[f64; 3], g: [f64; 3], more: f64) -> RealPlane {
+        let mut plane = RealPlane { g, reach: more, ..RealPlane::default() };
+        let mut reach = 0.0;
+        for k in 0..3 {
+            let (x, y) = (g[k] * triangle.a[k] as f64, g[k] * triangle.b[k] as f64);
+            plane.slope = [plane.slope[0] + x, plane.slope[1] + y];
+            plane.sizes = [plane.sizes[0] + x.abs(), plane.sizes[1] + y.abs()];
+            let quotient = g[k].abs() * inverse[k];
+            reach = if quotient > reach { quotient } else { reach };
+        }
+        plane.reach += reach;
+        plane
+    }
+
+    /// From a pixel with edge functions `e`.
+    #[inline(always)]
+    pub(super) fn line(&self, e: &[f64; 3]) -> Line {
+        let c = self.g[0] * e[0] + self.g[1] * e[1] + self.g[2] * e[2];
+        Line { c, x: self.slope[0], y: self.slope[1] }
+    }
+
+    /// The magnitudes of all that [`line`](Self::line) is the sum of, so many columns and rows around the pixel.
+    #[inline(always)]
+    pub(super) fn terms(&self, e: &[f64; 3], columns: f64, rows: f64) -> f64 {
+        let at = self.g[0].abs() * e[0] + self.g[1].abs() * e[1] + self.g[2].abs() * e[2];
+        at + self.sizes[0] * columns + self.sizes[1] * rows
+    }
+
+    /// g_k.
+    #[inline(always)]
+    pub(super) fn g(&self) -> &[f64; 3] {
+        &self.g
+    }
+}
+
 /// 1/P_k, more or less.
 #[inline(always)]
 pub(super) fn inverse(triangle: &Triangle) -> [f64; 3] {

@@ -267,7 +267,17 @@ impl Default for Reciprocals {
 impl Reciprocals {
     /// Those of some pixels.
     #[inline(always)]
-    pub(super) fn set<const FMA: bool>(&mut self, at: Positions<'_>, denominator: Line) {
+    pub(super) fn set<const FMA: bool, const ROW: bool>(&mut self, at: Positions<'_>, denominator: Line) {
+        if ROW {
+            let lanes = at.x.len();
+            let (last, iota) = (f64::from(at.last), &IOTA_REAL[..lanes]);
+            let (to_x, to_r) = (&mut self.x[..lanes], &mut self.r[..lanes]);
+            for n in 0..lanes {
+                let x = if iota[n] < last { iota[n] } else { last };
+                (to_x[n], to_r[n]) = (x, 1.0 / denominator.at::<FMA, true>(x, 0.0));
+            }
+            return;
+        }
         if let (Ok(xs), Ok(ys)) = (<&[i32; FEW]>::try_from(at.x), <&[i32; FEW]>::try_from(at.y)) {
             for n in 0..FEW {
                 self.x[n] = f64::from(xs[n]);
@@ -287,6 +297,12 @@ impl Reciprocals {
             let (x, y) = (f64::from(xs[n]), f64::from(ys[n]));
             (to_x[n], to_y[n], to_r[n]) = (x, y, 1.0 / denominator.at::<FMA, false>(x, y));
         }
+    }
+
+    /// Columns, rows (of no meaning on a single row) and reciprocals of the first lanes.
+    #[inline(always)]
+    pub(super) fn lanes(&self, count: usize) -> [&[f64]; 3] {
+        [&self.x[..count], &self.y[..count], &self.r[..count]]
     }
 
     /// [`estimate_two`] of them.

@@ -61,8 +61,8 @@ pub(super) struct Shader {
     pub(super) varying: Vec<(usize, usize, Purpose)>,
     /// Numbers that do not.
     pub(super) same: Vec<f32>,
-    /// The bump stages.
-    pub(super) moved: Vec<usize>,
+    /// The bump stages, and the sides of their images.
+    pub(super) moved: Vec<(usize, [u32; 2])>,
     /// Earlier unit, channels whose registers hold twice the byte, and mapping of each remapped colour.
     pub(super) vectors: Vec<(usize, [bool; 4], Remap)>,
     pub(super) kills: bool,
@@ -163,7 +163,7 @@ impl Shader {
             }
             ShaderOperation::BumpEnvironment { luminance, .. } => {
                 stage.moved = self.moved.len();
-                self.moved.push(index);
+                self.moved.push((index, samplers[sampler?].sides));
                 if let Some([scale, offset]) = luminance {
                     // Sums of larger ones lose too many bits.
                     if scale.abs().max(offset.abs()) > LARGEST_LUMINANCE {

@@ -4,9 +4,11 @@
 use super::fetch::PerLane;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
+use super::quads::any_negative;
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
 use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::raster::interpolate::{SHORT_BITS, most_dominant};
+use crate::raster::setup::Triangle;
 
 /// How much of a weight is missing.
 const PART: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
@@ -31,43 +33,43 @@ impl Default for Short {
     }
 }
 
-impl Plane {
-    /// 2^-24 (u_i - u_1) of weights 0 and 2, with u_k = G_k / P_k: what the function loses of each unit of N_i.
-    #[inline(always)]
-    pub(super) fn losses(&self, setup: &Setup<'_>) -> Losses {
-        let triangle = &setup.context.triangle;
-        if triangle.exact_reciprocal {
-            return [0.0; 2];
-        }
-        let [a, b, c] = inverse(triangle);
-        let [a, b, c] = [self.g[0] as f64 * a, self.g[1] as f64 * b, self.g[2] as f64 * c];
-        [(a - b) * PART, (c - b) * PART]
+/// 2^-24 (u_i - u_1) of weights 0 and 2, with u_k = G_k / P_k: what a function with these G_k loses of each unit of N_i.
+#[inline(always)]
+pub(super) fn losses(triangle: &Triangle, inverse: &[f64; 3], g: &[f64; 3]) -> Losses {
+    if triangle.exact_reciprocal {
+        return [0.0; 2];
     }
+    let [a, b, c] = [g[0] * inverse[0], g[1] * inverse[1], g[2] * inverse[2]];
+    [(a - b) * PART, (c - b) * PART]
 }
 
 impl Setup<'_> {
-    /// Those of s, t and q, s and t that many times.
+    /// [`losses`] of s, t and q, s and t that many times.
     #[inline(always)]
     pub(super) fn losses_by_q(&self, planes: &[Plane; 3], [width, height]: [f64; 2]) -> [Losses; 3] {
-        let [[s0, s2], [t0, t2], q] = [planes[0].losses(self), planes[1].losses(self), planes[2].losses(self)];
+        let triangle = &self.context.triangle;
+        let inverse = inverse(triangle);
+        let of = |plane: &Plane| losses(triangle, &inverse, &plane.g.map(|g| g as f64));
+        let [[s0, s2], [t0, t2], q] = [of(&planes[0]), of(&planes[1]), of(&planes[2])];
         [[s0 * width, s2 * width], [t0 * height, t2 * height], q]
     }
+}
 
+impl Short {
     /// INT-3's dominance at the pixels of a batch. Weights are classed by whether they are above a half, a quarter or neither, for the largest is
     /// never below a third.
     #[inline(always)]
-    pub(super) fn fall_short<const FMA: bool, const ROW: bool>(
-        &self,
+    pub(super) fn set<const FMA: bool, const ROW: bool>(
+        &mut self,
+        triangle: &Triangle,
         batch: PixelBatch<'_>,
         (e, denominator): (&[f64; 3], Line),
         bounds: &Bounds,
-        short: &mut Short,
     ) {
-        let triangle = &self.context.triangle;
         let lanes = batch.at.x.len();
         if triangle.exact_reciprocal {
-            short.first[..lanes].fill(0.0);
-            short.third[..lanes].fill(0.0);
+            self.first[..lanes].fill(0.0);
+            self.third[..lanes].fill(0.0);
             return;
         }
         let (mut lines, mut terms) = ([Line::default(); 3], 0.0);
@@ -76,29 +78,25 @@ impl Setup<'_> {
             lines[k] = Line { c: p * e[k], x: p * triangle.a[k] as f64, y: p * triangle.b[k] as f64 };
             terms += lines[k].c.abs() + lines[k].x.abs() * bounds.columns + lines[k].y.abs() * bounds.rows;
         }
-        let mut any = 0;
-        dominance::<FMA, ROW>(batch.at, [lines[0], lines[2], denominator], 4.0 * SLACK * terms, short, lanes);
-        for close in &short.close[..lanes] {
-            any |= close;
-        }
-        if any >> 63 != 0 {
-            self.find_dominance(batch, short);
+        dominance::<FMA, ROW>(batch.at, [lines[0], lines[2], denominator], 4.0 * SLACK * terms, self, lanes);
+        if any_negative(&self.close[..lanes]) {
+            self.find_dominance(triangle, batch);
         }
     }
 
     /// Lanes that are too close to call: whole numbers tell.
     #[inline(never)]
-    fn find_dominance(&self, batch: PixelBatch<'_>, short: &mut Short) {
-        for n in (0..batch.at.x.len()).filter(|n| short.close[*n] >> 63 != 0) {
-            let sample = self.sample(batch, n.min(batch.count - 1));
+    fn find_dominance(&mut self, triangle: &Triangle, batch: PixelBatch<'_>) {
+        for n in (0..batch.at.x.len()).filter(|n| self.close[*n] >> 63 != 0) {
+            let sample = batch.sample(n.min(batch.count - 1), triangle);
             let [first, third] = sample.short();
-            short.first[n] = if first { sample.n[0] as f64 } else { 0.0 };
-            short.third[n] = if third { sample.n[2] as f64 } else { 0.0 };
+            self.first[n] = if first { sample.n[0] as f64 } else { 0.0 };
+            self.third[n] = if third { sample.n[2] as f64 } else { 0.0 };
         }
     }
 }
 
-/// The loop of [`Setup::fall_short`], with what four times a weight's numerator less D can be off by.
+/// The loop of [`Short::set`], with what four times a weight's numerator less D can be off by.
 #[inline(always)]
 fn dominance<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,

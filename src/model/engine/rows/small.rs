@@ -4,10 +4,9 @@
 
 use super::boxes::SIDE;
 use super::color::{colors, narrow_weights};
-use super::depth::depths;
 use super::kernels::Lanes256;
 use super::planes::inverse;
-use super::quotient::{FEW, Line, Positions, QuotientEstimate, SLACK, multiply_add};
+use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add};
 use super::triangle::{PixelBatch, Planes, Setup, Varying};
 use super::{CompiledDraw, Reasons};
 use crate::engine::pixel::TriangleContext;
@@ -135,13 +134,10 @@ pub(super) fn interpolate<const FMA: bool>(
     rows: &mut [Lanes256],
     planes: &mut Vec<Planes>,
 ) -> bool {
-    let Positions { x, y, .. } = batch.at;
-    let few = PixelBatch { at: Positions { x: &x[..FEW], y: &y[..FEW], ..batch.at }, ..batch };
-    let batch = if batch.count <= FEW { few } else { batch };
     let mut pairs = [Pair::None; 2 * TEXTURE_UNITS];
     let mut count = 0;
     for (n, sampler) in compiled.samplers.iter().enumerate() {
-        if sampler.shares.is_none() {
+        if sampler.shares.is_none() && !sampler.depends {
             let [a, b, c] = context.sampled_coordinates(sampler.index);
             if [a[3], b[3], c[3]] != [1.0; 3] {
                 return false;
@@ -157,9 +153,6 @@ pub(super) fn interpolate<const FMA: bool>(
     }
     if count > 0 && !divide::<FMA>(context, compiled, batch, (&pairs, count), varying, planes) {
         return false;
-    }
-    if context.draw.depth_test.is_some() {
-        depths::<FMA, false>(context, batch, varying);
     }
     if weighted {
         narrow_weights(batch, varying);
@@ -179,7 +172,7 @@ fn divide<const FMA: bool>(
     planes: &mut Vec<Planes>,
 ) -> bool {
     let ground = Ground::new::<FMA>(&context.triangle, batch);
-    varying.reciprocals.set::<FMA>(batch.at, ground.denominator);
+    varying.reciprocals.set::<FMA, false>(batch.at, ground.denominator);
     // Whether anything is close, apart: looking for it among them would wait until they are stored.
     let (mut close, mut settles) = ([[false; 2]; 2 * TEXTURE_UNITS], false);
     for (pairs, close) in pairs[..count.next_multiple_of(2)].as_chunks::<2>().0.iter().zip(close.as_chunks_mut::<2>().0)

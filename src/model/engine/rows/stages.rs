@@ -8,12 +8,12 @@ use super::band::{Block, Run};
 use super::dot::{self, Floats};
 use super::fetch;
 use super::kernels::{LANES, Lanes256};
-use super::planes::{Plane, inverse};
+use super::planes::{RealPlane, inverse};
 use super::quads::any_negative;
-use super::quotient::{IOTA_REAL, Line, Positions, nearest, nearest_32, position};
+use super::quotient::{Line, Reciprocals, nearest, nearest_32};
 use super::shader::{Number, Purpose, Shader, byte_of};
-use super::short::Short;
-use super::triangle::{Bounds, PixelBatch, Setup};
+use super::short::{Losses, Short, losses};
+use super::triangle::{Bounds, PixelBatch};
 use super::{BLOCK, CompiledDraw, Job, Reason, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
@@ -21,7 +21,6 @@ use crate::engine::walk::Band;
 use crate::number::convert::{factor, factor_byte};
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
 use crate::state::{MipFilter, Register, ShaderOperation, TEXTURE_UNITS};
-use crate::texture::place::Coordinates;
 use crate::trace::Silent;
 
 /// A number across a triangle.
@@ -29,36 +28,66 @@ use crate::trace::Silent;
 enum Function {
     /// The same at its three vertices.
     Same(f32),
-    /// So many times a quotient by D.
-    Plane(Plane, f64),
+    /// A quotient by D, and more than the definition's differs where it [floors](crate::raster::attribute) small numbers.
+    Plane(RealPlane, f64),
 }
 
 /// What of a triangle a texture shader needs.
-#[derive(Clone, Debug)]
-pub(super) struct Attributes {
+#[derive(Clone, Debug, Default)]
+struct Attributes {
+    /// Which triangle of the draw this is.
+    triangle: Option<usize>,
+    denominator: RealPlane,
+    /// The reciprocal of a D that none is smaller than.
+    widest: f64,
     numbers: Vec<Function>,
-    moved: Vec<[Plane; 2]>,
+    /// u and v that are moved, 1/256 texel.
+    moved: Vec<[RealPlane; 2]>,
+    /// What those lose where weights fall short.
+    losses: Vec<[Losses; 2]>,
+    /// More than u and v change where the definition floors the numerators of the vertices.
+    floors: f64,
 }
 
 impl Attributes {
-    pub(super) fn new(context: &TriangleContext<'_>, shader: &Shader) -> Attributes {
+    /// Becomes that of a triangle.
+    fn set(&mut self, context: &TriangleContext<'_>, shader: &Shader) {
         let triangle = &context.triangle;
         let inverse = inverse(triangle);
-        let numbers = shader.varying.iter().map(|(stage, component, purpose)| {
-            let set = shader.stages[*stage].state.coordinate_set;
-            let [a, b, c] = context.coordinate_set(set).map(|v| v[*component]);
-            if a == b && b == c {
-                return Function::Same(if *purpose == Purpose::Byte { byte_of(f64::from(a)) } else { a + 0.0 });
-            }
-            let (plane, scale) = Plane::number(triangle, &inverse, [a, b, c]);
-            Function::Plane(plane, scale)
-        });
-        let numbers = numbers.collect();
-        let moved = shader.moved.iter().map(|stage| match context.coordinates_of(*stage) {
-            Some(Coordinates::Plane(g)) => [Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])],
-            _ => [Plane::default(); 2],
-        });
-        Attributes { numbers, moved: moved.collect() }
+        let p = [triangle.p[0] as f64, triangle.p[1] as f64, triangle.p[2] as f64];
+        let least = triangle.p[0].min(triangle.p[1]).min(triangle.p[2]) as f64;
+        // Exact: 28 bits by 24.
+        let times_p = |values: [f64; 3]| [values[0] * p[0], values[1] * p[1], values[2] * p[2]];
+        self.triangle = Some(context.number);
+        self.denominator = RealPlane::new(triangle, &inverse, p, 0.0);
+        self.widest = 1.0 / (least * triangle.doubled_area as f64);
+        self.floors = 1.25 / least;
+        self.numbers.clear();
+        for (stage, component, purpose) in &shader.varying {
+            let set = context.coordinate_set(shader.stages[*stage].state.coordinate_set);
+            let [a, b, c] = [set[0][*component], set[1][*component], set[2][*component]];
+            self.numbers.push(if a == b && b == c {
+                Function::Same(if *purpose == Purpose::Byte { byte_of(f64::from(a)) } else { a + 0.0 })
+            } else {
+                let g = times_p([f64::from(a), f64::from(b), f64::from(c)]);
+                let largest = g[0].abs().max(g[1].abs()).max(g[2].abs());
+                Function::Plane(RealPlane::new(triangle, &inverse, g, 0.0), largest * KEPT / least)
+            });
+        }
+        self.moved.clear();
+        self.losses.clear();
+        for (stage, sides) in &shader.moved {
+            let set = context.coordinate_set(shader.stages[*stage].state.coordinate_set);
+            let plane = |axis: usize| {
+                let side = f64::from(256 * sides[axis]);
+                let of = |k: usize| f64::from(set[k][axis]) * side;
+                RealPlane::new(triangle, &inverse, times_p([of(0), of(1), of(2)]), 1.0)
+            };
+            let planes = [plane(0), plane(1)];
+            let losses = |plane: &RealPlane| losses(triangle, &inverse, plane.g());
+            self.losses.push([losses(&planes[0]), losses(&planes[1])]);
+            self.moved.push(planes);
+        }
     }
 }
 
@@ -105,6 +134,8 @@ pub(super) struct Workshop {
     /// Those that do not.
     same: Vec<Floats>,
     moved: Vec<Moved>,
+    attributes: Attributes,
+    reciprocals: Box<Reciprocals>,
     short: Box<Short>,
     open: Box<Open>,
     /// First lane and number of the block's triangles.
@@ -126,6 +157,7 @@ impl Workshop {
         self.same.clear();
         self.same.extend(shader.same.iter().map(|value| [*value; BLOCK]));
         self.moved.resize(shader.moved.len(), Moved { u: [0.0; LANES], v: [0.0; LANES], off: [0.0; LANES] });
+        self.attributes.triangle = None;
         *self.open = Open::default();
         self.triangles.clear();
         self.vectors.resize(shader.vectors.len(), [[0.0; BLOCK]; 3]);
@@ -145,60 +177,73 @@ impl Workshop {
 /// What estimates of coordinates may be off by.
 const COARSEST: f64 = 0.125;
 
+/// What is more than the last of the bits that the definition keeps of the largest number of a triangle's three.
+const KEPT: f64 = 1.0 / (1_u64 << 60) as f64;
+
 /// What the coordinate of a bump stage may be off by besides: its offset is floored at 2^-24 of 1/256 texel.
 const OFFSET: f64 = 1.0 / (1 << 23) as f64;
 
 /// What estimates of coordinates and offsets stay below, 1/256 texel; coordinates are limited beyond.
 const FARTHEST: f64 = (COORDINATE_LIMIT - 1) as f64;
 
-impl Setup<'_> {
+impl Workshop {
     /// What the vertices give the stages of a texture shader, for a batch.
     #[inline(always)]
     pub(super) fn attributes<const FMA: bool, const ROW: bool>(
-        &self,
+        &mut self,
+        context: &TriangleContext<'_>,
         batch: PixelBatch<'_>,
         shader: &Shader,
-        work: &mut Workshop,
     ) {
-        let Some(attributes) = &self.attributes else { return };
-        let e = self.context.triangle.edges(batch.first.0, batch.first.1);
+        let Workshop { numbers, moved, attributes, reciprocals, short, open, triangles, .. } = self;
+        let triangle = &context.triangle;
+        if attributes.triangle != Some(context.number) {
+            attributes.set(context, shader);
+        }
+        triangles.push((batch.lane, context.number));
+        let narrow = &mut open.narrow[batch.lanes()];
+        narrow.fill(0);
+        open.wide[batch.lanes()].fill(0);
+        let e = triangle.edges(batch.first.0, batch.first.1);
         let real = [e[0] as f64, e[1] as f64, e[2] as f64];
-        let denominator = self.denominator.line(&real);
-        let bounds: Bounds = self.bounds::<FMA, ROW>(batch, &real, denominator);
-        work.triangles.push((batch.lane, self.context.number));
-        let open = &mut work.open.narrow[batch.lanes()];
-        open.fill(0);
-        work.open.wide[batch.lanes()].fill(0);
-        for ((number, out), (_, _, purpose)) in attributes.numbers.iter().zip(&mut work.numbers).zip(&shader.varying) {
+        let denominator = attributes.denominator.line(&real);
+        let terms = |columns, rows| attributes.denominator.terms(&real, columns, rows);
+        let bounds = Bounds::new::<FMA, ROW>(batch, denominator, attributes.widest, terms);
+        let margin =
+            |plane: &RealPlane| bounds.margin::<ROW>(plane.reach, |columns, rows| plane.terms(&real, columns, rows));
+        if !attributes.numbers.is_empty() {
+            reciprocals.set::<FMA, ROW>(batch.at, denominator);
+        }
+        for ((number, out), (_, _, purpose)) in attributes.numbers.iter().zip(numbers).zip(&shader.varying) {
             let out = &mut out[batch.lanes()];
             match number {
                 Function::Same(value) => out.fill(*value),
-                Function::Plane(plane, scale) => {
-                    let lines = (plane.line(&real).times(*scale), denominator);
-                    let off = self.margin::<ROW>(plane, &real, &bounds) * scale;
+                Function::Plane(plane, floors) => {
+                    let (line, off) = (plane.line(&real), margin(plane) + floors);
                     match purpose {
-                        Purpose::Float | Purpose::Sign => rounded::<FMA, ROW, false>(batch.at, lines, off, out, open),
-                        Purpose::Byte => rounded::<FMA, ROW, true>(batch.at, lines, off, out, open),
+                        Purpose::Float | Purpose::Sign => {
+                            rounded::<FMA, ROW, false>(reciprocals, line, off, out, narrow);
+                        }
+                        Purpose::Byte => rounded::<FMA, ROW, true>(reciprocals, line, off, out, narrow),
                     }
                 }
             }
         }
         if !attributes.moved.is_empty() {
-            self.fall_short::<FMA, ROW>(batch, (&real, denominator), &bounds, &mut work.short);
+            short.set::<FMA, ROW>(triangle, batch, (&real, denominator), &bounds);
         }
-        for (planes, moved) in attributes.moved.iter().zip(&mut work.moved) {
+        for ((planes, losses), moved) in attributes.moved.iter().zip(&attributes.losses).zip(moved) {
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
-            let offs = [self.margin::<ROW>(&planes[0], &real, &bounds), self.margin::<ROW>(&planes[1], &real, &bounds)];
-            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + OFFSET;
+            let offs = [margin(&planes[0]), margin(&planes[1])];
+            let off = if offs[0] > offs[1] { offs[0] } else { offs[1] } + attributes.floors + OFFSET;
             // Also refuses what is no number.
-            let proves = (offs[0] < COARSEST) & (offs[1] < COARSEST);
+            let proves = (off < COARSEST) & (offs[0] < COARSEST) & (offs[1] < COARSEST);
             if !proves {
-                open.fill(1);
+                narrow.fill(1);
             }
-            let losses = [planes[0].losses(self), planes[1].losses(self), [0.0; 2]];
             moved.off[batch.lanes()].fill(if proves { off } else { 0.0 });
             let at = [&mut moved.u[batch.lanes()], &mut moved.v[batch.lanes()]];
-            work.short.divide::<FMA, ROW>(batch.at, lines, losses, at);
+            short.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], at);
         }
     }
 }
@@ -206,18 +251,16 @@ impl Setup<'_> {
 /// Quotients to the nearest single-precision number, or as `BYTE`s (TSH-9); lanes that are not proved, and zeros of the former, are left open.
 #[inline(always)]
 fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
-    at: Positions<'_>,
-    lines: (Line, Line),
+    reciprocals: &Reciprocals,
+    line: Line,
     off: f64,
     out: &mut [f32],
     open: &mut [i32],
 ) {
     let lanes = out.len();
-    let last = f64::from(at.last);
-    let (open, xs, ys, iota) = (&mut open[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let ([xs, ys, rs], open) = (reciprocals.lanes(lanes), &mut open[..lanes]);
     for n in 0..lanes {
-        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let value = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
+        let value = line.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
         if BYTE {
             let (low, high) = (limited((value - off) * 4096.0), limited((value + off) * 4096.0));
             let (low, high) = (factor_byte(i64::from(low)), factor_byte(i64::from(high)));

@@ -3,7 +3,7 @@
 
 use super::color::{colors, narrow_weights};
 use super::dda::DdaRow;
-use super::depth::{Steps, depths};
+use super::depth::Steps;
 use super::direction::{Looking, only_face, positive};
 use super::fetch::PerLane;
 use super::fog::Fog;
@@ -16,7 +16,6 @@ use super::quotient::{
     estimate_weights,
 };
 use super::short::Short;
-use super::stages::Attributes;
 use super::taps::Footprints;
 use super::third::{Third, ThirdPlanes, thirds};
 use super::{CompiledDraw, Reason, Reasons, Sampler};
@@ -65,8 +64,6 @@ pub(super) struct Setup<'a> {
     widest: f64,
     /// Pixels that the definition computed something of.
     pub(super) defined: [Cell<u64>; REASONS],
-    /// Of the texture shader.
-    pub(super) attributes: Option<Box<Attributes>>,
 }
 
 /// What the batches of a block leave in their lanes.
@@ -203,7 +200,6 @@ impl<'a> Setup<'a> {
             samplers,
             thirds: thirds(context, compiled, &inverse),
             defined: [const { Cell::new(0) }; REASONS],
-            attributes: compiled.shader.as_ref().map(|shader| Box::new(Attributes::new(context, shader))),
             fog: compiled.fog.and_then(|_| Fog::new(context)).map(Box::new),
             bits: bits(triangle.doubled_area) + bits(p[0].max(p[1]).max(p[2])),
             context,
@@ -267,7 +263,7 @@ impl<'a> Setup<'a> {
         if self.samplers.iter().any(by_q)
             || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if by_q(of)))
         {
-            self.fall_short::<FMA, ROW>(batch, (&real, denominator), &bounds, &mut varying.short);
+            varying.short.set::<FMA, ROW>(&self.context.triangle, batch, (&real, denominator), &bounds);
         }
         // In a loop of its own: what compilers compute before it is left out where nothing is divided by D.
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
@@ -358,9 +354,6 @@ impl<'a> Setup<'a> {
             }
             narrow_weights(batch, varying);
         }
-        if self.context.draw.depth_test.is_some() {
-            depths::<FMA, ROW>(self.context, batch, varying);
-        }
         if let Some(slot) = compiled.fog {
             let Varying { whole: [values, spare], .. } = &mut *varying;
             let row = &mut rows[usize::from(slot)].0;
@@ -376,28 +369,14 @@ impl<'a> Setup<'a> {
         e: &[f64; 3],
         denominator: Line,
     ) -> Bounds {
-        let reciprocal = 1.0 / denominator.c;
-        if ROW {
-            let end = denominator.at::<FMA, true>(f64::from(batch.at.last), 0.0);
-            let (low, high) = if denominator.c < end { (denominator.c, end) } else { (end, denominator.c) };
-            let widest = 1.0 / low;
-            let columns = f64::from(batch.at.last);
-            return Bounds { ratio: high * widest, reciprocal, widest, columns, rows: 0.0 };
-        }
-        let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
-        let ratio = self.denominator.terms(e, columns, rows) * self.widest;
-        Bounds { ratio, reciprocal, widest: self.widest, columns, rows }
+        let terms = |columns, rows| self.denominator.terms(e, columns, rows);
+        Bounds::new::<FMA, ROW>(batch, denominator, self.widest, terms)
     }
 
     /// How far the estimate of a plane's quotient can be off.
     #[inline(always)]
     pub(super) fn margin<const ROW: bool>(&self, plane: &Plane, e: &[f64; 3], bounds: &Bounds) -> f64 {
-        // What is taken off is at most `reach` denominators.
-        if ROW {
-            // So is every other term: no term of the denominator is negative.
-            return 2.0 * plane.reach * bounds.ratio * SLACK;
-        }
-        (plane.terms(e, bounds.columns, bounds.rows) * bounds.widest + 2.0 * plane.reach * bounds.ratio) * SLACK
+        bounds.margin::<ROW>(plane.reach, |columns, rows| plane.terms(e, columns, rows))
     }
 
     /// Two quotients to be estimated, less a bias. `None`: some estimate would prove nothing.
@@ -606,6 +585,40 @@ pub(super) struct Bounds {
     widest: f64,
     pub(super) columns: f64,
     pub(super) rows: f64,
+}
+
+impl Bounds {
+    /// `widest`: the reciprocal of a D that none is smaller than. `terms`: the sum of the magnitudes that go into a D so many columns and rows around.
+    #[inline(always)]
+    pub(super) fn new<const FMA: bool, const ROW: bool>(
+        batch: PixelBatch<'_>,
+        denominator: Line,
+        widest: f64,
+        terms: impl FnOnce(f64, f64) -> f64,
+    ) -> Bounds {
+        let reciprocal = 1.0 / denominator.c;
+        if ROW {
+            let end = denominator.at::<FMA, true>(f64::from(batch.at.last), 0.0);
+            let (low, high) = if denominator.c < end { (denominator.c, end) } else { (end, denominator.c) };
+            let widest = 1.0 / low;
+            let columns = f64::from(batch.at.last);
+            return Bounds { ratio: high * widest, reciprocal, widest, columns, rows: 0.0 };
+        }
+        let (columns, rows) = (f64::from(batch.extent.0), f64::from(batch.extent.1));
+        Bounds { ratio: terms(columns, rows) * widest, reciprocal, widest, columns, rows }
+    }
+
+    /// How far the estimate of a quotient can be off, of which `reach` is the largest magnitude and what is taken off, and `terms` the sum of the
+    /// magnitudes that go into its numerator.
+    #[inline(always)]
+    pub(super) fn margin<const ROW: bool>(&self, reach: f64, terms: impl FnOnce(f64, f64) -> f64) -> f64 {
+        // What is taken off is at most `reach` denominators.
+        if ROW {
+            // So is every other term: no term of the denominator is negative.
+            return 2.0 * reach * self.ratio * SLACK;
+        }
+        (terms(self.columns, self.rows) * self.widest + 2.0 * reach * self.ratio) * SLACK
+    }
 }
 
 fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
