@@ -103,7 +103,7 @@ impl Setup<'_> {
         let [at_u, at_v] = &mut placing.at;
         let (lines, (u, v)) = ([ground.along, ground.down, denominator], (&mut at_u[..lanes], &mut at_v[..lanes]));
         match ground.losses {
-            Some(losses) => short.divide::<FMA, ROW>(at, lines, losses, [u, v]),
+            Some(losses) => short.dominance.divide::<FMA, ROW>(at, lines, losses, [u, v]),
             None => quotients::<FMA, ROW>(at, lines, u, v),
         }
         placing.open[..lanes].fill(false);

@@ -1,14 +1,16 @@
 //! INT-4t on rows: quotients of numbers that lose something because weights fall short (TEX-15, TSH-7). `docs/exactness.md` has the argument.
 #![allow(clippy::float_arithmetic, reason = "estimates: no result depends on how they are rounded")]
 
+use super::BLOCK;
 use super::fetch::PerLane;
-use super::kernels::LANES;
+use super::kernels::{LANES, STEP};
 use super::planes::{Plane, inverse};
 use super::quads::any_negative;
 use super::quotient::{IOTA_REAL, Line, Positions, SLACK, nearest, position, whole};
 use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::raster::interpolate::{SHORT_BITS, most_dominant};
 use crate::raster::setup::Triangle;
+use std::ops::Range;
 
 /// How much of a weight is missing.
 const PART: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
@@ -16,12 +18,11 @@ const PART: f64 = 1.0 / (1_u32 << SHORT_BITS) as f64;
 /// What a linear function loses of each unit of N_0 and of N_2, where those fall short.
 pub(super) type Losses = [f64; 2];
 
-/// N_0 and N_2 of the lanes of a batch, 0 where they do not fall short.
+/// Which weights fall short at the pixels of a batch, and two quotients of them.
 #[derive(Clone, Debug)]
 pub(super) struct Short {
-    first: PerLane<f64>,
-    third: PerLane<f64>,
-    /// As sign bits: which weight dominates is too close to call, for an estimate; then, what is not proved of something else.
+    pub(super) dominance: Dominance,
+    /// As sign bits: what is not proved of something.
     pub(super) close: PerLane<u64>,
     /// Two quotients.
     pub(super) at: [PerLane<f64>; 2],
@@ -29,7 +30,34 @@ pub(super) struct Short {
 
 impl Default for Short {
     fn default() -> Self {
-        Short { first: [0.0; LANES], third: [0.0; LANES], close: [0; LANES], at: [[0.0; LANES]; 2] }
+        Short { dominance: Dominance::default(), close: [0; LANES], at: [[0.0; LANES]; 2] }
+    }
+}
+
+/// INT-3's dominance at the pixels of a batch. Weights are classed by whether they are above a half, a quarter or neither, for the largest is
+/// never below a third.
+#[derive(Clone, Debug)]
+pub(super) struct Dominance {
+    /// N_0 and N_2 as functions.
+    functions: [Line; 2],
+    /// Of steps of a row: whether weights 0 and 2 fall short in all of its lanes. `None`: lanes differ, or one is too close to call.
+    steps: [Option<[bool; 2]>; BLOCK / STEP],
+    /// N_0 and N_2 of all other lanes, 0 where they do not fall short.
+    first: PerLane<f64>,
+    third: PerLane<f64>,
+    /// As sign bits: which weight dominates is too close to call, for an estimate.
+    close: PerLane<u64>,
+}
+
+impl Default for Dominance {
+    fn default() -> Self {
+        Dominance {
+            functions: [Line::default(); 2],
+            steps: [None; BLOCK / STEP],
+            first: [0.0; LANES],
+            third: [0.0; LANES],
+            close: [0; LANES],
+        }
     }
 }
 
@@ -55,9 +83,8 @@ impl Setup<'_> {
     }
 }
 
-impl Short {
-    /// INT-3's dominance at the pixels of a batch. Weights are classed by whether they are above a half, a quarter or neither, for the largest is
-    /// never below a third.
+impl Dominance {
+    /// Becomes that of a batch.
     #[inline(always)]
     pub(super) fn set<const FMA: bool, const ROW: bool>(
         &mut self,
@@ -68,6 +95,7 @@ impl Short {
     ) {
         let lanes = batch.at.x.len();
         if triangle.exact_reciprocal {
+            self.steps = [Some([false; 2]); BLOCK / STEP];
             self.first[..lanes].fill(0.0);
             self.third[..lanes].fill(0.0);
             return;
@@ -78,45 +106,132 @@ impl Short {
             lines[k] = Line { c: p * e[k], x: p * triangle.a[k] as f64, y: p * triangle.b[k] as f64 };
             terms += lines[k].c.abs() + lines[k].x.abs() * bounds.columns + lines[k].y.abs() * bounds.rows;
         }
-        dominance::<FMA, ROW>(batch.at, [lines[0], lines[2], denominator], 4.0 * SLACK * terms, self, lanes);
-        if any_negative(&self.close[..lanes]) {
-            self.find_dominance(triangle, batch);
+        self.functions = [lines[0], lines[2]];
+        let (functions, error) = ([lines[0], lines[2], denominator], 4.0 * SLACK * terms);
+        if !ROW {
+            self.lanes::<FMA, false>(triangle, batch, functions, error, 0..lanes);
+            return;
+        }
+        // Everything is linear along a row: what lies between two pixels is classed as both are.
+        let mut before = classes::<FMA>(functions, 0.0, error);
+        for step in 0..lanes / STEP {
+            let end = f64::from(batch.at.last).min(((step + 1) * STEP) as f64);
+            let after = classes::<FMA>(functions, end, error);
+            self.steps[step] = match (before, after) {
+                (Some(before), Some(after)) if before == after => {
+                    let [first, third] = most_dominant(before);
+                    Some([!first, !third])
+                }
+                _ => {
+                    self.lanes::<FMA, true>(triangle, batch, functions, error, step * STEP..(step + 1) * STEP);
+                    None
+                }
+            };
+            before = after;
+        }
+    }
+
+    /// Becomes that of some lanes, one by one. `error`: what four times a weight's numerator less D can be off by.
+    #[inline(always)]
+    fn lanes<const FMA: bool, const ROW: bool>(
+        &mut self,
+        triangle: &Triangle,
+        batch: PixelBatch<'_>,
+        [first, third, denominator]: [Line; 3],
+        error: f64,
+        lanes: Range<usize>,
+    ) {
+        let last = f64::from(batch.at.last);
+        let (xs, ys, iota) = (&batch.at.x[lanes.clone()], &batch.at.y[lanes.clone()], &IOTA_REAL[lanes.clone()]);
+        let (to_first, to_third) = (&mut self.first[lanes.clone()], &mut self.third[lanes.clone()]);
+        let close = &mut self.close[lanes.clone()];
+        for n in 0..close.len() {
+            let (x, y) = position::<ROW>(n, last, xs, ys, iota);
+            let (a, c, d) = (first.at::<FMA, ROW>(x, y), third.at::<FMA, ROW>(x, y), denominator.at::<FMA, ROW>(x, y));
+            let b = d - a - c;
+            let [is_first, is_third] = most_dominant([class(a, d), class(b, d), class(c, d)]);
+            to_first[n] = if is_first { 0.0 } else { a };
+            to_third[n] = if is_third { 0.0 } else { c };
+            close[n] = near(a, d, error) | near(b, d, error) | near(c, d, error);
+        }
+        if any_negative(close) {
+            self.settle(triangle, batch, lanes);
         }
     }
 
     /// Lanes that are too close to call: whole numbers tell.
     #[inline(never)]
-    fn find_dominance(&mut self, triangle: &Triangle, batch: PixelBatch<'_>) {
-        for n in (0..batch.at.x.len()).filter(|n| self.close[*n] >> 63 != 0) {
+    fn settle(&mut self, triangle: &Triangle, batch: PixelBatch<'_>, lanes: Range<usize>) {
+        for n in lanes.filter(|n| self.close[*n] >> 63 != 0) {
             let sample = batch.sample(n.min(batch.count - 1), triangle);
             let [first, third] = sample.short();
             self.first[n] = if first { sample.n[0] as f64 } else { 0.0 };
             self.third[n] = if third { sample.n[2] as f64 } else { 0.0 };
         }
     }
+
+    /// Two quotients with their fractions, of functions over another of the same pixels, all of which lose something.
+    #[inline(always)]
+    pub(super) fn divide<const FMA: bool, const ROW: bool>(
+        &self,
+        at: Positions<'_>,
+        functions: [Line; 3],
+        losses: [Losses; 3],
+        [u, v]: [&mut [f64]; 2],
+    ) {
+        let last = f64::from(at.last);
+        if !ROW {
+            let positions = (at.x, at.y, &IOTA_REAL[..at.x.len()]);
+            quotients::<FMA, false>(last, positions, functions, losses, (&self.first, &self.third), u, v);
+            return;
+        }
+        let mut known = (None, functions);
+        let steps = u.as_chunks_mut::<STEP>().0.iter_mut().zip(v.as_chunks_mut::<STEP>().0).zip(&self.steps);
+        for (step, ((u, v), short)) in steps.enumerate() {
+            let lanes = step * STEP..(step + 1) * STEP;
+            let Some(short) = short else {
+                let positions = (&at.x[lanes.clone()], &at.y[lanes.clone()], &IOTA_REAL[lanes.clone()]);
+                let weights = (&self.first[lanes.clone()], &self.third[lanes]);
+                quotients::<FMA, true>(last, positions, functions, losses, weights, u, v);
+                continue;
+            };
+            if known.0 != Some(short) {
+                // What they lose is linear as well.
+                let mut lines = functions;
+                for (line, losses) in lines.iter_mut().zip(losses) {
+                    for i in 0..2 {
+                        *line = if short[i] { line.less(losses[i], self.functions[i]) } else { *line };
+                    }
+                }
+                known = (Some(short), lines);
+            }
+            [*u, *v] = linear::<FMA>(known.1, lanes.start, last);
+        }
+    }
 }
 
-/// The loop of [`Short::set`], with what four times a weight's numerator less D can be off by.
-#[inline(always)]
-fn dominance<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
-    [first, third, denominator]: [Line; 3],
-    error: f64,
-    short: &mut Short,
-    lanes: usize,
-) {
-    let last = f64::from(at.last);
-    let (xs, ys, iota) = (&at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
-    let (to_first, to_third, close) = (&mut short.first[..lanes], &mut short.third[..lanes], &mut short.close[..lanes]);
-    for n in 0..lanes {
-        let (x, y) = position::<ROW>(n, last, xs, ys, iota);
-        let (a, c, d) = (first.at::<FMA, ROW>(x, y), third.at::<FMA, ROW>(x, y), denominator.at::<FMA, ROW>(x, y));
-        let b = d - a - c;
-        let [is_first, is_third] = most_dominant([class(a, d), class(b, d), class(c, d)]);
-        to_first[n] = if is_first { 0.0 } else { a };
-        to_third[n] = if is_third { 0.0 } else { c };
-        close[n] = near(a, d, error) | near(b, d, error) | near(c, d, error);
+impl Short {
+    /// [`Dominance::divide`], kept [here](Self::at).
+    #[inline(always)]
+    pub(super) fn keep<const FMA: bool, const ROW: bool>(
+        &mut self,
+        at: Positions<'_>,
+        functions: [Line; 3],
+        losses: [Losses; 3],
+    ) {
+        let (lanes, [u, v]) = (at.x.len(), &mut self.at);
+        self.dominance.divide::<FMA, ROW>(at, functions, losses, [&mut u[..lanes], &mut v[..lanes]]);
     }
+}
+
+/// Classes of the weights at a pixel of a row. `None`: one of them is too close to call.
+#[inline(always)]
+fn classes<const FMA: bool>([first, third, denominator]: [Line; 3], x: f64, error: f64) -> Option<[f64; 3]> {
+    let at = |line: Line| line.at::<FMA, true>(x, 0.0);
+    let (a, c, d) = (at(first), at(third), at(denominator));
+    let b = d - a - c;
+    let close = near(a, d, error) | near(b, d, error) | near(c, d, error);
+    (close >> 63 == 0).then_some([class(a, d), class(b, d), class(c, d)])
 }
 
 /// 2 above half of d, 1 above a quarter.
@@ -134,8 +249,9 @@ fn near(n: f64, d: f64, error: f64) -> u64 {
 
 /// Two quotients with their fractions, of functions with weights that fall short.
 #[inline(always)]
-pub(super) fn quotients<const FMA: bool, const ROW: bool>(
-    at: Positions<'_>,
+fn quotients<const FMA: bool, const ROW: bool>(
+    last: f64,
+    (xs, ys, iota): (&[i32], &[i32], &[f64]),
     [along, down, denominator]: [Line; 3],
     [loss_along, loss_down, loss_denominator]: [Losses; 3],
     (first, third): (&[f64], &[f64]),
@@ -143,8 +259,7 @@ pub(super) fn quotients<const FMA: bool, const ROW: bool>(
     v: &mut [f64],
 ) {
     let lanes = u.len();
-    let last = f64::from(at.last);
-    let (v, xs, ys, iota) = (&mut v[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let (v, xs, ys, iota) = (&mut v[..lanes], &xs[..lanes], &ys[..lanes], &iota[..lanes]);
     let (first, third) = (&first[..lanes], &third[..lanes]);
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
@@ -155,36 +270,26 @@ pub(super) fn quotients<const FMA: bool, const ROW: bool>(
     }
 }
 
+/// Quotients of two lines by a third in a step of a row, of which all lanes past the last repeat it.
+#[inline(always)]
+fn linear<const FMA: bool>([along, down, denominator]: [Line; 3], first: usize, last: f64) -> [[f64; STEP]; 2] {
+    let (mut u, mut v, mut x) = ([0.0; STEP], [0.0; STEP], [0.0; STEP]);
+    let first = first as f64;
+    for n in 0..STEP {
+        let at = IOTA_REAL[n] + first;
+        x[n] = if at < last { at } else { last };
+    }
+    for n in 0..STEP {
+        let r = 1.0 / denominator.at::<FMA, true>(x[n], 0.0);
+        u[n] = along.at::<FMA, true>(x[n], 0.0) * r;
+        v[n] = down.at::<FMA, true>(x[n], 0.0) * r;
+    }
+    [u, v]
+}
+
 #[inline(always)]
 fn lost(losses: Losses, weights: [f64; 2]) -> f64 {
     losses[0] * weights[0] + losses[1] * weights[1]
-}
-
-impl Short {
-    /// [`quotients`] of the lanes of a batch.
-    #[inline(always)]
-    pub(super) fn divide<const FMA: bool, const ROW: bool>(
-        &self,
-        at: Positions<'_>,
-        lines: [Line; 3],
-        losses: [Losses; 3],
-        [u, v]: [&mut [f64]; 2],
-    ) {
-        quotients::<FMA, ROW>(at, lines, losses, (&self.first, &self.third), u, v);
-    }
-
-    /// The same, kept [here](Self::at).
-    #[inline(always)]
-    pub(super) fn keep<const FMA: bool, const ROW: bool>(
-        &mut self,
-        at: Positions<'_>,
-        lines: [Line; 3],
-        losses: [Losses; 3],
-    ) {
-        let (lanes, [u, v]) = (at.x.len(), &mut self.at);
-        let weights = (&self.first[..], &self.third[..]);
-        quotients::<FMA, ROW>(at, lines, losses, weights, &mut u[..lanes], &mut v[..lanes]);
-    }
 }
 
 /// Floors, less a bias, of numbers that are off by less than `off`, and as sign bits which are not proved, besides those that were not.

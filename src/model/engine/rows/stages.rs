@@ -12,7 +12,7 @@ use super::planes::{RealPlane, inverse};
 use super::quads::any_negative;
 use super::quotient::{Line, Reciprocals, nearest, nearest_32};
 use super::shader::{Number, Purpose, Shader, byte_of};
-use super::short::{Losses, Short, losses};
+use super::short::{Dominance, Losses, losses};
 use super::triangle::{Bounds, PixelBatch};
 use super::{BLOCK, CompiledDraw, Job, Reason, Sampler};
 use crate::combiner::registers::Registers;
@@ -136,7 +136,7 @@ pub(super) struct Workshop {
     moved: Vec<Moved>,
     attributes: Attributes,
     reciprocals: Box<Reciprocals>,
-    short: Box<Short>,
+    dominance: Box<Dominance>,
     open: Box<Open>,
     /// First lane and number of the block's triangles.
     triangles: Vec<(usize, usize)>,
@@ -195,7 +195,7 @@ impl Workshop {
         batch: PixelBatch<'_>,
         shader: &Shader,
     ) {
-        let Workshop { numbers, moved, attributes, reciprocals, short, open, triangles, .. } = self;
+        let Workshop { numbers, moved, attributes, reciprocals, dominance, open, triangles, .. } = self;
         let triangle = &context.triangle;
         if attributes.triangle != Some(context.number) {
             attributes.set(context, shader);
@@ -230,7 +230,7 @@ impl Workshop {
             }
         }
         if !attributes.moved.is_empty() {
-            short.set::<FMA, ROW>(triangle, batch, (&real, denominator), &bounds);
+            dominance.set::<FMA, ROW>(triangle, batch, (&real, denominator), &bounds);
         }
         for ((planes, losses), moved) in attributes.moved.iter().zip(&attributes.losses).zip(moved) {
             let lines = [planes[0].line(&real), planes[1].line(&real), denominator];
@@ -243,7 +243,7 @@ impl Workshop {
             }
             moved.off[batch.lanes()].fill(if proves { off } else { 0.0 });
             let at = [&mut moved.u[batch.lanes()], &mut moved.v[batch.lanes()]];
-            short.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], at);
+            dominance.divide::<FMA, ROW>(batch.at, lines, [losses[0], losses[1], [0.0; 2]], at);
         }
     }
 }

@@ -263,7 +263,7 @@ impl<'a> Setup<'a> {
         if self.samplers.iter().any(by_q)
             || self.thirds.iter().any(|third| matches!(third, ThirdPlanes::Layer(of) if by_q(of)))
         {
-            varying.short.set::<FMA, ROW>(&self.context.triangle, batch, (&real, denominator), &bounds);
+            varying.short.dominance.set::<FMA, ROW>(&self.context.triangle, batch, (&real, denominator), &bounds);
         }
         // In a loop of its own: what compilers compute before it is left out where nothing is divided by D.
         let divided = if ROW && varying.dda.undivided { 0 } else { self.samplers.len() };
