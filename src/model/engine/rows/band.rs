@@ -488,25 +488,19 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             fetch::drop_keyed(key, work, alive);
         }
     }
+    let blends = compiled.destination.iter().any(Option::is_some);
+    if blends {
+        read::<MASKS>(band.words, runs, stored);
+        store::read(draw, compiled, stored, rows);
+    }
     if compiled.reads_surface {
         for run in runs.iter() {
-            copy::<MASKS>(&band.words[run.at..], &mut stored[run.lane..], run.count);
             mark(taken, run.at, run.count);
         }
-        store::read(draw, compiled, stored, rows);
     }
     for (node, at) in &compiled.operations {
         kernels::run(node, *at, rows);
     }
-    if !compiled.merges && runs.len() * LONG <= *used {
-        for run in runs.iter() {
-            store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
-        }
-        runs.clear();
-        *used = 0;
-        return;
-    }
-    store::pack(draw, compiled, rows, 0, words);
     if compiled.drops {
         if let Some(test) = &draw.alpha_test {
             let (alpha, reference) = (rows[usize::from(compiled.alpha)].block(), i16::from(test.reference));
@@ -524,14 +518,40 @@ pub(super) fn flush<const MASKS: bool>(job: Job<'_>, block: &mut Block, band: &m
             }
         }
     }
-    if compiled.merges {
-        store::merge(draw.write_mask, alive, stored, words);
-    }
-    for run in runs.iter() {
-        copy::<MASKS>(&words[run.lane..], &mut band.words[run.at..], run.count);
+    // Most blocks lose no fragment.
+    let merges = compiled.merges && !(compiled.writes_whole && all(&alive[..*used]));
+    if !merges && runs.len() * LONG <= *used {
+        for run in runs.iter() {
+            store::pack(draw, compiled, rows, run.lane, &mut band.words[run.at..][..run.count]);
+        }
+    } else {
+        store::pack(draw, compiled, rows, 0, words);
+        if merges {
+            if !blends {
+                read::<MASKS>(band.words, runs, stored);
+            }
+            store::merge(draw.write_mask, alive, stored, words);
+        }
+        for run in runs.iter() {
+            copy::<MASKS>(&words[run.lane..], &mut band.words[run.at..], run.count);
+        }
     }
     runs.clear();
     *used = 0;
+}
+
+/// What the surface holds of some runs.
+#[inline(always)]
+fn read<const MASKS: bool>(words: &[u32], runs: &[Run], out: &mut [u32; BLOCK]) {
+    for run in runs {
+        copy::<MASKS>(&words[run.at..], &mut out[run.lane..], run.count);
+    }
+}
+
+/// Whether all are true. Without branches: most are.
+#[inline(always)]
+fn all(alive: &[bool]) -> bool {
+    alive.iter().fold(true, |all, alive| all & alive)
 }
 
 static ZEROS: [i32; kernels::LANES] = [0; kernels::LANES];

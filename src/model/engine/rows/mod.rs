@@ -175,6 +175,8 @@ pub(crate) struct CompiledDraw {
     drops: bool,
     /// Some of what the surface holds stays: bits that are not written, or dropped fragments.
     merges: bool,
+    /// All bits of a pixel are written.
+    writes_whole: bool,
 }
 
 impl CompiledDraw {
@@ -258,6 +260,7 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
         reads_surface: false,
         drops: false,
         merges: false,
+        writes_whole: false,
     };
     emit(&built, draw, &mut compiled);
     if let Some(planned) = &draw.shader {
@@ -294,7 +297,8 @@ fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>)
     compiled.drops = kills || draw.alpha_test.is_some() || draw.stencil_test.is_some() || draw.depth_test.is_some();
     let whole = surface::write_mask(draw.surface, [true; 4]);
     let reads = compiled.destination.iter().any(Option::is_some);
-    compiled.merges = compiled.drops || draw.write_mask != whole;
+    compiled.writes_whole = draw.write_mask == whole;
+    compiled.merges = compiled.drops || !compiled.writes_whole;
     compiled.reads_surface = reads || compiled.merges;
     let samples = compiled.textures.iter().flatten().any(Option::is_some) || kills;
     compiled.samples_pixels = samples_pixels && samples;
