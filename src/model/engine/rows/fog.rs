@@ -6,10 +6,10 @@ use std::sync::LazyLock;
 use super::Reason;
 use super::kernels::LANES;
 use super::planes::{Plane, inverse};
-use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, nearest, position, whole};
+use super::quotient::{IOTA_REAL, Line, Positions, correct, estimate_two, floor_of_factor, nearest, position, whole};
 use super::triangle::{Bounds, PixelBatch, Setup};
 use crate::engine::pixel::TriangleContext;
-use crate::number::convert::factor_byte;
+use crate::number::convert::factor;
 use crate::raster::fog::{CENTRE, FACTOR_BITS, FogPlane, TABLE_END, exponential};
 use crate::raster::interpolate::Sample;
 use crate::state::FogMode;
@@ -135,7 +135,7 @@ impl Setup<'_> {
                     correct::<ROW>(batch.at, plane.exact(e), bottom, plane.small(self.bits), values, spare);
                 }
                 for (out, value) in out.iter_mut().zip(values) {
-                    *out = i16::from(factor_byte(i64::from((*value).clamp(0, 4096))));
+                    *out = factor((*value).clamp(0, 4096)) as i16;
                 }
             }
             Fog::Function(curve) => {
@@ -162,16 +162,16 @@ impl Setup<'_> {
                         }
                         if close {
                             // Where its neighbours' bytes are its own, a step need not be known.
-                            for (value, spare) in values.iter_mut().zip(&mut *spare) {
+                            for (value, spare) in values.iter().zip(&mut *spare) {
                                 let bytes = [byte(table, *value - 1), byte(table, *value), byte(table, *value + 1)];
-                                (*value, *spare) = (0, i32::from(*spare < 0 && bytes != [bytes[1]; 3]));
+                                *spare = i32::from(*spare < 0 && bytes != [bytes[1]; 3]);
                             }
                         }
                         close
                     }
                 };
                 if close {
-                    self.defined_factors(batch, |n| values[n] != spare[n], out);
+                    self.defined_factors(batch, |n| spare[n] != 0, out);
                 }
             }
         }
@@ -188,7 +188,7 @@ impl Setup<'_> {
     }
 }
 
-/// FOG-2 as bytes of the least and of the largest factor that a lane can have. Says whether some differ.
+/// FOG-2 as bytes of the least factor that a lane can have, and as numbers other than 0 which are not proved. Says whether some are not.
 ///
 /// `lines` make up p1 d', which is off by `off` and what its 24 bits lose.
 #[inline(always)]
@@ -196,33 +196,25 @@ fn linear<const FMA: bool, const ROW: bool>(
     at: Positions<'_>,
     lines: (Line, Line),
     (start, off, sign): (f64, f64, Option<f64>),
-    least: &mut [i32],
-    most: &mut [i32],
+    bytes: &mut [i32],
+    unknown: &mut [i32],
 ) -> bool {
     let mut close = 0;
-    let lanes = least.len();
+    let lanes = bytes.len();
     let last = f64::from(at.last);
-    let (most, xs, ys, iota) = (&mut most[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
+    let (unknown, xs, ys, iota) = (&mut unknown[..lanes], &at.x[..lanes], &at.y[..lanes], &IOTA_REAL[..lanes]);
     let rounding = ROUNDED * (4096.0 + start.abs());
     for n in 0..lanes {
         let (x, y) = position::<ROW>(n, last, xs, ys, iota);
         let argument = lines.0.at::<FMA, ROW>(x, y) / lines.1.at::<FMA, ROW>(x, y);
         let size = argument.abs();
         let argument = sign.map_or(argument, |sign| size * sign);
-        let (factor, error) = (start + argument, size * TRUNCATED + off + rounding);
-        let (low, high) = (limited(factor - error), limited(factor + error));
-        let (low, high) = (factor_byte(i64::from(low)), factor_byte(i64::from(high)));
-        (least[n], most[n]) = (i32::from(low), i32::from(high));
-        close |= low ^ high;
+        let (value, error) = (start + argument, size * TRUNCATED + off + rounding);
+        let (low, high) = (factor(floor_of_factor(value - error)), factor(floor_of_factor(value + error)));
+        (bytes[n], unknown[n]) = (low, low ^ high);
+        close |= unknown[n];
     }
     close != 0
-}
-
-/// The floor of what is limited to 0..=4096. One less where it is a whole number, perhaps.
-#[inline(always)]
-fn limited(v: f64) -> i32 {
-    let v = if v > 0.0 { v } else { 0.0 };
-    nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
 }
 
 /// FOG-4: indices into the table, and as negative numbers which are not proved. Says whether some are not.

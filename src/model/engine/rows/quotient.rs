@@ -218,6 +218,13 @@ pub(super) fn nearest(q: f64) -> i32 {
     (q + MAGIC).to_bits() as i32
 }
 
+/// The floor of a factor in 4096ths, limited to 0..=4096. One less where it is a whole number, perhaps.
+#[inline(always)]
+pub(super) fn floor_of_factor(v: f64) -> i32 {
+    let v = if v > 0.0 { v } else { 0.0 };
+    nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
+}
+
 /// The nearest whole number, in single precision.
 #[inline(always)]
 pub(super) fn nearest_32(q: f32) -> i32 {

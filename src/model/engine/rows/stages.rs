@@ -10,7 +10,7 @@ use super::fetch;
 use super::kernels::{LANES, Lanes256};
 use super::planes::{RealPlane, inverse};
 use super::quads::any_negative;
-use super::quotient::{Line, Reciprocals, nearest, nearest_32};
+use super::quotient::{Line, Reciprocals, floor_of_factor, nearest, nearest_32};
 use super::shader::{Number, Purpose, Shader, byte_of};
 use super::short::{Dominance, Losses, losses};
 use super::triangle::{Bounds, PixelBatch};
@@ -18,7 +18,7 @@ use super::{BLOCK, CompiledDraw, Job, Reason, Sampler};
 use crate::combiner::registers::Registers;
 use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Band;
-use crate::number::convert::{factor, factor_byte};
+use crate::number::convert::factor;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
 use crate::state::{MipFilter, Register, ShaderOperation, TEXTURE_UNITS};
 use crate::trace::Silent;
@@ -126,6 +126,25 @@ impl Open {
     }
 }
 
+/// What the dot unit works in.
+#[derive(Clone, Debug)]
+struct DotUnit {
+    /// The dot product of each stage.
+    dots: [Floats; TEXTURE_UNITS],
+    reflected: [Floats; 3],
+    /// The eye where it is the same everywhere.
+    eye: [Floats; 3],
+    /// What a stage works in.
+    scratch: [Floats; 3],
+}
+
+impl Default for DotUnit {
+    fn default() -> Self {
+        let zeros = [[0.0; BLOCK]; 3];
+        DotUnit { dots: [[0.0; BLOCK]; TEXTURE_UNITS], reflected: zeros, eye: zeros, scratch: zeros }
+    }
+}
+
 /// What a texture shader works in.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Workshop {
@@ -142,12 +161,7 @@ pub(super) struct Workshop {
     triangles: Vec<(usize, usize)>,
     vectors: Vec<[Floats; 3]>,
     is_remapped: Vec<bool>,
-    dots: Vec<Floats>,
-    reflected: Vec<[Floats; 3]>,
-    /// The eye where it is the same everywhere.
-    eye: Vec<[Floats; 3]>,
-    /// What a stage works in.
-    scratch: Vec<[Floats; 3]>,
+    dot: Box<DotUnit>,
 }
 
 impl Workshop {
@@ -162,13 +176,9 @@ impl Workshop {
         self.triangles.clear();
         self.vectors.resize(shader.vectors.len(), [[0.0; BLOCK]; 3]);
         self.is_remapped.resize(shader.vectors.len(), false);
-        self.dots.resize(TEXTURE_UNITS, [0.0; BLOCK]);
-        self.reflected.resize(1, [[0.0; BLOCK]; 3]);
-        self.scratch.resize(1, [[0.0; BLOCK]; 3]);
-        self.eye.clear();
         for stage in &shader.stages {
             if let ShaderOperation::DotReflectConstantEye { eye } = stage.state.operation {
-                self.eye.push(eye.map(|component| [component; BLOCK]));
+                self.dot.eye = eye.map(|component| [component; BLOCK]);
             }
         }
     }
@@ -262,9 +272,9 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
     for n in 0..lanes {
         let value = line.at::<FMA, ROW>(xs[n], ys[n]) * rs[n];
         if BYTE {
-            let (low, high) = (limited((value - off) * 4096.0), limited((value + off) * 4096.0));
-            let (low, high) = (factor_byte(i64::from(low)), factor_byte(i64::from(high)));
-            out[n] = f32::from(low);
+            let (low, high) = ((value - off) * 4096.0, (value + off) * 4096.0);
+            let (low, high) = (factor(floor_of_factor(low)), factor(floor_of_factor(high)));
+            out[n] = low as f32;
             // Also what is no number.
             open[n] |= i32::from((low != high) | value.is_nan() | off.is_nan());
         } else {
@@ -273,13 +283,6 @@ fn rounded<const FMA: bool, const ROW: bool, const BYTE: bool>(
             open[n] |= i32::from((low != high) | (low == 0.0));
         }
     }
-}
-
-/// A floor limited to 0..=4096; one less where it is a whole number, perhaps.
-#[inline(always)]
-fn limited(v: f64) -> i32 {
-    let v = if v > 0.0 { v } else { 0.0 };
-    nearest(if v < 4096.0 { v } else { 4096.0 } - 0.5)
 }
 
 /// Runs the stages of a block's pixels, which leave their registers in their rows.
@@ -345,10 +348,9 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                         let doubled = shader.stages[stage.state.previous].doubled;
                         let moved = &workshop.moved[stage.moved];
                         let [_, green, blue, _] = earlier.map(|slot| slot.map(|slot| rows[usize::from(slot)].block()));
-                        if let (Some(blue), Some(green), Some([along, ..])) =
-                            (blue, green, workshop.scratch.first_mut())
-                        {
+                        if let (Some(blue), Some(green)) = (blue, green) {
                             let (blue, green) = ((blue, doubled[2]), (green, doubled[1]));
+                            let [along, ..] = &mut workshop.dot.scratch;
                             bump(sampler, matrix, blue, green, moved, along, numbers, &mut workshop.open);
                         }
                     }
@@ -370,7 +372,7 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                             let Some(out) = numbers[n].first_chunk_mut() else { continue };
                             let limit = COORDINATE_LIMIT as i32;
                             dot::coordinate(
-                                &workshop.dots[index + n - 1],
+                                &workshop.dot.dots[index + n - 1],
                                 sampler.sides[n],
                                 limit,
                                 sampler.bias(),
@@ -396,8 +398,9 @@ pub(super) fn run(job: Job<'_>, block: &mut Block, band: &Band<'_>) {
                 let (at, references) = (&varying.coordinates[at], &varying.references[at]);
                 fetch::sample(table, at, references, sampler.signed, wanted, work, rows);
                 if let Some(factors) = stage.luminance.first_chunk::<256>()
-                    && let (Some(red), Some([products, ..])) = (earlier[0], workshop.scratch.first_mut())
+                    && let Some(red) = earlier[0]
                 {
+                    let [products, ..] = &mut workshop.dot.scratch;
                     let doubled = shader.stages[stage.state.previous].doubled[0];
                     look_up(factors, rows[usize::from(red)].block(), doubled, products);
                     for slot in wanted[..3].iter().flatten() {
@@ -425,15 +428,15 @@ impl Workshop {
     /// The vector that a cube map is looked up with, and what is worked in meanwhile.
     #[inline(always)]
     fn vector(&mut self, shader: &Shader, operation: &ShaderOperation) -> Option<([&Floats; 3], &mut [Floats; 3])> {
-        let Workshop { numbers, same, dots, reflected, eye, scratch, .. } = self;
-        let (scratch, reflected) = (scratch.first_mut()?, reflected.first_mut()?);
-        let dots = [&dots[1], &dots[2], &dots[3]];
+        let Workshop { numbers, same, dot, .. } = self;
+        let DotUnit { dots: [_, first, second, third], reflected, eye, scratch } = &mut **dot;
+        let dots = [&*first, &*second, &*third];
         let eye = match operation {
             ShaderOperation::DotReflectSpecular => {
                 let component = |n: usize| number(numbers, same, shader.stages[n].numbers[3]);
                 [component(1)?, component(2)?, component(3)?]
             }
-            ShaderOperation::DotReflectConstantEye { .. } => eye.first()?.each_ref(),
+            ShaderOperation::DotReflectConstantEye { .. } => eye.each_ref(),
             _ => return Some((dots, scratch)),
         };
         dot::reflect(dots, eye, reflected);
@@ -462,9 +465,9 @@ fn dot_product(
         let registers = [register(r), register(g), register(b), register(a)];
         remap.run(registers, *doubled, &mut work.vectors[stage.vector]);
     }
-    let Workshop { numbers, same, vectors, dots, .. } = work;
+    let Workshop { numbers, same, vectors, dot, .. } = work;
     if let [Some(s), Some(t), Some(r)] = [0, 1, 2].map(|n| number(numbers, same, stage.numbers[n])) {
-        dot::products([s, t, r], &vectors[stage.vector], &mut dots[index]);
+        dot::products([s, t, r], &vectors[stage.vector], &mut dot.dots[index]);
     }
 }
 
