@@ -62,9 +62,13 @@ pub fn texels(words: &[u32], pixel: u32, texel: u32) -> Cow<'_, [u32]> {
     if pixel == texel {
         return Cow::Borrowed(words);
     }
-    let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes().into_iter().take(pixel as usize)).collect();
-    let word = |bytes: &[u8]| bytes.iter().rev().fold(0, |word, byte| word << 8 | u32::from(*byte));
-    bytes.chunks(texel as usize).map(word).collect()
+    // Sizes are powers of two.
+    if pixel > texel {
+        let part = |word: &u32, n: u32| *word >> (8 * texel * n) & (u32::MAX >> (32 - 8 * texel));
+        return words.iter().flat_map(|word| (0..pixel / texel).map(move |n| part(word, n))).collect();
+    }
+    let whole = |words: &[u32]| words.iter().rev().fold(0, |whole, word| whole << (8 * pixel) | word);
+    words.chunks((texel / pixel) as usize).map(whole).collect()
 }
 
 /// Whether blending is allowed.

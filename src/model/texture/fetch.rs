@@ -91,19 +91,21 @@ impl Slice<'_> {
         [self.inside(words, x0, y0), self.inside(words, x1, y0), self.inside(words, x0, y1), self.inside(words, x1, y1)]
     }
 
+    /// The column that an index along s stands for; `None`: it lies outside.
     #[inline(always)]
-    fn column(&self, x: i64) -> Option<i64> {
+    pub(crate) fn column(&self, x: i64) -> Option<i64> {
         address(self.unit.modes()[0], x, self.level.width, self.unit.border)
     }
 
+    /// The same along t.
     #[inline(always)]
-    fn row(&self, y: i64) -> Option<i64> {
+    pub(crate) fn row(&self, y: i64) -> Option<i64> {
         address(self.unit.modes()[1], y, self.level.height, self.unit.border)
     }
 
     /// TEX-7: the texel inside, or the border colour, which is A8R8G8B8 whatever the format.
     #[inline(always)]
-    fn inside(&self, words: &[u32], x: Option<i64>, y: Option<i64>) -> Texel {
+    pub(crate) fn inside(&self, words: &[u32], x: Option<i64>, y: Option<i64>) -> Texel {
         let (Some(x), Some(y), Some(image)) = (x, y, self.image) else {
             let [r, g, b, a] = self.unit.state.border_color.map(u32::from);
             return Texel { at: None, word: a << 24 | r << 16 | g << 8 | b };

@@ -66,7 +66,8 @@ struct Depths<'a> {
     /// In a w buffer, what edge numbers are multiplied by (DEP-6); `z` holds w there.
     ratios: [f64; 3],
     full: f64,
-    offset: f64,
+    /// Two numbers whose sum it is.
+    offset: [f64; 2],
     range: Option<&'a DepthRange>,
     format: DepthFormat,
 }
@@ -83,7 +84,10 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     let e = triangle.edges(batch.first.0, batch.first.1);
     let edge = |k: usize| Line { c: e[k] as f64, x: triangle.a[k] as f64, y: triangle.b[k] as f64 };
     let format = draw.depth_format;
-    let offset = plane.offset.mantissa as f64 * power_of_two(plane.offset.exponent);
+    let unit = power_of_two(plane.offset.exponent);
+    let high = plane.offset.mantissa as f64;
+    let low = plane.offset.mantissa.wrapping_sub(high as i64) as f64;
+    let offset = [high * unit, low * unit];
     let full = f64::from(format.largest());
     let range = test.range.as_ref();
     let z = plane.w.unwrap_or(plane.z);
@@ -97,10 +101,10 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
     // Zero, or far from where binary32 or the steps between are at their ends.
     let moderate = |z: &f32| *z == 0.0 || (1e-18..1e30).contains(&z.abs());
     // Floored, and nothing else.
-    let is_plain = range.is_none() && offset == 0.0 && !format.is_float();
-    let exact_offset = plane.offset.mantissa.unsigned_abs() >> 53 == 0 && offset.is_finite();
+    let is_plain = range.is_none() && plane.offset.mantissa == 0 && !format.is_float();
+    let moderate_offset = offset[0] == 0.0 || (1e-250..1e250).contains(&offset[0].abs());
     let unknown = if let Some(w) = plane.w {
-        if exact_offset && w.iter().all(|w| *w > 0.0 && moderate(w)) {
+        if moderate_offset && w.iter().all(|w| *w > 0.0 && moderate(w)) {
             let ratio = |(mantissa, exponent): (i64, i32)| mantissa as f64 * power_of_two(exponent);
             let ratios = w.map(|of| ratio(w_ratio(w[1], of)));
             let depths = Depths { ratios, ..depths };
@@ -115,7 +119,7 @@ pub(super) fn depths<const FMA: bool, const ROW: bool>(
         }
     } else if is_plain && (test.vertex_depths == VertexDepths::Fractions || plane.z.iter().all(whole)) {
         depths.along::<FMA, ROW, false, false>(batch.at, edges, steps, out)
-    } else if exact_offset && plane.z.iter().all(moderate) {
+    } else if moderate_offset && plane.z.iter().all(moderate) {
         depths.along::<FMA, ROW, true, false>(batch.at, edges, steps, out)
     } else {
         out.fill(UNKNOWN);
@@ -161,7 +165,7 @@ impl Depths<'_> {
                     *out |= (*close as u32).wrapping_neg();
                 }
             }
-            unknown |= (close | GENERAL) && out.contains(&UNKNOWN);
+            unknown |= close;
         }
         unknown
     }
@@ -249,10 +253,11 @@ impl Depths<'_> {
 
     /// The sum of the terms and of the reference's depth as a word.
     #[inline(always)]
-    fn words<const FMA: bool, const GENERAL: bool>(&self, steps: &Steps, out: &mut [u32]) {
+    fn words<const FMA: bool, const GENERAL: bool>(&self, steps: &mut Steps, out: &mut [u32]) {
         let lanes = out.len();
-        let Steps { references, terms: [one, other], .. } = steps;
+        let Steps { references, terms: [one, other], edges: [lost, ..], sums, .. } = steps;
         let (references, one, other) = (&references[..lanes], &one[..lanes], &other[..lanes]);
+        let (sums, lost) = (&mut sums[..lanes], &mut lost[..lanes]);
         for n in 0..lanes {
             let (a, b, z) = (one[n], other[n], references[n]);
             let largest = if a.abs() > b.abs() { a.abs() } else { b.abs() };
@@ -263,34 +268,52 @@ impl Depths<'_> {
             let sum = cut::<FMA>(a * scale) + cut::<FMA>(b * scale) + cut::<FMA>(z * scale);
             let depth = sum * (top * STEP);
             if GENERAL {
-                out[n] = self.word(depth);
+                (sums[n], lost[n]) = (depth, 0.0);
                 continue;
             }
             let depth = if depth > 0.0 { depth } else { 0.0 };
             let depth = if depth < self.full { depth } else { self.full };
             out[n] = nearest(floor::<FMA>(depth)) as u32;
         }
+        if GENERAL && self.offset != [0.0; 2] {
+            for (sum, lost) in sums.iter_mut().zip(&mut *lost) {
+                // The definition has more bits than a double: what the sum loses counts.
+                let (high, rest) = two_sum(*sum, self.offset[0]);
+                let (rest, least) = two_sum(rest, self.offset[1]);
+                let (high, rest) = two_sum(high, rest);
+                (*sum, *lost) = (high, if rest == 0.0 { least } else { rest });
+            }
+        }
+        if GENERAL {
+            for ((out, sum), lost) in out.iter_mut().zip(sums).zip(lost) {
+                *out = self.word(*sum, *lost);
+            }
+        }
     }
 
-    /// DEP-3 to DEP-5 of an interpolated depth.
+    /// DEP-3 to DEP-5 of a depth, the sum of a double and less than its last bit.
     #[inline(always)]
-    fn word(&self, depth: f64) -> u32 {
-        let sum = depth + self.offset;
-        // What the sum lost, exactly; the definition has more bits than a double.
-        let other = sum - depth;
-        if (depth - (sum - other)) + (self.offset - other) != 0.0 {
-            return UNKNOWN;
-        }
-        let mut depth = sum;
+    fn word(&self, sum: f64, lost: f64) -> u32 {
         if let Some(range) = self.range {
             let (lowest, highest) = (f64::from(range.lowest), f64::from(range.highest));
-            if !range.clamps && (depth < lowest || depth > highest) {
-                return OUTSIDE;
+            let below = sum < lowest || sum == lowest && lost < 0.0;
+            let above = sum > highest || sum == highest && lost > 0.0;
+            if below || above {
+                return if range.clamps { word(self.format, if below { lowest } else { highest }) } else { OUTSIDE };
             }
-            depth = depth.max(lowest).min(highest);
         }
-        word(self.format, depth)
+        // What lies between a double and the one before is as good as the latter: words begin at doubles. Only what is positive is a depth.
+        let before = f64::from_bits(sum.to_bits().wrapping_sub(1));
+        word(self.format, if lost < 0.0 && sum > 0.0 { before } else { sum })
     }
+}
+
+/// A sum, and what it lost, exactly.
+#[inline(always)]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let other = sum - a;
+    (sum, (a - (sum - other)) + (b - other))
 }
 
 /// DEP-3 of a depth.

@@ -3,8 +3,7 @@
 
 use super::fetch::{PerLane, entry};
 use super::kernels::LANES;
-use super::planes::{Plane, inverse};
-use super::quads::{AtQuads, Known, Measure, Quads, any_negative, floor};
+use super::quads::{AtQuads, Known, Measure, Quads, any_negative, floor, parted};
 use super::quotient::{IOTA_REAL, Line, Positions, nearest, position, whole};
 use super::short::Short;
 use super::table::{Placed, Table};
@@ -114,8 +113,9 @@ impl Setup<'_> {
             let Placing { at, lods, levels, read, close, open } = &mut *placing;
             for axis in 0..2 {
                 let scale = f64::from_bits(u64::from(1023 - shifts[axis]) << 52);
-                let off = ground.off * scale + if shifts[axis] > 0 { ground.floors } else { 0.0 };
-                on_level(&at[axis][..lanes], scale, off, &mut read[axis], &mut close[axis]);
+                let (gap, shared) = ground.gaps[axis];
+                let off = ground.off * scale + if shifts[axis] > shared { ground.floors } else { 0.0 };
+                on_level(&at[axis][..lanes], scale, parted(gap * scale, off), &mut read[axis], &mut close[axis]);
             }
             let some = any_negative(&close[0][..lanes]) | any_negative(&close[1][..lanes]);
             let count = if some { batch.count } else { 0 };
@@ -127,9 +127,9 @@ impl Setup<'_> {
                     (open[n], opens) = (true, true);
                     continue;
                 };
-                let planes = self.planes_of(unit, planes, level as usize);
                 for axis in 0..2 {
-                    read[axis][n] = self.settled(batch, n, &planes[axis], e, read[axis][n]);
+                    let g = planes[axis].g.map(|g| g >> shifts[axis]);
+                    read[axis][n] = self.settled(batch, n, &g, read[axis][n]);
                 }
             }
             let [u, v, entries] = read;
@@ -159,24 +159,11 @@ impl Setup<'_> {
     }
 
     /// The floor that an estimate less than one off stands for, by INT-4 and INT-4t.
-    fn settled(&self, batch: PixelBatch<'_>, n: usize, plane: &Plane, e: &[i64; 3], value: i32) -> i32 {
-        let (x, y) = (i64::from(batch.at.x[n].min(batch.at.last)), i64::from(batch.at.y[n]));
-        let (floor, exact) = floor(plane.exact(e).at(x, y), self.denominator.exact(e).at(x, y), i64::from(value));
-        let ties = exact && plane.lowers(&self.context.triangle);
-        floor as i32 - i32::from(ties && self.sample(batch, n).shortfall(&plane.g) > 0)
-    }
-
-    /// The planes of a level.
-    #[inline(always)]
-    fn planes_of(&self, unit: &PlannedUnit, planes: &[Plane; 2], level: usize) -> [Plane; 2] {
-        let triangle = &self.context.triangle;
-        let [s, t] = unit.plane_shifts(&unit.levels[level]);
-        let (inverse, [u, v]) = (inverse(triangle), [planes[0].g, planes[1].g]);
-        // Neither closures nor `map`: they are not always inlined, and what is not inlined lacks the caller's instruction set.
-        [
-            Plane::new(triangle, &inverse, [u[0] >> s, u[1] >> s, u[2] >> s]),
-            Plane::new(triangle, &inverse, [v[0] >> t, v[1] >> t, v[2] >> t]),
-        ]
+    fn settled(&self, batch: PixelBatch<'_>, n: usize, g: &[i64; 3], value: i32) -> i32 {
+        let sample = self.sample(batch, n.min(batch.count - 1));
+        let top = (0..3).fold(0_i64, |top, k| top.wrapping_add(g[k].wrapping_mul(sample.e[k])));
+        let (floor, exact) = floor(top, sample.d, i64::from(value));
+        floor as i32 - i32::from(sample.lowers_tie(exact, || sample.shortfall(g)))
     }
 
     /// What a lane reads, by the definition.
@@ -271,10 +258,10 @@ pub(super) fn quotients<const FMA: bool, const ROW: bool>(
 
 /// Floors of coordinates on a level, and as sign bits which are not proved.
 #[inline(always)]
-fn on_level(at: &[f64], scale: f64, off: f64, out: &mut PerLane<i32>, close: &mut PerLane<u64>) {
+fn on_level(at: &[f64], scale: f64, (up, off): (f64, f64), out: &mut PerLane<i32>, close: &mut PerLane<u64>) {
     let (out, close) = (&mut out[..at.len()], &mut close[..at.len()]);
     for n in 0..at.len() {
-        let t = at[n] * scale - 0.5;
+        let t = at[n] * scale + (up - 0.5);
         out[n] = nearest(t);
         close[n] = (0.5 - off - (t - whole(t)).abs()).to_bits();
     }

@@ -96,7 +96,7 @@ pub(crate) const BLOCK: usize = 256;
 const SPARE: usize = 4;
 
 /// Decoding so many texels costs no more than sampling a pixel by the definition.
-const PAYS: u64 = 8;
+const PAYS: u64 = 16;
 
 /// Most entries of all tables, of four bytes each.
 const MAX_ENTRIES: u64 = 1 << 25;
@@ -200,7 +200,10 @@ pub(crate) struct Rows {
 impl Rows {
     /// Compiles every draw.
     pub(crate) fn compile(plan: &Plan) -> Rows {
-        let mut tables = Vec::new();
+        let mut tables = Tables::default();
+        for draw in &plan.draws {
+            tables.want(draw);
+        }
         Rows { draws: plan.draws.iter().map(|draw| compile(plan, draw, &mut tables)).collect() }
     }
 
@@ -235,7 +238,36 @@ fn pixels(draw: &PlannedDraw) -> u64 {
     draw.assembly.triangles.iter().map(|t| area(t).min(window)).sum()
 }
 
-fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> CompiledDraw {
+/// Tables of textures, which draws share.
+#[derive(Default)]
+struct Tables {
+    /// Pixels of the draws that want one, more or less.
+    wanted: Vec<(Key, u64)>,
+    made: Vec<(Key, Arc<Table>)>,
+}
+
+impl Tables {
+    /// Counts the pixels of a draw.
+    fn want(&mut self, draw: &PlannedDraw) {
+        let pixels = pixels(draw);
+        for unit in &draw.units {
+            let key = Key::of(unit, draw.shader.is_none());
+            match self.wanted.iter_mut().find(|(other, _)| *other == key) {
+                Some((_, all)) => *all += pixels,
+                None => self.wanted.push((key, pixels)),
+            }
+        }
+    }
+
+    /// Whether one that is yet to be made costs less than sampling by the definition, and fits in.
+    fn pays(&self, key: &Key, size: u64) -> bool {
+        let pixels = self.wanted.iter().find(|(other, _)| other == key).map_or(0, |(_, pixels)| *pixels);
+        let held: u64 = self.made.iter().map(|(_, table)| table.entries()).sum();
+        size <= PAYS * pixels && size + held <= MAX_ENTRIES
+    }
+}
+
+fn compile(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> CompiledDraw {
     let samplers = samplers(plan, draw, tables);
     // What stages of a shader read of one another is not known of the texels alone.
     let built = build::build(draw, plan.policies, samplers.as_deref().filter(|_| draw.shader.is_none()));
@@ -325,8 +357,7 @@ fn share(draw: &PlannedDraw, one: &Sampler, other: &Sampler) -> bool {
 }
 
 /// The draw's units, if rows can sample all of them and their tables pay.
-fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>) -> Option<Vec<Sampler>> {
-    let pixels = pixels(draw);
+fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Tables) -> Option<Vec<Sampler>> {
     let mut samplers = Vec::with_capacity(draw.units.len());
     for (index, unit) in draw.units.iter().enumerate() {
         let axes = table::axes(unit)?;
@@ -337,10 +368,8 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
         let folds = draw.shader.is_none();
         let table_key = Key::of(unit, folds);
         let texture = &plan.textures[unit.state.texture];
-        let known = tables.iter().find(|(other, _)| *other == table_key).map(|(_, table)| Arc::clone(table));
-        let size = table::size(unit, &axes);
-        let held: u64 = tables.iter().map(|(_, table)| table.entries()).sum();
-        if known.is_none() && (size > PAYS * pixels || size + held > MAX_ENTRIES) {
+        let known = tables.made.iter().find(|(other, _)| *other == table_key).map(|(_, table)| Arc::clone(table));
+        if known.is_none() && !tables.pays(&table_key, table::size(unit, &axes)) {
             return None;
         }
         let table = match (&texture.image, known) {
@@ -348,7 +377,7 @@ fn samplers(plan: &Plan, draw: &PlannedDraw, tables: &mut Vec<(Key, Arc<Table>)>
             (TextureImage::Texels(texels), None) => {
                 let image = Image { words: &texels.words, memory: None };
                 let table = Arc::new(Table::new(unit, &axes, &image, folds));
-                tables.push((table_key, Arc::clone(&table)));
+                tables.made.push((table_key, Arc::clone(&table)));
                 Some(table)
             }
             (TextureImage::Target { .. } | TextureImage::Depth { .. }, None) => None,

@@ -76,6 +76,17 @@ impl Plane {
         !triangle.exact_reciprocal && (falls(0) || falls(2))
     }
 
+    /// What all quotients by D are multiples of, if no tie is lowered and the P_k are one power of two, and by which power of two the G_k can be
+    /// divided. 0: nothing is known.
+    pub(super) fn gap(&self, triangle: &Triangle) -> (f64, u32) {
+        let p = triangle.p[0] as u64;
+        if !triangle.exact_reciprocal || !p.is_power_of_two() {
+            return (0.0, 0);
+        }
+        let shared = (self.g[0] | self.g[1] | self.g[2]).trailing_zeros().min(62);
+        ((1_u64 << shared) as f64 / (p as f64 * triangle.doubled_area as f64), shared)
+    }
+
     /// How it changes along x, modulo 2^64.
     pub(super) fn x(&self) -> i64 {
         self.whole[0]

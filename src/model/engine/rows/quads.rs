@@ -124,6 +124,8 @@ pub(super) struct Ground<'p> {
     pub(super) planes: Option<&'p [Plane; 2]>,
     /// What the three functions lose where weights fall short (TEX-15).
     pub(super) losses: Option<[Losses; 3]>,
+    /// Of planes on which no tie is lowered: what all values of u and of v are multiples of, and by which powers of two G_k can be divided.
+    pub(super) gaps: [(f64, u32); 2],
 }
 
 impl Setup<'_> {
@@ -162,6 +164,7 @@ impl Setup<'_> {
                     behind: false,
                     planes: Some(planes),
                     losses: None,
+                    gaps: [planes[0].gap(&self.context.triangle), planes[1].gap(&self.context.triangle)],
                 };
                 (ground, range)
             }
@@ -180,7 +183,8 @@ impl Setup<'_> {
                 };
                 let face = Face::PositiveX;
                 let losses = (!self.context.triangle.exact_reciprocal).then(|| self.losses_by_q(planes, sides));
-                (Ground { along, down, denominator: q, off, floors: 0.0, face, behind, planes: None, losses }, range)
+                let (floors, planes, gaps) = (0.0, None, [(0.0, 0); 2]);
+                (Ground { along, down, denominator: q, off, floors, face, behind, planes, losses, gaps }, range)
             }
             Planes::Direction(planes, face) => {
                 let looking = Looking::around(planes, real, columns, rows);
@@ -200,8 +204,8 @@ impl Setup<'_> {
                 let lines = [looking.component(s), looking.component(t)].map(|line| line.plus(m).times(size));
                 let [along, down] = lines;
                 let behind = false;
-                let losses = None;
-                (Ground { along, down, denominator: m, off, floors: 0.0, face, behind, planes: None, losses }, range)
+                let (floors, planes, losses, gaps) = (0.0, None, None, [(0.0, 0); 2]);
+                (Ground { along, down, denominator: m, off, floors, face, behind, planes, losses, gaps }, range)
             }
             Planes::Other | Planes::Shared => return None,
         };
@@ -331,6 +335,13 @@ pub(super) fn any_negative(lanes: &[u64]) -> bool {
     all >> 63 != 0
 }
 
+/// What is added to estimates that are off by less than `off`, and how close to a whole number they then prove nothing. Where values are multiples of a
+/// `gap` that is wide enough, what is added parts those that are whole from those below, and all are proved.
+#[inline(always)]
+pub(super) fn parted(gap: f64, off: f64) -> (f64, f64) {
+    if gap >= 4.0 * off { (off, -1.0) } else { (0.0, off) }
+}
+
 /// u and v of one of the three pixels of quads, floors in 1/65536 texel, and as sign bits which are not proved.
 #[inline(always)]
 fn corners<const FMA: bool>(
@@ -345,12 +356,13 @@ fn corners<const FMA: bool>(
     let (v, unknown, xs, ys) = (&mut v[..lanes], &mut unknown[..lanes], &xs[..lanes], &ys[..lanes]);
     let (along, down, denominator) = (ground.along.times(256.0), ground.down.times(256.0), ground.denominator);
     let off = 256.0 * ground.off;
+    let [(up_p, off_p), (up_q, off_q)] = ground.gaps.map(|(gap, _)| parted(256.0 * gap, off));
     for n in 0..lanes {
         let (x, y) = (xs[n] + right, ys[n] + below);
         let r = 1.0 / denominator.at::<FMA, false>(x, y);
-        let (p, q) = (along.at::<FMA, false>(x, y) * r, down.at::<FMA, false>(x, y) * r);
+        let (p, q) = (along.at::<FMA, false>(x, y) * r + up_p, down.at::<FMA, false>(x, y) * r + up_q);
         let (near_p, near_q) = (whole(p), whole(q));
-        unknown[n] |= ((p - near_p).abs() - off).to_bits() | ((q - near_q).abs() - off).to_bits();
+        unknown[n] |= ((p - near_p).abs() - off_p).to_bits() | ((q - near_q).abs() - off_q).to_bits();
         u[n] = if near_p > p { near_p - 1.0 } else { near_p };
         v[n] = if near_q > q { near_q - 1.0 } else { near_q };
     }

@@ -131,18 +131,19 @@ impl QuotientEstimate {
         bias: i32,
     ) -> Option<QuotientEstimate> {
         let (estimate, proves) =
-            QuotientEstimate::with_proof::<ROW>(numerator, denominator, extent, reciprocals, margin, bias);
+            QuotientEstimate::with_proof::<ROW>(numerator, denominator, extent, reciprocals, (margin, 0.0), bias);
         proves.then_some(estimate)
     }
 
-    /// The same, and whether it can prove anything. Without branches: compilers set up several at once.
+    /// The same, and whether it can prove anything. `gap`: quotients are multiples of this, which may tell that one so close to a whole number is
+    /// that number; 0 if nothing is known. Without branches: compilers set up several at once.
     #[inline(always)]
     pub(super) fn with_proof<const ROW: bool>(
         numerator: Line,
         denominator: Line,
         (columns, rows): (f64, f64),
         (reciprocal, widest): (f64, f64),
-        margin: f64,
+        (margin, gap): (f64, f64),
         bias: i32,
     ) -> (QuotientEstimate, bool) {
         let first = numerator.c * reciprocal;
@@ -156,8 +157,11 @@ impl QuotientEstimate {
         let scale = power(shift);
         // A whole number of steps above half of one and the error.
         let off = whole(margin * scale + 2.0);
-        let line = rest.less(off * power(-shift), denominator).times(scale);
-        let limit = nearest(scale - 2.0 * off);
+        // What is exact falls above its whole number then, and the next below remains below.
+        let parted = gap * scale >= 4.0 * off;
+        let down = if parted { -off } else { off };
+        let line = rest.less(down * power(-shift), denominator).times(scale);
+        let limit = nearest(if parted { scale } else { scale - 2.0 * off });
         // Also refuses what is no number.
         let proves = (range < 268_435_456.0) & (base.abs() < 1_073_741_824.0) & (off * 8.0 < scale);
         let shift = shift as u32;

@@ -6,7 +6,7 @@ use super::boxes::SIDE;
 use super::color::{colors, narrow_weights};
 use super::kernels::Lanes256;
 use super::planes::inverse;
-use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add};
+use super::quotient::{Line, QuotientEstimate, SLACK, multiply_add, whole};
 use super::triangle::{PixelBatch, Planes, Setup, Varying};
 use super::{CompiledDraw, Reasons};
 use crate::engine::pixel::TriangleContext;
@@ -46,6 +46,8 @@ struct Ground {
     ratio: f64,
     /// More than a quotient changes where the numerators of the vertices are floored.
     floors: f64,
+    /// Where quotients of whole numbers at the vertices are multiples of this one, and no tie is lowered (INT-3); 0 elsewhere.
+    gap: f64,
 }
 
 impl Ground {
@@ -75,6 +77,11 @@ impl Ground {
             widest,
             ratio,
             floors: 1.25 / least,
+            gap: if triangle.exact_reciprocal && triangle.p[0].is_positive() && triangle.p[0].count_ones() == 1 {
+                1.0 / triangle.doubled_area as f64
+            } else {
+                0.0
+            },
         }
     }
 
@@ -82,6 +89,13 @@ impl Ground {
     #[inline(always)]
     fn estimates<const FMA: bool>(&self, g: &[[f64; FOUR]; 3], bias: &[i32; FOUR]) -> Four {
         let mut all = Four::default();
+        let mut gaps = [0.0; FOUR];
+        if self.gap > 0.0 {
+            for n in 0..FOUR {
+                let is_whole = |k: usize| whole(g[k][n] * self.inverse[k]) == g[k][n] * self.inverse[k];
+                gaps[n] = if is_whole(0) && is_whole(1) && is_whole(2) { self.gap } else { 0.0 };
+            }
+        }
         // Not a struct for each: compilers leave the loop as it is then.
         for n in 0..FOUR {
             let g = [g[0][n], g[1][n], g[2][n]];
@@ -91,8 +105,9 @@ impl Ground {
             let most = sum::<FMA>(&size, &self.inverse) + 260.0;
             let margin = (sum::<FMA>(&size, &self.terms) * self.widest + 2.0 * most * self.ratio) * SLACK + self.floors;
             let (extent, reciprocals) = ((SIDE as f64, SIDE as f64), (self.reciprocal, self.widest));
+            let off = (margin, gaps[n]);
             let (one, is) =
-                QuotientEstimate::with_proof::<false>(line, self.denominator, extent, reciprocals, margin, bias[n]);
+                QuotientEstimate::with_proof::<false>(line, self.denominator, extent, reciprocals, off, bias[n]);
             (all.c[n], all.x[n], all.y[n]) = (one.line.c, one.line.x, one.line.y);
             (all.base[n], all.shift[n], all.limit[n]) = (one.base, one.shift, one.limit);
             all.proves[n] = i32::from(is);

@@ -285,10 +285,12 @@ impl Table {
                     placed.push(Placed { axes: *axes, first: (all.len() - start) as i32, pitch: wide as i32 });
                 }
                 let slice = Slice { unit, level, image: *number };
+                // Past the end of smaller levels nobody reads.
+                let column = |x: i32| slice.column(i64::from(x.min(columns.count) + columns.first));
+                let at: Vec<Option<i64>> = (0..wide as i32).map(column).collect();
                 for y in 0..rows.count + beyond {
-                    // Past the end of smaller levels nobody reads.
-                    let texel = |x: i32| decode(&slice, image, x.min(columns.count) + columns.first, y + rows.first);
-                    all.extend((0..wide as i32).map(texel));
+                    let row = slice.row(i64::from(y + rows.first));
+                    all.extend(at.iter().map(|column| decode(&slice, image, *column, row)));
                 }
             }
         }
@@ -337,9 +339,10 @@ impl Table {
     }
 }
 
-/// A texel's bytes, which may lie outside, signed ones with 128 added; or its halves, signed ones with 32,768.
-fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, x: i32, y: i32) -> u32 {
-    let texel = slice.texel(image.words, i64::from(x), i64::from(y));
+/// A texel's bytes, signed ones with 128 added; or its halves, signed ones with 32,768. `None`: it lies outside.
+#[inline]
+fn decode(slice: &Slice<'_>, image: &Image<'_, i32>, column: Option<i64>, row: Option<i64>) -> u32 {
+    let texel = slice.inside(image.words, column, row);
     let unit = slice.unit;
     if compares_r(unit).is_some() {
         return depth_of(texel.word);
