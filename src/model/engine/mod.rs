@@ -212,10 +212,6 @@ impl<'a> Renderer<'a> {
         defined: &[AtomicU64],
     ) -> Vec<u64> {
         let plan = self.plan;
-        let compiled: Vec<_> = draws
-            .clone()
-            .map(|index| self.rows.as_ref().map(|rows| rows.draw(plan, index, &frames.surfaces)))
-            .collect();
         let window = |index: usize| {
             let windows = &plan.draws[index].windows;
             windows.iter().map(|window| window.width as usize * window.height as usize).sum::<usize>()
@@ -224,26 +220,30 @@ impl<'a> Renderer<'a> {
         let team = if draws.clone().map(window).sum::<usize>() >= SMALL { &self.team } else { &alone };
         let shaded: Vec<AtomicU64> = draws.clone().map(|_| AtomicU64::new(0)).collect();
         let height = self.band(&draws);
-        let run = |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, block: &mut rows::Block| {
-            for ((index, compiled), shaded) in draws.clone().zip(&compiled).zip(&shaded) {
-                let draw = &plan.draws[index];
-                let pixels = match compiled {
-                    Some(compiled) => {
-                        let bins = self.bins.get(index).and_then(Option::as_ref);
-                        let triangles = bins.map(|bins| bins.of(band.first_row / height));
-                        let job = rows::Job { plan, draw, compiled: compiled.as_ref(), textures, triangles };
-                        if triangles == Some(&[]) { 0 } else { rows::isa::run(self.isa, job, band, block) }
-                    }
-                    None => walk::draw(plan, draw, textures, band, &mut Silent).0,
-                };
-                shaded.fetch_add(pixels, Ordering::Relaxed);
-                band_done();
+        draw_bands(plan, draws.clone(), height, frames, team, |words| {
+            let compiled = self.rows.as_ref().map(|rows| rows.draws(plan, draws.clone(), words));
+            let (draws, shaded) = (draws.clone(), &shaded);
+            move |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, block: &mut rows::Block| {
+                for (n, (index, shaded)) in draws.clone().zip(shaded).enumerate() {
+                    let draw = &plan.draws[index];
+                    let pixels = match &compiled {
+                        Some(compiled) => {
+                            let compiled = &compiled[n];
+                            let bins = self.bins.get(index).and_then(Option::as_ref);
+                            let triangles = bins.map(|bins| bins.of(band.first_row / height));
+                            let job = rows::Job { plan, draw, compiled: compiled.as_ref(), textures, triangles };
+                            if triangles == Some(&[]) { 0 } else { rows::isa::run(self.isa, job, band, block) }
+                        }
+                        None => walk::draw(plan, draw, textures, band, &mut Silent).0,
+                    };
+                    shaded.fetch_add(pixels, Ordering::Relaxed);
+                    band_done();
+                }
+                for (all, own) in defined.iter().zip(std::mem::take(&mut block.defined)) {
+                    all.fetch_add(own, Ordering::Relaxed);
+                }
             }
-            for (all, own) in defined.iter().zip(std::mem::take(&mut block.defined)) {
-                all.fetch_add(own, Ordering::Relaxed);
-            }
-        };
-        draw_bands(plan, draws.clone(), height, frames, team, &run);
+        });
         shaded.into_iter().map(AtomicU64::into_inner).collect()
     }
 }
@@ -277,25 +277,25 @@ pub fn cleared_colors(target: &Target, at: usize) -> [u8; 4] {
     std::array::from_fn(|n| if kept >> n & 1 != 0 { target.clear_color[n] } else { read[n] })
 }
 
-/// What draws in one band.
-type RunBand<'r> = dyn Fn(&[Image<'_, i32>], &mut walk::Band<'_>, &mut rows::Block) + Sync + 'r;
-
-/// Runs draws on their target, in bands of so many rows, which threads take one after the other.
-fn draw_bands(
+/// Runs draws on their target, in bands of so many rows, which threads take one after the other. `prepare` makes what draws in one band, of what
+/// textures hold.
+fn draw_bands<R>(
     plan: &Plan,
     draws: Range<usize>,
     height: usize,
     frames: &mut Frames,
     team: &Team,
-    run_band: &RunBand<'_>,
-) {
+    prepare: impl FnOnce(&TextureWords<'_>) -> R,
+) where
+    R: Fn(&[Image<'_, i32>], &mut walk::Band<'_>, &mut rows::Block) + Sync,
+{
     let target = plan.draws[draws.start].target;
     let surface = &mut frames.surfaces[target];
     let width = surface.width as usize;
     // The surface leaves the frames for the draw, so that the other surfaces can be read as textures.
     let (mut words, mut depth) = (std::mem::take(&mut surface.words), std::mem::take(&mut surface.depth));
     let texture_words = TextureWords::new(plan, &plan.draws[draws], &frames.surfaces);
-    let textures = texture_words.images();
+    let (textures, run_band) = (texture_words.images(), prepare(&texture_words));
     let mut depths = depth.chunks_mut(height * width);
     let bands = words.chunks_mut(height * width).enumerate().map(|(number, words)| walk::Band {
         first_row: number * height,
@@ -321,7 +321,9 @@ fn draw_bands(
 /// Runs one draw by the definition, on one thread.
 pub(crate) fn draw_defined(plan: &Plan, index: usize, frames: &mut Frames) {
     let draw = &plan.draws[index];
-    draw_bands(plan, index..index + 1, BAND, frames, &Team::new(1), &|textures, band, _| {
-        walk::draw(plan, draw, textures, band, &mut Silent);
+    draw_bands(plan, index..index + 1, BAND, frames, &Team::new(1), |_| {
+        |textures: &[Image<'_, i32>], band: &mut walk::Band<'_>, _: &mut rows::Block| {
+            walk::draw(plan, draw, textures, band, &mut Silent);
+        }
     });
 }

@@ -13,7 +13,7 @@ use super::taps::{Footprints, Pair};
 use super::triangle::{PixelBatch, Setup, Varying, whole_steps};
 use super::{BLOCK, Isa, Reason, Reasons, Rows};
 use crate::engine::pixel::TriangleContext;
-use crate::engine::{Engine, RenderOptions, Renderer};
+use crate::engine::{Engine, RenderOptions, Renderer, TextureWords};
 use crate::plan::{Plan, PlanOptions};
 use crate::raster::interpolate::Sample;
 use crate::state::*;
@@ -408,7 +408,9 @@ fn rows_interpolate_what_the_definition_does() {
         let scene = scene(vertices, filter, depth, fog, mixes, (third, w_buffer, anisotropy));
         let Ok(plan) = Plan::compile(&scene, &PlanOptions::default()) else { continue };
         let rows_of_plan = Rows::compile(&plan);
-        let compiled = rows_of_plan.draw(&plan, 0, &[]);
+        let [compiled] = &rows_of_plan.draws(&plan, 0..1, &TextureWords::new(&plan, &[], &[]))[..] else {
+            panic!("one")
+        };
         assert_eq!(compiled.samplers.len(), 4);
         // The first one, in every place that a sampler can have.
         let on_planes = vec![compiled.samplers[0].clone(); 1 + round as usize % 4];

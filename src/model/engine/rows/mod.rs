@@ -54,7 +54,6 @@ pub use isa::Isa;
 
 use crate::engine::TextureWords;
 use crate::engine::pixel::TriangleContext;
-use crate::frame::Surface;
 use crate::plan::{Plan, PlannedDraw};
 use crate::raster::assemble::Assembled;
 use crate::rop::surface;
@@ -62,6 +61,7 @@ use crate::state::{Filter, Named, TEXTURE_UNITS, TextureImage, TextureKind, name
 use crate::texture::unit::Image;
 use node::{Input, Node, Value};
 use std::borrow::Cow;
+use std::ops::Range;
 use std::sync::Arc;
 use table::{Key, Table};
 use third::Third;
@@ -207,22 +207,34 @@ impl Rows {
         Rows { draws: plan.draws.iter().map(|draw| compile(plan, draw, &mut tables)).collect() }
     }
 
-    /// A draw with the tables of images that were drawn before it.
-    pub(crate) fn draw(&self, plan: &Plan, index: usize, surfaces: &[Surface]) -> Cow<'_, CompiledDraw> {
-        let compiled = &self.draws[index];
-        if compiled.samplers.iter().all(|sampler| sampler.table.is_some()) {
-            return Cow::Borrowed(compiled);
-        }
-        let words = TextureWords::new(plan, &plan.draws[index..=index], surfaces);
-        let mut compiled = compiled.clone();
-        for sampler in compiled.samplers.iter_mut().filter(|sampler| sampler.table.is_none()) {
-            let unit = &plan.draws[index].units[sampler.index];
-            if let Some(axes) = table::axes(unit) {
-                let image = Image { words: words.words(unit.state.texture), memory: None };
-                sampler.table = Some(Arc::new(Table::new(unit, &axes, &image, false)));
+    /// Some draws with the tables of images that were drawn before them, which are in `words`.
+    pub(crate) fn draws(
+        &self,
+        plan: &Plan,
+        draws: Range<usize>,
+        words: &TextureWords<'_>,
+    ) -> Vec<Cow<'_, CompiledDraw>> {
+        let mut made: Vec<(Key, Arc<Table>)> = Vec::new();
+        let mut draw = |index: usize| {
+            let compiled = &self.draws[index];
+            if compiled.samplers.iter().all(|sampler| sampler.table.is_some()) {
+                return Cow::Borrowed(compiled);
             }
-        }
-        Cow::Owned(compiled)
+            let mut compiled = compiled.clone();
+            for sampler in compiled.samplers.iter_mut().filter(|sampler| sampler.table.is_none()) {
+                let unit = &plan.draws[index].units[sampler.index];
+                let key = Key::of(unit, false);
+                sampler.table = made.iter().find(|(other, _)| *other == key).map(|(_, table)| Arc::clone(table));
+                if let (None, Some(axes)) = (&sampler.table, table::axes(unit)) {
+                    let image = Image { words: words.words(unit.state.texture), memory: None };
+                    let table = Arc::new(Table::new(unit, &axes, &image, false));
+                    made.push((key, Arc::clone(&table)));
+                    sampler.table = Some(table);
+                }
+            }
+            Cow::Owned(compiled)
+        };
+        draws.map(&mut draw).collect()
     }
 }
 
