@@ -26,6 +26,17 @@ pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
     (look(1)? == face && look(2)? == face).then_some(face)
 }
 
+/// Whether the three are the same at all vertices but for a factor above 0: so they are everywhere, and so is what they lose (INT-4t).
+pub(super) fn is_constant(g: &[[i64; 3]; 3]) -> bool {
+    let product = |a: usize, k: usize, b: usize, l: usize| i128::from(g[a][k]) * i128::from(g[b][l]);
+    let along = |k: usize| {
+        let parallel = |a: usize, b: usize| product(a, 0, b, k) == product(a, k, b, 0);
+        let towards = (0..3).map(|a| product(a, 0, a, k)).sum::<i128>();
+        parallel(0, 1) && parallel(1, 2) && parallel(0, 2) && towards > 0
+    };
+    along(1) && along(2)
+}
+
 /// s, t and q, so that q is positive, and more than the magnitudes of s/q and t/q. `None`: q has no sign, or coordinates reach the limit.
 pub(super) fn positive(mut g: [[i64; 3]; 3], sides: [u32; 2]) -> Option<([[i64; 3]; 3], f64)> {
     if g[2].iter().all(|q| *q < 0) {
