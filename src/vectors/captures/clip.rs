@@ -1,6 +1,6 @@
 //! CLP-1, CLP-2: clips on the frame buffer, on a texture that is drawn into, and on narrower views of the frame buffer.
 
-use super::draws::{frame_buffer, nearest, opaque, rectangle, scene, target_texture, textured};
+use super::draws::{frame_buffer, nearest, pasted, rectangle, scene, target_texture, without_alpha};
 use super::{Drawn, Frames, SIZE, Shown};
 use ninebit::state::{Draw, FinalRegister, Rectangle, SurfaceFormat, Target, TextureFormat, VertexColor, WindowClip};
 
@@ -29,10 +29,7 @@ fn bytes(r: u8, g: u8, b: u8) -> VertexColor {
 
 /// Copies the second target to the frame buffer.
 fn show(from: [f32; 4], to: [f32; 4]) -> Draw {
-    let [left, top, right, bottom] = from;
-    let texels = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    let draw = textured(rectangle(to, VertexColor::Bytes([255; 4])), 0, nearest(0), texels);
-    Draw { combiners: opaque(FinalRegister::Texture0), blend: None, ..draw }
+    Draw { blend: None, ..without_alpha(pasted(to, 0, nearest(0), from), FinalRegister::Texture0) }
 }
 
 /// Window_clip: on the frame buffer, and (`r`) on a texture.

@@ -1,11 +1,11 @@
 //! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
 
-use super::draws::{Canvas, draw, sized, unprojected};
+use super::draws::{Canvas, corners, draw, in_steps, sized, unprojected};
 use super::primitives::FAR_DEPTHS;
 use super::{Drawn, Frames, space};
 use ninebit::state::{
-    Combiners, CompareFunction, Component, DepthRange, DepthTest, Draw, FinalCombiner, FinalInput, FinalRegister, Fog,
-    FogFunction, FogMode, Profile, Topology, Vertex, VertexColor, VertexDepths,
+    Combiners, CompareFunction, Component, DepthRange, Draw, FinalCombiner, FinalInput, FinalRegister, Fog,
+    FogFunction, FogMode, Profile, Topology, Vertex, VertexColor,
 };
 use ninebit::vertex::fog::passed;
 
@@ -53,11 +53,8 @@ fn foggy(
     function: FogFunction,
     color: [u8; 3],
 ) -> Draw {
-    let vertex = |(vertex, d): (Vertex, f32)| Vertex {
-        fog: passed(&function, Profile::Nv2a, d),
-        fog_coordinate: Some(d),
-        ..vertex
-    };
+    let fog = |d| passed(&function, Profile::Nv2a, d);
+    let vertex = |(vertex, d): (Vertex, f32)| Vertex { fog: fog(d), fog_coordinate: Some(d), ..vertex };
     let fog = Fog { enabled: true, color, function: Some(function) };
     let combiners = mixed(FinalRegister::PrimaryColor, FinalRegister::Fog);
     Draw { fog, combiners, ..draw(topology, vertices.map(vertex).collect()) }
@@ -90,13 +87,8 @@ fn triangles(is_program: bool, coordinate: impl Fn(f32) -> f32, function: FogFun
         let position = place([x, y, z, 1.0]);
         (Vertex { position, ..Vertex::default() }, coordinate(position[3]))
     });
-    let depth_test = DepthTest {
-        vertex_depths: VertexDepths::Steps,
-        range: Some(FARTHEST),
-        ..DepthTest::new(CompareFunction::Always, false)
-    };
     // The programs' own depths end farther away.
-    let depth_test = (!is_program).then_some(depth_test);
+    let depth_test = (!is_program).then(|| in_steps(CompareFunction::Always, false, Some(FARTHEST)));
     Draw { depth_test, ..foggy(Topology::Triangles, vertices, function, color) }
 }
 
@@ -208,18 +200,14 @@ fn panel(edges: [f32; 4], [left_w, right_w]: [f32; 2], colors: [[f32; 4]; 4], is
     // The programs' inverse of their vertex program, and that, leave what lies before the centre before its pixel, a sixteenth after RAS-1.
     let before = |edge: f32, centre: f32| if edge < centre { edge - 0.0625 } else { edge };
     let [left, top, right, bottom] = edges;
-    let [left, top, right, bottom] = if is_program {
+    let edges = if is_program {
         [before(left, 320.0), before(top, 240.0), before(right, 320.0), before(bottom, 240.0)]
     } else {
         unprojected(edges)
     };
-    let corners =
-        [([left, top], left_w), ([right, top], right_w), ([right, bottom], right_w), ([left, bottom], left_w)];
-    let mut number = 0;
-    corners.map(|([x, y], w)| {
-        number += 1;
-        let diffuse = VertexColor::Floats(colors[number - 1]);
-        Vertex { position: [x, y, 0.0, w], diffuse, ..Vertex::default() }
+    std::array::from_fn(|n| {
+        let ([x, y], w) = (corners(edges)[n], [left_w, right_w, right_w, left_w][n]);
+        Vertex { position: [x, y, 0.0, w], diffuse: VertexColor::Floats(colors[n]), ..Vertex::default() }
     })
 }
 
@@ -285,8 +273,7 @@ const SECONDARY_ALPHAS: [f32; 4] = [0.0, 1.0, 0.75, 0.25];
 
 /// The distance of a point from the eye.
 fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
-    let [left, top, right, bottom] = edges;
-    let [x, y] = [[left, top], [right, top], [right, bottom], [left, bottom]][corner];
+    let [x, y] = corners(edges)[corner];
     let scale = space::window()[0][0];
     let [x, y] = [f64::from(x) - 320.0, f64::from(y) - 240.0].map(|offset| offset * f64::from(w) / scale);
     (x * x + y * y + f64::from(w) * f64::from(w)).sqrt() as f32
@@ -313,8 +300,8 @@ pub(super) fn generated() -> Frames {
                     let places = grid([48.0, 70.0], 22.0, [2.0, 2.0]).zip(steps(-6.0, 0.5)).zip(steps(50.0, -0.2));
                     let panels = places.flat_map(|((edges, z), fog_x)| {
                         let w = [z + 7.0, z + 8.0];
-                        let mut corner = 0;
-                        panel(edges, w, [[0.0, 0.0, 1.0, 1.0]; 4], is_program).map(|vertex| {
+                        let panel = panel(edges, w, [[0.0, 0.0, 1.0, 1.0]; 4], is_program);
+                        panel.into_iter().enumerate().map(move |(corner, vertex)| {
                             let [.., w] = vertex.position;
                             let d = match source {
                                 _ if is_program => fog_x,
@@ -324,7 +311,6 @@ pub(super) fn generated() -> Frames {
                                 // The plane is twice the depth.
                                 _ => 2.0 * w,
                             };
-                            corner += 1;
                             (vertex, d)
                         })
                     });
@@ -388,9 +374,8 @@ pub(super) fn exceptional() -> Frames {
             }
             for (prefix, d) in [("INF", f32::INFINITY), ("NaN", f32::NAN)] {
                 frames.make(format!("{prefix}-FogExc-{name}-{source}"), move || {
-                    let multipliers =
-                        [FogMode::Linear, FogMode::Exp, FogMode::Exp2].map(|mode| parameters(mode, 1.0)[1]);
-                    let [linear, exp, exp2] = multipliers;
+                    let modes = [FogMode::Linear, FogMode::Exp, FogMode::Exp2];
+                    let [linear, exp, exp2] = modes.map(|mode| parameters(mode, 1.0)[1]);
                     let biases = [-1.0, 1.0, 1.5, 1000.0].into_iter();
                     let pairs = biases.flat_map(|p0| [linear, exp, exp2, 1.0, 0.0, -1000.0].map(|p1| [p0, p1]));
                     let mut canvas = Canvas::new(0xff23_2623);
