@@ -24,19 +24,10 @@ use ninebit::state::{
 
 /// What is read of OpenGL for register combiners.
 static COMBINERS: Vocabulary = Vocabulary {
-    calls: &[
-        "CombinerInputNV",
-        "CombinerOutputNV",
-        "CombinerParameteriNV",
-        "CombinerParameterfNV",
-        "CombinerParameterivNV",
-        "CombinerParameterfvNV",
-        "CombinerStageParameterfvNV",
-        "glEnable",
-        "glDisable",
-    ],
-    silent: &["BindTexture", "ActiveTexture", "ActiveTextureARB"],
-    states: &[],
+    calls: "CombinerInputNV CombinerOutputNV CombinerParameteriNV CombinerParameterfNV CombinerParameterivNV \
+            CombinerParameterfvNV CombinerStageParameterfvNV glEnable glDisable",
+    silent: "BindTexture ActiveTexture ActiveTextureARB",
+    states: Vec::new,
     instead: opengl::INSTEAD,
     example: "`glFinalCombinerInputNV(GL_VARIABLE_D_NV, GL_SPARE0_NV, GL_UNSIGNED_IDENTITY_NV, GL_RGB);`",
     what: "the register combiners",
@@ -92,32 +83,10 @@ struct Parser<'t> {
     places: Vec<(Place, Range<usize>)>,
 }
 
-const REGISTERS: &[&str] = &[
-    "ZERO",
-    "CONSTANT_COLOR0",
-    "CONSTANT_COLOR1",
-    "FOG",
-    "PRIMARY_COLOR",
-    "SECONDARY_COLOR",
-    "TEXTURE0",
-    "TEXTURE1",
-    "TEXTURE2",
-    "TEXTURE3",
-    "SPARE0",
-    "SPARE1",
-    "SPARE0_PLUS_SECONDARY_COLOR",
-    "E_TIMES_F",
-];
-const MAPPINGS: &[&str] = &[
-    "UNSIGNED_IDENTITY",
-    "UNSIGNED_INVERT",
-    "EXPAND_NORMAL",
-    "EXPAND_NEGATE",
-    "HALF_BIAS_NORMAL",
-    "HALF_BIAS_NEGATE",
-    "SIGNED_IDENTITY",
-    "SIGNED_NEGATE",
-];
+const REGISTERS: &str = "ZERO CONSTANT_COLOR0 CONSTANT_COLOR1 FOG PRIMARY_COLOR SECONDARY_COLOR \
+                         TEXTURE0 TEXTURE1 TEXTURE2 TEXTURE3 SPARE0 SPARE1 SPARE0_PLUS_SECONDARY_COLOR E_TIMES_F";
+const MAPPINGS: &str = "UNSIGNED_IDENTITY UNSIGNED_INVERT EXPAND_NORMAL EXPAND_NEGATE \
+                        HALF_BIAS_NORMAL HALF_BIAS_NEGATE SIGNED_IDENTITY SIGNED_NEGATE";
 const COMPONENTS: &[(&str, Component)] =
     &[("RGB", Component::Rgb), ("ALPHA", Component::Alpha), ("BLUE", Component::Blue)];
 const VARIABLES: &[(&str, usize)] = &[
@@ -395,7 +364,7 @@ pub struct Words;
 
 impl Notation for Words {
     fn register(&self, of: FinalRegister) -> &'static str {
-        REGISTERS.get(of as usize).copied().unwrap_or_default()
+        REGISTERS.split(' ').nth(of as usize).unwrap_or_default()
     }
 
     fn scale(&self, scale: Scale) -> &'static str {

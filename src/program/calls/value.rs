@@ -46,12 +46,9 @@ impl<'t> Reader<'t> {
     fn nested_value(&mut self, depth: usize) -> Option<Value<'t>> {
         let start = self.cursor.place().start;
         let mut parts = Vec::new();
-        loop {
+        self.part(&mut parts, depth)?;
+        while self.cursor.take('|') || self.cursor.take('+') {
             self.part(&mut parts, depth)?;
-            if !matches!(self.cursor.kind(), Some(Kind::Sign('|' | '+'))) {
-                break;
-            }
-            self.cursor.advance();
         }
         Some(Value { parts, place: start..self.cursor.end() })
     }
@@ -115,12 +112,9 @@ impl<'t> Reader<'t> {
                     return Some(());
                 }
                 self.members();
-                let text = self.word(&(place.start..self.cursor.end()));
-                parts.push(Part {
-                    text: text.trim_end_matches("[0]"),
-                    place: place.start..self.cursor.end(),
-                    kind: PartKind::Name,
-                });
+                let place = place.start..self.cursor.end();
+                let text = self.word(&place).trim_end_matches("[0]");
+                parts.push(Part { text, place, kind: PartKind::Name });
             }
             _ => {
                 self.expected("a number or a name of the API");
@@ -190,28 +184,9 @@ impl<'t> Reader<'t> {
 }
 
 fn is_type(word: &str) -> bool {
-    [
-        "DWORD",
-        "UINT",
-        "ULONG",
-        "LONG",
-        "int",
-        "long",
-        "unsigned",
-        "float",
-        "double",
-        "const",
-        "void",
-        "D3DCOLOR",
-        "D3DTEXTUREOP",
-        "GLfloat",
-        "GLint",
-        "GLenum",
-        "GLuint",
-        "GLdouble",
-        "GLclampf",
-    ]
-    .contains(&word)
+    const C: &str = "int long unsigned float double const void";
+    const APIS: &str = "DWORD UINT ULONG LONG D3DCOLOR D3DTEXTUREOP GLfloat GLint GLenum GLuint GLdouble GLclampf";
+    C.split(' ').chain(APIS.split(' ')).any(|known| known == word)
 }
 
 /// A whole number, decimal or hexadecimal, with C's suffixes.

@@ -69,11 +69,11 @@ impl Final {
             let g = operand(parser, 6)?;
             parser.sign(';')?;
             set(parser, &mut self.alpha, g, span);
-            return Ok(());
+        } else {
+            let inputs = rgb(parser)?;
+            parser.sign(';')?;
+            set(parser, &mut self.rgb, inputs, span);
         }
-        let inputs = rgb(parser)?;
-        parser.sign(';')?;
-        set(parser, &mut self.rgb, inputs, span);
         Ok(())
     }
 
@@ -132,13 +132,7 @@ impl Final {
 
 /// Keeps what a statement says, once.
 fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Range<usize>)>, value: T, span: Range<usize>) {
-    match slot {
-        Some((_, first)) => {
-            let first = first.clone();
-            parser.twice(span, first, "this");
-        }
-        None => *slot = Some((value, span)),
-    }
+    parser.set(slot, value, span.clone(), span, "this");
 }
 
 /// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`, or with d first: A B + (1 - A) C + D.
@@ -146,44 +140,35 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
     let mut inputs = [ZERO; 4];
     if parser.cursor.word() == "lerp" {
         lerp(parser, &mut inputs)?;
-        if parser.cursor.is('+') {
-            parser.cursor.advance();
+        if parser.cursor.take('+') {
             inputs[3] = operand(parser, 3)?;
         }
         return Ok(inputs);
     }
     // Where an operand stands in the sum is known behind it.
     let first = unplaced(parser, false)?;
-    if parser.cursor.is('*') {
+    if parser.cursor.take('*') {
         inputs[0] = place(parser, 0, first);
-        parser.cursor.advance();
         inputs[1] = operand(parser, 1)?;
-        if parser.cursor.is('+') {
-            parser.cursor.advance();
+        if parser.cursor.take('+') {
             inputs[3] = operand(parser, 3)?;
         }
-        return Ok(inputs);
-    }
-    if !parser.cursor.is('+') {
+    } else if !parser.cursor.take('+') {
         inputs[3] = place(parser, 3, first);
-        return Ok(inputs);
-    }
-    parser.cursor.advance();
-    if parser.cursor.word() == "lerp" {
+    } else if parser.cursor.word() == "lerp" {
         inputs[3] = place(parser, 3, first);
         lerp(parser, &mut inputs)?;
-        return Ok(inputs);
-    }
-    let second = unplaced(parser, false)?;
-    if parser.cursor.is('*') {
-        inputs[3] = place(parser, 3, first);
-        inputs[0] = place(parser, 0, second);
-        parser.cursor.advance();
-        inputs[1] = operand(parser, 1)?;
     } else {
-        inputs[0] = place(parser, 0, first);
-        inputs[1] = ONE;
-        inputs[3] = place(parser, 3, second);
+        let second = unplaced(parser, false)?;
+        if parser.cursor.take('*') {
+            inputs[3] = place(parser, 3, first);
+            inputs[0] = place(parser, 0, second);
+            inputs[1] = operand(parser, 1)?;
+        } else {
+            inputs[0] = place(parser, 0, first);
+            inputs[1] = ONE;
+            inputs[3] = place(parser, 3, second);
+        }
     }
     Ok(inputs)
 }

@@ -37,6 +37,10 @@ pub(super) struct Parser<'t> {
 /// A constant that is written, and where.
 type Written = Option<([u8; 4], Range<usize>)>;
 
+/// What may stand beside stages.
+const STATEMENTS: &[&str] =
+    &["const0", "const1", "mux_by_least_significant_bit", "final_product", "color_sum", "clamp_color_sum", "out"];
+
 impl<'t> Parser<'t> {
     pub(super) fn new(text: &'t str) -> Self {
         let cursor = Cursor::new(text, Language::COMBINERS);
@@ -79,25 +83,12 @@ impl<'t> Parser<'t> {
                     self.call().map(|()| self.once(&mut mux, span))
                 }
                 "out" | "final_product" | "color_sum" | "clamp_color_sum" => last.statement(&mut self),
-                _ => Err(self.unknown_statement(
-                    "a stage `{ ... }` or a statement",
-                    &[
-                        "const0",
-                        "const1",
-                        "mux_by_least_significant_bit",
-                        "final_product",
-                        "color_sum",
-                        "clamp_color_sum",
-                        "out",
-                    ],
-                )),
+                _ => Err(self.unknown_statement("a stage `{ ... }` or a statement", STATEMENTS)),
             };
             if outcome.is_err() {
                 self.recover();
                 // Nothing outside a stage can be closed.
-                while self.cursor.is('}') {
-                    self.cursor.advance();
-                }
+                while self.cursor.take('}') {}
             }
         }
         let end = self.cursor.text.trim_end().len();
@@ -184,13 +175,7 @@ impl<'t> Parser<'t> {
             }
         }
         self.cursor.advance();
-        match slot {
-            Some((_, first)) => {
-                let first = first.clone();
-                self.twice(name, first, "this portion");
-            }
-            None => *slot = Some((reader.portion, name)),
-        }
+        self.set(slot, reader.portion, name.clone(), name, "this portion");
         Ok(())
     }
 
@@ -208,9 +193,9 @@ impl<'t> Parser<'t> {
         let mut values = Vec::new();
         loop {
             let start = self.cursor.place().start;
-            let negative = self.cursor.is('-');
-            if negative || self.cursor.is('+') {
-                self.cursor.advance();
+            let negative = self.cursor.take('-');
+            if !negative {
+                self.cursor.take('+');
             }
             if self.cursor.kind() != Some(Kind::Number) {
                 return Err(self.expected("a number"));
@@ -218,10 +203,9 @@ impl<'t> Parser<'t> {
             let place = start..self.cursor.place().end;
             self.cursor.advance();
             values.push(self.number(place, negative, bytes));
-            if !self.cursor.is(',') {
+            if !self.cursor.take(',') {
                 break;
             }
-            self.cursor.advance();
         }
         self.sign(')')?;
         let span = opening..self.cursor.end();
@@ -236,13 +220,7 @@ impl<'t> Parser<'t> {
         };
         // What is out of range has been recorded.
         let bytes = values.map(Option::unwrap_or_default);
-        match slot {
-            Some((_, first)) => {
-                let first = first.clone();
-                self.twice(name, first, "this constant");
-            }
-            None => *slot = Some((bytes, name.start..span.end)),
-        }
+        self.set(slot, bytes, name.start..span.end, name, "this constant");
         Ok(())
     }
 
@@ -331,9 +309,24 @@ impl<'t> Parser<'t> {
 
     /// Keeps the place of a statement that may be there once.
     pub(super) fn once(&mut self, slot: &mut Option<Range<usize>>, span: Range<usize>) {
-        match slot.clone() {
-            Some(first) => self.twice(span, first, "this"),
+        match slot {
+            Some(first) => self.twice(span, first.clone(), "this"),
             None => *slot = Some(span),
+        }
+    }
+
+    /// Keeps what a statement says that may be there once: its place, and where it is found again.
+    pub(super) fn set<T>(
+        &mut self,
+        slot: &mut Option<(T, Range<usize>)>,
+        value: T,
+        place: Range<usize>,
+        again: Range<usize>,
+        what: &str,
+    ) {
+        match slot {
+            Some((_, first)) => self.twice(again, first.clone(), what),
+            None => *slot = Some((value, place)),
         }
     }
 
