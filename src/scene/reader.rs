@@ -13,6 +13,7 @@ use super::source::{Expected, Mismatch};
 use super::wording::{closest, describe, shorten, twice, words};
 use ninebit::limits::Limits;
 use ninebit::state::{Named, Profile};
+use ninebit_program::finding;
 
 /// Findings beyond this many are only counted.
 const MAX_DIAGNOSTICS: usize = 64;
@@ -110,11 +111,9 @@ impl<'a> Reader<'a> {
         place: Range<usize>,
     ) -> Option<Raw<'a, T>> {
         if raw.is_none() {
-            self.push(
-                Diagnostic::error(MISSING, place, format!("this {owner} has no `{field}`"))
-                    .label(format!("`{field}` is missing"))
-                    .help(format!("add `{field}: ...`; it has no default")),
-            );
+            let message = format!("this {owner} has no `{field}`");
+            let help = format!("add `{field}: ...`; it has no default");
+            self.push(finding(MISSING, place, message, format!("`{field}` is missing"), help));
         }
         *raw
     }
@@ -162,9 +161,7 @@ impl<'a> Reader<'a> {
                 Some(name) => format!("did you mean `{name}`? All of them: {list}"),
                 None => format!("write one of {list}"),
             };
-            Diagnostic::error(WORD, self.range(head), format!("there is no {what} `{}`", shorten(head)))
-                .label("not known")
-                .help(help)
+            finding(WORD, self.range(head), format!("there is no {what} `{}`", shorten(head)), "not known", help)
         };
         self.push(diagnostic);
     }
@@ -247,12 +244,8 @@ impl<'a> Reader<'a> {
             return Some(value);
         }
         let message = if value.is_nan() { "NaN is not a position, colour or size" } else { "this number is infinite" };
-        self.push(
-            Diagnostic::error(FINITE, self.span(raw), message)
-                .label("not a finite number")
-                .rule("NUM-0")
-                .help("numbers are 32-bit floats: at most about 3.4e38 away from zero"),
-        );
+        let help = "numbers are 32-bit floats: at most about 3.4e38 away from zero";
+        self.push(finding(FINITE, self.span(raw), message, "not a finite number", help).rule("NUM-0"));
         None
     }
 
@@ -280,11 +273,8 @@ impl<'a> Reader<'a> {
         if value <= limit {
             return self.within(raw, what, 1..=limit, |finding| finding);
         }
-        self.push(
-            Diagnostic::error(code, self.span(raw), format!("{what} is {value}; {limit} are allowed"))
-                .label("too large")
-                .help(format!("write 1 to {limit}; `ninebit limits` prints what is allowed")),
-        );
+        let help = format!("write 1 to {limit}; `ninebit limits` prints what is allowed");
+        self.push(finding(code, self.span(raw), format!("{what} is {value}; {limit} are allowed"), "too large", help));
         None
     }
 
@@ -536,9 +526,5 @@ pub(super) fn unknown_name<'n>(
             if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
         }
     };
-    reader.push(
-        Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
-            .label("not defined")
-            .help(help),
-    );
+    reader.push(finding("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)), "not defined", help));
 }

@@ -8,7 +8,7 @@ use super::portion::PortionReader;
 use super::words::{REGISTERS, find};
 use crate::cursor::Cursor;
 pub(super) use crate::cursor::{GivenUp, Read};
-use crate::finding::{foreign, header};
+use crate::finding::{finding, foreign, header};
 use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use crate::{Place, Places};
@@ -211,11 +211,9 @@ impl<'t> Parser<'t> {
         let span = opening..self.cursor.end();
         self.sign(';')?;
         let Ok(values) = <[_; 4]>::try_from(values) else {
-            self.findings.push(
-                Diagnostic::error("NB0211", span, "a constant colour has four numbers: R, G, B and A")
-                    .label("not four")
-                    .help("write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`"),
-            );
+            let message = "a constant colour has four numbers: R, G, B and A";
+            let help = "write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`";
+            self.findings.push(finding("NB0211", span, message, "not four", help));
             return Ok(());
         };
         // What is out of range has been recorded.
@@ -361,7 +359,7 @@ impl<'t> Parser<'t> {
             None => format!("write one of {list}"),
         };
         let message = format!("there is no {what} `{}`", shorten(word));
-        self.give_up(Diagnostic::error("NB0204", self.cursor.place(), message).label("not known").help(help))
+        self.give_up(finding("NB0204", self.cursor.place(), message, "not known", help))
     }
 
     /// A word that is not known, or something that is no word.
@@ -395,11 +393,7 @@ impl<'t> Parser<'t> {
     }
 
     fn unclosed(&mut self, opening: Range<usize>) -> GivenUp {
-        self.give_up(
-            Diagnostic::error("NB0104", opening, "this bracket is not closed")
-                .label("opened here")
-                .help("close it with `}`"),
-        )
+        self.give_up(finding("NB0104", opening, "this bracket is not closed", "opened here", "close it with `}`"))
     }
 
     /// Passes over what is left of a statement, with the blocks in it: to behind its semicolon, or to a closing brace.

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::parser::{Parser, Read, Source};
 use super::words::{MAPPINGS, REGISTERS, find};
+use crate::finding::finding;
 use crate::{Part, Place};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::legality::only_final;
@@ -163,10 +164,8 @@ impl PortionReader {
                 } else {
                     ("RGB", "write alpha in `alpha { ... }`, or add `, blue_to_alpha` to a product (Nv2a)")
                 };
-                let finding = Diagnostic::error("NB0311", place, format!("this portion writes {what}"))
-                    .label("not this component")
-                    .rule("CMB-12")
-                    .help(help);
+                let message = format!("this portion writes {what}");
+                let finding = finding("NB0311", place, message, "not this component", help).rule("CMB-12");
                 return Err(parser.give_up(finding));
             }
         }

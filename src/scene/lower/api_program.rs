@@ -137,12 +137,8 @@ fn generate(
             if place.is_empty() {
                 continue;
             }
-            findings.push(
-                Diagnostic::error("NB0352", place.clone(), format!("{what} beside the draw's texgen"))
-                    .label(label)
-                    .rule("TSH-11")
-                    .help("leave one of them out"),
-            );
+            let message = format!("{what} beside the draw's texgen");
+            findings.push(finding("NB0352", place.clone(), message, label, "leave one of them out").rule("TSH-11"));
             continue;
         }
         let free = std::iter::once(index).chain(0..profile.texture_units()).find(|set| !taken[*set]);

@@ -44,11 +44,9 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
     };
     let Some(raw) = &fields.mode else {
         if let Some((name, text)) = fields.written().find(|(name, _)| !["enabled", "color"].contains(name)) {
-            reader.push(
-                Diagnostic::error("NB0223", reader.range(text), format!("`{name}` says nothing without a `mode`"))
-                    .label("belongs to a fog function")
-                    .help("add `mode: Linear` (or Exp, Exp2); without a mode the vertices give factors in `fog`"),
-            );
+            let message = format!("`{name}` says nothing without a `mode`");
+            let help = "add `mode: Linear` (or Exp, Exp2); without a mode the vertices give factors in `fog`";
+            reader.push(finding("NB0223", reader.range(text), message, "belongs to a fog function", help));
         }
         return fog;
     };
@@ -78,11 +76,8 @@ fn function<'a>(
     for (field, name) in other {
         if let Some(raw) = field {
             let message = format!("{} fog has no `{name}`", mode.name());
-            reader.push(
-                Diagnostic::error("NB0223", reader.span(raw), message)
-                    .label("does not go with this mode")
-                    .help(format!("{} takes {fitting}, or `parameters: (p0, p1, p2)`", mode.name())),
-            );
+            let help = format!("{} takes {fitting}, or `parameters: (p0, p1, p2)`", mode.name());
+            reader.push(finding("NB0223", reader.span(raw), message, "does not go with this mode", help));
             return None;
         }
     }

@@ -117,12 +117,10 @@ pub(super) fn vertex_side(
     if let (Some(_), FogSource::Vertex, Some(_), None) =
         (&fog.function, fog.source, &geometry.triangles, &geometry.program)
     {
-        reader.push(
-            Diagnostic::error("NB0222", fog.place.clone(), "the vertices of a mesh give no fog coordinates")
-                .label("needs them from the vertices")
-                .rule("FOG-2")
-                .help("add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices"),
-        );
+        let message = "the vertices of a mesh give no fog coordinates";
+        let help =
+            "add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices";
+        reader.push(finding("NB0222", fog.place.clone(), message, "needs them from the vertices", help).rule("FOG-2"));
         return false;
     }
     let model_view = ModelView::new(&geometry.model_view);
@@ -143,12 +141,8 @@ pub(super) fn vertex_side(
             return Some(vertex);
         }
         let message = format!("a texture coordinate of vertex {index} is not finite");
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(index), message)
-                .label("beyond all numbers")
-                .rule("TSH-11")
-                .help("use smaller numbers in the matrices, in the planes or in the position"),
-        );
+        let help = "use smaller numbers in the matrices, in the planes or in the position";
+        reader.push(finding("NB0207", spans.vertex(index), message, "beyond all numbers", help).rule("TSH-11"));
         None
     });
     let Some(made) = made.collect() else { return false };
@@ -171,7 +165,7 @@ fn beside_program(
     }
     fog.function.as_ref()?;
     let finding = |message: &str, label: &str, help: &str| {
-        Some(Diagnostic::error("NB0389", fog.place.clone(), message).label(label).rule("VTX-3").help(help))
+        Some(finding("NB0389", fog.place.clone(), message, label, help).rule("VTX-3"))
     };
     if matches!(fog.source, FogSource::EyePlane | FogSource::EyePlaneAbsolute | FogSource::EyeRadial) {
         let help = "take `coordinate_source: Depth` or `W`, or leave it out and write the coordinate to oFog";
@@ -203,15 +197,9 @@ pub(super) fn geometry<'a>(
             let list = Raw::<crate::raw::Tuple<'a, source::VertexList>>::new(rest);
             let parts = reader.read(&list)?.0;
             let [list] = parts[..] else {
-                reader.push(
-                    Diagnostic::error(
-                        "NB0211",
-                        reader.span(&list),
-                        "expected one list of vertices in these parentheses",
-                    )
-                    .label("here")
-                    .help("write `Window([(position: (10, 20)), ...])`"),
-                );
+                let message = "expected one list of vertices in these parentheses";
+                let help = "write `Window([(position: (10, 20)), ...])`";
+                reader.push(finding("NB0211", reader.span(&list), message, "here", help));
                 return None;
             };
             let data = names.vertices(reader, &list)?;
@@ -251,11 +239,9 @@ fn matrix_geometry<'a>(
         (Some(raw), None) => {
             let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
             if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
-                reader.push(
-                    Diagnostic::error("NB0222", reader.span(output), "listed vertices have no mesh attributes")
-                        .label("needs a mesh")
-                        .help("write colours and texture coordinates in the vertices, or use `mesh: ...`"),
-                );
+                let message = "listed vertices have no mesh attributes";
+                let help = "write colours and texture coordinates in the vertices, or use `mesh: ...`";
+                reader.push(finding("NB0222", reader.span(output), message, "needs a mesh", help));
             }
             let data = names.vertices(reader, raw)?;
             (data.vertices.clone(), data.spans.clone(), None, Objects::Listed(data))
@@ -278,12 +264,9 @@ fn matrix_geometry<'a>(
     let finite = |vertex: usize| vertices.position(vertex).iter().all(|value| value.is_finite());
     if let Some(bad) = (0..vertices.len()).find(|vertex| !finite(*vertex)) {
         let spans = DrawSpans { draw: opening, vertices: spans, ..DrawSpans::default() };
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(bad), format!("the matrix takes vertex {bad} beyond all numbers"))
-                .label("not finite after the matrix")
-                .rule("RAS-0")
-                .help("use smaller numbers in the matrix or in the position"),
-        );
+        let message = format!("the matrix takes vertex {bad} beyond all numbers");
+        let help = "use smaller numbers in the matrix or in the position";
+        reader.push(finding("NB0207", spans.vertex(bad), message, "not finite after the matrix", help).rule("RAS-0"));
         return None;
     }
     Some(Geometry {

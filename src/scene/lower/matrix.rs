@@ -30,11 +30,9 @@ pub(super) fn evaluate<'a>(
     }
     if depth > DEEPEST {
         let place = reader.opening(raw.text);
-        reader.push(
-            Diagnostic::error("NB0602", place, format!("more than {DEEPEST} products inside each other"))
-                .label("one level too many")
-                .help("a product takes any number of matrices: write them side by side"),
-        );
+        let message = format!("more than {DEEPEST} products inside each other");
+        let help = "a product takes any number of matrices: write them side by side";
+        reader.push(finding("NB0602", place, message, "one level too many", help));
         return None;
     }
     let (kind, rest) = reader.variant(raw, "matrix", KINDS)?;
@@ -114,11 +112,8 @@ fn transpose<'a>(
     depth: usize,
 ) -> Option<Rows> {
     let [part] = reader.read(raw)?.0[..] else {
-        reader.push(
-            Diagnostic::error("NB0211", reader.span(raw), "one matrix is transposed at a time")
-                .label("here")
-                .help("write `Transpose(\"world\")`"),
-        );
+        let help = "write `Transpose(\"world\")`";
+        reader.push(finding("NB0211", reader.span(raw), "one matrix is transposed at a time", "here", help));
         return None;
     };
     let matrix = evaluate(reader, table, &part, depth + 1)?;

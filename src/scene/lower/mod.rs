@@ -48,6 +48,7 @@ use names::Names;
 use ninebit::diagnostic::File;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Profile, Scene};
+use ninebit_program::{finding, warning};
 
 /// Where the draws of a scene stand in its text, for errors that are found later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -172,11 +173,8 @@ fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Range
     if let Some(version) = version
         && version != 1
     {
-        reader.push(
-            Diagnostic::error("NB0214", place, format!("version {version} of the scene format is not known"))
-                .label("not known")
-                .help("this program reads version 1"),
-        );
+        let message = format!("version {version} of the scene format is not known");
+        reader.push(finding("NB0214", place, message, "not known", "this program reads version 1"));
     }
     version == Some(1)
 }

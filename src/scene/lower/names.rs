@@ -64,29 +64,17 @@ impl<'a, S, T: Clone> Table<'a, S, T> {
         match &self.states.borrow()[index] {
             State::Done(value) => return value.clone(),
             State::Active => {
-                reader.push(
-                    Diagnostic::error(
-                        "NB0210",
-                        entry.place.clone(),
-                        format!("the {} \"{}\" is defined by itself", self.what, shorten(&entry.name)),
-                    )
-                    .label("leads back to itself")
-                    .help("give one of the names in the circle a value of its own"),
-                );
+                let message = format!("the {} \"{}\" is defined by itself", self.what, shorten(&entry.name));
+                let help = "give one of the names in the circle a value of its own";
+                reader.push(finding("NB0210", entry.place.clone(), message, "leads back to itself", help));
                 return None;
             }
             State::Waiting => {}
         }
         if depth > LONGEST_CHAIN {
-            reader.push(
-                Diagnostic::error(
-                    "NB0602",
-                    entry.place.clone(),
-                    format!("more than {LONGEST_CHAIN} names that stand for names"),
-                )
-                .label("the chain is too long here")
-                .help("refer to the value more directly"),
-            );
+            let message = format!("more than {LONGEST_CHAIN} names that stand for names");
+            let help = "refer to the value more directly";
+            reader.push(finding("NB0602", entry.place.clone(), message, "the chain is too long here", help));
             return None;
         }
         self.states.borrow_mut()[index] = State::Active;
@@ -310,10 +298,7 @@ fn value<S>(reader: &mut Reader<'_>, raw: &Raw<'_, S>) -> Option<()> {
         return Some(());
     }
     let place = reader.range(raw.text);
-    reader.push(
-        Diagnostic::error("NB0205", place, "a definition here is a value, not another name")
-            .label("a name")
-            .help("use that name directly in the draws"),
-    );
+    let help = "use that name directly in the draws";
+    reader.push(finding("NB0205", place, "a definition here is a value, not another name", "a name", help));
     None
 }

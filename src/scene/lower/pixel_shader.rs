@@ -40,11 +40,8 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
         match (&fields.text, &fields.file) {
             (Some(raw), None) => ProgramText::inline(reader, raw)?,
             (Some(_), Some(raw)) => {
-                reader.push(
-                    Diagnostic::error("NB0356", reader.span(raw), "a pixel shader is given twice")
-                        .label("again here")
-                        .help("keep one of `text` and `file`"),
-                );
+                let help = "keep one of `text` and `file`";
+                reader.push(finding("NB0356", reader.span(raw), "a pixel shader is given twice", "again here", help));
                 return None;
             }
             (None, _) => {
@@ -68,11 +65,9 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
         let defined = program.definitions.iter().any(|definition| definition.index == read.value);
         if !defined && constants.get(usize::from(read.value)).is_some_and(Option::is_none) {
             let index = read.value;
-            let warning = Diagnostic::warning("NB0910", read.place, format!("c{index} has no value"))
-                .label("is 0")
-                .help(format!(
-                    "write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it"
-                ));
+            let help =
+                format!("write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it");
+            let warning = warning("NB0910", read.place, format!("c{index} has no value"), "is 0", help);
             reader.push(text.place(warning));
         }
     }
@@ -91,11 +86,9 @@ fn register(
     let digits = name.strip_prefix(letter).filter(|digits| digits.len() == 1);
     let index = digits.and_then(|digits| digits.parse::<usize>().ok()).filter(|index| *index < count);
     if index.is_none() {
-        reader.push(
-            Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
-                .label("not a register")
-                .help(format!("write \"{letter}0\" to \"{letter}{}\"", count - 1)),
-        );
+        let message = format!("there is no {what} \"{}\"", shorten(name));
+        let help = format!("write \"{letter}0\" to \"{letter}{}\"", count - 1);
+        reader.push(finding("NB0208", place, message, "not a register", help));
     }
     index
 }

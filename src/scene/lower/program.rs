@@ -163,11 +163,8 @@ pub(super) fn calls<'a>(
         };
         return text.expanded(reader, Style::Calls).map(Some);
     };
-    reader.push(
-        Diagnostic::error("NB0356", second, format!("{what} given twice"))
-            .label("again here")
-            .related(first, "first here")
-            .help(format!("keep one of `{name}`, `text` and `file`")),
-    );
+    let message = format!("{what} given twice");
+    let help = format!("keep one of `{name}`, `text` and `file`");
+    reader.push(finding("NB0356", second, message, "again here", help).related(first, "first here"));
     None
 }

@@ -125,11 +125,8 @@ fn inline<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
     let list = Raw::<Tuple<'a, String>>::new(text);
     let parts = reader.read(&list)?.0;
     let [raw] = parts[..] else {
-        reader.push(
-            Diagnostic::error("NB0211", reader.span(&list), "a program is one text")
-                .label("here")
-                .help("write `(\"...\")`, `(r#\"...\"#)` for a text of many lines, or `(file: \"name\")`"),
-        );
+        let help = "write `(\"...\")`, `(r#\"...\"#)` for a text of many lines, or `(file: \"name\")`";
+        reader.push(finding("NB0211", reader.span(&list), "a program is one text", "here", help));
         return None;
     };
     literal(reader, &raw)
@@ -176,9 +173,7 @@ pub(super) fn text_file<'a>(
 ) -> Option<Arc<diagnostic::File>> {
     let name = reader.read(raw)?;
     let named = reader.span(raw);
-    let refuse = |code, message: String, help: &str| {
-        Diagnostic::error(code, named.clone(), message).label("this file").help(help)
-    };
+    let refuse = |code, message: String, help: &str| finding(code, named.clone(), message, "this file", help);
     let path = match reader.assets.resolve(folder, &name) {
         Ok(path) => path,
         Err(error) => {

@@ -38,16 +38,9 @@ pub(super) fn operations<'a>(
         draw.depth_test = depth_test(reader, raw);
         let steps = draw.depth_test.is_some_and(|test| test.vertex_depths == VertexDepths::Steps);
         if steps && !matches!(draw.positions, Positions::Window) {
-            reader.push(
-                Diagnostic::error(
-                    "NB0206",
-                    reader.span(raw),
-                    "vertex depths are steps of the buffer, and positions are projected",
-                )
-                .label("`vertex_depths: Steps`")
-                .rule("DEP-1")
-                .help("give the vertices as `Window([...])`, or leave `vertex_depths` out"),
-            );
+            let message = "vertex depths are steps of the buffer, and positions are projected";
+            let help = "give the vertices as `Window([...])`, or leave `vertex_depths` out";
+            reader.push(finding("NB0206", reader.span(raw), message, "`vertex_depths: Steps`", help).rule("DEP-1"));
             draw.depth_test = None;
         }
         if target.depth.is_none() {
@@ -70,12 +63,8 @@ pub(super) fn operations<'a>(
         draw.blend = names.blend(reader, raw);
         if !surface::blends(target.format) {
             let message = format!("surface format {:?} cannot be blended", target.format);
-            reader.push(
-                Diagnostic::error("NB0316", reader.span(raw), message)
-                    .label("blending")
-                    .rule("ROP-5")
-                    .help("leave `blend` out, or draw into a target with a colour format"),
-            );
+            let help = "leave `blend` out, or draw into a target with a colour format";
+            reader.push(finding("NB0316", reader.span(raw), message, "blending", help).rule("ROP-5"));
         }
     }
     draw.blend_constant = color::bytes(fields.blend_constant(reader, names));
@@ -112,26 +101,17 @@ fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> 
     }
     let Some(word) = reader.attempt::<u32>(raw.text) else {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0205", place, format!("expected an alpha reference, found `{}`", shorten(raw.text)))
-                .label("wrong kind of value")
-                .help("write a byte, `128`, or a float, `Float(0.5)`"),
-        );
+        let message = format!("expected an alpha reference, found `{}`", shorten(raw.text));
+        let help = "write a byte, `128`, or a float, `Float(0.5)`";
+        reader.push(finding("NB0205", place, message, "wrong kind of value", help));
         return None;
     };
     let byte = word as u8;
     if u32::from(byte) != word {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::warning(
-                "NB0914",
-                place,
-                format!("an alpha reference has eight bits: {word:#x} counts as {byte}"),
-            )
-            .label("more than eight bits")
-            .rule("ROP-1")
-            .help(format!("write {byte} if that is what is meant")),
-        );
+        let message = format!("an alpha reference has eight bits: {word:#x} counts as {byte}");
+        let help = format!("write {byte} if that is what is meant");
+        reader.push(warning("NB0914", place, message, "more than eight bits", help).rule("ROP-1"));
     }
     Some(byte)
 }

@@ -52,12 +52,9 @@ pub(super) fn shader<'a>(
         places[index] = self::stage(reader, raw, stage);
     }
     if let Some(extra) = list.get(TEXTURE_UNITS) {
-        reader.push(
-            Diagnostic::error("NB0319", reader.span(extra), format!("there is no texture unit {TEXTURE_UNITS}"))
-                .label("one too many")
-                .rule("TSH-10")
-                .help("units 0 to 3 are the entries of this list"),
-        );
+        let message = format!("there is no texture unit {TEXTURE_UNITS}");
+        let help = "units 0 to 3 are the entries of this list";
+        reader.push(finding("NB0319", reader.span(extra), message, "one too many", help).rule("TSH-10"));
     }
     for (index, places) in places.iter().enumerate() {
         if let Some(places) = places {
@@ -209,12 +206,7 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
     let wanted = ShaderStage::misplaced(shader, index);
     if let Some(help) = wanted {
         let message = format!("{} cannot stand at stage {index} here", operation.name());
-        reader.push(
-            Diagnostic::error("NB0341", places.stage.clone(), message)
-                .label("the chip refuses it")
-                .rule("TSH-10")
-                .help(help),
-        );
+        reader.push(finding("NB0341", places.stage.clone(), message, "the chip refuses it", help).rule("TSH-10"));
     } else if ShaderStage::reads_too_late(shader, index) {
         let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
         let place = places.previous.clone().unwrap_or_else(|| places.stage.clone());
@@ -238,16 +230,9 @@ fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: u
     let fits = operation.kinds();
     let Some(unit) = units.bound[index] else {
         if units.places[index].is_empty() {
-            reader.push(
-                Diagnostic::error(
-                    "NB0343",
-                    places.stage.clone(),
-                    format!("stage {index} samples, but its unit has no texture"),
-                )
-                .label("nothing to sample")
-                .rule("TSH-10")
-                .help(format!("give the draw `textures: [...]` with an entry for unit {index}")),
-            );
+            let message = format!("stage {index} samples, but its unit has no texture");
+            let help = format!("give the draw `textures: [...]` with an entry for unit {index}");
+            reader.push(finding("NB0343", places.stage.clone(), message, "nothing to sample", help).rule("TSH-10"));
         }
         return;
     };

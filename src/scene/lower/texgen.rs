@@ -39,12 +39,9 @@ pub(super) fn sets<'a>(
 /// Whether the chip has that coordinate set.
 fn exists(reader: &mut Reader<'_>, index: usize, place: Range<usize>) -> bool {
     if index >= TEXTURE_UNITS {
-        reader.push(
-            Diagnostic::error("NB0319", place, format!("there is no coordinate set {index}"))
-                .label("one too many")
-                .rule("TSH-11")
-                .help("sets 0 to 3 are the entries of this list"),
-        );
+        let message = format!("there is no coordinate set {index}");
+        let help = "sets 0 to 3 are the entries of this list";
+        reader.push(finding("NB0319", place, message, "one too many", help).rule("TSH-11"));
         return false;
     }
     if index >= reader.profile.texture_units() {
@@ -135,12 +132,9 @@ fn generator<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Generator>, comp
     };
     if component >= components {
         let name = ["s", "t", "r", "q"][component];
-        reader.push(
-            Diagnostic::error("NB0224", reader.span(raw), format!("{} makes no {name}", GENERATORS[kind]))
-                .label("not for this component")
-                .rule("TSH-11")
-                .help(if components == 2 { "it makes s and t" } else { "it makes s, t and r" }),
-        );
+        let message = format!("{} makes no {name}", GENERATORS[kind]);
+        let help = if components == 2 { "it makes s and t" } else { "it makes s, t and r" };
+        reader.push(finding("NB0224", reader.span(raw), message, "not for this component", help).rule("TSH-11"));
         return None;
     }
     Some(generator)
@@ -164,12 +158,9 @@ fn emboss<'a>(
         return None;
     }
     if index != 1 {
-        reader.push(
-            Diagnostic::error("NB0224", place, "Emboss makes coordinate set 1 only")
-                .label(format!("this is set {index}"))
-                .rule("TSH-11")
-                .help("write `texgen: [None, Emboss(...)]`: set 1 becomes set 0, moved"),
-        );
+        let message = "Emboss makes coordinate set 1 only";
+        let help = "write `texgen: [None, Emboss(...)]`: set 1 becomes set 0, moved";
+        reader.push(finding("NB0224", place, message, format!("this is set {index}"), help).rule("TSH-11"));
         return None;
     }
     let fields = source::Emboss { opening: raw.split().0, ..reader.read(&Raw::new(rest))? };

@@ -110,11 +110,8 @@ fn texture<'a>(
         let mut given = sources.read(reader, Variant::ALL[variant], &source, rest, &request)?;
         if fields.mips.is_some() && levels != Wanted::Own {
             let place = fields.levels.as_ref().map(|raw| reader.span(raw));
-            reader.push(
-                Diagnostic::error("NB0230", place, "levels are counted and listed at once")
-                    .label("counted here")
-                    .help("keep `levels`, or `mips`, whose sources are levels 1, 2 and so on"),
-            );
+            let help = "keep `levels`, or `mips`, whose sources are levels 1, 2 and so on";
+            reader.push(finding("NB0230", place, "levels are counted and listed at once", "counted here", help));
             return None;
         }
         let made = given.palette.take().map(|entries| palettes.add(&entry.name, entries));
@@ -177,12 +174,9 @@ fn kind<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Text
 
 fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<TextureFormat>>) -> Option<TextureFormat> {
     if let (name @ ("YUY2" | "UYVY"), "") = raw.split() {
-        reader.push(
-            Diagnostic::error("NB0402", reader.span(raw), format!("how {name} texels are rounded is not known"))
-                .label("not modelled")
-                .rule("TEX-1")
-                .help("convert the picture to A8R8G8B8"),
-        );
+        let message = format!("how {name} texels are rounded is not known");
+        let help = "convert the picture to A8R8G8B8";
+        reader.push(finding("NB0402", reader.span(raw), message, "not modelled", help).rule("TEX-1"));
         return None;
     }
     if let (name, "") = raw.split()
@@ -191,12 +185,9 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
             .find(|(known, own)| known.eq_ignore_ascii_case(name) && !own.eq_ignore_ascii_case(name))
     {
         let help = if own.is_empty() { "take Z16, Z24S8, Z16F or Z24S8F" } else { own };
-        reader.push(
-            Diagnostic::error("NB0204", reader.span(raw), format!("`{name}` is not a texture format here"))
-                .label("a format of depths")
-                .rule("SHD-1")
-                .help(format!("write `{help}`, and give the unit a `shadow` comparison")),
-        );
+        let message = format!("`{name}` is not a texture format here");
+        let help = format!("write `{help}`, and give the unit a `shadow` comparison");
+        reader.push(finding("NB0204", reader.span(raw), message, "a format of depths", help).rule("SHD-1"));
         return None;
     }
     reader.name(raw)
@@ -273,12 +264,8 @@ fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32
     let (width, height) = (given.width, given.height);
     if width <= beyond || height <= beyond {
         let message = format!("{width} x {height} texels leave nothing inside a border of 4 on each side");
-        reader.push(
-            Diagnostic::error("NB0231", given.place.clone(), message)
-                .label("too small")
-                .rule("TEX-7")
-                .help("with `border: true` a source has 8 columns and rows more than the texture"),
-        );
+        let help = "with `border: true` a source has 8 columns and rows more than the texture";
+        reader.push(finding("NB0231", given.place.clone(), message, "too small", help).rule("TEX-7"));
         return None;
     }
     Some((width - beyond, height - beyond))
@@ -307,11 +294,9 @@ fn of_target<'a>(
         fields.border.as_ref().map(|raw| (reader.span(raw), "texture with border texels")),
     ];
     if let Some((place, what)) = extra.into_iter().flatten().next() {
-        reader.push(
-            Diagnostic::error("NB0232", place, format!("a render target cannot be a {what}"))
-                .label("does not go with `Target`")
-                .help("a target is sampled as one picture: `TwoDimensional` or `Rectangle`, one level, no border"),
-        );
+        let message = format!("a render target cannot be a {what}");
+        let help = "a target is sampled as one picture: `TwoDimensional` or `Rectangle`, one level, no border";
+        reader.push(finding("NB0232", place, message, "does not go with `Target`", help));
         return None;
     }
     if depths {
@@ -320,21 +305,16 @@ fn of_target<'a>(
     let own = target.format.texture_format();
     let (format, format_place) = match format {
         Some((TextureFormat::P8, place)) => {
-            reader.push(
-                Diagnostic::error("NB0232", place, "a render target does not hold indices of a palette")
-                    .label("does not go with `Target`")
-                    .help(format!("leave `format` out, which means {own:?} here")),
-            );
+            let message = "a render target does not hold indices of a palette";
+            let help = format!("leave `format` out, which means {own:?} here");
+            reader.push(finding("NB0232", place, message, "does not go with `Target`", help));
             return None;
         }
         Some((format, place)) if format.depth().is_some() => {
-            reader.push(
-                Diagnostic::error("NB0232", place, "the colours of a render target are no depths")
-                    .label("does not go with `Target`")
-                    .help(format!(
-                        "write `Depth(...)` for its depth buffer, or leave `format` out, which means {own:?} here"
-                    )),
-            );
+            let message = "the colours of a render target are no depths";
+            let help =
+                format!("write `Depth(...)` for its depth buffer, or leave `format` out, which means {own:?} here");
+            reader.push(finding("NB0232", place, message, "does not go with `Target`", help));
             return None;
         }
         Some((format, place)) => (format, place),
@@ -361,11 +341,8 @@ fn of_target<'a>(
     };
     if let Some((message, or)) = problem {
         let size = if pixel == 1 { "1 byte".to_owned() } else { format!("{pixel} bytes") };
-        reader.push(
-            Diagnostic::error("NB0218", format_place, message).label("another size").help(format!(
-                "leave `format` out, which means {own:?} here, or take another with texels of {size}{or}"
-            )),
-        );
+        let help = format!("leave `format` out, which means {own:?} here, or take another with texels of {size}{or}");
+        reader.push(finding("NB0218", format_place, message, "another size", help));
         return None;
     }
     legal::format(reader, format, format_place)?;
@@ -383,12 +360,9 @@ fn of_depths(
     name: &str,
 ) -> Option<Texture> {
     let Some(depth) = target.depth else {
-        reader.push(
-            Diagnostic::error("NB0216", place, format!("target \"{}\" has no depth buffer", shorten(&target.name)))
-                .label("shows its depths")
-                .rule("SHD-1")
-                .help("give the target `depth: Z24S8`"),
-        );
+        let message = format!("target \"{}\" has no depth buffer", shorten(&target.name));
+        let help = "give the target `depth: Z24S8`";
+        reader.push(finding("NB0216", place, message, "shows its depths", help).rule("SHD-1"));
         return None;
     };
     let own = match depth.format {
@@ -400,11 +374,8 @@ fn of_depths(
     let (format, format_place) = format.unwrap_or((own, place.clone()));
     if format.depth().is_none_or(|format| format.bits() != depth.format.bits()) {
         let message = format!("depths of {} cannot be read as {}", own.name(), format.name());
-        reader.push(
-            Diagnostic::error("NB0218", format_place, message)
-                .label("another size, or no depths")
-                .help(format!("leave `format` out, which means {} here", own.name())),
-        );
+        let help = format!("leave `format` out, which means {} here", own.name());
+        reader.push(finding("NB0218", format_place, message, "another size, or no depths", help));
         return None;
     }
     legal::format(reader, format, format_place)?;

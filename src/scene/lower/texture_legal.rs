@@ -38,21 +38,14 @@ pub(super) fn sides(
     }
     if !(width.is_power_of_two() && height.is_power_of_two()) {
         let next = |side: u32| side.max(1).checked_next_power_of_two().unwrap_or(most).min(most);
-        reader.push(
-            Diagnostic::error("NB0219", place, format!("{what} cannot be {width} x {height}"))
-                .label("sides must be powers of two")
-                .rule("TEX-7")
-                .help(format!("make it {} x {}, for example, or write `kind: Rectangle`", next(width), next(height))),
-        );
+        let message = format!("{what} cannot be {width} x {height}");
+        let help = format!("make it {} x {}, for example, or write `kind: Rectangle`", next(width), next(height));
+        reader.push(finding("NB0219", place, message, "sides must be powers of two", help).rule("TEX-7"));
         return None;
     }
     if kind == TextureKind::Cube && width != height {
-        reader.push(
-            Diagnostic::error("NB0231", place, format!("faces of a cube map cannot be {width} x {height}"))
-                .label("not square")
-                .rule("TEX-12")
-                .help("make every face as wide as high"),
-        );
+        let message = format!("faces of a cube map cannot be {width} x {height}");
+        reader.push(finding("NB0231", place, message, "not square", "make every face as wide as high").rule("TEX-12"));
         return None;
     }
     Some(())
@@ -124,12 +117,9 @@ pub(super) fn layers(reader: &mut Reader<'_>, kind: TextureKind, layers: u32, pl
         return None;
     }
     if !layers.is_power_of_two() || layers > LARGEST_VOLUME {
-        reader.push(
-            Diagnostic::error("NB0334", place, format!("a volume cannot have {layers} layers"))
-                .label("a power of two of them")
-                .rule("VOL-1")
-                .help(format!("give it 1, 2, 4 and so on, at most {LARGEST_VOLUME}")),
-        );
+        let message = format!("a volume cannot have {layers} layers");
+        let help = format!("give it 1, 2, 4 and so on, at most {LARGEST_VOLUME}");
+        reader.push(finding("NB0334", place, message, "a power of two of them", help).rule("VOL-1"));
         return None;
     }
     Some(())
@@ -167,12 +157,9 @@ pub(super) fn border(
     }
     if kind != TextureKind::TwoDimensional || format.is_compressed() {
         let what = if format.is_compressed() { format.name() } else { kind.name() };
-        reader.push(
-            Diagnostic::error("NB0331", place, format!("a texture with border texels cannot be {what}"))
-                .label("does not go with it")
-                .rule("TEX-7")
-                .help("border texels are modelled for uncompressed textures of two dimensions: write `border: false`"),
-        );
+        let message = format!("a texture with border texels cannot be {what}");
+        let help = "border texels are modelled for uncompressed textures of two dimensions: write `border: false`";
+        reader.push(finding("NB0331", place, message, "does not go with it", help).rule("TEX-7"));
         return None;
     }
     Some(())

@@ -30,11 +30,9 @@ pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
     if number.split().0.is_empty() {
         return reader.within(&number, "the number of levels", 1..=13, |finding| finding).map(Wanted::Number);
     }
-    reader.push(
-        Diagnostic::error("NB0205", reader.span(raw), "expected a number of levels, or `All`")
-            .label("wrong kind of value")
-            .help("write `levels: All` for levels down to 1 x 1"),
-    );
+    let message = "expected a number of levels, or `All`";
+    let help = "write `levels: All` for levels down to 1 x 1";
+    reader.push(finding("NB0205", reader.span(raw), message, "wrong kind of value", help));
     None
 }
 
@@ -97,11 +95,9 @@ pub(super) fn counted<'a>(
         None
     };
     if let Some(reason) = reason {
-        reader.push(
-            Diagnostic::error("NB0230", given.place.clone(), format!("{number} levels cannot be made here: {reason}"))
-                .label("of this source")
-                .help("leave `levels` out, or give every level a source in `mips`, or use a file that has them"),
-        );
+        let message = format!("{number} levels cannot be made here: {reason}");
+        let help = "leave `levels` out, or give every level a source in `mips`, or use a file that has them";
+        reader.push(finding("NB0230", given.place.clone(), message, "of this source", help));
         return None;
     }
     let (mut width, mut height) = (given.width, given.height);
@@ -135,11 +131,8 @@ pub(super) fn listed<'a>(
     let inside = [given.width - beyond, given.height - beyond];
     if given.faces.iter().any(|levels| levels.len() > 1) {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0230", place, "levels are listed, and the source of level 0 has several as well")
-                .label("listed here")
-                .help("leave `mips` out"),
-        );
+        let message = "levels are listed, and the source of level 0 has several as well";
+        reader.push(finding("NB0230", place, message, "listed here", "leave `mips` out"));
         return None;
     }
     let number = list.len() as u32 + 1;
@@ -171,16 +164,9 @@ pub(super) fn listed<'a>(
             continue;
         };
         let of = if kind == TextureKind::Cube { "six faces of " } else { "" };
-        reader.push(
-            Diagnostic::error(
-                "NB0231",
-                level.place,
-                format!("level {n} is {of}{} x {}, not {found}", sides[0], sides[1]),
-            )
-            .label("does not fit")
-            .rule("TEX-9")
-            .help("sides halve from level to level, rounded down, and are at least 1"),
-        );
+        let message = format!("level {n} is {of}{} x {}, not {found}", sides[0], sides[1]);
+        let help = "sides halve from level to level, rounded down, and are at least 1";
+        reader.push(finding("NB0231", level.place, message, "does not fit", help).rule("TEX-9"));
         complete = false;
     }
     complete.then_some(())

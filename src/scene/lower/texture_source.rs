@@ -145,11 +145,8 @@ impl<'a> Sources<'_, 'a> {
         let bytes = words.saturating_mul(4);
         let Some(rest) = self.left.checked_sub(bytes) else {
             let message = format!("the textures take more than {} bytes together", reader.limits.texture_bytes);
-            reader.push(
-                Diagnostic::error("NB0607", place, message)
-                    .label(format!("{bytes} more bytes here"))
-                    .help("make the textures smaller, or fewer; `ninebit limits` prints what is allowed"),
-            );
+            let help = "make the textures smaller, or fewer; `ninebit limits` prints what is allowed";
+            reader.push(finding("NB0607", place, message, format!("{bytes} more bytes here"), help));
             return None;
         };
         self.left = rest;
@@ -288,12 +285,8 @@ impl<'a> Sources<'_, 'a> {
             return None;
         }
         if width == 0 || height == 0 {
-            reader.push(
-                Diagnostic::error("NB0219", place, format!("a texture cannot be {width} x {height}"))
-                    .label("no texels")
-                    .rule("TEX-7")
-                    .help("write at least 1 for both"),
-            );
+            let message = format!("a texture cannot be {width} x {height}");
+            reader.push(finding("NB0219", place, message, "no texels", "write at least 1 for both").rule("TEX-7"));
             return None;
         }
         Some((width, height, place))

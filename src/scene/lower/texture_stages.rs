@@ -30,11 +30,8 @@ pub(super) fn texture_stages<'a>(
         let list = reader.read(raw)?;
         if let Some(extra) = list.get(STAGES) {
             let place = reader.opening(extra.text);
-            reader.push(
-                Diagnostic::error("NB0206", place, format!("there is no texture stage {STAGES}"))
-                    .label("one too many")
-                    .help(format!("the API has stages 0 to {}", STAGES - 1)),
-            );
+            let help = format!("the API has stages 0 to {}", STAGES - 1);
+            reader.push(finding("NB0206", place, format!("there is no texture stage {STAGES}"), "one too many", help));
         }
         for (index, raw) in list.iter().enumerate().take(STAGES) {
             let Some(fields) = reader.read(raw) else { continue };

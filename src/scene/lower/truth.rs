@@ -67,11 +67,8 @@ pub(super) fn truth<'a>(
         );
     }
     if equation == Some(Equation::Lighting) && lights.is_empty() && hemisphere.is_none() && fields.lights.is_none() {
-        reader.push(
-            Diagnostic::error("NB0391", opening, "a truth without any light")
-                .label("neither `lights` nor `hemisphere`")
-                .help("add `lights: [(direction: (x, y, z))]`, or say with `equation` what else is computed"),
-        );
+        let help = "add `lights: [(direction: (x, y, z))]`, or say with `equation` what else is computed";
+        reader.push(finding("NB0391", opening, "a truth without any light", "neither `lights` nor `hemisphere`", help));
     }
     let meshes = draws.iter().map(|drawn| mesh(reader, drawn)).collect();
     Some(Truth {
@@ -94,11 +91,9 @@ pub(super) fn truth<'a>(
 /// Draws cannot be taken out of a truth that is not there.
 fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
     for (_, place) in draws.iter().filter_map(|drawn| drawn.truth.clone()) {
-        reader.push(
-            Diagnostic::error("NB0394", place, "the scene has no truth that a draw could take part in")
-                .label("says nothing here")
-                .help("leave it out, or give the scene a `truth: (...)`"),
-        );
+        let message = "the scene has no truth that a draw could take part in";
+        let help = "leave it out, or give the scene a `truth: (...)`";
+        reader.push(finding("NB0394", place, message, "says nothing here", help));
     }
 }
 
@@ -134,11 +129,8 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
             let list = Raw::<Tuple<'a, Name<Interpolated>>>::new(rest);
             let parts = reader.read(&list)?.0;
             let [a, b] = parts[..] else {
-                reader.push(
-                    Diagnostic::error("NB0211", reader.span(&list), "a dot product has two vectors")
-                        .label("here")
-                        .help("write `DotProduct(PrimaryColor, SecondaryColor)`"),
-                );
+                let help = "write `DotProduct(PrimaryColor, SecondaryColor)`";
+                reader.push(finding("NB0211", reader.span(&list), "a dot product has two vectors", "here", help));
                 return None;
             };
             Equation::DotProduct(reader.name(&a)?, reader.name(&b)?)
@@ -186,11 +178,8 @@ fn long<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, vector: [f32; 3]) -
     if vector.iter().any(|c| *c != 0.0) {
         return Some(());
     }
-    reader.push(
-        Diagnostic::error("NB0392", reader.span(raw), "the zero vector points nowhere")
-            .label("has no direction")
-            .help("write the direction toward it, of any length"),
-    );
+    let help = "write the direction toward it, of any length";
+    reader.push(finding("NB0392", reader.span(raw), "the zero vector points nowhere", "has no direction", help));
     None
 }
 

@@ -86,20 +86,15 @@ fn program<'a>(
         (None, Some(raw)) => ProgramText::file(reader, names, raw)?,
         (Some(first), Some(second)) => {
             let (first, second) = (reader.span(first), reader.span(second));
-            reader.push(
-                Diagnostic::error("NB0388", second, "the vertex program is given twice")
-                    .label("again here")
-                    .related(first, "first here")
-                    .help("keep one of `text` and `file`"),
-            );
+            let message = "the vertex program is given twice";
+            let help = "keep one of `text` and `file`";
+            reader.push(finding("NB0388", second, message, "again here", help).related(first, "first here"));
             return None;
         }
         (None, None) => {
-            reader.push(
-                Diagnostic::error("NB0202", opening, "this vertex program has neither `text` nor `file`")
-                    .label("in here")
-                    .help("write `text: r#\"vs.1.1 ...\"#`, or `file: \"name.vsh\"`"),
-            );
+            let message = "this vertex program has neither `text` nor `file`";
+            let help = "write `text: r#\"vs.1.1 ...\"#`, or `file: \"name.vsh\"`";
+            reader.push(finding("NB0202", opening, message, "in here", help));
             return None;
         }
     };

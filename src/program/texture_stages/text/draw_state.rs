@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::Aside;
 use crate::calls::{Part, PartKind, Value, without_prefix};
-use ninebit::diagnostic::Diagnostic;
+use crate::finding::warning;
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named as _, StencilOperation};
 
 /// A field of the draw, and the states that it holds: name and D3DRS value.
@@ -140,9 +140,8 @@ impl DrawStates {
                 [] => format!("{last} is a state of the draw"),
                 _ => format!("{} and {last} are states of the draw", rest.join(", ")),
             };
-            let finding = Diagnostic::warning("NB0918", place, message)
-                .label("no part of a pixel program")
-                .help(format!("write it in the draw: `{written}`"));
+            let help = format!("write it in the draw: `{written}`");
+            let finding = warning("NB0918", place, message, "no part of a pixel program", help);
             Some(Aside { finding, field: Some(group.field) })
         });
         asides.collect()

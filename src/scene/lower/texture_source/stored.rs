@@ -36,11 +36,8 @@ impl<'a> Sources<'_, 'a> {
         let format = request.format.unwrap_or(dds.format);
         let Some(words) = dds.words_as(format) else {
             let message = format!("the file holds {}, not {}", dds.format.name(), format.name());
-            reader.push(
-                Diagnostic::error("NB0232", place, message)
-                    .label("of another format")
-                    .help(format!("leave `format` out, which means {} here", dds.format.name())),
-            );
+            let help = format!("leave `format` out, which means {} here", dds.format.name());
+            reader.push(finding("NB0232", place, message, "of another format", help));
             return None;
         };
         let faces = if dds.cube { CUBE_FACES } else { dds.layers.unwrap_or(1) };

@@ -94,11 +94,9 @@ pub(super) fn sources<'a>(
         let input = match (chosen, read) {
             (Some(_), None) => {
                 let place = field.as_ref().map_or(0..0, |raw| reader.span(raw));
-                reader.push(
-                    Diagnostic::warning("NB0901", place, format!("the input v{register} is not used"))
-                        .label("the vertex program does not read it")
-                        .help("remove it, or check its number"),
-                );
+                let message = format!("the input v{register} is not used");
+                let help = "remove it, or check its number";
+                reader.push(warning("NB0901", place, message, "the vertex program does not read it", help));
                 None
             }
             (Some(chosen), Some(_)) => chosen,
@@ -137,11 +135,8 @@ fn input<'a>(
     }
     if ["Tangent", "Binormal", "LightVector", "HalfVector"].contains(&head) {
         let message = format!("listed vertices have no {head}");
-        reader.push(
-            Diagnostic::error("NB0222", reader.span(raw), message)
-                .label("needs a mesh")
-                .help("use `mesh: Triangles(vertices: [...], indices: [...])`, which has tangents of its own"),
-        );
+        let help = "use `mesh: Triangles(vertices: [...], indices: [...])`, which has tangents of its own";
+        reader.push(finding("NB0222", reader.span(raw), message, "needs a mesh", help));
         return None;
     }
     match FIELDS.iter().find(|(word, _)| *word == head && rest.is_empty()) {
