@@ -85,8 +85,7 @@ pub(super) struct Sum;
 
 impl Unit for Sum {
     known_as!(
-        "sum",
-        &["CMB-7", "NUM-2", "NUM-3"],
+        "sum", &["CMB-7", "NUM-2", "NUM-3"],
         "AB + CD: the sum of two products at full width, rounded once, saturated"; shows .. => 3..;
         takes [["in.a", "in.b", "in.c", "in.d"].map(Column::factor)];
         gives [Column::results(["mid.ab", "mid.cd", "mid.sum"], WIDE), Column::result("out.sum", Kind::Signed(9))]

@@ -85,8 +85,7 @@ fn planned(inputs: &[i64], all: bool) -> PlannedFinal {
 
 impl Unit for FinalCombiner {
     known_as!(
-        "final-combiner",
-        &["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"],
+        "final-combiner", &["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"],
         "A B + (1 - A) C + D of red, G of alpha; an input is a register of its own, SPARE0 + SECONDARY, or E F";
         shows CONFIGURATION.. => 7..;
         takes [

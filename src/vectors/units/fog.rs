@@ -98,10 +98,8 @@ pub(super) struct LightUnit;
 
 impl Unit for LightUnit {
     known_as!(
-        "light-unit",
-        &["FOG-1", "FOG-3"],
-        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth",
-        Geometry;
+        "light-unit", &["FOG-1", "FOG-3"],
+        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth", Geometry;
         takes [["in.a", "in.b", "in.c", "in.d"].map(|name| Column::word(name, 32))];
         gives [Column::results(["mid.a", "mid.b", "mid.c", "mid.d", "out.product", "out.sum"], Kind::Hex(32))]
     );

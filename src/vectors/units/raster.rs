@@ -69,10 +69,8 @@ pub(super) struct Coverage;
 
 impl Unit for Coverage {
     known_as!(
-        "coverage",
-        &["RAS-2", "RAS-3"],
-        "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel",
-        Geometry;
+        "coverage", &["RAS-2", "RAS-3"],
+        "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel", Geometry;
         takes [geometry()];
         gives [Column::results(EDGES, Kind::Signed(36)), Column::result("out.covered", Kind::Unsigned(1))]
     );
@@ -108,10 +106,8 @@ pub(super) struct ColorWeights;
 
 impl Unit for ColorWeights {
     known_as!(
-        "color-weights",
-        &["INT-1", "INT-2", "INT-3", "INT-6"],
-        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder",
-        Geometry;
+        "color-weights", &["INT-1", "INT-2", "INT-3", "INT-6"],
+        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder", Geometry;
         takes [geometry(), W.map(w)];
         gives [
             Column::results(EDGES, Kind::Signed(36)),
@@ -164,10 +160,8 @@ pub(super) struct DepthInterpolation;
 
 impl Unit for DepthInterpolation {
     known_as!(
-        "depth-interpolation",
-        &["DEP-1"],
-        "the depth of a covered pixel from three vertex depths in units of the buffer's last bit",
-        Geometry;
+        "depth-interpolation", &["DEP-1"],
+        "the depth of a covered pixel from three vertex depths in units of the buffer's last bit", Geometry;
         takes [
             geometry(),
             Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]),
@@ -259,10 +253,8 @@ pub(super) struct TextureCoordinate;
 
 impl Unit for TextureCoordinate {
     known_as!(
-        "texture-coordinate",
-        &["INT-1", "INT-4", "INT-4t", "INT-6"],
-        "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1",
-        Geometry;
+        "texture-coordinate", &["INT-1", "INT-4", "INT-4t", "INT-6"],
+        "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1", Geometry;
         takes [
             geometry(),
             W.map(w),

@@ -40,10 +40,8 @@ fn blend_state(inputs: &[i64]) -> state::Blend {
 
 impl Unit for Blend {
     known_as!(
-        "blend",
-        &["ROP-2", "ROP-3", "ROP-4"],
-        "a fragment blended with what a surface of eight bits a channel holds",
-        Direct;
+        "blend", &["ROP-2", "ROP-3", "ROP-4"],
+        "a fragment blended with what a surface of eight bits a channel holds", Direct;
         takes [
             Column::choice::<BlendEquation>("cfg.equation"),
             ["cfg.source_factor", "cfg.destination_factor"].map(Column::choice::<BlendFactor>),

@@ -226,10 +226,8 @@ const PAIRS: usize = anisotropy::MAX_TAPS / 2;
 
 impl Unit for AnisotropyTaps {
     known_as!(
-        "anisotropy-taps",
-        &["TEX-11", "TEX-17"],
-        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel",
-        Geometry;
+        "anisotropy-taps", &["TEX-11", "TEX-17"],
+        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel", Geometry;
         takes [Column::listed("cfg.limit", Kind::Unsigned(4), &[2, 4, 8]), footprint()]
     );
 
@@ -294,10 +292,8 @@ pub(super) struct CylindricalWrap;
 
 impl Unit for CylindricalWrap {
     known_as!(
-        "cylindrical-wrap",
-        &["CYL-1"],
-        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign",
-        Geometry;
+        "cylindrical-wrap", &["CYL-1"],
+        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign", Geometry;
         takes [
             Column::choice::<AddressMode>("cfg.mode"),
             ["in.s0", "in.s1", "in.s2"].map(|name| Column::float(name, true, 8)),

@@ -49,10 +49,8 @@ pub(super) struct CompressedBlock;
 
 impl Unit for CompressedBlock {
     known_as!(
-        "compressed-block",
-        &["TEX-2", "TEX-3", "TEX-4"],
-        "the texel in a column and row of a DXT block; DXT1 has two words, the others four",
-        Direct;
+        "compressed-block", &["TEX-2", "TEX-3", "TEX-4"],
+        "the texel in a column and row of a DXT block; DXT1 has two words, the others four", Direct;
         takes [
             formats(is_compressed),
             ["in.word0", "in.word1", "in.word2", "in.word3"].map(|name| Column::word(name, 32)),

@@ -91,10 +91,8 @@ pub(super) struct LinearAddress;
 
 impl Unit for LinearAddress {
     known_as!(
-        "linear-address",
-        &["TEX-6", "TEX-7", "TEX-8"],
-        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths",
-        Geometry;
+        "linear-address", &["TEX-6", "TEX-7", "TEX-8"],
+        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths", Geometry;
         takes [addressing()];
         gives [
             Column::result("mid.index", Kind::Signed(17)),
@@ -141,8 +139,7 @@ pub(super) struct Bilinear;
 
 impl Unit for Bilinear {
     known_as!(
-        "bilinear",
-        &["TEX-6"],
+        "bilinear", &["TEX-6"],
         "one channel of four texels mixed along u on both rows, then along v; signed channels are -128..127";
         shows ..4 => 3..;
         takes [
@@ -181,10 +178,8 @@ pub(super) struct CubeFace;
 
 impl Unit for CubeFace {
     known_as!(
-        "cube-face",
-        &["TEX-12", "TEX-13"],
-        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel",
-        Geometry;
+        "cube-face", &["TEX-12", "TEX-13"],
+        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel", Geometry;
         takes [
             Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512]),
             ["in.x", "in.y", "in.z"].map(|name| Column::float(name, true, 4)),

@@ -74,10 +74,8 @@ fn classic(inputs: &[i64], profile: Profile) -> Option<Combiners> {
 
 impl Unit for Classic {
     known_as!(
-        "texture-environment",
-        RULES,
-        "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format",
-        Direct;
+        "texture-environment", RULES,
+        "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format", Direct;
         takes [
             some("cfg.mode", |mode| !is_combining(mode)),
             Column::choice::<BaseFormat>("cfg.base_format"),
@@ -145,10 +143,8 @@ fn combine(inputs: &[i64], profile: Profile) -> Option<Combiners> {
 
 impl Unit for Combine {
     known_as!(
-        "texture-combine",
-        RULES,
-        "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone",
-        Direct;
+        "texture-combine", RULES,
+        "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone", Direct;
         takes [
             some("cfg.mode", is_combining),
             Column::choice::<Function>("cfg.function"),

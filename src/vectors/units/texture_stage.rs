@@ -74,10 +74,8 @@ fn places(inputs: &[i64]) -> [(Register, usize); 3] {
 
 impl Unit for Stage {
     known_as!(
-        "texture-stage",
-        RULES,
-        "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current",
-        Direct;
+        "texture-stage", RULES,
+        "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current", Direct;
         takes [
             some("cfg.operation", combines),
             ["cfg.complement1", "cfg.alpha_replicate1", "cfg.complement2", "cfg.alpha_replicate2"].map(Column::flag),
