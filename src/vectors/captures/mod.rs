@@ -76,12 +76,16 @@ impl Drawn {
 /// A frame that was captured.
 #[derive(Clone)]
 pub struct Frame {
-    suite: &'static str,
-    name: String,
+    /// The suite of the test programs.
+    pub suite: &'static str,
+    /// The frame's name: that of the picture, without its ending.
+    pub name: String,
     make: Make,
-    text: Vec<Rectangle>,
+    /// Where the programs printed text: pixels there are not compared.
+    pub text: Vec<Rectangle>,
     digest: &'static str,
-    open: Option<Open>,
+    /// What is known to be wrong with it.
+    pub open: Option<Open>,
 }
 
 /// A frame that is not drawn exactly, and the rule of which something is not known.
@@ -100,16 +104,9 @@ impl fmt::Debug for Frame {
 }
 
 /// Frames of the table that nothing here draws, or the other way round: an error of this crate.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{} frames and rows do not meet: {}", .0.len(), .0[..self.0.len().min(3)].join("; "))]
 pub struct Unmatched(pub Vec<String>);
-
-impl fmt::Display for Unmatched {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} frames and rows do not meet: {}", self.0.len(), self.0[..self.0.len().min(3)].join("; "))
-    }
-}
-
-impl std::error::Error for Unmatched {}
 
 /// All suites, in the order of the table.
 pub fn suites() -> impl Iterator<Item = &'static str> {
@@ -258,26 +255,6 @@ fn row(line: &'static str) -> Option<Row> {
 }
 
 impl Frame {
-    /// The suite of the test programs.
-    pub fn suite(&self) -> &'static str {
-        self.suite
-    }
-
-    /// The frame's name: that of the picture, without its ending.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Where the programs printed text: pixels there are not compared.
-    pub fn text(&self) -> &[Rectangle] {
-        &self.text
-    }
-
-    /// What is known to be wrong with it.
-    pub fn open(&self) -> Option<Open> {
-        self.open
-    }
-
     /// Draws it: R, G, B, A of every pixel, row by row from the top.
     ///
     /// # Errors
