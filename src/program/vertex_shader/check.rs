@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::print::{letters, name};
 use super::{InstructionPlaces, Written, flow};
-use crate::finding::finding;
+use crate::finding::{finding, warning};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::vertex::shader::{
     CONSTANTS, DestinationRegister, INPUTS, Instruction, Opcode, SLOTS, SourceRegister, TEMPORARIES,
@@ -163,16 +163,10 @@ fn scalar(instruction: &Instruction, places: &InstructionPlaces, findings: &mut 
     }
     let word = instruction.opcode.word();
     let taken = letters([source.swizzle[3]]);
-    findings.push(
-        Diagnostic::warning(
-            "NB0912",
-            places.sources[0].clone(),
-            format!("`{word}` reads one component, which is not named"),
-        )
-        .label(format!("taken as .{taken}"))
-        .rule("VTX-1")
-        .help(format!("write `.{taken}` or another component behind the register")),
-    );
+    let message = format!("`{word}` reads one component, which is not named");
+    let label = format!("taken as .{taken}");
+    let help = format!("write `.{taken}` or another component behind the register");
+    findings.push(warning("NB0912", places.sources[0].clone(), message, label, help).rule("VTX-1"));
 }
 
 /// A constant that is a row of a matrix here and something else there.

@@ -93,16 +93,10 @@ fn function<'a>(
         let [p0, p1, p2, _] = fields.parameters(reader)?;
         let per_vertex = evaluation == FogEvaluation::PerVertex;
         if p2 != 0.0 && straight && !per_vertex {
-            reader.push(
-                Diagnostic::error(
-                    "NB0223",
-                    reader.span(raw),
-                    format!("{} fog of each pixel has no third parameter", mode.name()),
-                )
-                .label("p2 multiplies the square of the coordinate")
-                .rule("FOG-2")
-                .help("write two parameters, take an exponential mode, or `evaluation: PerVertex`"),
-            );
+            let message = format!("{} fog of each pixel has no third parameter", mode.name());
+            let label = "p2 multiplies the square of the coordinate";
+            let help = "write two parameters, take an exponential mode, or `evaluation: PerVertex`";
+            reader.push(finding("NB0223", reader.span(raw), message, label, help).rule("FOG-2"));
             return None;
         }
         return Some(FogFunction { mode, p0, p1, p2, per_vertex });
@@ -115,11 +109,9 @@ fn function<'a>(
     if function.is_some() {
         return function;
     }
-    reader.push(
-        Diagnostic::error("NB0207", place.clone(), "the parameters of this fog are not finite")
-            .label("start and end too close together, or too far away")
-            .rule("FOG-2")
-            .help("write `start` and `end` the same for a wall of fog, or further apart"),
-    );
+    let message = "the parameters of this fog are not finite";
+    let label = "start and end too close together, or too far away";
+    let help = "write `start` and `end` the same for a wall of fog, or further apart";
+    reader.push(finding("NB0207", place.clone(), message, label, help).rule("FOG-2"));
     None
 }

@@ -97,12 +97,10 @@ pub(super) fn vertex_side(
         && let Some(index) = geometry.vertices.iter().position(|vertex| vertex.fog.is_nan())
     {
         // Infinite factors are limited; with a mode FOG-4 and FOG-5 say what a NaN gives.
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(index), format!("oFog of vertex {index} is not a number"))
-                .label("what the vertex program makes of it")
-                .rule("VTX-3")
-                .help("look for 0 times infinity, rsq of 0, and differences of infinities"),
-        );
+        let message = format!("oFog of vertex {index} is not a number");
+        let label = "what the vertex program makes of it";
+        let help = "look for 0 times infinity, rsq of 0, and differences of infinities";
+        reader.push(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
         return false;
     }
     if sets.is_none() && fog.function.is_none() {

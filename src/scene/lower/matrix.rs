@@ -57,13 +57,9 @@ pub(super) fn evaluate<'a>(
         return Some(matrix);
     }
     let place = reader.span(raw);
-    reader.push(
-        Diagnostic::error("NB0207", place, "this matrix is not finite")
-            .label("a division by zero, or numbers too large")
-            .help(
-                "near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero",
-            ),
-    );
+    let label = "a division by zero, or numbers too large";
+    let help = "near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero";
+    reader.push(finding("NB0207", place, "this matrix is not finite", label, help));
     None
 }
 

@@ -166,11 +166,9 @@ fn without_q(shader: &mut [ShaderStage; TEXTURE_UNITS], sets: &mut [Option<usize
 /// The warning that a texture is bound for nothing.
 fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
     let place = units.places[index].clone();
-    reader.push(
-        Diagnostic::warning("NB0905", place, format!("unit {index} has a texture that is not sampled"))
-            .label(format!("no instruction of the pixel shader samples into t{index}"))
-            .help(format!("write `Unbound` here, or `tex t{index}` in the shader")),
-    );
+    let label = format!("no instruction of the pixel shader samples into t{index}");
+    let help = format!("write `Unbound` here, or `tex t{index}` in the shader");
+    reader.push(warning("NB0905", place, format!("unit {index} has a texture that is not sampled"), label, help));
 }
 
 /// What keeps a unit from doing what the shader asks of it.

@@ -196,11 +196,9 @@ pub(super) fn clip<'a>(
     let clip = rectangle(reader, raw, (what, 0))?;
     let inside = |at: u32, size: u32, whole: u32| at.checked_add(size).is_some_and(|end| end <= whole);
     if !inside(clip.x, clip.width, target.width) || !inside(clip.y, clip.height, target.height) {
-        reader.push(
-            Diagnostic::error("NB0215", reader.span(raw), format!("the {what} reaches outside the target"))
-                .label(format!("target \"{}\" is {} x {}", shorten(&target.name), target.width, target.height))
-                .help("x + width and y + height must not exceed the target"),
-        );
+        let label = format!("target \"{}\" is {} x {}", shorten(&target.name), target.width, target.height);
+        let help = "x + width and y + height must not exceed the target";
+        reader.push(finding("NB0215", reader.span(raw), format!("the {what} reaches outside the target"), label, help));
     }
     Some(clip)
 }

@@ -34,11 +34,10 @@ pub(super) fn register_words<'a>(
             listed(reader, text, &mut inside)?
         }
         _ => {
-            reader.push(
-                Diagnostic::error("NB0202", opening, "register words are those of one chip")
-                    .label("one of `nv10`, `nv20`, `text` and `file` is to be here")
-                    .help("write `RegisterWords(nv10: (rc_in_rgb: [0x08040000], ...))`, `nv20: (...)`, or `file: \"words.txt\"`"),
-            );
+            let label = "one of `nv10`, `nv20`, `text` and `file` is to be here";
+            let help =
+                "write `RegisterWords(nv10: (rc_in_rgb: [0x08040000], ...))`, `nv20: (...)`, or `file: \"words.txt\"`";
+            reader.push(finding("NB0202", opening, "register words are those of one chip", label, help));
             return None;
         }
     };

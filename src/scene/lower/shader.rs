@@ -66,16 +66,10 @@ pub(super) fn shader<'a>(
         let written = &units.places[index];
         if units.bound[index].is_some() && !units.shader[index].operation.samples() {
             let operation = units.shader[index].operation.name();
-            reader.push(
-                Diagnostic::warning(
-                    "NB0905",
-                    written.clone(),
-                    format!("unit {index} has a texture that is not sampled"),
-                )
-                .label(format!("its stage of the texture shader is {operation}"))
-                .rule("TSH-10")
-                .help("write `Unbound` here, or a stage that samples"),
-            );
+            let message = format!("unit {index} has a texture that is not sampled");
+            let label = format!("its stage of the texture shader is {operation}");
+            let help = "write `Unbound` here, or a stage that samples";
+            reader.push(warning("NB0905", written.clone(), message, label, help).rule("TSH-10"));
         }
     }
 }
@@ -210,12 +204,9 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
     } else if ShaderStage::reads_too_late(shader, index) {
         let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
         let place = places.previous.clone().unwrap_or_else(|| places.stage.clone());
-        reader.push(
-            Diagnostic::error("NB0342", place, message)
-                .label("its dot product is part of what unit 2 samples with")
-                .rule("TSH-10")
-                .help("write `(operation: ..., previous: 0)` or `previous: 1`"),
-        );
+        let label = "its dot product is part of what unit 2 samples with";
+        let help = "write `(operation: ..., previous: 0)` or `previous: 1`";
+        reader.push(finding("NB0342", place, message, label, help).rule("TSH-10"));
     }
     wanted.is_none()
 }

@@ -178,12 +178,9 @@ pub(super) fn first<'a>(reader: &mut Reader<'a>, given: &mut Given, raw: &Raw<'a
     let levels = given.faces.first().map_or(1, Vec::len);
     if number as usize >= levels {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0230", place, format!("there is no level {number} to begin with"))
-                .label(if levels == 1 { "one level".to_owned() } else { format!("levels 0 to {}", levels - 1) })
-                .rule("TEX-9")
-                .help("`levels: All` makes levels down to 1 x 1"),
-        );
+        let message = format!("there is no level {number} to begin with");
+        let label = if levels == 1 { "one level".to_owned() } else { format!("levels 0 to {}", levels - 1) };
+        reader.push(finding("NB0230", place, message, label, "`levels: All` makes levels down to 1 x 1").rule("TEX-9"));
         return None;
     }
     for levels in &mut given.faces {

@@ -60,11 +60,9 @@ pub(super) fn truth<'a>(
     });
     let shading_normal = fields.shading_normal.as_ref().and_then(|raw| shading_normal(reader, raw, draws));
     if eye.is_none() && material.specular != [0.0; 3] && !lights.is_empty() {
-        reader.push(
-            Diagnostic::error("NB0391", opening.clone(), "a truth with highlights has no eye")
-                .label("`specular` is not zero, and nothing says from where it is seen")
-                .help("add `eye: (position: (x, y, z))`, or `eye: (direction: (x, y, z))` for one far away"),
-        );
+        let label = "`specular` is not zero, and nothing says from where it is seen";
+        let help = "add `eye: (position: (x, y, z))`, or `eye: (direction: (x, y, z))` for one far away";
+        reader.push(finding("NB0391", opening.clone(), "a truth with highlights has no eye", label, help));
     }
     if equation == Some(Equation::Lighting) && lights.is_empty() && hemisphere.is_none() && fields.lights.is_none() {
         let help = "add `lights: [(direction: (x, y, z))]`, or say with `equation` what else is computed";

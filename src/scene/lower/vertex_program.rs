@@ -155,12 +155,10 @@ fn run(
         let outputs = evaluate(shader, constants, &registers);
         if let Some(what) = written.not_finite(&outputs) {
             let spans = DrawSpans { draw: 0..0, vertices: given.spans.clone(), ..DrawSpans::default() };
-            reader.push(
-                Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
-                    .label("what the vertex program makes of it")
-                    .rule("VTX-3")
-                    .help("look for rcp or rsq of 0, log of 0, and numbers too large"),
-            );
+            let message = format!("{what} of vertex {index} is not finite");
+            let label = "what the vertex program makes of it";
+            let help = "look for rcp or rsq of 0, log of 0, and numbers too large";
+            reader.push(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
             return None;
         }
         fog_coordinates.push(outputs.fog[0]);

@@ -46,16 +46,10 @@ pub(super) fn constants<'a>(
         }
         let taken = (first..first + rows.len()).find_map(|index| Some((index, given[index].clone()?)));
         if let Some((index, other)) = taken {
-            reader.push(
-                Diagnostic::error("NB0388", place, format!("c{index} has a value already"))
-                    .label(if rows.len() == 1 {
-                        "again here".to_owned()
-                    } else {
-                        format!("c{first} to c{}", first + 3)
-                    })
-                    .related(other, "first here")
-                    .help("keep one of them; a matrix takes four constants, and `def` gives one its value as well"),
-            );
+            let message = format!("c{index} has a value already");
+            let label = if rows.len() == 1 { "again here".to_owned() } else { format!("c{first} to c{}", first + 3) };
+            let help = "keep one of them; a matrix takes four constants, and `def` gives one its value as well";
+            reader.push(finding("NB0388", place, message, label, help).related(other, "first here"));
             continue;
         }
         for (offset, row) in rows.iter().enumerate() {
