@@ -358,6 +358,16 @@ impl<'t> Parser<'t> {
     }
 }
 
+/// The name of a mapping, without `GL_` and `_NV`.
+pub fn mapping_name(mapping: InputMapping) -> &'static str {
+    MAPPINGS.split(' ').nth(mapping as usize).unwrap_or_default()
+}
+
+/// The name of a bias, likewise.
+pub fn bias_name(bias: Bias) -> &'static str {
+    BIASES.iter().find(|(_, known)| *known == bias).map_or("", |(name, _)| *name)
+}
+
 /// OpenGL's words in findings about legality.
 #[derive(Clone, Copy, Debug)]
 pub struct Words;
