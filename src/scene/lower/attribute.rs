@@ -1,8 +1,5 @@
 //! What of a mesh goes into the vertices.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
-)]
+#![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::matrix::{dot, normalize, subtract};
 use super::names::Names;

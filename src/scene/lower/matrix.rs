@@ -1,8 +1,5 @@
 //! Matrices: four rows, or built from a few parameters. Column vectors: a position p becomes M p.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
-)]
+#![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::names::Table;
 use super::*;
