@@ -101,13 +101,12 @@ fn through(canvas: &mut Canvas, first: &Texture, draws: Vec<Draw>, edges: [f32; 
 }
 
 /// Blend_tests: one pair of factors large, and for each factor of the source all of the destination.
-pub(super) fn tests() -> Frames {
+pub(super) fn tests(frames: &mut Frames) {
     let grey = |dark: u32, size| checker([abgr(dark), abgr(0xff00_0000)], size);
     let background = |size| images::texture(TextureFormat::A8B8G8R8, [256, 256], grey(0xff20_2020, size));
     let first = |size, field| Arc::new(images::texture(TextureFormat::A8B8G8R8, size, grey(0x3333_3333, field)));
     let (large, small) = (Arc::new(background(24)), Arc::new(background(16)));
     let (square, strip, sheet) = (first([256, 256], 16), first([64, 256], 16), first([512, 512], 8));
-    let mut frames = Frames::default();
     for (equation_name, equation) in EQUATIONS {
         for (source_name, source) in FACTORS {
             for (name, destination) in FACTORS {
@@ -142,7 +141,6 @@ pub(super) fn tests() -> Frames {
             });
         }
     }
-    frames
 }
 
 /// The formats that are blended, and how their words are read.
@@ -249,8 +247,7 @@ fn textures_blended(format: SurfaceFormat, read: TextureFormat, destination: Ble
 }
 
 /// Blend_surface.
-pub(super) fn surfaces() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn surfaces(frames: &mut Frames) {
     for (name, format, read) in SURFACES {
         for (prefix, factor) in
             [("DstAlpha", BlendFactor::DestinationAlpha), ("1-DstAlpha", BlendFactor::OneMinusDestinationAlpha)]
@@ -262,7 +259,6 @@ pub(super) fn surfaces() -> Frames {
             frames.make(format!("{name}_Add_SrcA_{suffix}"), move || textures_blended(format, read, factor));
         }
     }
-    frames
 }
 
 /// A picture blended and opaque into memory of zeros, which is then read as 32 bits a pixel, whatever they were.
@@ -295,8 +291,7 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
 }
 
 /// Surface_format.
-pub(super) fn surface_formats() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn surface_formats(frames: &mut Frames) {
     for (name, format) in [
         ("X1R5G5B5_Z1R5G5B5", SurfaceFormat::X1R5G5B5Z),
         ("X1R5G5B5_O1R5G5B5", SurfaceFormat::X1R5G5B5O),
@@ -311,12 +306,10 @@ pub(super) fn surface_formats() -> Frames {
     ] {
         frames.make(format!("Fmt_{name}"), move || surface_format(format));
     }
-    frames
 }
 
 /// Alpha_func: ramps of alpha, wide and steep, and one value.
-pub(super) fn alpha_function() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn alpha_function(frames: &mut Frames) {
     let names = "Never LessThan Equal LessThanOrEqual GreaterThan NotEqual GreaterThanOrEqual Always".split(' ');
     for (name, function) in names.zip(CompareFunction::ALL.iter().copied()) {
         for (state, enabled) in [("Enabled", true), ("Disabled", false)] {
@@ -339,11 +332,10 @@ pub(super) fn alpha_function() -> Frames {
             frames.push(format!("AlphaFunc{name}_{state}"), Drawn::colors(scene));
         }
     }
-    frames
 }
 
 /// Color_mask_blend: the destination's alpha as a factor where alpha itself is not written.
-pub(super) fn color_mask() -> Frames {
+pub(super) fn color_mask(frames: &mut Frames) {
     let mut canvas = Canvas::new(0x3022_2222);
     for (edges, color) in [
         ([20.0, 120.0, 320.0, 360.0], 0xccff_ffff),
@@ -366,7 +358,5 @@ pub(super) fn color_mask() -> Frames {
         canvas.draw(Draw { blend, color_mask: COLORS, ..triangles });
         alphas = alphas.map(|alpha| alpha * 0.75);
     }
-    let mut frames = Frames::default();
     frames.push("C00010101_O32774_S772_D0", canvas.colors());
-    frames
 }

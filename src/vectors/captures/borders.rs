@@ -117,20 +117,17 @@ fn border_sizes() -> Drawn {
 }
 
 /// Texture_border, without its cube maps.
-pub(super) fn borders() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn borders(frames: &mut Frames) {
     frames.make("2D", || modes([255, 0, 255, 0xf0], None));
     frames.make("xemu#1034", || modes([0x55, 0x9f, 0xff, 0xf0], Some([0xff, 0x55, 0x33, 0xf0])));
     frames.make("2D_BorderTex_SZ", border_sizes);
-    frames
 }
 
 /// Texture_border_color: the border colour beside texels of every format.
-pub(super) fn border_color() -> Frames {
+pub(super) fn border_color(frames: &mut Frames) {
     use TextureFormat::*;
     let formats = [A8, R5G6B5, R8B8, G8B8, R6G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
     let in_texels = [A8, R5G6B5, G8B8, X1R5G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
-    let mut frames = Frames::default();
     frames.make("TextureBorderColor", move || {
         let mut canvas = Canvas::new(0xff10_1010);
         let fields = checker([abgr(0xff00_0000), abgr(0xff44_4444)], 8);
@@ -148,5 +145,4 @@ pub(super) fn border_color() -> Frames {
         }
         canvas.colors()
     });
-    frames
 }

@@ -56,7 +56,7 @@ fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> Drawn {
 }
 
 /// Color_key.
-pub(super) fn frames() -> Frames {
+pub(super) fn frames(frames: &mut Frames) {
     let textures: Vec<Texture> = (0..4).map(texture).collect();
     let centers = [
         [[-2.6, 1.25], [-1.0, 1.25]],
@@ -70,7 +70,6 @@ pub(super) fn frames() -> Frames {
         ("Color", Some(ColorKeyMode::Color)),
         ("AlphaColor", Some(ColorKeyMode::Texel)),
     ];
-    let mut frames = Frames::default();
     for (prefix, ignores_alpha) in [("", false), ("IgnAlphaCh_", true)] {
         for (suffix, mode) in modes {
             for (kind, offset) in [("FixedTex", 0.53125), ("ProgTex", 0.0)] {
@@ -100,5 +99,4 @@ pub(super) fn frames() -> Frames {
     let without_alpha = linear_texture(TextureFormat::X8R8G8B8, 64, |x, y| checker(x, y, opposites, 16));
     let draw = keyed(0, square([0.0, 0.0], 0.0), texel(0, 0xcc00_ff00), shown());
     frames.push("XAlphaFormat", drawn(0xff99_9999, vec![without_alpha], vec![draw]));
-    frames
 }

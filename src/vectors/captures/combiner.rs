@@ -374,8 +374,7 @@ fn special_inputs() -> Drawn {
 }
 
 /// Combiner.
-pub(super) fn frames() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn frames(frames: &mut Frames) {
     frames.make("Mux", mux);
     frames.make("Independence", independence);
     frames.make("ColorAlphaIndependence", color_and_alpha);
@@ -384,5 +383,4 @@ pub(super) fn frames() -> Frames {
     frames.make("AlphaFromBlue", alpha_from_blue);
     frames.make("CombinerOps", operations);
     frames.make("SpecialInputs", special_inputs);
-    frames
 }

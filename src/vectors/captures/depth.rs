@@ -73,8 +73,7 @@ fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
 }
 
 /// Depth_buffer.
-pub(super) fn formats() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn formats(frames: &mut Frames) {
     for (format, bits, deepest) in FORMATS {
         let range = (format == DepthFormat::Z24S8F).then_some(FLOAT_RANGE);
         let depth_test = Some(in_steps(CompareFunction::Less, true, range));
@@ -94,5 +93,4 @@ pub(super) fn formats() -> Frames {
             }
         }
     }
-    frames
 }

@@ -45,8 +45,7 @@ fn floor(range: DepthRange, bias: f32) -> Drawn {
 }
 
 /// Depth_Clamp: the frames of z buffers whose vertices lie before the eye.
-pub(super) fn clamped() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn clamped(frames: &mut Frames) {
     for clamps in [false, true] {
         for biased in [false, true] {
             for whole in [false, true] {
@@ -62,7 +61,6 @@ pub(super) fn clamped() -> Frames {
             }
         }
     }
-    frames
 }
 
 /// What z and w of a block's quads are.
@@ -126,7 +124,7 @@ fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
 }
 
 /// ZMinMaxControl: the frames of z buffers whose vertices go straight to the window.
-pub(super) fn controls() -> Frames {
+pub(super) fn controls(frames: &mut Frames) {
     let mut vertices = Vec::new();
     let columns = [90.0_f32, 90.0 + 126.72 + 90.0, 90.0 + 126.72 + 90.0 + 126.72 + 90.0];
     for (column, [upper, lower]) in columns.into_iter().zip([
@@ -138,7 +136,6 @@ pub(super) fn controls() -> Frames {
         block([column, 252.0], lower, &mut vertices);
     }
     let quads = draw(Topology::Quads, vertices);
-    let mut frames = Frames::default();
     for (prefix, drops_triangles) in [("", false), ("NEARFAR_", true)] {
         for (mode, clamps) in [("ZCULL", false), ("ZCLAMP", true)] {
             let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
@@ -153,5 +150,4 @@ pub(super) fn controls() -> Frames {
             }
         }
     }
-    frames
 }

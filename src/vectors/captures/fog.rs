@@ -99,29 +99,27 @@ fn one(clear: u32, draw: Draw) -> Drawn {
     canvas.colors()
 }
 
-fn all_modes(is_program: bool, coordinate: fn(f32) -> f32) -> Frames {
-    let mut frames = Frames::default();
+fn all_modes(frames: &mut Frames, is_program: bool, coordinate: fn(f32) -> f32) {
     for (name, mode) in MODES {
         let function = function(mode, parameters(mode, 1.0));
         let draw = triangles(is_program, coordinate, function, [0x30, 0x20, 0x7f]);
         frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, draw));
     }
-    frames
 }
 
 /// Fog: the depth before the eye.
-pub(super) fn planar() -> Frames {
-    all_modes(false, |w| w)
+pub(super) fn planar(frames: &mut Frames) {
+    all_modes(frames, false, |w| w);
 }
 
 /// Fog_vsh: a vertex program passes w.
-pub(super) fn of_program() -> Frames {
-    all_modes(true, |w| w)
+pub(super) fn of_program(frames: &mut Frames) {
+    all_modes(frames, true, |w| w);
 }
 
 /// Fog_inf_coord: a vertex program passes the reciprocal of 0.
-pub(super) fn infinite() -> Frames {
-    all_modes(true, |_| f32::INFINITY)
+pub(super) fn infinite(frames: &mut Frames) {
+    all_modes(frames, true, |_| f32::INFINITY);
 }
 
 /// Components that a vertex program writes, in its order, one instruction after the other, and the four values. An instruction that writes
@@ -177,8 +175,7 @@ fn taken(written: &str, values: [f32; 4]) -> f32 {
 }
 
 /// Fog_coord_vec4.
-pub(super) fn of_components() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn of_components(frames: &mut Frames) {
     let function = function(FogMode::Linear, [1.0, 1.0]);
     for (written, values) in COMPONENTS {
         let draw = triangles(true, |_| taken(written, values), function, [0, 255, 0]);
@@ -192,7 +189,6 @@ pub(super) fn of_components() -> Frames {
     let mut combiners = mixed(FinalRegister::ConstantColor0, FinalRegister::PrimaryColor);
     combiners.final_combiner.constants[0] = [127, 0, 191, 255];
     frames.push("CoordNotSet", one(0xff34_1010, Draw { combiners, ..draw }));
-    frames
 }
 
 /// A rectangle of the screen whose right edge lies farther away: corners clockwise from the upper left, w on the left and on the right.
@@ -233,8 +229,7 @@ fn steps(first: f32, step: f32) -> impl Iterator<Item = f32> {
 const RED: [u8; 3] = [255, 0, 0];
 
 /// Fog_param: 320 coordinates through eight multipliers, and 340 biases.
-pub(super) fn parameters_varied() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn parameters_varied(frames: &mut Frames) {
     for (name, mode) in MODES {
         let name = name.replace("linear", "lin");
         let bias = match mode {
@@ -262,7 +257,6 @@ pub(super) fn parameters_varied() -> Frames {
             canvas.colors()
         });
     }
-    frames
 }
 
 /// Where Fog_gen takes its coordinates from.
@@ -280,8 +274,7 @@ fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
 }
 
 /// Fog_gen: panels farther and farther away, with coordinates of five sources; with a vertex program all but one take what it passes.
-pub(super) fn generated() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn generated(frames: &mut Frames) {
     for (name, mode) in MODES {
         for source in SOURCES {
             for is_program in [false, true] {
@@ -319,7 +312,6 @@ pub(super) fn generated() -> Frames {
             }
         }
     }
-    frames
 }
 
 /// Coordinates of every kind, as words.
@@ -359,9 +351,8 @@ fn exceptional_panel(edges: [f32; 4], d: f32) -> impl Iterator<Item = (Vertex, f
 }
 
 /// Fog_exceptional_value: a vertex program passes coordinates of every kind, or their reciprocals; one of no number under 24 pairs of parameters.
-pub(super) fn exceptional() -> Frames {
+pub(super) fn exceptional(frames: &mut Frames) {
     let places = || grid([48.0, 70.0], 64.0, [24.0, 38.0]);
-    let mut frames = Frames::default();
     for (name, mode) in MODES {
         for source in SOURCES.into_iter().filter(|source| *source != "radial") {
             for (prefix, is_reciprocal) in [("", false), ("RCP-", true)] {
@@ -387,5 +378,4 @@ pub(super) fn exceptional() -> Frames {
             }
         }
     }
-    frames
 }

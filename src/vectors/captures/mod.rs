@@ -133,7 +133,7 @@ impl Frames {
 }
 
 /// A suite by name, and what draws its frames.
-type Suite = (&'static str, fn() -> Frames);
+type Suite = (&'static str, fn(&mut Frames));
 
 const SUITES: &[Suite] = &[
     ("3D_primitive", primitives::solids),
@@ -195,17 +195,18 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     let mut unmatched = Vec::new();
     let rows: Vec<_> = TABLE.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
     for (suite, make) in SUITES.iter().filter(|(suite, _)| wanted.is_empty() || wanted.contains(suite)) {
-        let Frames(mut drawn) = make();
+        let mut drawn = Frames::default();
+        make(&mut drawn);
         for Row { name, text, digest, open, .. } in rows.iter().filter(|row| row.suite == *suite) {
-            match drawn.iter().position(|(other, _)| other == name) {
+            match drawn.0.iter().position(|(other, _)| other == name) {
                 Some(at) => {
-                    let (name, make) = drawn.swap_remove(at);
+                    let (name, make) = drawn.0.swap_remove(at);
                     all.push(Frame { suite, name, make, text: text.clone(), digest, open: *open });
                 }
                 None => unmatched.push(format!("{suite}/{name} of the table is drawn by nothing")),
             }
         }
-        unmatched.extend(drawn.iter().map(|(name, _)| format!("{suite}/{name} is not in the table")));
+        unmatched.extend(drawn.0.iter().map(|(name, _)| format!("{suite}/{name} is not in the table")));
     }
     if unmatched.is_empty() { Ok(all) } else { Err(Unmatched(unmatched)) }
 }

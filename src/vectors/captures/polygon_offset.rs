@@ -80,8 +80,7 @@ fn frame(
 }
 
 /// W_buffering: words of the z buffers, and of w buffers where no w is beyond what draws may have.
-pub(super) fn buffers() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn buffers(frames: &mut Frames) {
     for (format, prefix) in FORMATS {
         for (shape, topology, positions) in shapes() {
             for (biased, sloped) in [(0_u8, 0_u8), (0, 1), (1, 0), (1, 1)] {
@@ -105,5 +104,4 @@ pub(super) fn buffers() -> Frames {
         let drawn = frame(DepthFormat::Z24S8, Topology::Quads, &positions, PolygonOffset::default(), false);
         frames.push(format!("ZBuf24D_{name}_V1_ZB0_ZS0_ZB"), drawn);
     }
-    frames
 }

@@ -120,10 +120,9 @@ fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> Drawn {
 }
 
 /// Shade_model: colours, smooth and flat by either vertex, and textures, which do not heed it.
-pub(super) fn shade_model() -> Frames {
+pub(super) fn shade_model(frames: &mut Frames) {
     let colors = [abgr(0xff20_c0c0), abgr(0xff00_0070)];
     let texture = images::texture(TextureFormat::A8B8G8R8, [64, 64], checker(colors, 8));
-    let mut frames = Frames::default();
     for (name, topology, points) in SHAPES {
         let programmed = points.iter().map(|[x, y, ..]| without_depth(space::programmed([*x, *y, 0.1, 1.0])));
         let programmed: Vec<[f32; 4]> = programmed.collect();
@@ -154,11 +153,10 @@ pub(super) fn shade_model() -> Frames {
             }
         }
     }
-    frames
 }
 
 /// Texture_perspective: a square whose corners have other w, with perspective and without, as two triangles and as a quad.
-pub(super) fn perspective() -> Frames {
+pub(super) fn perspective(frames: &mut Frames) {
     let colors = [argb(0xff00_ffff), argb(0xff00_0000)];
     let texture = images::texture(TextureFormat::A8R8G8B8, [256, 256], checker(colors, 8));
     let texture = images::in_texels(texture);
@@ -166,7 +164,6 @@ pub(super) fn perspective() -> Frames {
         let [x, y] = corners([-1.75, 1.75, 1.75, -1.75])[n];
         space::flat([x, y, 0.0, w])
     };
-    let mut frames = Frames::default();
     for (letter, perspective) in [("y", true), ("n", false)] {
         for (kind, topology, order) in
             [("bitri", Topology::Triangles, &[0, 1, 3, 2, 3, 1][..]), ("quad", Topology::Quads, &[0, 1, 2, 3])]
@@ -185,12 +182,10 @@ pub(super) fn perspective() -> Frames {
             frames.push(format!("tex_tex_pers_{letter}_{kind}"), one(0xfe25_1135, Some(&texture), all));
         }
     }
-    frames
 }
 
 /// Attrib_float: colours beyond 0 to 1, as they are, times 1 and times 0. What the programs multiply by infinities is not drawn.
-pub(super) fn float_colors() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn float_colors(frames: &mut Frames) {
     for (name, lowest, highest) in [("0_1", 0.0, 1.0), ("-1_1", -1.0, 1.0), ("-8_1", -8.0, 1.0), ("0_8", 0.0, 8.0)] {
         let mut canvas = Canvas::new(0xff64_95ed);
         let inset = 0.2_f32;
@@ -206,11 +201,10 @@ pub(super) fn float_colors() -> Frames {
         }
         frames.push(name, canvas.colors());
     }
-    frames
 }
 
 /// High_vertex_count: small squares over each other, 34,952 vertices, however they reach the chip.
-pub(super) fn many_vertices() -> Frames {
+pub(super) fn many_vertices(frames: &mut Frames) {
     const SQUARES: u32 = 0x7ffff / 60;
     let mut vertices = Vec::new();
     let mut color = [0.0_f32, 0.5, 0.75];
@@ -238,11 +232,9 @@ pub(super) fn many_vertices() -> Frames {
         }
     }
     let drawn = one(0xff44_4444, None, draw(Topology::Quads, vertices));
-    let mut frames = Frames::default();
     for kind in ["arrays", "inlinearrays", "inlinebuffers", "inlineelements"] {
         frames.push(format!("HighVtxCount-{kind}"), drawn.clone());
     }
-    frames
 }
 
 /// The shapes of 3D_primitive.
@@ -260,8 +252,7 @@ pub(super) const FAR_DEPTHS: DepthBuffer =
     DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 };
 
 /// 3D_primitive, however vertices reach the chip.
-pub(super) fn solids() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn solids(frames: &mut Frames) {
     for (name, topology, vertices) in SOLIDS {
         let vertex = |[x, y, z, r, g, b, ..]: &Corner| {
             let [x, y, z, w] = space::fixed_function([*x, *y, *z, 1.0]);
@@ -278,11 +269,10 @@ pub(super) fn solids() -> Frames {
             frames.push(format!("{name}{kind}"), drawn.clone());
         }
     }
-    frames
 }
 
 /// Attrib_setter: colours in one format or another, where they are plain.
-pub(super) fn setters() -> Frames {
+pub(super) fn setters(frames: &mut Frames) {
     let bytes = |words: [u32; 3]| words.map(|word| VertexColor::Bytes(abgr(word)));
     let floats = |colors: [[f32; 4]; 3]| colors.map(VertexColor::Floats);
     let mut canvas = Canvas::new(0xff33_3333);
@@ -297,7 +287,5 @@ pub(super) fn setters() -> Frames {
         let corners = corners.into_iter().zip(colors).map(|(corner, color)| vertex(corner, color));
         canvas.draw(draw(Topology::Triangles, corners.collect()));
     }
-    let mut frames = Frames::default();
     frames.push("Setters-alpha", canvas.colors());
-    frames
 }

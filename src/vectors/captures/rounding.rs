@@ -157,8 +157,7 @@ fn edges() -> Drawn {
 }
 
 /// Vertex_shader_rounding_tests.
-pub(super) fn frames() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn frames(frames: &mut Frames) {
     for (name, bias) in BIASES {
         frames.push(format!("Geometry_{name}"), geometry(bias));
         frames.push(format!("AdjacentGeometry_{name}"), adjacent(bias));
@@ -167,5 +166,4 @@ pub(super) fn frames() -> Frames {
     }
     frames.push("TopLeftRaster", edges());
     frames.push("TopLeftRaster_Fixed", edges());
-    frames
 }

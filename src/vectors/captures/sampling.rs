@@ -58,8 +58,7 @@ fn pairs(unit: TextureUnit) -> Draw {
 const CONVERTED: [&str; 9] = ["A8", "A8Y8", "AY8", "G8B8", "R16B16", "R6G5B5", "R8B8", "Y16", "Y8"];
 
 /// Volume_texture, ten formats.
-pub(super) fn volumes() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn volumes(frames: &mut Frames) {
     let unit = TextureUnit { address_r: AddressMode::ClampToEdge, ..nearest(0) };
     for variant in texel_formats::variants().filter(|v| !v.in_texels && !CONVERTED.contains(&v.base)) {
         frames.make(variant.base, move || {
@@ -90,12 +89,10 @@ pub(super) fn volumes() -> Frames {
         canvas.draw(pairs(TextureUnit { palette, ..unit }));
         canvas.colors()
     });
-    frames
 }
 
 /// Texture_anisotropy: a floor to the horizon, with one to eight taps.
-pub(super) fn anisotropy() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn anisotropy(frames: &mut Frames) {
     for anisotropy in [1, 2, 4, 8] {
         let mut canvas = Canvas::new(0xfe20_2020);
         let image = checker([0xffff_ff00, 0xff66_3333].map(argb), 4);
@@ -107,12 +104,10 @@ pub(super) fn anisotropy() -> Frames {
         canvas.draw(without_alpha(fetching(draw(Topology::Quads, floor.collect()), 0, unit), FETCHED[0]));
         frames.push(format!("Anisotropy-{anisotropy}"), canvas.colors());
     }
-    frames
 }
 
 /// TextureWrapMode: coordinates that jump by one repeat and by a fifth, as they are and around a cylinder.
-pub(super) fn wrap_modes() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn wrap_modes(frames: &mut Frames) {
     let mut canvas = Canvas::new(0xff00_0000);
     let image = images::radial(SIDE, |distance| distance);
     let image = move |x: u32, y: u32| {
@@ -136,5 +131,4 @@ pub(super) fn wrap_modes() -> Frames {
         }
     }
     frames.push("CylinderWrapping", canvas.colors());
-    frames
 }

@@ -193,11 +193,10 @@ fn dotted(operation: ShaderOperation, mapping: DotMapping, eye: Eye, cube: &Text
 }
 
 /// Texture_cubemap.
-pub(super) fn cube_maps() -> Frames {
+pub(super) fn cube_maps(frames: &mut Frames) {
     let [checks, radial] = [chequered(), radial()].map(Arc::new);
     let normals = images::texture(TextureFormat::A8B8G8R8, [256, 256], assets::pixels(assets::NORMALS));
     let normals = Arc::new(normals);
-    let mut frames = Frames::default();
     for (name, q) in [("0.0", 0.0), ("-0.0", -0.0), ("1.0", 1.0), ("-1.0", -1.0)] {
         let checks = Arc::clone(&checks);
         frames.make(format!("Cubemap_q{name}"), move || {
@@ -233,7 +232,6 @@ pub(super) fn cube_maps() -> Frames {
             make(format!("DotReflectConst_{axis}"), constant(eye), Eye::Unread, &checks);
         }
     }
-    frames
 }
 
 /// Coordinates of a rectangle's four corners.
@@ -380,15 +378,13 @@ fn bump_luminance() -> Drawn {
 }
 
 /// Pixel_shader.
-pub(super) fn programs() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn programs(frames: &mut Frames) {
     frames.make("DotST", dot_2d);
     frames.make("StageDependentGreenBlue", || dependent(ShaderOperation::DependentGreenBlue));
     frames.make("StageDependentAlphaRed", || dependent(ShaderOperation::DependentAlphaRed));
     frames.make("Passthru", pass_through);
     frames.make("BumpEnvMap", bump_environment);
     frames.make("BumpEnvMapLuminance", bump_luminance);
-    frames
 }
 
 /// Squares in which the second column and the second row read more channels as signed.
@@ -473,11 +469,10 @@ type Maps = [(&'static str, bool, bool); 4];
 const MAPS: Maps = [("", false, false), ("_R90", false, true), ("_B", true, false), ("_B_R90", true, true)];
 
 /// Bump_map.
-pub(super) fn bump_maps() -> Frames {
+pub(super) fn bump_maps(frames: &mut Frames) {
     let fields = [[0xfe, 0, 0, 255], [0x22, 0x21, 0x20, 0x7f]];
     let maps =
         [[0x007f_4500, 0x0080_4500, 0x007f_4500, 0x0080_4500], [0x0045_7f00, 0x0045_7f00, 0x0045_8000, 0x0045_8000]];
-    let mut frames = Frames::default();
     for variant in variants() {
         let name = variant.name();
         let count = match name.as_str() {
@@ -497,15 +492,13 @@ pub(super) fn bump_maps() -> Frames {
     ] {
         frames.make(format!("BumpMap_R16B16{suffix}"), move || hilo(words, fields));
     }
-    frames
 }
 
 /// Bump_env_lum.
-pub(super) fn bump_maps_with_luminance() -> Frames {
+pub(super) fn bump_maps_with_luminance(frames: &mut Frames) {
     let fields = [[0xfe, 0, 0, 0x7f], [0x22, 0x21, 0x20, 0x7f]];
     let maps =
         [[0x7f01_4500, 0x8003_4500, 0x7f01_4500, 0x8003_4500], [0x0001_7f00, 0x0001_7f00, 0xff03_8000, 0xff03_8000]];
-    let mut frames = Frames::default();
     for variant in variants() {
         let name = variant.name();
         let count = if matches!(name.as_str(), "R6G5B5" | "X8R8G8B8") { 4 } else { 1 };
@@ -515,5 +508,4 @@ pub(super) fn bump_maps_with_luminance() -> Frames {
             frames.make(format!("BumpEnvLum_{name}{suffix}"), drawn);
         }
     }
-    frames
 }

@@ -173,8 +173,7 @@ fn pictures(six_bits: TextureFormat) -> Vec<(String, Box<dyn Fn() -> Pictured + 
 }
 
 /// Texture_format.
-pub(super) fn formats() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn formats(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R5G6B5) {
         frames.make(name, move || {
             let mut canvas = Canvas::new(0xfe20_2020);
@@ -183,12 +182,10 @@ pub(super) fn formats() -> Frames {
             canvas.colors()
         });
     }
-    frames
 }
 
 /// Texture_render_target: the same on a texture first.
-pub(super) fn render_targets() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn render_targets(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R6G5B5) {
         frames.make(name, move || {
             let mut canvas = Canvas::new(0xfe21_2021);
@@ -204,7 +201,6 @@ pub(super) fn render_targets() -> Frames {
             canvas.colors()
         });
     }
-    frames
 }
 
 /// A palette whose red grows, green falls and blue repeats, under a mask.
@@ -265,15 +261,13 @@ fn moved_palettes() -> Drawn {
 }
 
 /// Texture_palette.
-pub(super) fn palettes() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn palettes(frames: &mut Frames) {
     frames.make("PaletteSwapping", swapped_palettes);
     frames.make("XemuHighPaletteBug", moved_palettes);
-    frames
 }
 
 /// Texture_signed_component_tests: every set of signed channels. Fields of largest and smallest bytes stand in a larger one.
-pub(super) fn signed() -> Frames {
+pub(super) fn signed(frames: &mut Frames) {
     let image = |x: u32, y: u32| {
         let (column, row) = (x.wrapping_sub(5), y.wrapping_sub(10));
         let inside = column / 38 < 6 && column % 38 < 36 && row / 53 < 3 && row % 53 < 51;
@@ -293,7 +287,6 @@ pub(super) fn signed() -> Frames {
         portion.sum_output = Register::Zero;
     }
     let combiners = Combiners { stages: vec![stage], ..Combiners::showing(FinalRegister::Spare0) };
-    let mut frames = Frames::default();
     for flags in 0..16_u8 {
         let signed = [2, 4, 8, 1].map(|bit| flags & bit != 0);
         let mut canvas = Canvas::new(0xfe20_2020);
@@ -302,7 +295,6 @@ pub(super) fn signed() -> Frames {
         canvas.draw(Draw { combiners: combiners.clone(), ..draw });
         frames.push(format!("A8R8G8B8_0x{flags:04X}"), canvas.colors());
     }
-    frames
 }
 
 /// A unit that mixes two levels where the texture is minified.
@@ -311,8 +303,7 @@ fn levels(texture: usize) -> TextureUnit {
 }
 
 /// Texture_LOD_Bias: levels of other colours through fifteen biases.
-pub(super) fn lod_bias() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn lod_bias(frames: &mut Frames) {
     frames.make("LODBias", || {
         // A8B8G8R8.
         let colors = [0xff_0000, 0xff00, 0xff, 0xff_ffff, 0xff_ff00, 0xff_00ff, 0xffff, 0x80_8080];
@@ -337,12 +328,10 @@ pub(super) fn lod_bias() -> Frames {
         }
         canvas.colors()
     });
-    frames
 }
 
 /// Texture_DXT: the programs' images, large and through their levels.
-pub(super) fn compressed() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn compressed(frames: &mut Frames) {
     for (name, format, size, count, file) in assets::COMPRESSED {
         let words = assets::blocks(format, file);
         let code = format.name();
@@ -365,5 +354,4 @@ pub(super) fn compressed() -> Frames {
         }
         frames.push(format!("MIP{code}_{name}"), canvas.colors());
     }
-    frames
 }

@@ -83,33 +83,27 @@ fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix
 }
 
 /// Texgen. The frame of SphereMap is not drawn: normals of no length have no rule there.
-pub(super) fn generation() -> Frames {
+pub(super) fn generation(frames: &mut Frames) {
     let texture = image();
-    let mut frames = Frames::default();
     for mode in MODES.into_iter().filter(|mode| *mode != "SphereMap") {
         frames.push(mode, shown(&texture, [1.75, -1.75], mode, &IDENTITY));
     }
-    frames
 }
 
 /// Texgen_with_texture_matrix.
-pub(super) fn generation_and_matrices() -> Frames {
+pub(super) fn generation_and_matrices(frames: &mut Frames) {
     let texture = image();
-    let mut frames = Frames::default();
     for mode in MODES {
         for (name, matrix) in matrices() {
             frames.push(format!("{mode}_{name}"), shown(&texture, [1.0, -2.5], mode, &matrix));
         }
     }
-    frames
 }
 
 /// Texture_Matrix: matrices over coordinates that are given.
-pub(super) fn texture_matrices() -> Frames {
+pub(super) fn texture_matrices(frames: &mut Frames) {
     let texture = image();
-    let mut frames = Frames::default();
     for (name, matrix) in matrices() {
         frames.push(name, shown(&texture, [1.0, -2.5], "Disabled", &matrix));
     }
-    frames
 }
