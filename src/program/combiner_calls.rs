@@ -133,10 +133,10 @@ impl<'t> Parser<'t> {
             return None;
         }
         match arguments {
-            [variable, input, mapping, usage] => self.final_input(variable, input, mapping, usage),
+            [variable, input, mapping, usage] => self.final_input([variable, input, mapping, usage]),
             [stage, portion, variable, input, mapping, usage] => {
                 let (stage, alpha) = self.portion(name, stage, portion)?;
-                self.input((stage, alpha), variable, input, mapping, usage)
+                self.input((stage, alpha), [variable, input, mapping, usage])
             }
             [stage, portion, outputs @ ..] if wanted == 10 => {
                 let (stage, alpha) = self.portion(name, stage, portion)?;
@@ -236,14 +236,9 @@ impl<'t> Parser<'t> {
         Some(ninebit::combiner::final_combiner::general(register))
     }
 
-    fn input(
-        &mut self,
-        portion: (usize, bool),
-        variable: &Value<'t>,
-        input: &Value<'t>,
-        mapping: &Value<'t>,
-        usage: &Value<'t>,
-    ) -> Option<()> {
+    /// An input of a portion: the variable, the register, its mapping, its components.
+    fn input(&mut self, portion: (usize, bool), values: [&Value<'t>; 4]) -> Option<()> {
+        let [variable, input, mapping, usage] = values;
         let n = choose(variable, "variable of a general stage", &VARIABLES[..4], &mut self.reader.findings);
         let register = self.register(input);
         let mapping = choose(mapping, "mapping", &table(MAPPINGS), &mut self.reader.findings);
@@ -292,13 +287,8 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    fn final_input(
-        &mut self,
-        variable: &Value<'t>,
-        input: &Value<'t>,
-        mapping: &Value<'t>,
-        usage: &Value<'t>,
-    ) -> Option<()> {
+    /// The same of the final combiner.
+    fn final_input(&mut self, [variable, input, mapping, usage]: [&Value<'t>; 4]) -> Option<()> {
         let findings = &mut self.reader.findings;
         let n = choose(variable, "variable of the final combiner", VARIABLES, findings);
         let register = choose(input, "register", &table(REGISTERS), findings);

@@ -167,18 +167,19 @@ impl<'t> Reader<'t> {
         }
     }
 
-    fn expected(&mut self, what: &str) {
+    /// Records that something else stands here.
+    fn expected<T>(&mut self, what: &str) -> Option<T> {
         let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
         let help = format!("write {}", self.vocabulary.example);
         self.findings.push(finding("NB0103", self.cursor.place(), message, "not a statement from here", help));
+        None
     }
 
     fn sign(&mut self, sign: char) -> Option<()> {
         if self.cursor.take(sign) {
             return Some(());
         }
-        self.expected(&format!("`{sign}`"));
-        None
+        self.expected(&format!("`{sign}`"))
     }
 
     /// Skips to the next statement: behind a semicolon, or at the start of a line.
@@ -209,10 +210,7 @@ impl<'t> Reader<'t> {
                 self.cursor.skip_to(Cursor::is_new_line);
                 Ok(None)
             }
-            _ => {
-                self.expected("a call or an assignment");
-                Err(GivenUp)
-            }
+            _ => self.expected("a call or an assignment").ok_or(GivenUp),
         }
     }
 
@@ -339,8 +337,7 @@ impl<'t> Reader<'t> {
         if self.cursor.take(';') || self.cursor.is_new_line() || self.cursor.is('}') {
             return Some(());
         }
-        self.expected("`;`");
-        None
+        self.expected("`;`")
     }
 
     /// `name(a, b)`; `None` once the reason that it is none has been recorded.

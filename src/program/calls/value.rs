@@ -55,8 +55,7 @@ impl<'t> Reader<'t> {
 
     fn part(&mut self, parts: &mut Vec<Part<'t>>, depth: usize) -> Option<()> {
         if depth > MAX_BRACKET_DEPTH {
-            self.expected("a value in fewer brackets");
-            return None;
+            return self.expected("a value in fewer brackets");
         }
         let place = self.cursor.place();
         let text = self.word(&place);
@@ -70,8 +69,7 @@ impl<'t> Reader<'t> {
                 let number = self.cursor.place();
                 let text = self.word(&number);
                 if self.cursor.kind() != Some(Kind::Number) {
-                    self.expected("a number");
-                    return None;
+                    return self.expected("a number");
                 }
                 self.cursor.advance();
                 let place = place.start..number.end;
@@ -117,8 +115,7 @@ impl<'t> Reader<'t> {
                 parts.push(Part { text, place, kind: PartKind::Name });
             }
             _ => {
-                self.expected("a number or a name of the API");
-                return None;
+                return self.expected("a number or a name of the API");
             }
         }
         Some(())

@@ -59,8 +59,7 @@ pub(super) fn source<'a>(
     }
     let (kind, rest) = reader.variant(raw, "mesh attribute", SOURCES)?;
     if kind < 5 && !rest.is_empty() {
-        reader.unknown_variant(raw, "mesh attribute", SOURCES);
-        return None;
+        return reader.unknown_variant(raw, "mesh attribute", SOURCES);
     }
     Some(match kind {
         0 => Source::Position,
@@ -105,10 +104,9 @@ pub(super) fn place<'a>(
                 None => format!("this {what} has neither `position` nor `direction`"),
             };
             let place = reader.opening(text);
-            reader.push(Diagnostic::error("NB0202", place, message).label("in here").help(
+            reader.refuse(Diagnostic::error("NB0202", place, message).label("in here").help(
                 "write `position: (x, y, z)` for one that is near, `direction: (x, y, z)` (toward it) for one far away",
-            ));
-            None
+            ))
         }
     }
 }

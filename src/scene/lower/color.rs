@@ -73,8 +73,7 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
         let place = reader.range(found);
         let message = format!("expected a colour, found `{}`", shorten(found));
         let help = "write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, `Vector((0, 0, 1))`, or \"the name of a colour\"";
-        reader.push(finding("NB0205", place, message, "not a colour", help));
-        return None;
+        return reader.refuse(finding("NB0205", place, message, "not a colour", help));
     }
     let mut numbers = Raw::<Numbers>::new(rest);
     if Raw::<Numbers>::new(rest.strip_prefix('(').unwrap_or(rest)).is_text() {

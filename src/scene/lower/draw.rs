@@ -330,8 +330,7 @@ fn indices<'a>(
             },
         );
         let message = format!("index {index} is past the vertices");
-        reader.push(finding("NB0212", place, message, format!("this draw has {vertices} vertices"), help));
-        return None;
+        return reader.refuse(finding("NB0212", place, message, format!("this draw has {vertices} vertices"), help));
     }
     fits(reader, fields, indices.len(), topology);
     Some(indices.into())

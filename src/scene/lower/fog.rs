@@ -77,18 +77,16 @@ fn function<'a>(
         if let Some(raw) = field {
             let message = format!("{} fog has no `{name}`", mode.name());
             let help = format!("{} takes {fitting}, or `parameters: (p0, p1, p2)`", mode.name());
-            reader.push(finding("NB0223", reader.span(raw), message, "does not go with this mode", help));
-            return None;
+            return reader.refuse(finding("NB0223", reader.span(raw), message, "does not go with this mode", help));
         }
     }
     if let Some(raw) = &fields.parameters {
         if let Some(field) = numbers.iter().find_map(|(field, _)| field.as_ref()) {
-            reader.push(
+            return reader.refuse(
                 Diagnostic::error("NB0223", reader.span(field), "fog has `parameters` or a range or density, not both")
                     .label("one or the other")
                     .related(reader.span(raw), "the parameters"),
             );
-            return None;
         }
         let [p0, p1, p2, _] = fields.parameters(reader)?;
         let per_vertex = evaluation == FogEvaluation::PerVertex;
@@ -96,8 +94,7 @@ fn function<'a>(
             let message = format!("{} fog of each pixel has no third parameter", mode.name());
             let label = "p2 multiplies the square of the coordinate";
             let help = "write two parameters, take an exponential mode, or `evaluation: PerVertex`";
-            reader.push(finding("NB0223", reader.span(raw), message, label, help).rule("FOG-2"));
-            return None;
+            return reader.refuse(finding("NB0223", reader.span(raw), message, label, help).rule("FOG-2"));
         }
         return Some(FogFunction { mode, p0, p1, p2, per_vertex });
     }
@@ -112,6 +109,5 @@ fn function<'a>(
     let message = "the parameters of this fog are not finite";
     let label = "start and end too close together, or too far away";
     let help = "write `start` and `end` the same for a wall of fog, or further apart";
-    reader.push(finding("NB0207", place.clone(), message, label, help).rule("FOG-2"));
-    None
+    reader.refuse(finding("NB0207", place.clone(), message, label, help).rule("FOG-2"))
 }

@@ -140,8 +140,7 @@ pub(super) fn vertex_side(
         }
         let message = format!("a texture coordinate of vertex {index} is not finite");
         let help = "use smaller numbers in the matrices, in the planes or in the position";
-        reader.push(finding("NB0207", spans.vertex(index), message, "beyond all numbers", help).rule("TSH-11"));
-        None
+        reader.refuse(finding("NB0207", spans.vertex(index), message, "beyond all numbers", help).rule("TSH-11"))
     });
     let Some(made) = made.collect() else { return false };
     geometry.vertices = made;
@@ -197,8 +196,7 @@ pub(super) fn geometry<'a>(
             let [list] = parts[..] else {
                 let message = "expected one list of vertices in these parentheses";
                 let help = "write `Window([(position: (10, 20)), ...])`";
-                reader.push(finding("NB0211", reader.span(&list), message, "here", help));
-                return None;
+                return reader.refuse(finding("NB0211", reader.span(&list), message, "here", help));
             };
             let data = names.vertices(reader, &list)?;
             Some(Geometry {
@@ -253,8 +251,7 @@ fn matrix_geometry<'a>(
             (vertices, VertexSpans::All(reader.span(raw)), Some(mesh), objects)
         }
         (both, _) => {
-            reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
-            return None;
+            return reader.refuse(one_of_vertices_and_mesh(both.is_some(), opening));
         }
     };
     let (matrix, model_view) = (matrix?, model_view?);

@@ -24,18 +24,17 @@ fn parts<'a, R: Named>(
     }
     let mapping = mappings.iter().position(|name| *name == head);
     if mapping.is_none() && !(head.is_empty() && rest.starts_with('(')) {
-        if R::from_name(head).is_some() {
+        return if R::from_name(head).is_some() {
             let message = format!("`{head}` takes nothing in parentheses");
             let help = format!("for a component write `({head}, Alpha)`");
-            reader.push(finding("NB0205", reader.range(rest), message, "not expected here", help));
+            reader.refuse(finding("NB0205", reader.range(rest), message, "not expected here", help))
         } else if FinalRegister::from_name(head).is_some() {
             let help = "use it as input A, B, C or D of `final_combiner`";
-            reader.push(only_final(reader.span(&raw), head, help));
+            reader.refuse(only_final(reader.span(&raw), head, help))
         } else {
             let known: Vec<&'static str> = R::NAMES.iter().chain(mappings).copied().collect();
-            reader.unknown_variant(&raw, "input", &known);
-        }
-        return None;
+            reader.unknown_variant(&raw, "input", &known)
+        };
     }
     let inner = Raw::<Tuple<'a, source::Word>>::new(rest);
     let list = reader.read(&inner)?.0;
@@ -45,8 +44,7 @@ fn parts<'a, R: Named>(
         _ => {
             let message = "an input is a register and perhaps a component";
             let help = "write `(Texture0, Alpha)` or `ExpandNormal(Texture0)`";
-            reader.push(finding("NB0211", reader.span(&inner), message, "here", help));
-            return None;
+            return reader.refuse(finding("NB0211", reader.span(&inner), message, "here", help));
         }
     };
     let name = register.split().0;
@@ -85,8 +83,7 @@ pub(super) fn final_input<'a>(
     if mapping.is_some_and(|m| !matches!(m, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert)) {
         let message = format!("the final combiner has no mapping {head}");
         let help = "its inputs are taken as they are, or inverted: `Spare0`, `Invert(Spare0)`; map in a general stage";
-        reader.push(finding("NB0311", reader.range(head), message, "not here", help).rule("FIN-1"));
-        return None;
+        return reader.refuse(finding("NB0311", reader.range(head), message, "not here", help).rule("FIN-1"));
     }
     let words = ["UnsignedIdentity", "Invert", "UnsignedInvert"];
     let Parts { mapping, register, component } = parts::<FinalRegister>(reader, raw.as_other(), &words)?;

@@ -29,8 +29,7 @@ pub(super) fn evaluate<'a>(
         let place = reader.opening(raw.text);
         let message = format!("more than {DEEPEST} products inside each other");
         let help = "a product takes any number of matrices: write them side by side";
-        reader.push(finding("NB0602", place, message, "one level too many", help));
-        return None;
+        return reader.refuse(finding("NB0602", place, message, "one level too many", help));
     }
     let (kind, rest) = reader.variant(raw, "matrix", KINDS)?;
     let matrix = match KINDS[kind] {
@@ -56,8 +55,7 @@ pub(super) fn evaluate<'a>(
     let place = reader.span(raw);
     let label = "a division by zero, or numbers too large";
     let help = "near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero";
-    reader.push(finding("NB0207", place, "this matrix is not finite", label, help));
-    None
+    reader.refuse(finding("NB0207", place, "this matrix is not finite", label, help))
 }
 
 fn vector<'a>(reader: &mut Reader<'a>, text: &'a str, what: &str, count: usize) -> Option<[f32; 4]> {
@@ -69,11 +67,10 @@ fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Optio
     let parts = reader.read(raw)?.0;
     if parts.len() != 4 {
         let place = reader.span(raw);
-        reader.push(
+        return reader.refuse(
             Diagnostic::error("NB0211", place, format!("a matrix has four rows, not {}", parts.len()))
                 .label(format!("{} here", parts.len())),
         );
-        return None;
     }
     let mut rows = IDENTITY;
     for (row, part) in rows.iter_mut().zip(&parts) {
@@ -106,8 +103,7 @@ fn transpose<'a>(
 ) -> Option<Rows> {
     let [part] = reader.read(raw)?.0[..] else {
         let help = "write `Transpose(\"world\")`";
-        reader.push(finding("NB0211", reader.span(raw), "one matrix is transposed at a time", "here", help));
-        return None;
+        return reader.refuse(finding("NB0211", reader.span(raw), "one matrix is transposed at a time", "here", help));
     };
     let matrix = evaluate(reader, table, &part, depth + 1)?;
     Some(std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row])))

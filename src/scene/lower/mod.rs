@@ -108,11 +108,10 @@ pub(super) fn scene<'a>(
     folder: &Path,
 ) -> Option<Found> {
     if trim(text).is_empty() {
-        reader.push(
+        return reader.refuse(
             Diagnostic::error("NB0101", 0..0, "the scene is empty")
                 .help("a scene starts with `(version: 1, profile: Nv2a, draws: [...])`"),
         );
-        return None;
     }
     let raw = reader.check::<source::Scene<'a>>(text)?;
     let file = reader.read(&raw)?;

@@ -66,16 +66,14 @@ impl<'a, S, T: Clone> Table<'a, S, T> {
             State::Active => {
                 let message = format!("the {} \"{}\" is defined by itself", self.what, shorten(&entry.name));
                 let help = "give one of the names in the circle a value of its own";
-                reader.push(finding("NB0210", entry.place.clone(), message, "leads back to itself", help));
-                return None;
+                return reader.refuse(finding("NB0210", entry.place.clone(), message, "leads back to itself", help));
             }
             State::Waiting => {}
         }
         if depth > LONGEST_CHAIN {
             let message = format!("more than {LONGEST_CHAIN} names that stand for names");
             let help = "refer to the value more directly";
-            reader.push(finding("NB0602", entry.place.clone(), message, "the chain is too long here", help));
-            return None;
+            return reader.refuse(finding("NB0602", entry.place.clone(), message, "the chain is too long here", help));
         }
         self.states.borrow_mut()[index] = State::Active;
         let value = evaluate(reader, self, &entry.value, depth + 1);
@@ -95,8 +93,7 @@ impl<'a, S, T: Clone> Table<'a, S, T> {
         let Some(index) = self.by_name.get(&name).copied() else {
             let known = self.entries.iter().map(|entry| entry.name.as_str());
             let define = format!("define it in `names: ({}: {{ ... }})`", self.table);
-            unknown_name(reader, reader.span(raw), self.what, &name, known, &define);
-            return None;
+            return unknown_name(reader, reader.span(raw), self.what, &name, known, &define);
         };
         self.used.borrow_mut()[index] = true;
         self.entry(reader, index, evaluate, depth)
@@ -154,8 +151,7 @@ impl Index {
             return *index;
         }
         let known = self.names.iter().map(|(name, _)| name.as_str());
-        unknown_name(reader, reader.span(raw), self.what, &name, known, self.define);
-        None
+        unknown_name(reader, reader.span(raw), self.what, &name, known, self.define)
     }
 
     pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
@@ -299,6 +295,5 @@ fn value<S>(reader: &mut Reader<'_>, raw: &Raw<'_, S>) -> Option<()> {
     }
     let place = reader.range(raw.text);
     let help = "use that name directly in the draws";
-    reader.push(finding("NB0205", place, "a definition here is a value, not another name", "a name", help));
-    None
+    reader.refuse(finding("NB0205", place, "a definition here is a value, not another name", "a name", help))
 }

@@ -41,8 +41,8 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
             (Some(raw), None) => ProgramText::inline(reader, raw)?,
             (Some(_), Some(raw)) => {
                 let help = "keep one of `text` and `file`";
-                reader.push(finding("NB0356", reader.span(raw), "a pixel shader is given twice", "again here", help));
-                return None;
+                let message = "a pixel shader is given twice";
+                return reader.refuse(finding("NB0356", reader.span(raw), message, "again here", help));
             }
             (None, _) => {
                 let raw = fields.file(reader)?;
@@ -51,16 +51,9 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
         }
     };
     let text = text.expanded(reader, Style::Assembler)?;
-    let program = match pixel_shader::parse(&text.text) {
-        Ok(parsed) => {
-            parsed.warnings.into_iter().for_each(|warning| reader.push(text.place(warning)));
-            parsed.program
-        }
-        Err(findings) => {
-            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
-            return None;
-        }
-    };
+    let parsed = text.parsed(reader, pixel_shader::parse(&text.text))?;
+    text.push(reader, parsed.warnings);
+    let program = parsed.program;
     for read in program.constants_read() {
         let defined = program.definitions.iter().any(|definition| definition.index == read.value);
         if !defined && constants.get(usize::from(read.value)).is_some_and(Option::is_none) {

@@ -103,8 +103,7 @@ fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> 
         let place = reader.span(raw);
         let message = format!("expected an alpha reference, found `{}`", shorten(raw.text));
         let help = "write a byte, `128`, or a float, `Float(0.5)`";
-        reader.push(finding("NB0205", place, message, "wrong kind of value", help));
-        return None;
+        return reader.refuse(finding("NB0205", place, message, "wrong kind of value", help));
     };
     let byte = word as u8;
     if u32::from(byte) != word {
@@ -131,18 +130,12 @@ fn depth_range<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthRange<'a>
     let (lowest, highest) = (fields.lowest(reader)?, fields.highest(reader)?);
     let (low, high) = (reader.finite(&lowest)?, reader.finite(&highest)?);
     if low > high {
-        reader.push(
-            Diagnostic::error(
-                "NB0206",
-                reader.span(&highest),
-                format!("the highest depth, {high}, is below the lowest"),
-            )
-            .label("below `lowest`")
-            .related(reader.span(&lowest), "the lowest")
-            .rule("DEP-4")
-            .help("exchange the two"),
+        let message = format!("the highest depth, {high}, is below the lowest");
+        return reader.refuse(
+            finding("NB0206", reader.span(&highest), message, "below `lowest`", "exchange the two")
+                .related(reader.span(&lowest), "the lowest")
+                .rule("DEP-4"),
         );
-        return None;
     }
     let (clamps, drops_triangles) = (fields.clamp(reader), fields.drop_triangles(reader));
     Some(DepthRange { lowest: low, highest: high, clamps, drops_triangles })
@@ -173,13 +166,12 @@ fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>
     if !(1..=WINDOW_CLIP_RECTANGLES).contains(&rectangles.len()) {
         let message = format!("a window clip has 1 to {WINDOW_CLIP_RECTANGLES} rectangles, not {}", rectangles.len());
         let finding = Diagnostic::error("NB0211", reader.span(&list), message);
-        reader.push(
+        return reader.refuse(
             finding
                 .label(format!("{} here", rectangles.len()))
                 .rule("CLP-1")
                 .help("leave `window_clip` out to draw everywhere, or draw in several draws"),
         );
-        return None;
     }
     let rectangles = rectangles.iter().map(|raw| rectangle(reader, raw, ("window clip's rectangle", 1)));
     let rectangles = rectangles.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()?;

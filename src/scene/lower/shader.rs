@@ -100,8 +100,7 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
     let (kind, rest) = reader.variant(raw, "texture shader operation", OPERATIONS)?;
     let takes = matches!(OPERATIONS[kind], "CullFragment" | "BumpEnvironment" | "DotReflectConstantEye");
     if kind < 13 && !takes && !rest.is_empty() {
-        reader.unknown_variant(raw, "texture shader operation", OPERATIONS);
-        return None;
+        return reader.unknown_variant(raw, "texture shader operation", OPERATIONS);
     }
     Some(match OPERATIONS[kind] {
         "None" => ShaderOperation::None,

@@ -27,13 +27,14 @@ impl<'s> Targets<'s> {
     /// The target of that name; `None` once the reason has been recorded.
     pub(super) fn find<'a>(&self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
         let name = reader.read(raw)?;
-        let found = self.by_name.get(&name).copied();
-        if found.is_none() && !self.unread {
-            let place = reader.span(raw);
-            let known = self.list.iter().map(|target| target.name.as_str());
-            unknown_name(reader, place, "target", &name, known, "define it in `targets: [(name: \"...\")]`");
+        match self.by_name.get(&name).copied() {
+            None if !self.unread => {
+                let known = self.list.iter().map(|target| target.name.as_str());
+                let define = "define it in `targets: [(name: \"...\")]`";
+                unknown_name(reader, reader.span(raw), "target", &name, known, define)
+            }
+            found => found,
         }
-        found
     }
 
     /// A finding with the target's place beside it.
@@ -199,14 +200,13 @@ pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Ra
     let (place, value) = (reader.span(raw), reader.finite(raw)?);
     let Some(buffer) = target.depth else {
         let help = "add `depth: Z24S8` (or `Z16`) to the target, or leave this out";
-        reader.push(finding("NB0216", place, "this target has no depth buffer to clear", "no depth buffer", help));
-        return None;
+        let message = "this target has no depth buffer to clear";
+        return reader.refuse(finding("NB0216", place, message, "no depth buffer", help));
     };
     let highest = if buffer.format.is_float() { f32::MAX } else { 1.0 };
     if !(0.0..=highest).contains(&value) {
         let range = if buffer.format.is_float() { "write 0.0 or more" } else { "write 0.0 (near) to 1.0 (far)" };
-        reader.push(finding("NB0206", place, format!("a depth cannot be {value}"), "out of range", range));
-        return None;
+        return reader.refuse(finding("NB0206", place, format!("a depth cannot be {value}"), "out of range", range));
     }
     Some(value)
 }
@@ -217,8 +217,7 @@ pub(super) fn clear_stencil<'a>(reader: &mut Reader<'a>, target: &Target, raw: &
     if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
         let message = "this target has no stencil to clear";
         let help = "give the target `depth: Z24S8`, or leave this out";
-        reader.push(finding("NB0216", reader.span(raw), message, "no stencil", help).rule("STN-1"));
-        return None;
+        return reader.refuse(finding("NB0216", reader.span(raw), message, "no stencil", help).rule("STN-1"));
     }
     Some(stencil)
 }

@@ -111,8 +111,8 @@ fn texture<'a>(
         if fields.mips.is_some() && levels != Wanted::Own {
             let place = fields.levels.as_ref().map(|raw| reader.span(raw));
             let help = "keep `levels`, or `mips`, whose sources are levels 1, 2 and so on";
-            reader.push(finding("NB0230", place, "levels are counted and listed at once", "counted here", help));
-            return None;
+            let message = "levels are counted and listed at once";
+            return reader.refuse(finding("NB0230", place, message, "counted here", help));
         }
         let made = given.palette.take().map(|entries| palettes.add(&entry.name, entries));
         let place = given.place.clone();
@@ -159,8 +159,7 @@ fn with_palette<'a>(
         && texture.format != TextureFormat::P8
     {
         let place = reader.span(raw);
-        reader.push(palette::not_read(place, texture.format));
-        return None;
+        return reader.refuse(palette::not_read(place, texture.format));
     }
     if fields.palette.is_some() && palette.is_none() {
         return None;
@@ -176,8 +175,7 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
     if let (name @ ("YUY2" | "UYVY"), "") = raw.split() {
         let message = format!("how {name} texels are rounded is not known");
         let help = "convert the picture to A8R8G8B8";
-        reader.push(finding("NB0402", reader.span(raw), message, "not modelled", help).rule("TEX-1"));
-        return None;
+        return reader.refuse(finding("NB0402", reader.span(raw), message, "not modelled", help).rule("TEX-1"));
     }
     if let (name, "") = raw.split()
         && let Some((_, own)) = DEPTH_FORMATS
@@ -187,8 +185,7 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
         let help = if own.is_empty() { "take Z16, Z24S8, Z16F or Z24S8F" } else { own };
         let message = format!("`{name}` is not a texture format here");
         let help = format!("write `{help}`, and give the unit a `shadow` comparison");
-        reader.push(finding("NB0204", reader.span(raw), message, "a format of depths", help).rule("SHD-1"));
-        return None;
+        return reader.refuse(finding("NB0204", reader.span(raw), message, "a format of depths", help).rule("SHD-1"));
     }
     reader.name(raw)
 }
@@ -243,8 +240,7 @@ fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &G
                 "write `Layers([..., ...])`, or name a DDS file of a volume, or `Raw(...)` with `layers`",
             )
         };
-        reader.push(Diagnostic::error("NB0232", given.place.clone(), message).label("here").rule("VOL-1").help(help));
-        return None;
+        return reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule("VOL-1"));
     }
     let (message, help) = if cube {
         (format!("six faces do not make a texture of kind {}", kind.name()), "write `kind: Cube`, or leave `kind` out")
@@ -254,8 +250,7 @@ fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &G
             "write `Faces(positive_x: ..., negative_x: ..., ...)`, or name a DDS file of a cube map",
         )
     };
-    reader.push(Diagnostic::error("NB0232", given.place.clone(), message).label("here").rule("TEX-12").help(help));
-    None
+    reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule("TEX-12"))
 }
 
 /// Sides without border texels.
@@ -265,8 +260,7 @@ fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32
     if width <= beyond || height <= beyond {
         let message = format!("{width} x {height} texels leave nothing inside a border of 4 on each side");
         let help = "with `border: true` a source has 8 columns and rows more than the texture";
-        reader.push(finding("NB0231", given.place.clone(), message, "too small", help).rule("TEX-7"));
-        return None;
+        return reader.refuse(finding("NB0231", given.place.clone(), message, "too small", help).rule("TEX-7"));
     }
     Some((width - beyond, height - beyond))
 }
@@ -296,8 +290,7 @@ fn of_target<'a>(
     if let Some((place, what)) = extra.into_iter().flatten().next() {
         let message = format!("a render target cannot be a {what}");
         let help = "a target is sampled as one picture: `TwoDimensional` or `Rectangle`, one level, no border";
-        reader.push(finding("NB0232", place, message, "does not go with `Target`", help));
-        return None;
+        return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
     }
     if depths {
         return of_depths(reader, (target, index), kind, format, place, name);
@@ -307,15 +300,13 @@ fn of_target<'a>(
         Some((TextureFormat::P8, place)) => {
             let message = "a render target does not hold indices of a palette";
             let help = format!("leave `format` out, which means {own:?} here");
-            reader.push(finding("NB0232", place, message, "does not go with `Target`", help));
-            return None;
+            return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
         }
         Some((format, place)) if format.depth().is_some() => {
             let message = "the colours of a render target are no depths";
             let help =
                 format!("write `Depth(...)` for its depth buffer, or leave `format` out, which means {own:?} here");
-            reader.push(finding("NB0232", place, message, "does not go with `Target`", help));
-            return None;
+            return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
         }
         Some((format, place)) => (format, place),
         None => (own, place.clone()),
@@ -342,8 +333,7 @@ fn of_target<'a>(
     if let Some((message, or)) = problem {
         let size = if pixel == 1 { "1 byte".to_owned() } else { format!("{pixel} bytes") };
         let help = format!("leave `format` out, which means {own:?} here, or take another with texels of {size}{or}");
-        reader.push(finding("NB0218", format_place, message, "another size", help));
-        return None;
+        return reader.refuse(finding("NB0218", format_place, message, "another size", help));
     }
     legal::format(reader, format, format_place)?;
     legal::sides(reader, kind, format, columns.unwrap_or(target.width), target.height, place)?;
@@ -362,8 +352,7 @@ fn of_depths(
     let Some(depth) = target.depth else {
         let message = format!("target \"{}\" has no depth buffer", shorten(&target.name));
         let help = "give the target `depth: Z24S8`";
-        reader.push(finding("NB0216", place, message, "shows its depths", help).rule("SHD-1"));
-        return None;
+        return reader.refuse(finding("NB0216", place, message, "shows its depths", help).rule("SHD-1"));
     };
     let own = match depth.format {
         DepthFormat::Z16 => TextureFormat::Z16,
@@ -375,8 +364,7 @@ fn of_depths(
     if format.depth().is_none_or(|format| format.bits() != depth.format.bits()) {
         let message = format!("depths of {} cannot be read as {}", own.name(), format.name());
         let help = format!("leave `format` out, which means {} here", own.name());
-        reader.push(finding("NB0218", format_place, message, "another size, or no depths", help));
-        return None;
+        return reader.refuse(finding("NB0218", format_place, message, "another size, or no depths", help));
     }
     legal::format(reader, format, format_place)?;
     legal::sides(reader, kind, format, target.width, target.height, place)?;

@@ -32,8 +32,7 @@ pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
     }
     let message = "expected a number of levels, or `All`";
     let help = "write `levels: All` for levels down to 1 x 1";
-    reader.push(finding("NB0205", reader.span(raw), message, "wrong kind of value", help));
-    None
+    reader.refuse(finding("NB0205", reader.span(raw), message, "wrong kind of value", help))
 }
 
 /// How many levels are wanted of a source that does not say so itself.
@@ -48,10 +47,7 @@ pub(super) fn number(
         Wanted::Own => Some(1),
         Wanted::All => Some(most),
         Wanted::Number(number) if number <= most => Some(number),
-        Wanted::Number(number) => {
-            reader.push(too_many(number, width, height, place));
-            None
-        }
+        Wanted::Number(number) => reader.refuse(too_many(number, width, height, place)),
     }
 }
 
@@ -97,8 +93,7 @@ pub(super) fn counted<'a>(
     if let Some(reason) = reason {
         let message = format!("{number} levels cannot be made here: {reason}");
         let help = "leave `levels` out, or give every level a source in `mips`, or use a file that has them";
-        reader.push(finding("NB0230", given.place.clone(), message, "of this source", help));
-        return None;
+        return reader.refuse(finding("NB0230", given.place.clone(), message, "of this source", help));
     }
     let (mut width, mut height) = (given.width, given.height);
     for _ in 1..number {
@@ -132,14 +127,12 @@ pub(super) fn listed<'a>(
     if given.faces.iter().any(|levels| levels.len() > 1) {
         let place = reader.span(raw);
         let message = "levels are listed, and the source of level 0 has several as well";
-        reader.push(finding("NB0230", place, message, "listed here", "leave `mips` out"));
-        return None;
+        return reader.refuse(finding("NB0230", place, message, "listed here", "leave `mips` out"));
     }
     let number = list.len() as u32 + 1;
     if number > Level::most(inside[0], inside[1]) {
         let place = reader.span(raw);
-        reader.push(too_many(number, inside[0], inside[1], place));
-        return None;
+        return reader.refuse(too_many(number, inside[0], inside[1], place));
     }
     // Listed sources are of the format of level 0, whoever has chosen it.
     let request = Request { format: Some(given.format), levels: Wanted::Own, ..*request };

@@ -116,8 +116,7 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
     const KINDS: &[&str] = &["Lighting", "SignedProduct", "Difference", "DotProduct"];
     let (kind, rest) = reader.variant(raw, "equation", KINDS)?;
     if kind < 3 && !rest.is_empty() {
-        reader.unknown_variant(raw, "equation", KINDS);
-        return None;
+        return reader.unknown_variant(raw, "equation", KINDS);
     }
     Some(match kind {
         0 => Equation::Lighting,
@@ -128,8 +127,8 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
             let parts = reader.read(&list)?.0;
             let [a, b] = parts[..] else {
                 let help = "write `DotProduct(PrimaryColor, SecondaryColor)`";
-                reader.push(finding("NB0211", reader.span(&list), "a dot product has two vectors", "here", help));
-                return None;
+                let message = "a dot product has two vectors";
+                return reader.refuse(finding("NB0211", reader.span(&list), message, "here", help));
             };
             Equation::DotProduct(reader.name(&a)?, reader.name(&b)?)
         }
@@ -177,8 +176,7 @@ fn long<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, vector: [f32; 3]) -
         return Some(());
     }
     let help = "write the direction toward it, of any length";
-    reader.push(finding("NB0392", reader.span(raw), "the zero vector points nowhere", "has no direction", help));
-    None
+    reader.refuse(finding("NB0392", reader.span(raw), "the zero vector points nowhere", "has no direction", help))
 }
 
 fn light<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::TruthLight<'a>>) -> Option<Light> {
@@ -241,10 +239,7 @@ fn normal<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::
     let (kind, rest) = reader.variant(raw, "source of normals", KINDS)?;
     match KINDS[kind] {
         "Mesh" if rest.is_empty() => Some(NormalSource::Mesh),
-        "Mesh" => {
-            reader.unknown_variant(raw, "source of normals", KINDS);
-            None
-        }
+        "Mesh" => reader.unknown_variant(raw, "source of normals", KINDS),
         "Radial" => {
             let rest = if rest.is_empty() { "()" } else { rest };
             let [x, y, z, _] = reader.read(&Raw::<source::RadialNormals<'a>>::new(rest))?.center(reader);
@@ -325,8 +320,8 @@ fn shading_normal<'a>(
     let holder = match (&fields.register, &fields.unit) {
         (Some(_), Some(unit)) => {
             let message = "`unit` and `register` both say where the normals are";
-            refuse_normals(reader, reader.span(unit), message, "one too many", "leave one of the two out");
-            return None;
+            let help = "leave one of the two out";
+            return reader.refuse(finding("NB0393", reader.span(unit), message, "one too many", help));
         }
         (_, Some(written)) => {
             let unit = fields.unit(reader)? as usize;
@@ -347,8 +342,7 @@ fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>
     }
     let message = format!("{} holds no normals when a pixel begins", register.name());
     let help = "write Texture0 to Texture3, PrimaryColor or SecondaryColor";
-    refuse_normals(reader, reader.span(written), message, "not a texture or a colour", help);
-    None
+    reader.refuse(finding("NB0393", reader.span(written), message, "not a texture or a colour", help))
 }
 
 /// A unit whose dot product reads the normals, in any draw.
@@ -358,12 +352,7 @@ fn normal_unit(reader: &mut Reader<'_>, place: Range<usize>, unit: usize, draws:
     }
     let message = format!("unit {unit} of the texture shader takes no dot product in any draw");
     let help = "name a unit whose operation is a dot product or a reflection, or write `register` for one that is read in the combiners";
-    refuse_normals(reader, place, message, "reads no vector", help);
-    None
-}
-
-fn refuse_normals(reader: &mut Reader<'_>, place: Range<usize>, message: impl Into<String>, label: &str, help: &str) {
-    reader.push(Diagnostic::error("NB0393", place, message).label(label).help(help));
+    reader.refuse(finding("NB0393", place, message, "reads no vector", help))
 }
 
 /// Whether a register holds something that the vertices or a texture gave.

@@ -88,29 +88,18 @@ fn program<'a>(
             let (first, second) = (reader.span(first), reader.span(second));
             let message = "the vertex program is given twice";
             let help = "keep one of `text` and `file`";
-            reader.push(finding("NB0388", second, message, "again here", help).related(first, "first here"));
-            return None;
+            return reader.refuse(finding("NB0388", second, message, "again here", help).related(first, "first here"));
         }
         (None, None) => {
             let message = "this vertex program has neither `text` nor `file`";
             let help = "write `text: r#\"vs.1.1 ...\"#`, or `file: \"name.vsh\"`";
-            reader.push(finding("NB0202", opening, message, "in here", help));
-            return None;
+            return reader.refuse(finding("NB0202", opening, message, "in here", help));
         }
     };
     let text = text.expanded(reader, Style::Assembler)?;
-    match vertex_shader::read(&text.text) {
-        Ok(written) => {
-            for warning in written.warnings.clone() {
-                reader.push(text.place(warning));
-            }
-            Some((written, text))
-        }
-        Err(findings) => {
-            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
-            None
-        }
-    }
+    let written = text.parsed(reader, vertex_shader::read(&text.text))?;
+    text.push(reader, written.warnings.clone());
+    Some((written, text))
 }
 
 /// The vertices that the program takes.
@@ -129,10 +118,7 @@ fn given<'a>(
             let mesh = names.mesh(reader, raw)?;
             Some(Given { spans: VertexSpans::All(reader.span(raw)), listed: None, mesh: Some(mesh) })
         }
-        (both, _) => {
-            reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
-            None
-        }
+        (both, _) => reader.refuse(one_of_vertices_and_mesh(both.is_some(), opening)),
     }
 }
 
@@ -158,8 +144,7 @@ fn run(
             let message = format!("{what} of vertex {index} is not finite");
             let label = "what the vertex program makes of it";
             let help = "look for rcp or rsq of 0, log of 0, and numbers too large";
-            reader.push(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
-            return None;
+            return reader.refuse(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
         }
         fog_coordinates.push(outputs.fog[0]);
         Some(written.vertex(&outputs))

@@ -98,7 +98,7 @@ fn compare(
             format!("nothing reads {}: is that the number that is meant?", given.join(", "))
         };
         let message = format!("{name} {verb} no value");
-        reader.push(text.place(Diagnostic::error("NB0387", place, message).label("read here").help(help)));
+        reader.push(text.place(finding("NB0387", place, message, "read here", help)));
     }
     for (place, first, _) in unread {
         let message = format!("the constant c{first} is not used");
@@ -162,8 +162,7 @@ fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::S
         let what = ["a matrix", "a colour"][kind];
         let message = format!("expected {what} in these parentheses");
         let help = "write `c0: Matrix(\"world\")`, `c41: Color((255, 240, 220))` or four numbers";
-        reader.push(finding("NB0211", reader.range(rest), message, "here", help));
-        return None;
+        return reader.refuse(finding("NB0211", reader.range(rest), message, "here", help));
     };
     if kind == 0 {
         return names.matrix(reader, &part).map(Value::Rows);

@@ -96,8 +96,7 @@ pub(super) fn sources<'a>(
                 let place = field.as_ref().map_or(0..0, |raw| reader.span(raw));
                 let message = format!("the input v{register} is not used");
                 let help = "remove it, or check its number";
-                reader.push(warning("NB0901", place, message, "the vertex program does not read it", help));
-                None
+                reader.refuse(warning("NB0901", place, message, "the vertex program does not read it", help))
             }
             (Some(chosen), Some(_)) => chosen,
             (None, None) => None,
@@ -136,15 +135,13 @@ fn input<'a>(
     if ["Tangent", "Binormal", "LightVector", "HalfVector"].contains(&head) {
         let message = format!("listed vertices have no {head}");
         let help = "use `mesh: Triangles(vertices: [...], indices: [...])`, which has tangents of its own";
-        reader.push(finding("NB0222", reader.span(raw), message, "needs a mesh", help));
-        return None;
+        return reader.refuse(finding("NB0222", reader.span(raw), message, "needs a mesh", help));
     }
     match FIELDS.iter().find(|(word, _)| *word == head && rest.is_empty()) {
         Some((_, field)) => Some(Input::Field(*field)),
         None => {
             let words: Vec<&'static str> = FIELDS.iter().map(|(word, _)| *word).collect();
-            reader.unknown_variant(raw, "vertex attribute", &words);
-            None
+            reader.unknown_variant(raw, "vertex attribute", &words)
         }
     }
 }
