@@ -112,10 +112,8 @@ pub(super) fn place<'a>(
 }
 
 fn space<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> Option<bool> {
-    match raw {
-        Some(raw) => reader.variant(raw, "space", &["Tangent", "Object"]).map(|(index, _)| index == 0),
-        None => Some(true),
-    }
+    raw.as_ref()
+        .map_or(Some(true), |raw| reader.variant(raw, "space", &["Tangent", "Object"]).map(|(index, _)| index == 0))
 }
 
 /// Where the attributes of a mesh go.

@@ -99,10 +99,7 @@ fn draw<'a>(
     budget: &mut Budget,
     written: &[bool],
 ) -> Option<Drawn> {
-    let target = match &fields.target {
-        Some(raw) => targets.find(reader, raw),
-        None => Some(0),
-    };
+    let target = fields.target.as_ref().map_or(Some(0), |raw| targets.find(reader, raw));
     if let Some(raw) = &fields.clear {
         return clear(reader, names, targets, (fields, raw), header, target?);
     }

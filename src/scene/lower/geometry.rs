@@ -226,10 +226,7 @@ fn matrix_geometry<'a>(
     let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
     let matrix = fields.matrix(reader);
     let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
-    let model_view = match &fields.model_view {
-        Some(raw) => names.matrix(reader, raw),
-        None => Some(matrix::IDENTITY),
-    };
+    let model_view = fields.model_view.as_ref().map_or(Some(matrix::IDENTITY), |raw| names.matrix(reader, raw));
     let viewport = viewport(reader, &fields.viewport, targets, target);
     let (mut vertices, spans, mesh, objects) = match (&fields.vertices, &fields.mesh) {
         (Some(raw), None) => {

@@ -86,10 +86,7 @@ pub(super) fn operations<'a>(
 fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>) -> Option<AlphaTest> {
     let fields = reader.read(raw)?;
     let function = fields.function(reader);
-    let reference = match &fields.reference {
-        Some(raw) => alpha_reference(reader, raw),
-        None => Some(0),
-    };
+    let reference = fields.reference.as_ref().map_or(Some(0), |raw| alpha_reference(reader, raw));
     Some(AlphaTest { function: reader.name(&function?)?, reference: reference? })
 }
 

@@ -90,10 +90,7 @@ fn texture<'a>(
     };
     let palette = fields.palette.as_ref().and_then(|raw| palettes.index.find(reader, raw));
     let border = fields.border(reader);
-    let levels = match &fields.levels {
-        Some(raw) => texture_levels::wanted(reader, raw)?,
-        None => Wanted::Own,
-    };
+    let levels = fields.levels.as_ref().map_or(Some(Wanted::Own), |raw| texture_levels::wanted(reader, raw))?;
     let source = fields.source(reader)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
     let texture = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {

@@ -37,10 +37,7 @@ pub(super) fn truth<'a>(
     if let (Some(_), Some(shared)) = (own, shared) {
         fields = fields.or(reader.read(shared)?);
     }
-    let equation = match &fields.equation {
-        Some(raw) => equation(reader, raw),
-        None => Some(Equation::Lighting),
-    };
+    let equation = fields.equation.as_ref().map_or(Some(Equation::Lighting), |raw| equation(reader, raw));
     if let (Some(equation), Some(raw)) = (equation, &fields.equation) {
         let place = reader.span(raw);
         only_lighting(reader, equation, &fields, place);
