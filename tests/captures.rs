@@ -17,8 +17,7 @@ fn every_frame_is_exact() {
             // The definition draws a tenth of them.
             let engine = if n % 10 == 0 { Engine::Scalar } else { Engine::Fast };
             let pixels = frame.render(&RenderOptions { engine, threads: 1, ..RenderOptions::default() }).unwrap();
-            (frame.is(&pixels) == frame.open().is_some())
-                .then(|| format!("{}/{} by {engine:?}", frame.suite(), frame.name()))
+            (frame.is(&pixels) == frame.open.is_some()).then(|| format!("{}/{} by {engine:?}", frame.suite, frame.name))
         })
         .collect();
     assert!(wrong.is_empty(), "{} of {} frames differ: {wrong:#?}", wrong.len(), frames.len());
@@ -31,12 +30,12 @@ fn every_frame_is_exact() {
 fn samples_are_spread() {
     let all = || captures::frames(&[]).unwrap();
     let names = |frames: Vec<captures::Frame>| -> Vec<String> {
-        frames.iter().map(|frame| format!("{}/{}", frame.suite(), frame.name())).collect()
+        frames.iter().map(|frame| format!("{}/{}", frame.suite, frame.name)).collect()
     };
     assert_eq!(names(captures::sample(all(), usize::MAX / 10_000)), names(all()));
     let sample = captures::sample(all(), 300);
     assert!((300..340).contains(&sample.len()), "{}", sample.len());
-    let mut suites: Vec<&str> = sample.iter().map(captures::Frame::suite).collect();
+    let mut suites: Vec<&str> = sample.iter().map(|frame| frame.suite).collect();
     suites.dedup();
     assert_eq!(suites, captures::suites().collect::<Vec<_>>());
     let mut sorted = names(sample);
@@ -53,7 +52,7 @@ fn one_pixel_makes_a_difference() {
     let frame = &frames[0];
     let mut pixels = frame.render(&RenderOptions::default()).unwrap();
     assert!(frame.is(&pixels));
-    let text = frame.text().first().unwrap();
+    let text = frame.text.first().unwrap();
     let at = (text.y * SIZE.0 + text.x) as usize;
     pixels[at][0] ^= 1;
     assert!(frame.is(&pixels), "text is not compared");

@@ -14,7 +14,7 @@ use ninebit::state::{
 };
 use ninebit_scene::{self as scene, Loaded, VertexSpans, fields};
 
-use crate::pages;
+use crate::{error_codes, pages};
 
 fn parse(text: &str) -> Loaded {
     scene::parse(text, Path::new("test.ron"), &Limits::default()).unwrap_or_else(|error| panic!("{error}"))
@@ -56,7 +56,12 @@ fn the_tables_of_fields_are_those_of_the_declarations() {
         let Some((of, _)) = of.split_once("): begin") else { continue };
         let list: Vec<_> = of.split(", ").map(|one| one.split_once('=').unwrap_or((one, one))).collect();
         let table = match of {
-            "codes" => fields::codes(),
+            "codes" => {
+                let known = error_codes::rows();
+                let meaning = |code: &str| &known.iter().find(|row| row.code == code).unwrap().meaning;
+                let rows = fields::CODES.map(|code| format!("| {code} | {} |\n", meaning(code)));
+                format!("| code | what is wrong with a field |\n|---|---|\n{}", rows.concat())
+            }
             _ => fields::table(&list).unwrap_or_else(|| panic!("no structure {of}")),
         };
         structures.extend(list.iter().map(|(_, structure)| *structure).filter(|_| of != "codes"));

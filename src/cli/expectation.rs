@@ -21,7 +21,7 @@ use ninebit_scene::path::{PathError, resolve};
 pub const VERSION: u32 = 1;
 
 /// What one target of a scene is expected to show.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Expectation {
     /// [`VERSION`].
@@ -71,9 +71,10 @@ pub struct Allowance {
 }
 
 /// How a picture differs from what was expected.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum Mismatch {
     /// The size, as it is.
+    #[error("the picture is {width} x {height}")]
     Size {
         /// Columns.
         width: u32,
@@ -81,11 +82,13 @@ pub enum Mismatch {
         height: u32,
     },
     /// The digest, as it is. Without the expected picture no more can be said.
+    #[error("the picture's digest is {sha256}")]
     Digest {
         /// SHA-256.
         sha256: String,
     },
     /// More than is allowed.
+    #[error("{pixels} pixels differ, by {difference} at most, the first at {},{}", .first[0], .first[1])]
     Pixels {
         /// Pixels that differ.
         pixels: u64,
@@ -94,18 +97,6 @@ pub enum Mismatch {
         /// Column and row of the first one.
         first: [u32; 2],
     },
-}
-
-impl std::fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Mismatch::Size { width, height } => write!(f, "the picture is {width} x {height}"),
-            Mismatch::Digest { sha256 } => write!(f, "the picture's digest is {sha256}"),
-            Mismatch::Pixels { pixels, difference, first: [x, y] } => {
-                write!(f, "{pixels} pixels differ, by {difference} at most, the first at {x},{y}")
-            }
-        }
-    }
 }
 
 /// Why an expectation cannot be used.
@@ -189,12 +180,7 @@ impl Expectation {
             width: surface.width,
             height: surface.height,
             sha256: ninebit_files::picture::surface_digest(surface),
-            capture: None,
-            pixels: None,
-            mask: None,
-            allowance: None,
-            picture: None,
-            needs: Vec::new(),
+            ..Expectation::default()
         }
     }
 

@@ -205,13 +205,8 @@ impl<'t> Walk<'t> {
             }
         }
         let place = used.map_or(at, |(place, _)| place);
-        Err(finding(
-            "NB0109",
-            place..place + 1,
-            "this quote is not closed in its line",
-            "opened here",
-            "close it with `\"`",
-        ))
+        let help = "close it with `\"`";
+        Err(finding("NB0109", place..place + 1, "this quote is not closed in its line", "opened here", help))
     }
 
     /// What stands outside quotes: it counts unless texts between them are joined.
@@ -267,7 +262,6 @@ impl<'t> Walk<'t> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
     use proptest::prelude::*;

@@ -24,19 +24,10 @@ use ninebit::state::{
 
 /// What is read of OpenGL for register combiners.
 static COMBINERS: Vocabulary = Vocabulary {
-    calls: &[
-        "CombinerInputNV",
-        "CombinerOutputNV",
-        "CombinerParameteriNV",
-        "CombinerParameterfNV",
-        "CombinerParameterivNV",
-        "CombinerParameterfvNV",
-        "CombinerStageParameterfvNV",
-        "glEnable",
-        "glDisable",
-    ],
-    silent: &["BindTexture", "ActiveTexture", "ActiveTextureARB"],
-    states: &[],
+    calls: "CombinerInputNV CombinerOutputNV CombinerParameteriNV CombinerParameterfNV CombinerParameterivNV \
+            CombinerParameterfvNV CombinerStageParameterfvNV glEnable glDisable",
+    silent: "BindTexture ActiveTexture ActiveTextureARB",
+    states: Vec::new,
     instead: opengl::INSTEAD,
     example: "`glFinalCombinerInputNV(GL_VARIABLE_D_NV, GL_SPARE0_NV, GL_UNSIGNED_IDENTITY_NV, GL_RGB);`",
     what: "the register combiners",
@@ -92,32 +83,10 @@ struct Parser<'t> {
     places: Vec<(Place, Range<usize>)>,
 }
 
-const REGISTERS: &[&str] = &[
-    "ZERO",
-    "CONSTANT_COLOR0",
-    "CONSTANT_COLOR1",
-    "FOG",
-    "PRIMARY_COLOR",
-    "SECONDARY_COLOR",
-    "TEXTURE0",
-    "TEXTURE1",
-    "TEXTURE2",
-    "TEXTURE3",
-    "SPARE0",
-    "SPARE1",
-    "SPARE0_PLUS_SECONDARY_COLOR",
-    "E_TIMES_F",
-];
-const MAPPINGS: &[&str] = &[
-    "UNSIGNED_IDENTITY",
-    "UNSIGNED_INVERT",
-    "EXPAND_NORMAL",
-    "EXPAND_NEGATE",
-    "HALF_BIAS_NORMAL",
-    "HALF_BIAS_NEGATE",
-    "SIGNED_IDENTITY",
-    "SIGNED_NEGATE",
-];
+const REGISTERS: &str = "ZERO CONSTANT_COLOR0 CONSTANT_COLOR1 FOG PRIMARY_COLOR SECONDARY_COLOR \
+                         TEXTURE0 TEXTURE1 TEXTURE2 TEXTURE3 SPARE0 SPARE1 SPARE0_PLUS_SECONDARY_COLOR E_TIMES_F";
+const MAPPINGS: &str = "UNSIGNED_IDENTITY UNSIGNED_INVERT EXPAND_NORMAL EXPAND_NEGATE \
+                        HALF_BIAS_NORMAL HALF_BIAS_NEGATE SIGNED_IDENTITY SIGNED_NEGATE";
 const COMPONENTS: &[(&str, Component)] =
     &[("RGB", Component::Rgb), ("ALPHA", Component::Alpha), ("BLUE", Component::Blue)];
 const VARIABLES: &[(&str, usize)] = &[
@@ -164,10 +133,10 @@ impl<'t> Parser<'t> {
             return None;
         }
         match arguments {
-            [variable, input, mapping, usage] => self.final_input(variable, input, mapping, usage),
+            [variable, input, mapping, usage] => self.final_input([variable, input, mapping, usage]),
             [stage, portion, variable, input, mapping, usage] => {
                 let (stage, alpha) = self.portion(name, stage, portion)?;
-                self.input((stage, alpha), variable, input, mapping, usage)
+                self.input((stage, alpha), [variable, input, mapping, usage])
             }
             [stage, portion, outputs @ ..] if wanted == 10 => {
                 let (stage, alpha) = self.portion(name, stage, portion)?;
@@ -267,14 +236,9 @@ impl<'t> Parser<'t> {
         Some(ninebit::combiner::final_combiner::general(register))
     }
 
-    fn input(
-        &mut self,
-        portion: (usize, bool),
-        variable: &Value<'t>,
-        input: &Value<'t>,
-        mapping: &Value<'t>,
-        usage: &Value<'t>,
-    ) -> Option<()> {
+    /// An input of a portion: the variable, the register, its mapping, its components.
+    fn input(&mut self, portion: (usize, bool), values: [&Value<'t>; 4]) -> Option<()> {
+        let [variable, input, mapping, usage] = values;
         let n = choose(variable, "variable of a general stage", &VARIABLES[..4], &mut self.reader.findings);
         let register = self.register(input);
         let mapping = choose(mapping, "mapping", &table(MAPPINGS), &mut self.reader.findings);
@@ -323,13 +287,8 @@ impl<'t> Parser<'t> {
         Some(())
     }
 
-    fn final_input(
-        &mut self,
-        variable: &Value<'t>,
-        input: &Value<'t>,
-        mapping: &Value<'t>,
-        usage: &Value<'t>,
-    ) -> Option<()> {
+    /// The same of the final combiner.
+    fn final_input(&mut self, [variable, input, mapping, usage]: [&Value<'t>; 4]) -> Option<()> {
         let findings = &mut self.reader.findings;
         let n = choose(variable, "variable of the final combiner", VARIABLES, findings);
         let register = choose(input, "register", &table(REGISTERS), findings);
@@ -389,13 +348,23 @@ impl<'t> Parser<'t> {
     }
 }
 
+/// The name of a mapping, without `GL_` and `_NV`.
+pub fn mapping_name(mapping: InputMapping) -> &'static str {
+    MAPPINGS.split(' ').nth(mapping as usize).unwrap_or_default()
+}
+
+/// The name of a bias, likewise.
+pub fn bias_name(bias: Bias) -> &'static str {
+    BIASES.iter().find(|(_, known)| *known == bias).map_or("", |(name, _)| *name)
+}
+
 /// OpenGL's words in findings about legality.
 #[derive(Clone, Copy, Debug)]
 pub struct Words;
 
 impl Notation for Words {
     fn register(&self, of: FinalRegister) -> &'static str {
-        REGISTERS.get(of as usize).copied().unwrap_or_default()
+        REGISTERS.split(' ').nth(of as usize).unwrap_or_default()
     }
 
     fn scale(&self, scale: Scale) -> &'static str {

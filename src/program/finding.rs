@@ -20,15 +20,26 @@ impl<T> At<T> {
     }
 }
 
-/// An error about a part of a program.
-pub(super) fn finding(
+/// An error about a part of a text: what is wrong, what is said under the part, and what to do.
+pub fn finding(
     code: &'static str,
-    place: Range<usize>,
+    place: impl Into<Option<Range<usize>>>,
     message: impl Into<String>,
-    label: &str,
+    label: impl Into<String>,
     help: impl Into<String>,
 ) -> Diagnostic {
     Diagnostic::error(code, place, message).label(label).help(help)
+}
+
+/// A [`finding`] that is a warning.
+pub fn warning(
+    code: &'static str,
+    place: Range<usize>,
+    message: impl Into<String>,
+    label: impl Into<String>,
+    help: impl Into<String>,
+) -> Diagnostic {
+    Diagnostic::warning(code, place, message).label(label).help(help)
 }
 
 /// The header that a text of OpenGL's languages begins with: `!!RC1.0`.

@@ -200,26 +200,8 @@ mod tests {
     #[test]
     fn tokens_of_c() {
         let text = "p->Set( 0x3f80UL, 0.5f, 1e-3f, 0xe-1, \"a\\\"(\", x";
-        let expected = [
-            "p",
-            "->",
-            "Set",
-            "(",
-            "0x3f80UL",
-            ",",
-            "0.5f",
-            ",",
-            "1e-3f",
-            ",",
-            "0xe",
-            "-",
-            "1",
-            ",",
-            "\"a\\\"(\"",
-            ",",
-            "x",
-        ];
-        assert_eq!(words(text, Language::C), expected);
+        let expected = r#"p -> Set ( 0x3f80UL , 0.5f , 1e-3f , 0xe - 1 , "a\"(" , x"#;
+        assert_eq!(words(text, Language::C).join(" "), expected);
         assert_eq!(words("\"no end\nx", Language::C), ["\"no end", "x"]);
     }
 

@@ -176,32 +176,23 @@ pub(super) fn expression(step: &Step) -> String {
             inputs.chunks(2).map(|p| format!("{} * {}", p[0].value, p[p.len() - 1].value)).collect();
         products.join(" + ")
     };
+    // The coordinate that is made, and the quantity of which the vertices have one each.
+    let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
+    let axis = last(&step.name);
+    let prefix = step.inputs.first().map_or(String::new(), |input| last(input.name.trim_end_matches('0')));
     match step.operation {
         "given" => String::new(),
         "product" | "dot_product" => pairs(&step.inputs),
         "sum_of_products" => "P0 E0 + P1 E1 + P2 E2".to_string(),
-        "edge_function" => {
-            format!("{} * {} + {} * {} + {}", value(0), value(3), value(1), value(4), value(2))
-        }
+        "edge_function" => format!("{} * {} + {} * {} + {}", value(0), value(3), value(1), value(4), value(2)),
         "floor_weight" => format!("floor(256 * {} * {} / {})", value(0), value(1), value(2)),
         "remainder_weight" => format!("256 - {} - {}", value(0), value(1)),
-        "interpolate" => format!(
-            "({} * {} + {} * {} + {} * {} + 128) >> 8",
-            value(0),
-            value(3),
-            value(1),
-            value(4),
-            value(2),
-            value(5)
-        ),
-        "floor_plane" => {
-            let axis = step.name.rsplit('.').next().unwrap_or_default();
-            format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)")
+        "interpolate" => {
+            let products = [0, 1, 2].map(|n| format!("{} * {}", value(n), value(n + 3)));
+            format!("({} + 128) >> 8", products.join(" + "))
         }
-        "floor_ratio" => {
-            let axis = step.name.rsplit('.').next().unwrap_or_default();
-            format!("floor(256 * {} * N_{axis} / N_q){}", value(9), short(step))
-        }
+        "floor_plane" => format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)"),
+        "floor_ratio" => format!("floor(256 * {} * N_{axis} / N_q){}", value(9), short(step)),
         "cube_face" => {
             let [x, y, z] = direction(&step.inputs);
             format!("largest of ({x}, {y}, {z})")
@@ -214,14 +205,8 @@ pub(super) fn expression(step: &Step) -> String {
             let (s, m) = on_face(step);
             format!("floor(32768 * {} * ({s} + {m}) / {m})", value(13))
         }
-        "quad_plane" => {
-            let axis = step.name.rsplit('.').next().unwrap_or_default();
-            format!("floor(256 (G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)")
-        }
-        "quad_ratio" => {
-            let axis = step.name.rsplit('.').next().unwrap_or_default();
-            format!("floor(65536 * {} * N_{axis} / N_q)", value(9))
-        }
+        "quad_plane" => format!("floor(256 (G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D)"),
+        "quad_ratio" => format!("floor(65536 * {} * N_{axis} / N_q)", value(9)),
         "log2_ratio" => {
             let moved = |pixel: usize, n: usize| {
                 let at = |k: usize| step.inputs.get(k).map_or(0, |o| o.value);
@@ -239,16 +224,13 @@ pub(super) fn expression(step: &Step) -> String {
         "low_byte" => format!("{} & 255", value(0)),
         "nearest_float" | "floor_number" => {
             let scale = if step.operation == "floor_number" { "4096 * " } else { "" };
-            let prefix = step.inputs[0].name.trim_end_matches('0').rsplit('.').next().unwrap_or_default();
             format!("{scale}({prefix}0 E0 + {prefix}1 E1 + {prefix}2 E2) / D * 2^{}", value(7))
         }
         "is_negative" | "is_not_negative" => {
-            let prefix = step.inputs[0].name.trim_end_matches('0').rsplit('.').next().unwrap_or_default();
             let sign = if step.operation == "is_negative" { "<" } else { ">=" };
             format!("{prefix}0 E0 + {prefix}1 E1 + {prefix}2 E2 {sign} 0")
         }
         "floor_plane_moved" => {
-            let axis = step.name.rsplit('.').next().unwrap_or_default();
             format!("floor((G_{axis}0 E0 + G_{axis}1 E1 + G_{axis}2 E2) / D + {} / 2^24){}", value(7), short(step))
         }
         "float_product" => format!("{} * {}", value(0), value(1)),

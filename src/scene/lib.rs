@@ -4,7 +4,6 @@
 //! [`Diagnostic`]s that point into the text, all of them at once. The format is described in `docs/scene-format.md`.
 
 pub mod assets;
-pub mod code;
 pub mod dds;
 pub mod diff;
 mod error;
@@ -25,7 +24,6 @@ mod render;
 mod source;
 pub mod truth;
 pub mod vector;
-pub mod ways_out;
 mod wording;
 mod written;
 

@@ -7,10 +7,7 @@
 //! coordinate s grows to the right and t downward, as rows of an image do. The tangent points along s; the binormal points
 //! *against* t, upward on the image, as the green of a [normal map](crate::generate::normal_map) does, so that tangent x
 //! binormal = normal.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "vertices are floats in the chip's programming model; the order of operations is fixed"
-)]
+#![allow(clippy::float_arithmetic, reason = "vertices are floats for the chip, too; the order is fixed")]
 
 mod round;
 mod tangent;

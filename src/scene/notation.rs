@@ -395,7 +395,6 @@ fn raw(text: &str, start: usize) -> Result<usize, Fault> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test")]
 mod tests {
     use super::*;
 

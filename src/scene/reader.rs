@@ -13,6 +13,7 @@ use super::source::{Expected, Mismatch};
 use super::wording::{closest, describe, shorten, twice, words};
 use ninebit::limits::Limits;
 use ninebit::state::{Named, Profile};
+use ninebit_program::finding;
 
 /// Findings beyond this many are only counted.
 const MAX_DIAGNOSTICS: usize = 64;
@@ -64,6 +65,12 @@ impl<'a> Reader<'a> {
         }
     }
 
+    /// Records why there is no such value.
+    pub(super) fn refuse<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
+        self.push(diagnostic);
+        None
+    }
+
     /// Whether a further error would only be counted: its words need not be chosen.
     fn is_full(&self) -> bool {
         self.errors > 0 && self.diagnostics.len() >= MAX_DIAGNOSTICS
@@ -110,11 +117,9 @@ impl<'a> Reader<'a> {
         place: Range<usize>,
     ) -> Option<Raw<'a, T>> {
         if raw.is_none() {
-            self.push(
-                Diagnostic::error(MISSING, place, format!("this {owner} has no `{field}`"))
-                    .label(format!("`{field}` is missing"))
-                    .help(format!("add `{field}: ...`; it has no default")),
-            );
+            let message = format!("this {owner} has no `{field}`");
+            let help = format!("add `{field}: ...`; it has no default");
+            self.push(finding(MISSING, place, message, format!("`{field}` is missing"), help));
         }
         *raw
     }
@@ -125,8 +130,7 @@ impl<'a> Reader<'a> {
         if let (Some(value), "") = (T::from_name(head), rest) {
             return Some(value);
         }
-        self.unknown_variant(raw, &words(T::TYPE), T::NAMES);
-        None
+        self.unknown_variant(raw, &words(T::TYPE), T::NAMES)
     }
 
     /// Splits `Variant(...)`: the index in `variants`, and the text after the identifier. `None` once the reason has been
@@ -138,15 +142,14 @@ impl<'a> Reader<'a> {
         variants: &[&'static str],
     ) -> Option<(usize, &'a str)> {
         let (head, rest) = raw.split();
-        let found = variants.iter().position(|variant| *variant == head);
-        if found.is_none() {
-            self.unknown_variant(raw, what, variants);
+        match variants.iter().position(|variant| *variant == head) {
+            Some(index) => Some((index, rest)),
+            None => self.unknown_variant(raw, what, variants),
         }
-        found.map(|index| (index, rest))
     }
 
     /// Records that the value is none of `known`.
-    pub(super) fn unknown_variant<T>(&mut self, raw: &Raw<'a, T>, what: &str, known: &[&'static str]) {
+    pub(super) fn unknown_variant<T, U>(&mut self, raw: &Raw<'a, T>, what: &str, known: &[&'static str]) -> Option<U> {
         let (head, rest) = raw.split();
         let list = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
         let diagnostic = if head.is_empty() {
@@ -162,11 +165,9 @@ impl<'a> Reader<'a> {
                 Some(name) => format!("did you mean `{name}`? All of them: {list}"),
                 None => format!("write one of {list}"),
             };
-            Diagnostic::error(WORD, self.range(head), format!("there is no {what} `{}`", shorten(head)))
-                .label("not known")
-                .help(help)
+            finding(WORD, self.range(head), format!("there is no {what} `{}`", shorten(head)), "not known", help)
         };
-        self.push(diagnostic);
+        self.refuse(diagnostic)
     }
 
     /// So many finite numbers in parentheses; those not written keep `defaults`.
@@ -225,17 +226,16 @@ impl<'a> Reader<'a> {
         let Some(vector) = self.vectors.named(&name) else {
             let vectors = std::mem::take(&mut self.vectors);
             let known = vectors.list.iter().map(|vector| vector.name.as_str());
-            unknown_name(self, place, "vector", &name, known, "define it in `names: (vectors: { ... })`");
+            let none = unknown_name(self, place, "vector", &name, known, "define it in `names: (vectors: { ... })`");
             self.vectors = vectors;
-            return None;
+            return none;
         };
         vector.used = true;
         let (written, count) = vector.value?;
         if !counts.contains(&count) {
             let (wanted, name) = (wanted(counts), shorten(&name));
             let message = format!("{what} has {wanted} numbers, and the vector \"{name}\" has {count}");
-            self.push(Diagnostic::error(COUNT, place, message).label("does not fit here"));
-            return None;
+            return self.refuse(Diagnostic::error(COUNT, place, message).label("does not fit here"));
         }
         Some((written, count))
     }
@@ -247,13 +247,8 @@ impl<'a> Reader<'a> {
             return Some(value);
         }
         let message = if value.is_nan() { "NaN is not a position, colour or size" } else { "this number is infinite" };
-        self.push(
-            Diagnostic::error(FINITE, self.span(raw), message)
-                .label("not a finite number")
-                .rule("NUM-0")
-                .help("numbers are 32-bit floats: at most about 3.4e38 away from zero"),
-        );
-        None
+        let help = "numbers are 32-bit floats: at most about 3.4e38 away from zero";
+        self.refuse(finding(FINITE, self.span(raw), message, "not a finite number", help).rule("NUM-0"))
     }
 
     /// A number in `range`; `said` adds to the finding that it is not.
@@ -270,8 +265,7 @@ impl<'a> Reader<'a> {
         }
         let finding = Diagnostic::error(RANGE, self.span(raw), format!("{what} cannot be {value}"));
         let help = format!("write {} to {}", range.start(), range.end());
-        self.push(said(finding.label("out of range").help(help)));
-        None
+        self.refuse(said(finding.label("out of range").help(help)))
     }
 
     /// A whole number from 1 to a limit; `code` is that of greater ones.
@@ -280,12 +274,8 @@ impl<'a> Reader<'a> {
         if value <= limit {
             return self.within(raw, what, 1..=limit, |finding| finding);
         }
-        self.push(
-            Diagnostic::error(code, self.span(raw), format!("{what} is {value}; {limit} are allowed"))
-                .label("too large")
-                .help(format!("write 1 to {limit}; `ninebit limits` prints what is allowed")),
-        );
-        None
+        let help = format!("write 1 to {limit}; `ninebit limits` prints what is allowed");
+        self.refuse(finding(code, self.span(raw), format!("{what} is {value}; {limit} are allowed"), "too large", help))
     }
 
     /// As many flags in parentheses as `defaults` has; `counted` says how many of what, `said` adds to the finding that they are not.
@@ -299,8 +289,7 @@ impl<'a> Reader<'a> {
         let parts = self.read(raw)?.0;
         if parts.len() != N {
             let finding = Diagnostic::error(COUNT, self.span(raw), format!("{counted}, not {}", parts.len()));
-            self.push(said(finding.label(format!("{} here", parts.len()))));
-            return None;
+            return self.refuse(said(finding.label(format!("{} here", parts.len()))));
         }
         let mut flags = defaults;
         for (flag, part) in flags.iter_mut().zip(&parts) {
@@ -516,18 +505,17 @@ pub(super) fn too_many(
 }
 
 /// The finding that a name is not defined.
-pub(super) fn unknown_name<'n>(
+pub(super) fn unknown_name<'n, T>(
     reader: &mut Reader<'_>,
     place: Range<usize>,
     what: &str,
     name: &str,
     known: impl Iterator<Item = &'n str> + Clone,
     define: &str,
-) {
+) -> Option<T> {
     // What is meant is looked for only where somebody reads it: names and uses may be thousands.
     if reader.is_full() {
-        reader.push(Diagnostic::error("NB0208", place, ""));
-        return;
+        return reader.refuse(Diagnostic::error("NB0208", place, ""));
     }
     let help = match closest(name, known.clone()) {
         Some(known) => format!("did you mean \"{}\"?", shorten(known)),
@@ -536,9 +524,5 @@ pub(super) fn unknown_name<'n>(
             if list.is_empty() { define.to_owned() } else { format!("known: {}; {define}", list.join(", ")) }
         }
     };
-    reader.push(
-        Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
-            .label("not defined")
-            .help(help),
-    );
+    reader.refuse(finding("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)), "not defined", help))
 }

@@ -1,8 +1,5 @@
 //! Vectors of three float64 numbers: meshes, generated textures and the truth are made of them.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "used on the vertex side, by generators and by the truth; no pixel's integers"
-)]
+#![allow(clippy::float_arithmetic, reason = "of vertices, generators and the truth; no pixel's integers")]
 
 /// x, y, z.
 pub type Vector = [f64; 3];

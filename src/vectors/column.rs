@@ -3,7 +3,7 @@
 use ninebit::state::Named;
 
 /// How the numbers of a column are written, and how many bits they take in the packed view.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// 0 to 2^bits - 1, decimal.
     Unsigned(u32),
@@ -126,6 +126,11 @@ impl Column {
     /// A result, `mid.` or `out.`.
     pub fn result(name: &str, kind: Kind) -> Column {
         Column { name: name.to_owned(), kind, domain: None }
+    }
+
+    /// Several results of one kind.
+    pub fn results<const N: usize>(names: [&str; N], kind: Kind) -> [Column; N] {
+        names.map(|name| Column::result(name, kind))
     }
 
     /// A choice among the variants of an enumeration.
@@ -264,19 +269,9 @@ impl Column {
             Some(Domain::Word(bits)) => {
                 let all = (1_i64 << bits) - 1;
                 let half = 1 << (bits / 2);
-                vec![
-                    0,
-                    1,
-                    half - 1,
-                    half,
-                    all >> 1,
-                    (all >> 1) + 1,
-                    all - 1,
-                    all,
-                    all / 3,
-                    all - all / 3,
-                    all & 0x0f0f_0f0f,
-                ]
+                let ends = [0, 1, all - 1, all];
+                let middles = [half - 1, half, all >> 1, (all >> 1) + 1];
+                [&ends[..], &middles, &[all / 3, all - all / 3, all & 0x0f0f_0f0f]].concat()
             }
             Some(Domain::Bits(word, mask)) => vec![(*word).into(), (*word | *mask).into()],
             Some(Domain::Float(negative, limit)) => floats(*negative, *limit),
@@ -284,6 +279,12 @@ impl Column {
         values.sort_unstable();
         values.dedup();
         values
+    }
+}
+
+impl From<Column> for Vec<Column> {
+    fn from(column: Column) -> Vec<Column> {
+        vec![column]
     }
 }
 

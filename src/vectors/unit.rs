@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::column::Column;
 use super::exhaustive::Digesting;
-use ninebit::state::{POLICIES, Policies, Profile};
+use ninebit::state::{POLICIES, Policies, Policy, Profile};
 
 /// What holds besides a row's own numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,19 +154,23 @@ pub fn alternatives(
     results: &[i64],
 ) -> Vec<Alternative> {
     let mut found = Vec::new();
-    for policy in POLICIES {
-        for (index, (value, _)) in policy.values.iter().enumerate() {
-            let mut policies = Policies::DEFAULT;
-            if policies.chosen(policy.rule) == index {
-                continue;
-            }
-            policies.choose(policy.rule, index);
-            let mut other = vec![0; results.len()];
-            unit.evaluate(inputs, &Conditions { profile, policies }, &mut other);
-            if columns.iter().zip(other.iter().zip(results)).any(|(c, (a, b))| a != b && c.name.starts_with("out.")) {
-                found.push(Alternative { policy: format!("{}={value}", policy.rule), results: other });
-            }
+    for (policy, value, policies) in other_policies() {
+        let mut other = vec![0; results.len()];
+        unit.evaluate(inputs, &Conditions { profile, policies }, &mut other);
+        if columns.iter().zip(other.iter().zip(results)).any(|(c, (a, b))| a != b && c.name.starts_with("out.")) {
+            found.push(Alternative { policy: format!("{}={value}", policy.rule), results: other });
         }
     }
     found
+}
+
+/// Every value of every policy that is not the default: the policy, the value, and all policies with it.
+pub(crate) fn other_policies() -> impl Iterator<Item = (&'static Policy, &'static str, Policies)> {
+    let values = POLICIES.iter().flat_map(|policy| policy.values.iter().enumerate().map(move |value| (policy, value)));
+    values.filter_map(|(policy, (index, (value, _)))| {
+        let mut policies = Policies::DEFAULT;
+        let differs = policies.chosen(policy.rule) != index;
+        policies.choose(policy.rule, index);
+        differs.then_some((policy, *value, policies))
+    })
 }

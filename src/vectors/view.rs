@@ -232,7 +232,6 @@ fn c_header(layout: &Layout) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
     use super::*;
     use crate::cases::Level;
     use crate::table::Contents;

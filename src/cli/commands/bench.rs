@@ -10,14 +10,13 @@ use ninebit::engine::{Reason, Renderer};
 use ninebit::shown;
 use ninebit::state::Named;
 use ninebit::threads;
-use ninebit_files::output::{write_json, write_text};
 use ninebit_files::read::page;
 use serde::Serialize;
 
 use super::engine::EngineArguments;
 use super::exit::Failure;
 use super::scene::{Failed, PolicyArguments, each, load};
-use super::{Context, Format, FormatArguments};
+use super::{Context, FormatArguments};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -164,10 +163,9 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         scenes: measured.made,
         failed: measured.failed,
     };
-    match arguments.format.get() {
-        _ if document.scenes.is_empty() => {}
-        Format::Text => write_text(&text(&document))?,
-        Format::Json => write_json(&serde_json::to_string_pretty(&document).unwrap_or_default())?,
+    if !document.scenes.is_empty() {
+        let json = || serde_json::to_string_pretty(&document).unwrap_or_default();
+        arguments.format.get().print(|| text(&document), json)?;
     }
     end
 }
@@ -185,33 +183,21 @@ fn peak_memory() -> Option<u64> {
 }
 
 fn text(document: &Document) -> String {
+    let Document { engine, isa, threads, .. } = document;
+    let plural = if *threads == 1 { "" } else { "s" };
     let mut text = format!(
-        "engine {}, {}, {} thread{}. ns a shaded pixel: median (10 % of the frames below, 90 % below).\n\
+        "engine {engine}, {isa}, {threads} thread{plural}. ns a shaded pixel: median (10 % of the frames below, 90 % below).\n\
          {:>10} {:>10} {:>10} {:>10} {:>22}  scene\n",
-        document.engine,
-        document.isa,
-        document.threads,
-        if document.threads == 1 { "" } else { "s" },
-        "pixels",
-        "ms set-up",
-        "MB peak",
-        "ms a frame",
-        "ns a pixel"
+        "pixels", "ms set-up", "MB peak", "ms a frame", "ns a pixel"
     );
     for measured in &document.scenes {
         let pixel = measured.ns_per_shaded_pixel;
         let spread = format!("{:.3} ({:.3}, {:.3})", pixel.median, pixel.p10, pixel.p90);
         let peak = measured.peak_memory_bytes.map_or_else(|| "-".to_owned(), |n| format!("{:.1}", n as f64 / 1e6));
-        let _ = writeln!(
-            text,
-            "{:>10} {:>10.3} {:>10} {:>10.3} {:>22}  {}",
-            measured.shaded_pixels,
-            (measured.load_microseconds + measured.prepare_microseconds) / 1e3,
-            peak,
-            measured.frame_microseconds.median / 1e3,
-            spread,
-            shown::name(&measured.scene)
-        );
+        let set_up = (measured.load_microseconds + measured.prepare_microseconds) / 1e3;
+        let (frame, pixels) = (measured.frame_microseconds.median / 1e3, measured.shaded_pixels);
+        let scene = shown::name(&measured.scene);
+        let _ = writeln!(text, "{pixels:>10} {set_up:>10.3} {peak:>10} {frame:>10.3} {spread:>22}  {scene}");
         for Defined { reason, share } in &measured.defined_share {
             let _ = writeln!(text, "{:>66}  pixel by pixel: {:.3} %, {reason}", "", 100.0 * share);
         }

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, Subcommand};
 use ninebit::engine::RenderOptions;
 use ninebit::shown;
-use ninebit_files::output::{write_json, write_text};
+use ninebit_files::output::write_text;
 use ninebit_scene::image::{self, ImageLimits, Rgba};
 use ninebit_vectors::captures::{self, Frame, SIZE, SOURCE};
 use rayon::prelude::*;
@@ -70,7 +70,7 @@ fn list() -> Result<(), Failure> {
     let all = frames(&[])?;
     let mut text = format!("source  {SOURCE}\n\n{:<32}frames\n", "suite");
     for suite in captures::suites() {
-        let count = all.iter().filter(|frame| frame.suite() == suite).count();
+        let count = all.iter().filter(|frame| frame.suite == suite).count();
         let _ = writeln!(text, "{suite:<32}{count:>6}");
     }
     Ok(write_text(&text)?)
@@ -87,10 +87,8 @@ struct Outcome {
 fn check(arguments: &CheckArguments) -> Result<(), Failure> {
     let known: Vec<&str> = captures::suites().collect();
     if let Some(unknown) = arguments.suites.iter().find(|suite| !known.contains(&suite.as_str())) {
-        return Err(Failure::usage(
-            format!("there is no suite `{}`", shown::name(unknown)),
-            format!("the suites are {}", known.join(", ")),
-        ));
+        let help = format!("the suites are {}", known.join(", "));
+        return Err(Failure::usage(format!("there is no suite `{}`", shown::name(unknown)), help));
     }
     let suites: Vec<&str> = arguments.suites.iter().map(String::as_str).collect();
     let options = RenderOptions { threads: 1, ..arguments.engine.options()? };
@@ -104,17 +102,15 @@ fn check(arguments: &CheckArguments) -> Result<(), Failure> {
         let drawn = frames.into_par_iter().map(|frame| draw(frame, &options, arguments.captures.as_deref()));
         drawn.collect::<Result<_, Failure>>()
     })?;
-    match arguments.format {
-        Format::Text => write_text(&text(&outcomes, arguments.captures.is_some()))?,
-        Format::Json => write_json(&format!("{:#}", report(&outcomes)))?,
-    }
+    let has_captures = arguments.captures.is_some();
+    arguments.format.print(|| text(&outcomes, has_captures), || format!("{:#}", report(&outcomes)))?;
     if outcomes.iter().all(Outcome::is_as_known) { Ok(()) } else { Err(Failure::difference()) }
 }
 
 impl Outcome {
     /// Whether it is exact, or off as the table says. Without the capture it cannot be told how many pixels are off.
     fn is_as_known(&self) -> bool {
-        match (self.frame.open(), &self.difference) {
+        match (self.frame.open, &self.difference) {
             (None, _) => self.exact,
             (Some(open), Some((difference, _))) => difference.different == open.pixels,
             (Some(_), None) => !self.exact,
@@ -125,11 +121,11 @@ impl Outcome {
 fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Result<Outcome, Failure> {
     let pixels = frame.render(options).map_err(|errors| {
         let errors: Vec<String> = errors.iter().map(ToString::to_string).collect();
-        Failure::fault(&format!("{}/{}: {}", frame.suite(), frame.name(), errors.join("; ")))
+        Failure::fault(&format!("{}/{}: {}", frame.suite, frame.name, errors.join("; ")))
     })?;
     let mut outcome = Outcome { exact: frame.is(&pixels), difference: None, frame };
     let Some(folder) = captures else { return Ok(outcome) };
-    let path = folder.join(outcome.frame.suite()).join(format!("{}.png", outcome.frame.name()));
+    let path = folder.join(outcome.frame.suite).join(format!("{}.png", outcome.frame.name));
     let capture = image::load(&path, &ImageLimits::default())?;
     let invalid = |message: String| {
         Failure::invalid("NB0524", message, "take the pictures of the source that `ninebit captures list` names")
@@ -142,7 +138,7 @@ fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Resul
     }
     // Text is the same in both.
     let mut masked = Rgba { width: SIZE.0, height: SIZE.1, pixels };
-    for at in outcome.frame.text().iter().flat_map(captures::pixels) {
+    for at in outcome.frame.text.iter().flat_map(captures::pixels) {
         masked.pixels[at] = capture.pixels[at];
     }
     let difference = diff::compare(&masked, &capture, &Options { regions: 1, ..Options::default() });
@@ -158,7 +154,7 @@ fn draw(frame: Frame, options: &RenderOptions, captures: Option<&Path>) -> Resul
 fn text(outcomes: &[Outcome], has_captures: bool) -> String {
     let mut text = format!("{:<32}frames   exact         pixels\n", "suite");
     for suite in captures::suites() {
-        let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.frame.suite() == suite).collect();
+        let of: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.frame.suite == suite).collect();
         if of.is_empty() {
             continue;
         }
@@ -167,7 +163,7 @@ fn text(outcomes: &[Outcome], has_captures: bool) -> String {
         let _ = writeln!(text, "{suite:<32}{:>6}{exact:>8}{pixels:>15}", of.len());
     }
     let mut open = BTreeMap::<&str, (usize, u64)>::new();
-    for known in outcomes.iter().filter(|outcome| outcome.is_as_known()).filter_map(|outcome| outcome.frame.open()) {
+    for known in outcomes.iter().filter(|outcome| outcome.is_as_known()).filter_map(|outcome| outcome.frame.open) {
         let of = open.entry(known.rule).or_default();
         *of = (of.0 + 1, of.1 + known.pixels);
     }
@@ -176,20 +172,14 @@ fn text(outcomes: &[Outcome], has_captures: bool) -> String {
     }
     let differing: Vec<&Outcome> = outcomes.iter().filter(|outcome| !outcome.is_as_known()).collect();
     for Outcome { frame, difference, exact } in differing.iter().take(SHOWN) {
+        let name = format!("{}/{}", frame.suite, frame.name);
         let _ = match difference {
-            None if *exact => {
-                writeln!(text, "{}/{}: exact, and the table says that it is not", frame.suite(), frame.name())
-            }
-            None => writeln!(text, "{}/{}: another picture than the captured one", frame.suite(), frame.name()),
+            None if *exact => writeln!(text, "{name}: exact, and the table says that it is not"),
+            None => writeln!(text, "{name}: another picture than the captured one"),
             Some((difference, [here, captured])) => {
                 let (x, y) = difference.regions[0].first;
                 let pixels = diff::pixels(difference.different);
-                writeln!(
-                    text,
-                    "{}/{}: {pixels} differ; {x},{y} is {here:?}, captured {captured:?}",
-                    frame.suite(),
-                    frame.name()
-                )
+                writeln!(text, "{name}: {pixels} differ; {x},{y} is {here:?}, captured {captured:?}")
             }
         };
     }
@@ -216,11 +206,11 @@ fn report(outcomes: &[Outcome]) -> serde_json::Value {
     let frame = |outcome: &Outcome| {
         let frame = &outcome.frame;
         json!({
-            "suite": frame.suite(),
-            "frame": frame.name(),
+            "suite": frame.suite,
+            "frame": frame.name,
             "compared_pixels": frame.compared(),
             "exact": outcome.exact,
-            "open": frame.open().map(|open| json!({ "rule": open.rule, "pixels": open.pixels })),
+            "open": frame.open.map(|open| json!({ "rule": open.rule, "pixels": open.pixels })),
             "differing_pixels": outcome.difference.as_ref().map(|(difference, _)| difference.different),
         })
     };

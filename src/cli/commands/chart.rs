@@ -166,11 +166,9 @@ fn speed(arguments: &Arguments, context: Context) -> Result<Measured, Failure> {
         step();
     }
     if measured.techniques.is_empty() {
-        return Err(Failure::invalid(
-            "NB0396",
-            format!("no scene in `{}` says what its picture ought to show", shown::path(&arguments.scenes)),
-            "give scenes a `truth: (lights: [...])`; docs/scene-format.md describes it",
-        ));
+        let message = format!("no scene in `{}` says what its picture ought to show", shown::path(&arguments.scenes));
+        let help = "give scenes a `truth: (lights: [...])`; docs/scene-format.md describes it";
+        return Err(Failure::invalid("NB0396", message, help));
     }
     for (name, surface) in &surfaces {
         let cost = apart(Path::new(name), || surface.cost(name, side, &effort).map_err(fault));

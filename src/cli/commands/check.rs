@@ -5,7 +5,6 @@ use std::fmt::Write;
 use clap::Args;
 use ninebit::shown;
 use ninebit::state::{Named, Scene};
-use ninebit_files::output::{write_json, write_text};
 use serde_json::json;
 
 use super::cost::Cost;
@@ -26,14 +25,8 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let (scene, _) = arguments.scene.load(context)?;
     let cost = Cost::of(&scene);
-    match arguments.format {
-        Format::Text => write_text(&text(&scene, &cost))?,
-        Format::Json => {
-            let value = json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost });
-            write_json(&format!("{value:#}"))?;
-        }
-    }
-    Ok(())
+    let value = || json!({ "format": "ninebit-check-1", "profile": scene.profile.name(), "cost": cost });
+    arguments.format.print(|| text(&scene, &cost), || format!("{:#}", value()))
 }
 
 /// The cost as a table.

@@ -1,14 +1,14 @@
 //! `ninebit compare`.
 
 use clap::{Args, ValueEnum};
-use ninebit_files::output::{Compression, Destination, encode_png, write_json, write_text};
+use ninebit_files::output::{Compression, Destination, encode_png};
 use ninebit_report::compare::{
     ALL_CHANNELS, CompareOptions, HeatError, Mode, compare, comparison_json, comparison_text, heat_map,
 };
 
 use super::exit::{Exit, Failure, Report};
 use super::scene::{SceneArguments, chosen_target};
-use super::{Context, Format, FormatArguments, picture};
+use super::{Context, FormatArguments, picture};
 
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
@@ -43,12 +43,7 @@ enum ModeArgument {
 /// Compares a scene with its ideal.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let destination = arguments.heatmap.as_ref();
-    if destination == Some(&Destination::Stdout) {
-        return Err(Failure::usage(
-            "the picture and the report cannot both go to stdout",
-            "write the picture to a file",
-        ));
-    }
+    picture::beside_report(destination)?;
     let mode = match arguments.mode {
         ModeArgument::Free => Mode::Free,
         ModeArgument::Follow => Mode::Follow,
@@ -63,19 +58,12 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         let (width, height, pixels) = heat_map(&comparison).map_err(|error| no_picture(&error))?;
         destination.write(&encode_png(width, height, &pixels, Compression::Small)?)?;
     }
-    match arguments.format.get() {
-        Format::Text => write_text(&comparison_text(&plan, &comparison))?,
-        Format::Json => write_json(&comparison_json(&plan, &comparison))?,
-    }
+    let format = arguments.format.get();
+    format.print(|| comparison_text(&plan, &comparison), || comparison_json(&plan, &comparison))?;
     if comparison.rules.iter().any(|rule| rule.exceeds()) {
-        return Err(Failure {
-            exit: Exit::Difference,
-            report: Report::Message {
-                code: None,
-                message: "a rule is further from the ideal than docs/numerics.md says".to_owned(),
-                help: Some("the table above names it: please report it with the scene".to_owned()),
-            },
-        });
+        let message = "a rule is further from the ideal than docs/numerics.md says";
+        let help = "the table above names it: please report it with the scene";
+        return Err(Failure { exit: Exit::Difference, report: Report::message(None, message, help) });
     }
     Ok(())
 }

@@ -8,7 +8,7 @@ use clap::Args;
 use ninebit::engine::{self, FRAGMENTS, PixelTrace, RenderOptions};
 use ninebit::plan::Plan;
 use ninebit::shown;
-use ninebit_files::output::{Compression, Destination, encode_png, write_json, write_text};
+use ninebit_files::output::{Compression, Destination, encode_png};
 use ninebit_scene::diff::{self, Difference, Options};
 use ninebit_scene::image::{self, ImageLimits, Rgba};
 
@@ -75,34 +75,21 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         return Err(Failure::usage("a policy has no effect without a scene", "name the scene with `--scene SCENE`"));
     }
     let destination = arguments.output.as_ref();
-    if destination == Some(&Destination::Stdout) {
-        return Err(Failure::usage(
-            "the picture and the report cannot both go to stdout",
-            "write the picture to a file",
-        ));
-    }
+    picture::beside_report(destination)?;
     let limits = ImageLimits::default();
     let (a, b) = (image::load(&arguments.a, &limits)?, image::load(&arguments.b, &limits)?);
     let options = Options { ignore_alpha: arguments.ignore_alpha, regions: arguments.regions };
     let difference = diff::compare(&a, &b, &options).map_err(|_| different_sizes(arguments, &a, &b))?;
-    let scene = match &arguments.scene {
-        Some(path) => Some(scene(path, arguments, [&a, &b], &difference, context)?),
-        None => None,
-    };
-    let picture = match destination {
-        Some(destination) => Some(draw(destination, arguments, &a, &b)?),
-        None => None,
-    };
+    let scene = arguments.scene.as_deref();
+    let scene = scene.map(|path| scene_findings(path, arguments, [&a, &b], &difference, context)).transpose()?;
+    let picture = destination.map(|destination| draw(destination, arguments, &a, &b)).transpose()?;
     let findings = Findings { arguments, difference, scene, picture };
-    match arguments.format {
-        Format::Text => write_text(&report::text(&findings))?,
-        Format::Json => write_json(&format!("{:#}", report::json(&findings)))?,
-    }
+    arguments.format.print(|| report::text(&findings), || format!("{:#}", report::json(&findings)))?;
     if findings.difference.different == 0 { Ok(()) } else { Err(Failure::difference()) }
 }
 
 /// Renders the scene, holds both pictures against its frame, traces the first pixels.
-fn scene<'a>(
+fn scene_findings<'a>(
     path: &'a Path,
     arguments: &Arguments,
     pictures: [&Rgba; 2],

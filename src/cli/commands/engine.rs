@@ -26,10 +26,8 @@ impl EngineArguments {
     pub(crate) fn options(&self) -> Result<RenderOptions, Failure> {
         let isa = self.isa.as_deref().and_then(Isa::from_name);
         if let Some(isa) = isa.filter(|isa| !isa.is_available()) {
-            return Err(Failure::usage(
-                format!("this machine does not have {}", isa.name()),
-                format!("the widest that it has is {}", Isa::best().name()),
-            ));
+            let help = format!("the widest that it has is {}", Isa::best().name());
+            return Err(Failure::usage(format!("this machine does not have {}", isa.name()), help));
         }
         let engine = Engine::from_name(&self.engine).unwrap_or(Engine::Fast);
         Ok(RenderOptions { threads: self.threads, engine, isa, band: None })

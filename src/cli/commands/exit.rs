@@ -98,11 +98,8 @@ impl Failure {
 
     /// Nothing of a scene can be measured.
     pub(crate) fn unseen(scene: &Path) -> Self {
-        Failure::invalid(
-            "NB0395",
-            format!("no pixel of `{}` that has a truth is drawn", shown::path(scene)),
-            "look at the picture: is the mesh in view, and drawn into the first target?",
-        )
+        let help = "look at the picture: is the mesh in view, and drawn into the first target?";
+        Failure::invalid("NB0395", format!("no pixel of `{}` that has a truth is drawn", shown::path(scene)), help)
     }
 
     /// The command line is wrong.

@@ -2,7 +2,6 @@
 
 use clap::Args;
 use ninebit::engine;
-use ninebit_files::output::{write_json, write_text};
 use ninebit_report::explain::{explain, explanation_json, explanation_text};
 
 use super::exit::Failure;
@@ -26,9 +25,6 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let (scene, plan) = arguments.scene.load(context)?;
     let draws = explain(&scene, &plan);
     let counted = arguments.count.then(|| engine::count(&plan));
-    match arguments.format {
-        Format::Text => write_text(&explanation_text(&plan, &draws, counted.as_deref()))?,
-        Format::Json => write_json(&explanation_json(&plan, &draws, counted.as_deref()))?,
-    }
-    Ok(())
+    let counted = counted.as_deref();
+    arguments.format.print(|| explanation_text(&plan, &draws, counted), || explanation_json(&plan, &draws, counted))
 }

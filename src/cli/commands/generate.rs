@@ -347,14 +347,11 @@ fn occlude(arguments: &Occlusion) -> Result<(), Failure> {
     if let Some(path) = &arguments.normal_map {
         let normals = image::load(path, &ImageLimits::default())?;
         if (normals.width, normals.height) != (picture.width, picture.height) {
-            return Err(Failure::invalid(
-                "NB0521",
-                format!(
-                    "the normal map is {} x {}, the height field {} x {}",
-                    normals.width, normals.height, picture.width, picture.height
-                ),
-                "make the normal map from this height field",
-            ));
+            let message = format!(
+                "the normal map is {} x {}, the height field {} x {}",
+                normals.width, normals.height, picture.width, picture.height
+            );
+            return Err(Failure::invalid("NB0521", message, "make the normal map from this height field"));
         }
         for (pixel, [r, g, b, _]) in picture.pixels.iter_mut().zip(&normals.pixels) {
             *pixel = [*r, *g, *b, pixel[3]];

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use ninebit::plan::Plan;
 use ninebit::shown;
-use ninebit_files::output::{Compression, Destination, encode_png, write_json, write_text};
+use ninebit_files::output::{Compression, Destination, encode_png};
 use ninebit_lab::accuracy::{accuracy_text, accuracy_value, measure};
 use ninebit_scene::generate::byte;
 use ninebit_scene::truth::{Truth, evaluate};
@@ -33,12 +33,7 @@ pub(crate) struct Arguments {
 /// Measures scenes against their truths.
 pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure> {
     let picture = arguments.picture.as_ref();
-    if picture == Some(&Destination::Stdout) {
-        return Err(Failure::usage(
-            "the picture and the report cannot both go to stdout",
-            "write the picture to a file",
-        ));
-    }
+    picture::beside_report(picture)?;
     if picture.is_some() && arguments.scenes.len() > 1 {
         return Err(Failure::usage("one picture of several truths", "measure one scene, or leave `--picture` out"));
     }
@@ -52,26 +47,23 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         }
         Ok((path.to_path_buf(), accuracy))
     });
-    match arguments.format {
-        _ if measured.made.is_empty() => {}
-        Format::Text => {
-            let text = |(path, accuracy): &(PathBuf, _)| format!("{}\n{}", shown::path(path), accuracy_text(accuracy));
-            write_text(&measured.made.iter().map(text).collect::<Vec<_>>().join("\n"))?;
-        }
-        Format::Json => {
-            let value = |(path, accuracy): &(PathBuf, _)| {
-                let mut value = accuracy_value(accuracy);
-                value["scene"] = shown::lossless(path).into();
-                value
-            };
-            let document = json!({
-                "format": "ninebit-accuracy-2",
-                "version": env!("CARGO_PKG_VERSION"),
-                "scenes": measured.made.iter().map(value).collect::<Vec<_>>(),
-                "failed": measured.failed,
-            });
-            write_json(&format!("{document:#}"))?;
-        }
+    let text = |(path, accuracy): &(PathBuf, _)| format!("{}\n{}", shown::path(path), accuracy_text(accuracy));
+    let value = |(path, accuracy): &(PathBuf, _)| {
+        let mut value = accuracy_value(accuracy);
+        value["scene"] = shown::lossless(path).into();
+        value
+    };
+    let document = || {
+        let document = json!({
+            "format": "ninebit-accuracy-2",
+            "version": env!("CARGO_PKG_VERSION"),
+            "scenes": measured.made.iter().map(value).collect::<Vec<_>>(),
+            "failed": measured.failed,
+        });
+        format!("{document:#}")
+    };
+    if !measured.made.is_empty() {
+        arguments.format.print(|| measured.made.iter().map(text).collect::<Vec<_>>().join("\n"), document)?;
     }
     measured.end()
 }

@@ -39,7 +39,7 @@ use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use ninebit::shown;
 use ninebit_files::catch_panic::catch_panic;
 use ninebit_files::files;
-use ninebit_files::output::OutputError;
+use ninebit_files::output::{OutputError, write_json, write_text};
 
 use exit::{Exit, Failure};
 use terminal::{ColorChoice, Level};
@@ -127,6 +127,17 @@ enum Format {
     Text,
     /// For programs: one JSON document
     Json,
+}
+
+impl Format {
+    /// Prints data in this form.
+    fn print(self, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<(), Failure> {
+        let printed = match self {
+            Format::Text => write_text(&text()),
+            Format::Json => write_json(&json()),
+        };
+        Ok(printed?)
+    }
 }
 
 /// `--format`, where `--json` was once all that there was.

@@ -7,6 +7,8 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 use ninebit::shown;
 use ninebit_files::output::Destination;
 
+use super::exit::Failure;
+
 /// Endings that promise another format than the one that is written.
 const FORMATS: [&str; 27] = [
     "png", "apng", "jpg", "jpeg", "jpe", "jfif", "gif", "bmp", "dib", "tga", "tif", "tiff", "webp", "avif", "heic",
@@ -38,6 +40,15 @@ pub(crate) fn page() -> impl TypedValueParser<Value = Destination> {
     OsStringValueParser::new().try_map(|name| of(name, "html"))
 }
 
+/// Refuses a picture on stdout, where the report goes.
+pub(crate) fn beside_report(picture: Option<&Destination>) -> Result<(), Failure> {
+    if picture == Some(&Destination::Stdout) {
+        let message = "the picture and the report cannot both go to stdout";
+        return Err(Failure::usage(message, "write the picture to a file"));
+    }
+    Ok(())
+}
+
 /// Whether a file's name says that it is a PNG.
 pub(crate) fn is_png(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png"))
@@ -49,10 +60,8 @@ fn of(name: OsString, format: &'static str) -> Result<Destination, String> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
     if ending != format && FORMATS.contains(&ending.as_str()) {
         let other = shown::path(&path.with_extension(format));
-        return Err(format!(
-            "this command writes {}: write to `{other}` and convert that",
-            format.to_ascii_uppercase()
-        ));
+        let format = format.to_ascii_uppercase();
+        return Err(format!("this command writes {format}: write to `{other}` and convert that"));
     }
     Ok(Destination::from(name.as_os_str()))
 }

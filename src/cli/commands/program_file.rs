@@ -75,10 +75,8 @@ impl ProgramArguments {
     /// The program as that of the one draw of a scene, whose units all have a texture.
     pub(crate) fn read(&self, path: &Path, language: Language, context: Context) -> Result<(Scene, Plan), Failure> {
         let name = path.file_name().and_then(|name| name.to_str()).ok_or_else(|| {
-            Failure::usage(
-                format!("`{}` cannot be named in a scene", shown::path(path)),
-                "give the program's file a name in UTF-8",
-            )
+            let help = "give the program's file a name in UTF-8";
+            Failure::usage(format!("`{}` cannot be named in a scene", shown::path(path)), help)
         })?;
         let units = self.profile.texture_units();
         let mut cubes = vec![false; units];

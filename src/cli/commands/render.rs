@@ -56,10 +56,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let statistics_wanted = arguments.stats.is_some() || matches!(arguments.format, Format::Json);
     let to_stdout = destinations().filter(|destination| **destination == Destination::Stdout).count();
     if statistics_wanted && to_stdout == 1 {
-        return Err(Failure::usage(
-            "the picture and the statistics cannot both go to stdout",
-            "write the picture to a file",
-        ));
+        let message = "the picture and the statistics cannot both go to stdout";
+        return Err(Failure::usage(message, "write the picture to a file"));
     }
     if to_stdout > 1 {
         return Err(Failure::usage("only one output can go to stdout", "write the others to files"));
@@ -72,10 +70,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let depth_buffer = scene.targets[target].depth;
     if arguments.depth.is_some() && depth_buffer.is_none() {
         let name = shown::name(&scene.targets[target].name).into_owned();
-        return Err(Failure::usage(
-            format!("the target `{name}` has no depth buffer"),
-            "leave out `--depth`, or write `depth: Z24S8` in the target",
-        ));
+        let help = "leave out `--depth`, or write `depth: Z24S8` in the target";
+        return Err(Failure::usage(format!("the target `{name}` has no depth buffer"), help));
     }
     clock.lap("load");
     let (frames, statistics) = {

@@ -149,10 +149,8 @@ fn options(arguments: &Arguments) -> Result<Options, Failure> {
 /// The scenes that are meant.
 fn entries(arguments: &Arguments) -> Result<Vec<Entry>, Failure> {
     let filter = Filter::new(&arguments.filters).map_err(|error| {
-        Failure::usage(
-            error.to_string(),
-            "`*` stands for any characters, `?` for one, `{a,b}` for a or b, `[a-z]` for one of these",
-        )
+        let help = "`*` stands for any characters, `?` for one, `{a,b}` for a or b, `[a-z]` for one of these";
+        Failure::usage(error.to_string(), help)
     })?;
     let mut entries = find(&arguments.places).map_err(|error| {
         Failure::usage(error.to_string(), "replay them one after the other, or from a folder above both")

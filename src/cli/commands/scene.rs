@@ -54,11 +54,9 @@ pub(crate) fn load_with_truth(
 ) -> Result<((Scene, Plan), Truth), Failure> {
     let (loaded, policies) = read(path, policies, context)?;
     let Some(truth) = loaded.truth else {
-        return Err(Failure::invalid(
-            "NB0396",
-            format!("`{}` does not say what its picture ought to show", shown::path(path)),
-            "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it",
-        ));
+        let message = format!("`{}` does not say what its picture ought to show", shown::path(path));
+        let help = "give the scene a `truth: (lights: [...])`; docs/scene-format.md describes it";
+        return Err(Failure::invalid("NB0396", message, help));
     };
     Ok(((loaded.scene, Plan { policies, ..loaded.plan }), truth))
 }

@@ -83,10 +83,8 @@ impl From<VectorError> for Failure {
 
 /// A chip lacks a unit.
 pub(super) fn lacks(unit: &dyn Unit, profile: Profile) -> Failure {
-    Failure::usage(
-        format!("{} has no unit `{}`", profile.name(), unit.name()),
-        "`ninebit vectors list` says which chips have a unit",
-    )
+    let help = "`ninebit vectors list` says which chips have a unit";
+    Failure::usage(format!("{} has no unit `{}`", profile.name(), unit.name()), help)
 }
 
 /// Reads the name of a unit.

@@ -173,7 +173,6 @@ fn drawing(curves: Vec<&Curve>) -> Drawing {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

@@ -169,7 +169,6 @@ fn traced(plan: &Plan, definition: &[[f64; 3]], side: usize, effort: &Effort) ->
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

@@ -78,7 +78,6 @@ pub fn replace_section(page: &str, name: &str, section: &str) -> Option<String> 
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

@@ -156,7 +156,6 @@ fn final_pixels(plan: &Plan) -> u64 {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

@@ -10,14 +10,11 @@ const AXIS: [f64; 3] = [0.3, 0.1, 1.0];
 const REACH: f64 = 0.8;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |exponent: i32| Method {
-        name: format!("exponent {exponent}"),
-        measure: Box::new(move |side| {
+    let method = |exponent: i32| {
+        Method::new(format!("exponent {exponent}"), [256.0, 4.0], move |side| {
             let pixels = draw(&text(side as usize, exponent))?;
             Ok(largest(&errors(&pixels, 0, |at| highlight([REACH * (2.0 * at - 1.0), 0.2, 1.0], exponent))))
-        }),
-        works: 256.0,
-        fails: 4.0,
+        })
     };
     Experiment {
         name: "cube-resolution",

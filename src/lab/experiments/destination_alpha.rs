@@ -5,14 +5,11 @@ use super::strip::{WIDTH, byte, bytes, centre, draw, errors, largest, scene, who
 use super::{Experiment, Method, Scale};
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, blend: &'static str, part: fn(f64, f64) -> f64| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |passes| {
+    let method = |name: &str, blend: &'static str, part: fn(f64, f64) -> f64| {
+        Method::new(name, [1.0, 128.0], move |passes| {
             let pixels = draw(&text(passes, blend, part))?;
             Ok(largest(&errors(&pixels, 3, |at| at)))
-        }),
-        works: 1.0,
-        fails: 128.0,
+        })
     };
     Experiment {
         name: "destination-alpha",

@@ -11,17 +11,14 @@ const WAVE: f64 = 16.0;
 const AMPLITUDE: f64 = 0.4;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, back: f64| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |offset| {
+    let method = |name: &str, back: f64| {
+        Method::new(name, [1.0, 7.0], move |offset| {
             let pixels = draw(&text(offset, back))?;
             let steepest = 255.0 * offset * 0.5 * AMPLITUDE * std::f64::consts::TAU / WAVE;
             // What the slope alone would give: one half, less the rise over the offset.
             let ideal = |at: f64| 0.5 - offset * slope(at * TEXELS as f64);
             Ok(100.0 * largest(&errors(&pixels, 0, ideal)) / steepest)
-        }),
-        works: 1.0,
-        fails: 7.0,
+        })
     };
     Experiment {
         name: "emboss",

@@ -14,9 +14,8 @@ const RENORMALISED: &str = "(rgb: (a: ExpandNormal(Texture0), b: ExpandNormal(Te
 const SQUARE: &str = "(rgb: (a: Spare0, b: Spare0, ab: Spare0)), ";
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, dot: &'static str, squarings: usize| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |degrees: f64| {
+    let method = |name: &str, dot: &'static str, squarings: usize| {
+        Method::new(name, [5.0, 120.0], move |degrees: f64| {
             let half = 0.5 * degrees.to_radians();
             let pixels = draw(&text(half, dot, squarings))?;
             Ok(largest(&errors(&pixels, 0, |at| {
@@ -24,9 +23,7 @@ pub(super) fn experiment() -> Experiment {
                 let (x, z) = (sin(half) * (2.0 * at - 1.0), cos(half));
                 pow(z / (x * x + z * z).sqrt(), f64::from(1 << squarings))
             })))
-        }),
-        works: 5.0,
-        fails: 120.0,
+        })
     };
     Experiment {
         name: "filtered-normals",

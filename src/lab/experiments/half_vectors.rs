@@ -12,14 +12,11 @@ const EYE: [f64; 2] = [-0.6, 1.0];
 const SQUARINGS: usize = 3;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, parts: usize| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |extent| {
+    let method = |name: &str, parts: usize| {
+        Method::new(name, [0.1, 8.0], move |extent| {
             let pixels = draw(&text(extent, parts))?;
             Ok(largest(&errors(&pixels, 0, |at| pow(half_vector(place(at, extent))[1], f64::from(1 << SQUARINGS)))))
-        }),
-        works: 0.1,
-        fails: 8.0,
+        })
     };
     Experiment {
         name: "half-vectors",

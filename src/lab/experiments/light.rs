@@ -38,14 +38,11 @@ pub(super) fn behind() -> Experiment {
 }
 
 pub(super) fn grazing() -> Experiment {
-    let method = |name: &str, bumps: f64| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |elevation| {
+    let method = |name: &str, bumps: f64| {
+        Method::new(name, [60.0, 0.25], move |elevation| {
             let (errors, ideal) = light(elevation, bumps, Shadow::None)?;
             Ok(100.0 * root_mean_square(&errors) / root_mean_square(&ideal).max(1e-9))
-        }),
-        works: 60.0,
-        fails: 0.25,
+        })
     };
     Experiment {
         name: "light-grazing",

@@ -10,16 +10,13 @@ use ninebit_scene::generate::normal_map::encode;
 const THIRD: f64 = 0.577_350_269_189_625_8;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, text: fn(f64) -> String| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |length| {
+    let method = |name: &str, text: fn(f64) -> String| {
+        Method::new(name, [1.0, 1.9], move |length| {
             Ok(largest(&errors(&draw(&text(length))?, 0, |at| {
                 let [x, y, z] = normal(at);
                 length * THIRD * (x + y + z)
             })))
-        }),
-        works: 1.0,
-        fails: 1.9,
+        })
     };
     Experiment {
         name: "long-vectors",

@@ -12,14 +12,11 @@ const TEXELS: usize = 512;
 const TILT: f64 = 35.0;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, squarings: u32, filter: &'static str| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |texels| {
+    let method = |name: &str, squarings: u32, filter: &'static str| {
+        Method::new(name, [1.0, 12.0], move |texels| {
             let pixels = draw(&text(texels, squarings, filter))?;
             Ok(root_mean_square(&errors(&pixels, 0, |at| seen(at, texels, squarings))))
-        }),
-        works: 1.0,
-        fails: 12.0,
+        })
     };
     Experiment {
         name: "minified-normals",

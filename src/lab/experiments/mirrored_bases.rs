@@ -14,15 +14,12 @@ const RIGHT: &str = "(position: (0, -1), normal: (0, 0, 1), t0: (0, 1)), (positi
      (position: (1, 1), normal: (0, 0, 1), t0: (1, 0)), (position: (0, 1), normal: (0, 0, 1), t0: (0, 0)), ";
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, vertices: fn() -> String| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |degrees: f64| {
+    let method = |name: &str, vertices: fn() -> String| {
+        Method::new(name, [0.05, 45.0], move |degrees: f64| {
             let tilt = degrees.to_radians();
             let pixels = draw(&text(tilt, &vertices()))?;
             Ok(root_mean_square(&errors(&pixels, 0, |_| sin(tilt) * LIGHT[1] + cos(tilt) * LIGHT[2])))
-        }),
-        works: 0.05,
-        fails: 45.0,
+        })
     };
     Experiment {
         name: "mirrored-bases",

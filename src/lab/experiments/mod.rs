@@ -40,6 +40,16 @@ pub struct Method {
     pub fails: f64,
 }
 
+impl Method {
+    fn new(
+        name: impl Into<String>,
+        [works, fails]: [f64; 2],
+        measure: impl Fn(f64) -> Result<f64, Box<SceneError>> + Send + Sync + 'static,
+    ) -> Method {
+        Method { name: name.into(), measure: Box::new(measure), works, fails }
+    }
+}
+
 impl std::fmt::Debug for Method {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Method").field("name", &self.name).finish_non_exhaustive()
@@ -168,7 +178,6 @@ fn steps(low: f64, high: f64, count: usize) -> Vec<f64> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
 

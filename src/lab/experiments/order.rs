@@ -5,14 +5,11 @@ use super::strip::{WIDTH, angle, byte, bytes, centre, draw, errors, largest, sce
 use super::{Experiment, Method, Scale, steps};
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, additions_first: bool| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |tilt: f64| {
+    let method = |name: &str, additions_first: bool| {
+        Method::new(name, [0.0, 45.0], move |tilt: f64| {
             let pixels = draw(&text(tilt.to_radians(), additions_first))?;
             Ok(largest(&errors(&pixels, 0, |at| cos(angle(-90.0, 90.0, at) - tilt.to_radians()))))
-        }),
-        works: 0.0,
-        fails: 45.0,
+        })
     };
     Experiment {
         name: "order",

@@ -4,7 +4,6 @@
 pub(super) use libm::{cos, exp2, log2, pow, sin};
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 mod tests {
     /// What the standard library leaves to the platform occurs in no experiment.
     #[test]

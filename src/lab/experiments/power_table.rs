@@ -10,14 +10,11 @@ const PIXELS: usize = 8 * WIDTH;
 const FROM: f64 = 0.75;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |texels: usize| Method {
-        name: format!("{texels} texels, filtered"),
-        measure: Box::new(move |exponent| {
+    let method = |texels: usize| {
+        Method::new(format!("{texels} texels, filtered"), [1.0, 4096.0], move |exponent| {
             let pixels = draw(&text(texels, exponent))?;
             Ok(largest(&errors(&pixels, 0, |at| pow(FROM + (1.0 - FROM) * at, exponent))))
-        }),
-        works: 1.0,
-        fails: 4096.0,
+        })
     };
     Experiment {
         name: "power-table",

@@ -11,11 +11,10 @@ const PIXELS: usize = 4 * WIDTH;
 const TILT: f64 = 50.0;
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, of: fn(&[[u8; 4]], f64) -> f64| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |exponent| Ok(of(&draw(&text(log2(exponent).round() as usize))?, exponent))),
-        works: 2.0,
-        fails: 128.0,
+    let method = |name: &str, of: fn(&[[u8; 4]], f64) -> f64| {
+        Method::new(name, [2.0, 128.0], move |exponent| {
+            Ok(of(&draw(&text(log2(exponent).round() as usize))?, exponent))
+        })
     };
     Experiment {
         name: "squaring",

@@ -4,12 +4,7 @@ use super::strip::{WIDTH, bytes, draw, scene, whole_row};
 use super::{Experiment, Method, Scale, steps};
 
 pub(super) fn experiment() -> Experiment {
-    let method = |name: &str, blend: &'static str| Method {
-        name: name.to_owned(),
-        measure: Box::new(move |gap| error(gap as u8, blend)),
-        works: 255.0,
-        fails: 0.0,
-    };
+    let method = |name: &str, blend: &'static str| Method::new(name, [255.0, 0.0], move |gap| error(gap as u8, blend));
     Experiment {
         name: "subtraction",
         title: "Approximate subtraction of a pass",

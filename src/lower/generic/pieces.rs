@@ -34,6 +34,28 @@ pub(super) struct Piece {
     pub(super) cases: Vec<Case>,
 }
 
+/// A piece of one case that returns a number.
+fn piece(name: &'static str, about: &'static str, parameters: &'static str, cases: Vec<Case>) -> Piece {
+    Piece { about, name, chooses: None, parameters, array: None, each: None, kind: Kind::Number, cases }
+}
+
+impl Piece {
+    /// With a case for each value of a parameter.
+    fn by(self, parameter: &'static str) -> Piece {
+        Piece { chooses: Some(parameter), ..self }
+    }
+
+    /// With results that go to an array.
+    fn filling(self, array: &'static str) -> Piece {
+        Piece { array: Some(array), ..self }
+    }
+
+    /// That changes so many channels of an array, each by itself.
+    fn changing(self, array: &'static str, each: usize) -> Piece {
+        Piece { array: Some(array), each: Some(each), ..self }
+    }
+}
+
 /// What comes out where the field has this value.
 #[derive(Debug)]
 pub(super) struct Case {
@@ -253,146 +275,35 @@ fn combiners(maker: &Maker) -> Vec<Piece> {
         vec![final_combiner::evaluate(&state, &registers, &mut reader.listing).fragment[0]]
     });
     vec![
-        Piece {
-            about: "A constant: R, G, B, A of A8R8G8B8.",
-            name: "nb_color",
-            chooses: None,
-            parameters: "@uint word",
-            array: Some("channels[4]"),
-            each: None,
-            kind: Kind::Number,
-            cases: vec![color],
-        },
-        Piece {
-            about: "An input by its mapping.",
-            name: "nb_mapped",
-            chooses: Some("mapping"),
-            parameters: "@int x",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: mapped("x"),
-        },
-        Piece {
-            about: "The same of R, G and B.",
-            name: "nb_mapped_rgb",
-            chooses: Some("mapping"),
-            parameters: "",
-            array: Some("x[3]"),
-            each: Some(3),
-            kind: Kind::Number,
-            cases: mapped("x[c]"),
-        },
-        Piece {
-            about: "AB or CD of an RGB portion, not yet rounded.",
-            name: "nb_products",
-            chooses: Some("is_dot"),
-            parameters: "@in @int a[3], @in @int b[3]",
-            array: Some("sums[3]"),
-            each: None,
-            kind: Kind::Number,
-            cases: products,
-        },
-        Piece {
-            about: "AB or CD of an alpha portion, not yet rounded.",
-            name: "nb_product",
-            chooses: None,
-            parameters: "@int a, @int b",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: vec![product],
-        },
-        Piece {
-            about: "Whether muxes take CD: by the least or the most significant bit of SPARE0's alpha.",
-            name: "nb_takes_cd",
-            chooses: Some("by_most"),
-            parameters: "@int spare0_alpha",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: takes_cd,
-        },
-        Piece {
-            about: "The third output of a portion, not yet rounded.",
-            name: "nb_third",
-            chooses: Some("mux"),
-            parameters: "@int takes_cd, @int ab, @int cd",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: third,
-        },
-        Piece {
-            about: "An output as a register: rounded, biased, scaled, limited.",
-            name: "nb_output",
-            chooses: Some("operation"),
-            parameters: "@int sum",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: output("sum"),
-        },
-        Piece {
-            about: "The same of R, G and B.",
-            name: "nb_output_rgb",
-            chooses: Some("operation"),
-            parameters: "",
-            array: Some("sum[3]"),
-            each: Some(3),
-            kind: Kind::Number,
-            cases: output("sum[c]"),
-        },
-        Piece {
-            about: "An input of the final combiner.",
-            name: "nb_final_input",
-            chooses: Some("invert"),
-            parameters: "@int x",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: invert("x"),
-        },
-        Piece {
-            about: "The same of R, G and B.",
-            name: "nb_final_input_rgb",
-            chooses: Some("invert"),
-            parameters: "",
-            array: Some("x[3]"),
-            each: Some(3),
-            kind: Kind::Number,
-            cases: invert("x[c]"),
-        },
-        Piece {
-            about: "SPARE0 + SECONDARY.",
-            name: "nb_color_sum",
-            chooses: Some("clamp_sum"),
-            parameters: "@int spare0, @int secondary",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: color_sum,
-        },
-        Piece {
-            about: "E times F.",
-            name: "nb_final_product",
-            chooses: None,
-            parameters: "@int e, @int f",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: vec![final_product],
-        },
-        Piece {
-            about: "A channel of the fragment: A B + (1 - A) C + D.",
-            name: "nb_final_rgb",
-            chooses: None,
-            parameters: "@int a, @int b, @int c, @int d",
-            array: None,
-            each: None,
-            kind: Kind::Number,
-            cases: vec![rgb],
-        },
+        piece("nb_color", "A constant: R, G, B, A of A8R8G8B8.", "@uint word", vec![color]).filling("channels[4]"),
+        piece("nb_mapped", "An input by its mapping.", "@int x", mapped("x")).by("mapping"),
+        piece("nb_mapped_rgb", "The same of R, G and B.", "", mapped("x[c]")).by("mapping").changing("x[3]", 3),
+        piece("nb_products", "AB or CD of an RGB portion, not yet rounded.", "@in @int a[3], @in @int b[3]", products)
+            .by("is_dot")
+            .filling("sums[3]"),
+        piece("nb_product", "AB or CD of an alpha portion, not yet rounded.", "@int a, @int b", vec![product]),
+        piece(
+            "nb_takes_cd",
+            "Whether muxes take CD: by the least or the most significant bit of SPARE0's alpha.",
+            "@int spare0_alpha",
+            takes_cd,
+        )
+        .by("by_most"),
+        piece("nb_third", "The third output of a portion, not yet rounded.", "@int takes_cd, @int ab, @int cd", third)
+            .by("mux"),
+        piece("nb_output", "An output as a register: rounded, biased, scaled, limited.", "@int sum", output("sum"))
+            .by("operation"),
+        piece("nb_output_rgb", "The same of R, G and B.", "", output("sum[c]")).by("operation").changing("sum[3]", 3),
+        piece("nb_final_input", "An input of the final combiner.", "@int x", invert("x")).by("invert"),
+        piece("nb_final_input_rgb", "The same of R, G and B.", "", invert("x[c]")).by("invert").changing("x[3]", 3),
+        piece("nb_color_sum", "SPARE0 + SECONDARY.", "@int spare0, @int secondary", color_sum).by("clamp_sum"),
+        piece("nb_final_product", "E times F.", "@int e, @int f", vec![final_product]),
+        piece(
+            "nb_final_rgb",
+            "A channel of the fragment: A B + (1 - A) C + D.",
+            "@int a, @int b, @int c, @int d",
+            vec![rgb],
+        ),
     ]
 }
 
@@ -444,50 +355,28 @@ fn raster(maker: &Maker) -> Vec<Piece> {
     let whole = maker.cases(format, |_, format: SurfaceFormat| {
         vec![Number::Constant((surface::write_mask(format, [true; 4]) == u32::MAX).into())]
     });
-    let byte = |name, about, chooses, parameters, cases| Piece {
-        about,
-        name,
-        chooses: Some(chooses),
-        parameters,
-        array: None,
-        each: None,
-        kind: Kind::Number,
-        cases,
-    };
-    let four = |name, about, chooses, parameters, array, cases| Piece {
-        array: Some(array),
-        ..byte(name, about, chooses, parameters, cases)
-    };
+    let word = |piece: Piece| Piece { kind: Kind::Word, ..piece.by("format") };
     vec![
-        byte("nb_passes", "The alpha test.", "compare", "@int alpha, @int reference", passes),
-        byte("nb_blends", "Whether a surface can be blended with.", "format", "", blends),
-        four(
-            "nb_truncated",
-            "A fragment without what the surface drops.",
-            "format",
-            "@in @int fragment[4]",
-            "source[4]",
-            truncated,
-        ),
-        four("nb_channels", "What a surface holds: R, G, B, A.", "format", "@uint word", "destination[4]", channels),
-        four(
+        piece("nb_passes", "The alpha test.", "@int alpha, @int reference", passes).by("compare"),
+        piece("nb_blends", "Whether a surface can be blended with.", "", blends).by("format"),
+        piece("nb_truncated", "A fragment without what the surface drops.", "@in @int fragment[4]", truncated)
+            .by("format")
+            .filling("source[4]"),
+        piece("nb_channels", "What a surface holds: R, G, B, A.", "@uint word", channels)
+            .by("format")
+            .filling("destination[4]"),
+        piece(
             "nb_blend_factors",
             "A blend factor, of each channel.",
-            "factor",
             "@in @int source[4], @in @int destination[4], @in @int constant[4]",
-            "factors[4]",
             factors,
-        ),
-        byte("nb_blended", "A blended channel.", "equation", "@int s, @int d, @int fs, @int fd", blended),
-        byte("nb_whole", "Whether the four channels are all bits of a surface's words.", "format", "", whole),
-        Piece {
-            kind: Kind::Word,
-            ..byte("nb_packed", "A fragment as a stored word.", "format", "@in @int fragment[4]", packed)
-        },
-        Piece {
-            kind: Kind::Word,
-            ..byte("nb_write_mask", "The bits of a stored word that are written.", "format", "@uint color_mask", mask)
-        },
+        )
+        .by("factor")
+        .filling("factors[4]"),
+        piece("nb_blended", "A blended channel.", "@int s, @int d, @int fs, @int fd", blended).by("equation"),
+        piece("nb_whole", "Whether the four channels are all bits of a surface's words.", "", whole).by("format"),
+        word(piece("nb_packed", "A fragment as a stored word.", "@in @int fragment[4]", packed)),
+        word(piece("nb_write_mask", "The bits of a stored word that are written.", "@uint color_mask", mask)),
     ]
 }
 

@@ -1,6 +1,6 @@
 //! C99.
 
-use super::{Body, Call, Named, ROUNDING, Syntax, Text, comment, needs};
+use super::{Call, Named, ROUNDING, Syntax, Text, comment, needs};
 use crate::code::{Kind, Line};
 use crate::input::Input;
 use crate::pixel::Result;
@@ -55,17 +55,15 @@ impl Syntax for C99 {
         out + HELPERS
     }
 
-    fn function(&self, named: &Named<'_>) -> String {
-        let body = Body::new(self, named.function);
+    fn opening(&self, named: &Named<'_>) -> String {
         let constants = if named.function.uniform { ", const struct ninebit_constants *constants" } else { "" };
         let (name, about) = (&named.name, comment(&named.about));
         let given = format!("const struct ninebit_pixel *pixel{constants}");
         let mut out = match named.function.result {
-            Result::Fragment(_) => {
-                format!(
-                    "/* {about}: R, G, B, A of the fragment, 0 to 255. */\nstatic inline void {name}({given}, int32_t fragment[4])\n{{\n"
-                )
-            }
+            Result::Fragment(_) => format!(
+                "/* {about}: R, G, B, A of the fragment, 0 to 255. */\n\
+                 static inline void {name}({given}, int32_t fragment[4])\n{{\n"
+            ),
             Result::Stored { .. } => format!(
                 "/* {about}: the word that the surface holds afterwards; 0 where the alpha test drops the fragment. */\n\
                  static inline int {name}({given}, uint32_t *word)\n{{\n"
@@ -78,24 +76,18 @@ impl Syntax for C99 {
         if named.function.uniform && !inputs.iter().any(|input| input.is_constant()) {
             out.push_str("    (void)constants;\n");
         }
-        body.declarations.iter().for_each(|line| out.push_str(&format!("    {line}\n")));
-        match named.function.result {
-            Result::Fragment(channels) => {
-                for (n, channel) in channels.into_iter().enumerate() {
-                    let value = body.operand(self, channel, Kind::Number).open();
-                    out.push_str(&format!("    fragment[{n}] = {value};\n"));
-                }
-            }
-            Result::Stored { word, test } => {
-                let word = body.operand(self, word, Kind::Word).open();
-                if let Some(test) = test {
-                    out.push_str(&format!("    if (!({})) {{ /* ROP-1 */\n", body.test(self, test)));
-                    out.push_str("        *word = pixel->destination;\n        return 0;\n    }\n");
-                }
-                out.push_str(&format!("    *word = {word};\n    return 1;\n"));
-            }
-        }
-        out + "}\n"
+        out
+    }
+
+    fn fragment(&self, channels: [String; 4]) -> String {
+        let lines = channels.iter().enumerate().map(|(n, value)| format!("    fragment[{n}] = {value};\n"));
+        lines.collect::<String>() + "}\n"
+    }
+
+    fn stored(&self, word: String, test: Option<String>) -> String {
+        let dropped = "        *word = pixel->destination;\n        return 0;\n    }\n";
+        let test = test.map(|test| format!("    if (!({test})) {{ /* ROP-1 */\n{dropped}")).unwrap_or_default();
+        format!("{test}    *word = {word};\n    return 1;\n}}\n")
     }
 
     fn input(&self, input: Input) -> String {

@@ -1,6 +1,6 @@
 //! GLSL 3.30 and GLSL ES 3.00.
 
-use super::{Body, Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
+use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
 use crate::code::{Kind, Line};
 use crate::input::Input;
 use crate::pixel::Result;
@@ -37,37 +37,28 @@ impl Syntax for Glsl {
         out
     }
 
-    fn function(&self, named: &Named<'_>) -> String {
-        let body = Body::new(self, named.function);
+    fn opening(&self, named: &Named<'_>) -> String {
         let constants = if named.function.uniform { ", NinebitConstants constants" } else { "" };
         let (name, about) = (&named.name, comment(&named.about));
-        let mut out = match named.function.result {
-            Result::Fragment(_) => {
-                format!(
-                    "// {about}: R, G, B, A of the fragment, 0 to 255.\nivec4 {name}(NinebitPixel pixel{constants})\n{{\n"
-                )
-            }
+        match named.function.result {
+            Result::Fragment(_) => format!(
+                "// {about}: R, G, B, A of the fragment, 0 to 255.\nivec4 {name}(NinebitPixel pixel{constants})\n{{\n"
+            ),
             Result::Stored { .. } => format!(
                 "// {about}: the word that the surface holds afterwards; false where the alpha test drops the fragment.\n\
                  bool {name}(NinebitPixel pixel{constants}, out uint word)\n{{\n"
             ),
-        };
-        body.declarations.iter().for_each(|line| out.push_str(&format!("    {line}\n")));
-        match named.function.result {
-            Result::Fragment(channels) => {
-                let channels = channels.map(|channel| body.operand(self, channel, Kind::Number).open());
-                out.push_str(&format!("    return ivec4({});\n", channels.join(", ")));
-            }
-            Result::Stored { word, test } => {
-                let word = body.operand(self, word, Kind::Word).open();
-                if let Some(test) = test {
-                    out.push_str(&format!("    if (!({})) {{ // ROP-1\n", body.test(self, test)));
-                    out.push_str("        word = pixel.destination;\n        return false;\n    }\n");
-                }
-                out.push_str(&format!("    word = {word};\n    return true;\n"));
-            }
         }
-        out + "}\n"
+    }
+
+    fn fragment(&self, channels: [String; 4]) -> String {
+        format!("    return ivec4({});\n}}\n", channels.join(", "))
+    }
+
+    fn stored(&self, word: String, test: Option<String>) -> String {
+        let dropped = "        word = pixel.destination;\n        return false;\n    }\n";
+        let test = test.map(|test| format!("    if (!({test})) {{ // ROP-1\n{dropped}")).unwrap_or_default();
+        format!("{test}    word = {word};\n    return true;\n}}\n")
     }
 
     fn input(&self, input: Input) -> String {

@@ -72,8 +72,27 @@ impl Language {
 pub(crate) trait Syntax {
     /// What stands before all functions.
     fn head(&self, functions: &[Named<'_>]) -> String;
+    /// How a function begins: what it is, its name and what it is given.
+    fn opening(&self, named: &Named<'_>) -> String;
+    /// How a function ends that yields a fragment.
+    fn fragment(&self, channels: [String; 4]) -> String;
+    /// How a function ends that yields a word, unless the fragment fails this test.
+    fn stored(&self, word: String, test: Option<String>) -> String;
     /// A whole function.
-    fn function(&self, named: &Named<'_>) -> String;
+    fn function(&self, named: &Named<'_>) -> String {
+        let body = Body::new(self, named.function);
+        let lines: String = body.declarations.iter().map(|line| format!("    {line}\n")).collect();
+        let end = match named.function.result {
+            Result::Fragment(channels) => {
+                self.fragment(channels.map(|channel| body.operand(self, channel, Kind::Number).open()))
+            }
+            Result::Stored { word, test } => {
+                let word = body.operand(self, word, Kind::Word).open();
+                self.stored(word, test.map(|test| body.test(self, test)))
+            }
+        };
+        self.opening(named) + &lines + &end
+    }
     /// How an input is read.
     fn input(&self, input: Input) -> String;
     /// A constant.

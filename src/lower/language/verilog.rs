@@ -1,6 +1,6 @@
 //! Verilog-2001: a combinational module a function.
 
-use super::{Body, Call, Named, ROUNDING, Syntax, Text, comment, letter};
+use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter};
 use crate::code::{Kind, Line, Range};
 use crate::input::Input;
 use crate::pixel::Result;
@@ -29,39 +29,28 @@ impl Syntax for Verilog {
                // of 256ths; words of 32 bits. Constants of the draw, where they are ports, are bytes in 9 bits.\n"
     }
 
-    fn function(&self, named: &Named<'_>) -> String {
-        let body = Body::new(self, named.function);
-        let about = comment(&named.about);
-        let mut ports: Vec<String> = named
-            .function
-            .inputs()
-            .into_iter()
-            .map(|input| format!("input {} {}", port(input.kind(), input.range()), self.input(input)))
-            .collect();
-        let mut ends = Vec::new();
+    fn opening(&self, named: &Named<'_>) -> String {
+        let inputs = named.function.inputs().into_iter();
+        let mut ports: Vec<String> =
+            inputs.map(|input| format!("input {} {}", port(input.kind(), input.range()), self.input(input))).collect();
         match named.function.result {
-            Result::Fragment(channels) => {
-                for (n, channel) in channels.into_iter().enumerate() {
-                    ports.push(format!("output [7:0] out_{}", letter(n)));
-                    let value = body.operand(self, channel, Kind::Number).open();
-                    ends.push(format!("assign out_{} = {value};", letter(n)));
-                }
-            }
-            Result::Stored { word, test } => {
-                ports.extend(["output passed".to_string(), "output [31:0] word".to_string()]);
-                let word = body.operand(self, word, Kind::Word).open();
-                match test {
-                    Some(test) => ends.extend([
-                        format!("assign passed = {}; // ROP-1", body.test(self, test)),
-                        format!("assign word = passed ? {word} : destination;"),
-                    ]),
-                    None => ends.extend(["assign passed = 1'b1;".to_string(), format!("assign word = {word};")]),
-                }
-            }
+            Result::Fragment(_) => ports.extend((0..4).map(|n| format!("output [7:0] out_{}", letter(n)))),
+            Result::Stored { .. } => ports.extend(["output passed", "output [31:0] word"].map(str::to_owned)),
         }
-        let mut out = format!("// {about}\nmodule {} (\n    {}\n);\n", named.name, ports.join(",\n    "));
-        body.declarations.iter().chain(&ends).for_each(|line| out.push_str(&format!("    {line}\n")));
-        out + "endmodule\n"
+        format!("// {}\nmodule {} (\n    {}\n);\n", comment(&named.about), named.name, ports.join(",\n    "))
+    }
+
+    fn fragment(&self, channels: [String; 4]) -> String {
+        let lines = channels.iter().enumerate().map(|(n, value)| format!("    assign out_{} = {value};\n", letter(n)));
+        lines.collect::<String>() + "endmodule\n"
+    }
+
+    fn stored(&self, word: String, test: Option<String>) -> String {
+        let (passed, word) = match test {
+            Some(test) => (format!("{test}; // ROP-1"), format!("passed ? {word} : destination")),
+            None => ("1'b1;".to_owned(), word),
+        };
+        format!("    assign passed = {passed}\n    assign word = {word};\nendmodule\n")
     }
 
     fn input(&self, input: Input) -> String {

@@ -1,7 +1,7 @@
 //! WGSL.
 
-use super::{Body, Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
-use crate::code::{Kind, Line};
+use super::{Call, Named, ROUNDING, Syntax, Text, comment, letter, needs};
+use crate::code::Line;
 use crate::input::Input;
 use crate::pixel::Result;
 
@@ -42,36 +42,24 @@ impl Syntax for Wgsl {
         out
     }
 
-    fn function(&self, named: &Named<'_>) -> String {
-        let body = Body::new(self, named.function);
+    fn opening(&self, named: &Named<'_>) -> String {
         let constants = if named.function.uniform { ", constants: NinebitConstants" } else { "" };
-        let (name, about) = (&named.name, comment(&named.about));
-        let mut out = match named.function.result {
-            Result::Fragment(_) => format!(
-                "// {about}: R, G, B, A of the fragment, 0 to 255.\nfn {name}(pixel: NinebitPixel{constants}) -> vec4<i32> {{\n"
-            ),
-            Result::Stored { .. } => {
-                format!(
-                    "// {about}: the word that the surface holds afterwards.\nfn {name}(pixel: NinebitPixel{constants}) -> NinebitStored {{\n"
-                )
-            }
+        let (result, about) = match named.function.result {
+            Result::Fragment(_) => ("vec4<i32>", "R, G, B, A of the fragment, 0 to 255"),
+            Result::Stored { .. } => ("NinebitStored", "the word that the surface holds afterwards"),
         };
-        body.declarations.iter().for_each(|line| out.push_str(&format!("    {line}\n")));
-        match named.function.result {
-            Result::Fragment(channels) => {
-                let channels = channels.map(|channel| body.operand(self, channel, Kind::Number).open());
-                out.push_str(&format!("    return vec4<i32>({});\n", channels.join(", ")));
-            }
-            Result::Stored { word, test } => {
-                let word = body.operand(self, word, Kind::Word).open();
-                if let Some(test) = test {
-                    out.push_str(&format!("    if !({}) {{ // ROP-1\n", body.test(self, test)));
-                    out.push_str("        return NinebitStored(false, pixel.destination);\n    }\n");
-                }
-                out.push_str(&format!("    return NinebitStored(true, {word});\n"));
-            }
-        }
-        out + "}\n"
+        let (name, function) = (&named.name, comment(&named.about));
+        format!("// {function}: {about}.\nfn {name}(pixel: NinebitPixel{constants}) -> {result} {{\n")
+    }
+
+    fn fragment(&self, channels: [String; 4]) -> String {
+        format!("    return vec4<i32>({});\n}}\n", channels.join(", "))
+    }
+
+    fn stored(&self, word: String, test: Option<String>) -> String {
+        let dropped = "        return NinebitStored(false, pixel.destination);\n    }\n";
+        let test = test.map(|test| format!("    if !({test}) {{ // ROP-1\n{dropped}")).unwrap_or_default();
+        format!("{test}    return NinebitStored(true, {word});\n}}\n")
     }
 
     fn input(&self, input: Input) -> String {

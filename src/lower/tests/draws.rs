@@ -1,14 +1,8 @@
 //! The lines of draws against traces: what a trace says a pixel was given goes in, and what it says was stored has to come out.
 //!
 //! `NINEBIT_LOWER_SCENES` says of how many random scenes, `NINEBIT_LOWER_SEED` chooses others.
-#![allow(
-    missing_docs,
-    unreachable_pub,
-    dead_code,
-    clippy::unwrap_used,
-    clippy::float_arithmetic,
-    reason = "tests fail by panicking, and modules share files of which each uses its part"
-)]
+#![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
+#![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
 #[path = "../../../tests/common/random_scene.rs"]
 mod random_scene;

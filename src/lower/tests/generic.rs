@@ -1,13 +1,8 @@
 //! The generic text against the model: random words of both chips, a pixel of each through compiled C and through a shader. What is not installed is ignored.
 //!
 //! `NINEBIT_GENERIC_PROGRAMS` says how many programs, `NINEBIT_GENERIC_LEVEL=1` takes tables of level L1, `NINEBIT_GENERIC_SEED` chooses others; `CC`, `NINEBIT_LOWER_CFLAGS` and `NINEBIT_LOWER_PYTHON` are as in `languages`.
-#![allow(
-    missing_docs,
-    unreachable_pub,
-    dead_code,
-    clippy::unwrap_used,
-    reason = "tests fail by panicking, and modules share files of which each uses its part"
-)]
+#![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
+#![allow(clippy::unwrap_used, reason = "tests fail by panicking")]
 
 #[path = "common/setting.rs"]
 mod setting;
@@ -424,7 +419,7 @@ fn shown(generic: &Generic, unit: &str, case: &Case<'_>) -> Option<Shown> {
             let pixels =
                 draws.iter().map(|draw| pixel(generic, &[], draw.combiners.as_ref().unwrap(), inputs)).collect();
             let reads: Vec<Vec<gpu::Read>> = draws.iter().map(|draw| draw.reads.clone()).collect();
-            let kinds: Vec<_> = case.results.iter().map(|column| (column.name.clone(), column.kind.clone())).collect();
+            let kinds: Vec<_> = case.results.iter().map(|column| (column.name.clone(), column.kind)).collect();
             let results = case.row.results.clone();
             Some((
                 pixels,

@@ -2,14 +2,8 @@
 //!
 //! `NINEBIT_LOWER_CASES` says how many functions of each language, `NINEBIT_LOWER_ROWS` on how many pixels each, `NINEBIT_LOWER_SEED` chooses others, `CC` names the
 //! compiler of C and `NINEBIT_LOWER_CFLAGS` adds to its options, `NINEBIT_LOWER_PYTHON` names a Python with `moderngl`, `wgpu` and `numpy`.
-#![allow(
-    missing_docs,
-    unreachable_pub,
-    dead_code,
-    clippy::unwrap_used,
-    clippy::float_arithmetic,
-    reason = "tests fail by panicking, and modules share files of which each uses its part"
-)]
+#![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
+#![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
 #[path = "../../../tests/common/random_program.rs"]
 mod random_program;

@@ -1,12 +1,6 @@
 //! Printed programs against the model: their lines, run by themselves, and their text, compiled by what is installed.
-#![allow(
-    missing_docs,
-    unreachable_pub,
-    dead_code,
-    clippy::unwrap_used,
-    clippy::float_arithmetic,
-    reason = "tests fail by panicking, and modules share files of which each uses its part"
-)]
+#![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
+#![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
 #[path = "../../../tests/common/random_program.rs"]
 mod random_program;

@@ -21,12 +21,12 @@ const MAX_FINDINGS: usize = 32;
 /// What a language reads of a text.
 #[derive(Debug)]
 pub(super) struct Vocabulary {
-    /// Ends of the names of calls that are read.
-    pub(super) calls: &'static [&'static str],
+    /// Ends of the names of calls that are read, with spaces between them.
+    pub(super) calls: &'static str,
     /// Ends of the names of calls that say what the scene says itself: passed over without a word.
-    pub(super) silent: &'static [&'static str],
+    pub(super) silent: &'static str,
     /// States of effect files that are read.
-    pub(super) states: &'static [&'static [&'static str]],
+    pub(super) states: fn() -> Vec<&'static str>,
     /// What to write instead of calls that are passed over.
     pub(super) instead: &'static [(&'static str, &'static str)],
     /// Two statements, for messages.
@@ -37,15 +37,11 @@ pub(super) struct Vocabulary {
 
 impl Vocabulary {
     fn reads(&self, call: &str) -> bool {
-        self.calls.iter().any(|end| call.ends_with(end))
-    }
-
-    fn all_states(&self) -> impl Iterator<Item = &'static str> {
-        self.states.iter().copied().flatten().copied()
+        self.calls.split(' ').any(|end| call.ends_with(end))
     }
 
     fn is_state(&self, word: &str) -> bool {
-        self.all_states().any(|state| state.eq_ignore_ascii_case(word))
+        (self.states)().iter().any(|state| state.eq_ignore_ascii_case(word))
     }
 }
 
@@ -171,18 +167,19 @@ impl<'t> Reader<'t> {
         }
     }
 
-    fn expected(&mut self, what: &str) {
+    /// Records that something else stands here.
+    fn expected<T>(&mut self, what: &str) -> Option<T> {
         let message = format!("expected {what}, found {}", self.cursor.found("the end of the text"));
         let help = format!("write {}", self.vocabulary.example);
         self.findings.push(finding("NB0103", self.cursor.place(), message, "not a statement from here", help));
+        None
     }
 
     fn sign(&mut self, sign: char) -> Option<()> {
         if self.cursor.take(sign) {
             return Some(());
         }
-        self.expected(&format!("`{sign}`"));
-        None
+        self.expected(&format!("`{sign}`"))
     }
 
     /// Skips to the next statement: behind a semicolon, or at the start of a line.
@@ -213,10 +210,7 @@ impl<'t> Reader<'t> {
                 self.cursor.skip_to(Cursor::is_new_line);
                 Ok(None)
             }
-            _ => {
-                self.expected("a call or an assignment");
-                Err(GivenUp)
-            }
+            _ => self.expected("a call or an assignment").ok_or(GivenUp),
         }
     }
 
@@ -241,7 +235,7 @@ impl<'t> Reader<'t> {
             }
             (_, Some(Kind::Sign('['))) if self.array(word) => {}
             (_, Some(Kind::Sign('[' | '='))) => {
-                if let Some(state) = self.vocabulary.all_states().find(|state| nearly(word, state)) {
+                if let Some(state) = (self.vocabulary.states)().into_iter().find(|state| nearly(word, state)) {
                     let message = format!("there is no state `{}`", shorten(word));
                     let help = format!("did you mean `{state}`?");
                     self.findings.push(finding("NB0204", place, message, "not known", help));
@@ -263,7 +257,7 @@ impl<'t> Reader<'t> {
             self.end().ok_or(GivenUp)?;
             return Ok(Some(call));
         }
-        if let Some(known) = self.vocabulary.calls.iter().find(|known| nearly(word, known)) {
+        if let Some(known) = self.vocabulary.calls.split(' ').find(|known| nearly(word, known)) {
             let message = format!("`{}` is no call that is read here", shorten(word));
             let help = format!("did you mean `{known}`?");
             self.findings.push(finding("NB0204", place, message, "not known", help));
@@ -275,7 +269,7 @@ impl<'t> Reader<'t> {
             self.until = end;
             return Ok(None);
         }
-        if !self.vocabulary.silent.iter().any(|silent| word.ends_with(silent)) {
+        if !self.vocabulary.silent.split(' ').any(|silent| word.ends_with(silent)) {
             self.pass_name(word, place);
         }
         self.cursor.at = end;
@@ -343,8 +337,7 @@ impl<'t> Reader<'t> {
         if self.cursor.take(';') || self.cursor.is_new_line() || self.cursor.is('}') {
             return Some(());
         }
-        self.expected("`;`");
-        None
+        self.expected("`;`")
     }
 
     /// `name(a, b)`; `None` once the reason that it is none has been recorded.
@@ -355,11 +348,9 @@ impl<'t> Reader<'t> {
         if self.cursor.take(')') {
             return Some(Statement::Call { name, arguments });
         }
-        loop {
+        arguments.push(self.value()?);
+        while self.cursor.take(',') {
             arguments.push(self.value()?);
-            if !self.cursor.take(',') {
-                break;
-            }
         }
         self.sign(')')?;
         Some(Statement::Call { name, arguments })

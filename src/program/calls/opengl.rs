@@ -42,8 +42,8 @@ pub(crate) fn choose<T: Copy>(
 }
 
 /// All values of an enumeration, by the names that the API has for them, in their order.
-pub(crate) fn table<T: Named>(names: &[&'static str]) -> Vec<(&'static str, T)> {
-    names.iter().copied().zip(T::ALL.iter().copied()).collect()
+pub(crate) fn table<T: Named>(names: &'static str) -> Vec<(&'static str, T)> {
+    names.split(' ').zip(T::ALL.iter().copied()).collect()
 }
 
 /// n of `GL_TEXTURE0 + n`, `GL_TEXTUREn_ARB`, and likewise of other names: below `count`.

@@ -46,20 +46,16 @@ impl<'t> Reader<'t> {
     fn nested_value(&mut self, depth: usize) -> Option<Value<'t>> {
         let start = self.cursor.place().start;
         let mut parts = Vec::new();
-        loop {
+        self.part(&mut parts, depth)?;
+        while self.cursor.take('|') || self.cursor.take('+') {
             self.part(&mut parts, depth)?;
-            if !matches!(self.cursor.kind(), Some(Kind::Sign('|' | '+'))) {
-                break;
-            }
-            self.cursor.advance();
         }
         Some(Value { parts, place: start..self.cursor.end() })
     }
 
     fn part(&mut self, parts: &mut Vec<Part<'t>>, depth: usize) -> Option<()> {
         if depth > MAX_BRACKET_DEPTH {
-            self.expected("a value in fewer brackets");
-            return None;
+            return self.expected("a value in fewer brackets");
         }
         let place = self.cursor.place();
         let text = self.word(&place);
@@ -73,8 +69,7 @@ impl<'t> Reader<'t> {
                 let number = self.cursor.place();
                 let text = self.word(&number);
                 if self.cursor.kind() != Some(Kind::Number) {
-                    self.expected("a number");
-                    return None;
+                    return self.expected("a number");
                 }
                 self.cursor.advance();
                 let place = place.start..number.end;
@@ -115,16 +110,12 @@ impl<'t> Reader<'t> {
                     return Some(());
                 }
                 self.members();
-                let text = self.word(&(place.start..self.cursor.end()));
-                parts.push(Part {
-                    text: text.trim_end_matches("[0]"),
-                    place: place.start..self.cursor.end(),
-                    kind: PartKind::Name,
-                });
+                let place = place.start..self.cursor.end();
+                let text = self.word(&place).trim_end_matches("[0]");
+                parts.push(Part { text, place, kind: PartKind::Name });
             }
             _ => {
-                self.expected("a number or a name of the API");
-                return None;
+                return self.expected("a number or a name of the API");
             }
         }
         Some(())
@@ -190,28 +181,9 @@ impl<'t> Reader<'t> {
 }
 
 fn is_type(word: &str) -> bool {
-    [
-        "DWORD",
-        "UINT",
-        "ULONG",
-        "LONG",
-        "int",
-        "long",
-        "unsigned",
-        "float",
-        "double",
-        "const",
-        "void",
-        "D3DCOLOR",
-        "D3DTEXTUREOP",
-        "GLfloat",
-        "GLint",
-        "GLenum",
-        "GLuint",
-        "GLdouble",
-        "GLclampf",
-    ]
-    .contains(&word)
+    const C: &str = "int long unsigned float double const void";
+    const APIS: &str = "DWORD UINT ULONG LONG D3DCOLOR D3DTEXTUREOP GLfloat GLint GLenum GLuint GLdouble GLclampf";
+    C.split(' ').chain(APIS.split(' ')).any(|known| known == word)
 }
 
 /// A whole number, decimal or hexadecimal, with C's suffixes.

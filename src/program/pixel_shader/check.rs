@@ -98,13 +98,8 @@ impl Check<'_> {
             let Definition { index, place, .. } = definition;
             if self.first().is_some_and(|first| first < place.start) {
                 let message = format!("def c{index} behind an instruction");
-                self.push(
-                    "NB0373",
-                    place,
-                    message,
-                    "too late",
-                    "definitions stand between the version and the instructions",
-                );
+                let help = "definitions stand between the version and the instructions";
+                self.push("NB0373", place, message, "too late", help);
             }
             let Some(slot) = seen.get_mut(usize::from(*index)) else { continue };
             match slot {
@@ -236,13 +231,9 @@ impl Check<'_> {
                 (Mask::Alpha, Mask::Alpha) => "alpha",
                 _ => "colour",
             };
-            let error = finding(
-                "NB0376",
-                second.target.place.clone(),
-                format!("both instructions of this pair write {pipe}"),
-                "not in the same cycle",
-                "one of a pair writes `.rgb`, the other `.a`",
-            );
+            let message = format!("both instructions of this pair write {pipe}");
+            let help = "one of a pair writes `.rgb`, the other `.a`";
+            let error = finding("NB0376", second.target.place.clone(), message, "not in the same cycle", help);
             self.findings.push(error.related(first.target.place.clone(), "the other one"));
         } else if self.program.version == Version::Ps10 && one.register != other.register {
             let message = format!(
@@ -283,13 +274,8 @@ impl Check<'_> {
                             1 => format!("{what} reads two {name} registers; {} can read one", version.name()),
                             _ => format!("{what} reads more than {most} of the {name} registers"),
                         };
-                        self.push(
-                            "NB0372",
-                            &source.place,
-                            message,
-                            "one too many",
-                            "`mov` one of them to r0 or r1 first",
-                        );
+                        let help = "`mov` one of them to r0 or r1 first";
+                        self.push("NB0372", &source.place, message, "one too many", help);
                     } else if in_all && slot.len() > 1 && all.len() == 4 {
                         let message = format!("this pair reads more than 3 of the {name} registers");
                         self.push("NB0372", &source.place, message, "one too many", "issue the two after one another");

@@ -70,13 +70,8 @@ fn refused(texture: &TextureInstruction, context: &Context) -> Option<Diagnostic
         _ => "nv10 has no form for it in one pass",
     };
     let message = format!("{name} needs the texture shader; nv10 has none");
-    let error = finding(
-        "NB0340",
-        texture.place.clone(),
-        message,
-        "not on this chip",
-        "write `profile: Nv2a`, which has the texture shader",
-    );
+    let help = "write `profile: Nv2a`, which has the texture shader";
+    let error = finding("NB0340", texture.place.clone(), message, "not on this chip", help);
     Some(error.rule("TSH-10").note(instead))
 }
 
@@ -117,13 +112,11 @@ fn operation(
             };
             let (index, name) = (texture.unit.value, texture.operation.name());
             let fields = if luminance { "matrix: (1, 0, 0, 1), luminance: (1, 0)" } else { "matrix: (1, 0, 0, 1)" };
-            findings.push(finding(
-                "NB0378",
-                texture.place.clone(),
-                format!("{name} t{index} has no {what}"),
-                "moves coordinates by it",
-                format!("the state of texture stage {index} has it: write `bump: {{ \"t{index}\": ({fields}) }}` beside the text"),
-            ));
+            let message = format!("{name} t{index} has no {what}");
+            let help = format!(
+                "the state of texture stage {index} has it: write `bump: {{ \"t{index}\": ({fields}) }}` beside the text"
+            );
+            findings.push(finding("NB0378", texture.place.clone(), message, "moves coordinates by it", help));
             return None;
         }
     })

@@ -44,17 +44,7 @@ pub const COLOR_MASK: [Field; 4] = [
 
 /// The value of a comparison.
 pub fn compare_function(function: CompareFunction) -> u32 {
-    0x200
-        + match function {
-            CompareFunction::Never => 0,
-            CompareFunction::Less => 1,
-            CompareFunction::Equal => 2,
-            CompareFunction::LessOrEqual => 3,
-            CompareFunction::Greater => 4,
-            CompareFunction::NotEqual => 5,
-            CompareFunction::GreaterOrEqual => 6,
-            CompareFunction::Always => 7,
-        }
+    0x200 + function as u32
 }
 
 /// The value of a blend factor.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::parser::{GivenUp, Parser, Source};
 use super::words::{REGISTERS, find};
 use crate::Place;
+use crate::finding::finding;
 use ninebit::diagnostic::Diagnostic;
 use ninebit::state::{Component, FinalCombiner, FinalInput, FinalRegister};
 
@@ -69,11 +70,11 @@ impl Final {
             let g = operand(parser, 6)?;
             parser.sign(';')?;
             set(parser, &mut self.alpha, g, span);
-            return Ok(());
+        } else {
+            let inputs = rgb(parser)?;
+            parser.sign(';')?;
+            set(parser, &mut self.rgb, inputs, span);
         }
-        let inputs = rgb(parser)?;
-        parser.sign(';')?;
-        set(parser, &mut self.rgb, inputs, span);
         Ok(())
     }
 
@@ -106,11 +107,8 @@ impl Final {
                     .help("write `out.rgb = spare0;` for the colour that the stages made, or `out.rgb = zero;`"),
             ),
             (None, None, Some(span)) => {
-                parser.give_up(
-                    Diagnostic::error("NB0202", span, "this final combiner has no `out.rgb`")
-                        .label("without it")
-                        .help("write `out.rgb = ...;`, or leave the whole final combiner out"),
-                );
+                let help = "write `out.rgb = ...;`, or leave the whole final combiner out";
+                parser.give_up(finding("NB0202", span, "this final combiner has no `out.rgb`", "without it", help));
             }
         }
         if self.rgb.is_none() && self.alpha.is_none() {
@@ -132,13 +130,7 @@ impl Final {
 
 /// Keeps what a statement says, once.
 fn set<T>(parser: &mut Parser<'_>, slot: &mut Option<(T, Range<usize>)>, value: T, span: Range<usize>) {
-    match slot {
-        Some((_, first)) => {
-            let first = first.clone();
-            parser.twice(span, first, "this");
-        }
-        None => *slot = Some((value, span)),
-    }
+    parser.set(slot, value, span.clone(), span, "this");
 }
 
 /// `lerp(a, b, c) + d`, `a * b + d`, `a + d`, `d`, or with d first: A B + (1 - A) C + D.
@@ -146,44 +138,35 @@ fn rgb(parser: &mut Parser<'_>) -> Result<[FinalInput; 4], GivenUp> {
     let mut inputs = [ZERO; 4];
     if parser.cursor.word() == "lerp" {
         lerp(parser, &mut inputs)?;
-        if parser.cursor.is('+') {
-            parser.cursor.advance();
+        if parser.cursor.take('+') {
             inputs[3] = operand(parser, 3)?;
         }
         return Ok(inputs);
     }
     // Where an operand stands in the sum is known behind it.
     let first = unplaced(parser, false)?;
-    if parser.cursor.is('*') {
+    if parser.cursor.take('*') {
         inputs[0] = place(parser, 0, first);
-        parser.cursor.advance();
         inputs[1] = operand(parser, 1)?;
-        if parser.cursor.is('+') {
-            parser.cursor.advance();
+        if parser.cursor.take('+') {
             inputs[3] = operand(parser, 3)?;
         }
-        return Ok(inputs);
-    }
-    if !parser.cursor.is('+') {
+    } else if !parser.cursor.take('+') {
         inputs[3] = place(parser, 3, first);
-        return Ok(inputs);
-    }
-    parser.cursor.advance();
-    if parser.cursor.word() == "lerp" {
+    } else if parser.cursor.word() == "lerp" {
         inputs[3] = place(parser, 3, first);
         lerp(parser, &mut inputs)?;
-        return Ok(inputs);
-    }
-    let second = unplaced(parser, false)?;
-    if parser.cursor.is('*') {
-        inputs[3] = place(parser, 3, first);
-        inputs[0] = place(parser, 0, second);
-        parser.cursor.advance();
-        inputs[1] = operand(parser, 1)?;
     } else {
-        inputs[0] = place(parser, 0, first);
-        inputs[1] = ONE;
-        inputs[3] = place(parser, 3, second);
+        let second = unplaced(parser, false)?;
+        if parser.cursor.take('*') {
+            inputs[3] = place(parser, 3, first);
+            inputs[0] = place(parser, 0, second);
+            inputs[1] = operand(parser, 1)?;
+        } else {
+            inputs[0] = place(parser, 0, first);
+            inputs[1] = ONE;
+            inputs[3] = place(parser, 3, second);
+        }
     }
     Ok(inputs)
 }
@@ -230,14 +213,9 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
     let function = parser.cursor.word();
     if parser.cursor.is('-') || matches!(function, "expand" | "half_bias") {
         let name = if function.is_empty() { "-" } else { function };
-        let finding = Diagnostic::error(
-            "NB0311",
-            parser.cursor.place(),
-            format!("the final combiner has no mapping `{name}`"),
-        )
-        .label("not here")
-        .rule("FIN-1")
-        .help("its inputs are taken as they are, or inverted: `spare0`, `unsigned_invert(spare0)`; map in a stage");
+        let message = format!("the final combiner has no mapping `{name}`");
+        let help = "its inputs are taken as they are, or inverted: `spare0`, `unsigned_invert(spare0)`; map in a stage";
+        let finding = finding("NB0311", parser.cursor.place(), message, "not here", help).rule("FIN-1");
         return Err(parser.give_up(finding));
     }
     if function == "lerp" {
@@ -269,10 +247,9 @@ fn unplaced(parser: &mut Parser<'_>, alpha: bool) -> Result<Operand, GivenUp> {
 fn side(parser: &mut Parser<'_>, wanted: FinalRegister) -> Result<bool, GivenUp> {
     let Operand { input, span, .. } = unplaced(parser, false)?;
     if input.register != wanted || input.component != Component::Rgb {
-        let finding = Diagnostic::error("NB0104", span, "the colour sum is that of spare0 and col1")
-            .label("not this")
-            .rule("FIN-3")
-            .help("write `color_sum = spare0 + col1;`, each as it is or in `unsigned_invert(...)`");
+        let message = "the colour sum is that of spare0 and col1";
+        let help = "write `color_sum = spare0 + col1;`, each as it is or in `unsigned_invert(...)`";
+        let finding = finding("NB0104", span, message, "not this", help).rule("FIN-3");
         return Err(parser.give_up(finding));
     }
     Ok(input.invert)

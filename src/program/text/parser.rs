@@ -8,7 +8,7 @@ use super::portion::PortionReader;
 use super::words::{REGISTERS, find};
 use crate::cursor::Cursor;
 pub(super) use crate::cursor::{GivenUp, Read};
-use crate::finding::{foreign, header};
+use crate::finding::{finding, foreign, header};
 use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use crate::{Place, Places};
@@ -36,6 +36,10 @@ pub(super) struct Parser<'t> {
 
 /// A constant that is written, and where.
 type Written = Option<([u8; 4], Range<usize>)>;
+
+/// What may stand beside stages.
+const STATEMENTS: &[&str] =
+    &["const0", "const1", "mux_by_least_significant_bit", "final_product", "color_sum", "clamp_color_sum", "out"];
 
 impl<'t> Parser<'t> {
     pub(super) fn new(text: &'t str) -> Self {
@@ -79,25 +83,12 @@ impl<'t> Parser<'t> {
                     self.call().map(|()| self.once(&mut mux, span))
                 }
                 "out" | "final_product" | "color_sum" | "clamp_color_sum" => last.statement(&mut self),
-                _ => Err(self.unknown_statement(
-                    "a stage `{ ... }` or a statement",
-                    &[
-                        "const0",
-                        "const1",
-                        "mux_by_least_significant_bit",
-                        "final_product",
-                        "color_sum",
-                        "clamp_color_sum",
-                        "out",
-                    ],
-                )),
+                _ => Err(self.unknown_statement("a stage `{ ... }` or a statement", STATEMENTS)),
             };
             if outcome.is_err() {
                 self.recover();
                 // Nothing outside a stage can be closed.
-                while self.cursor.is('}') {
-                    self.cursor.advance();
-                }
+                while self.cursor.take('}') {}
             }
         }
         let end = self.cursor.text.trim_end().len();
@@ -184,13 +175,7 @@ impl<'t> Parser<'t> {
             }
         }
         self.cursor.advance();
-        match slot {
-            Some((_, first)) => {
-                let first = first.clone();
-                self.twice(name, first, "this portion");
-            }
-            None => *slot = Some((reader.portion, name)),
-        }
+        self.set(slot, reader.portion, name.clone(), name, "this portion");
         Ok(())
     }
 
@@ -208,9 +193,9 @@ impl<'t> Parser<'t> {
         let mut values = Vec::new();
         loop {
             let start = self.cursor.place().start;
-            let negative = self.cursor.is('-');
-            if negative || self.cursor.is('+') {
-                self.cursor.advance();
+            let negative = self.cursor.take('-');
+            if !negative {
+                self.cursor.take('+');
             }
             if self.cursor.kind() != Some(Kind::Number) {
                 return Err(self.expected("a number"));
@@ -218,31 +203,22 @@ impl<'t> Parser<'t> {
             let place = start..self.cursor.place().end;
             self.cursor.advance();
             values.push(self.number(place, negative, bytes));
-            if !self.cursor.is(',') {
+            if !self.cursor.take(',') {
                 break;
             }
-            self.cursor.advance();
         }
         self.sign(')')?;
         let span = opening..self.cursor.end();
         self.sign(';')?;
         let Ok(values) = <[_; 4]>::try_from(values) else {
-            self.findings.push(
-                Diagnostic::error("NB0211", span, "a constant colour has four numbers: R, G, B and A")
-                    .label("not four")
-                    .help("write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`"),
-            );
+            let message = "a constant colour has four numbers: R, G, B and A";
+            let help = "write `(1.0, 0.5, 0.0, 1.0)` or `bytes(255, 128, 0, 255)`";
+            self.findings.push(finding("NB0211", span, message, "not four", help));
             return Ok(());
         };
         // What is out of range has been recorded.
         let bytes = values.map(Option::unwrap_or_default);
-        match slot {
-            Some((_, first)) => {
-                let first = first.clone();
-                self.twice(name, first, "this constant");
-            }
-            None => *slot = Some((bytes, name.start..span.end)),
-        }
+        self.set(slot, bytes, name.start..span.end, name, "this constant");
         Ok(())
     }
 
@@ -331,9 +307,24 @@ impl<'t> Parser<'t> {
 
     /// Keeps the place of a statement that may be there once.
     pub(super) fn once(&mut self, slot: &mut Option<Range<usize>>, span: Range<usize>) {
-        match slot.clone() {
-            Some(first) => self.twice(span, first, "this"),
+        match slot {
+            Some(first) => self.twice(span, first.clone(), "this"),
             None => *slot = Some(span),
+        }
+    }
+
+    /// Keeps what a statement says that may be there once: its place, and where it is found again.
+    pub(super) fn set<T>(
+        &mut self,
+        slot: &mut Option<(T, Range<usize>)>,
+        value: T,
+        place: Range<usize>,
+        again: Range<usize>,
+        what: &str,
+    ) {
+        match slot {
+            Some((_, first)) => self.twice(again, first.clone(), what),
+            None => *slot = Some((value, place)),
         }
     }
 
@@ -368,7 +359,7 @@ impl<'t> Parser<'t> {
             None => format!("write one of {list}"),
         };
         let message = format!("there is no {what} `{}`", shorten(word));
-        self.give_up(Diagnostic::error("NB0204", self.cursor.place(), message).label("not known").help(help))
+        self.give_up(finding("NB0204", self.cursor.place(), message, "not known", help))
     }
 
     /// A word that is not known, or something that is no word.
@@ -402,11 +393,7 @@ impl<'t> Parser<'t> {
     }
 
     fn unclosed(&mut self, opening: Range<usize>) -> GivenUp {
-        self.give_up(
-            Diagnostic::error("NB0104", opening, "this bracket is not closed")
-                .label("opened here")
-                .help("close it with `}`"),
-        )
+        self.give_up(finding("NB0104", opening, "this bracket is not closed", "opened here", "close it with `}`"))
     }
 
     /// Passes over what is left of a statement, with the blocks in it: to behind its semicolon, or to a closing brace.

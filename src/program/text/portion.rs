@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::parser::{Parser, Read, Source};
 use super::words::{MAPPINGS, REGISTERS, find};
+use crate::finding::finding;
 use crate::{Part, Place};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::legality::only_final;
@@ -102,10 +103,8 @@ impl PortionReader {
         }
         let first = self.operand(parser, 2 * n)?;
         let sign = parser.cursor.place();
-        let mut dot = false;
-        let second = if parser.cursor.is('*') || parser.cursor.is('.') {
-            dot = parser.cursor.is('.');
-            parser.cursor.advance();
+        let dot = parser.cursor.take('.');
+        let second = if dot || parser.cursor.take('*') {
             self.operand(parser, 2 * n + 1)?
         } else {
             // A register on its own is taken times one.
@@ -113,18 +112,16 @@ impl PortionReader {
             CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
         };
         let mut blue = None;
-        if parser.cursor.is(',') {
-            parser.cursor.advance();
+        if parser.cursor.take(',') {
             blue = Some(parser.cursor.place());
             if parser.cursor.word() != "blue_to_alpha" {
                 return Err(parser.unknown_or_expected("property of a product", &["blue_to_alpha"]));
             }
             parser.cursor.advance();
         }
-        if !parser.cursor.is(';') {
+        if !parser.cursor.take(';') {
             return Err(parser.expected("`*`, `.` or `;`"));
         }
-        parser.cursor.advance();
         parser.places.set(self.at(Part::Output(n)), written);
         if dot {
             parser.places.set(self.at(Part::Dot(n)), sign);
@@ -167,10 +164,8 @@ impl PortionReader {
                 } else {
                     ("RGB", "write alpha in `alpha { ... }`, or add `, blue_to_alpha` to a product (Nv2a)")
                 };
-                let finding = Diagnostic::error("NB0311", place, format!("this portion writes {what}"))
-                    .label("not this component")
-                    .rule("CMB-12")
-                    .help(help);
+                let message = format!("this portion writes {what}");
+                let finding = finding("NB0311", place, message, "not this component", help).rule("CMB-12");
                 return Err(parser.give_up(finding));
             }
         }
@@ -180,10 +175,7 @@ impl PortionReader {
     /// `tex0`, `-tex0`, `expand(tex0.a)`, `-expand(tex0)`
     fn operand(&self, parser: &mut Parser<'_>, n: usize) -> Read<CombinerInput> {
         let start = parser.cursor.place().start;
-        let negative = parser.cursor.is('-');
-        if negative {
-            parser.cursor.advance();
-        }
+        let negative = parser.cursor.take('-');
         let function = MAPPINGS.iter().find(|(name, _, _)| *name == parser.cursor.word());
         let mapping = match function {
             Some((_, mapping, _)) if !negative => *mapping,
@@ -217,13 +209,10 @@ impl PortionReader {
         }
         parser.places.set(self.at(Part::Input(n)), start..parser.cursor.end());
         let plain = if self.alpha { Component::Alpha } else { Component::Rgb };
-        let component = match component {
-            Some((component, place)) => {
-                parser.places.set(self.at(Part::Component(n)), place);
-                component
-            }
-            None => plain,
-        };
+        if let Some((_, place)) = &component {
+            parser.places.set(self.at(Part::Component(n)), place.clone());
+        }
+        let component = component.map_or(plain, |(component, _)| component);
         Ok(CombinerInput { register, component, mapping })
     }
 }

@@ -120,13 +120,10 @@ fn legal(unit: &Unit, half: &Half, alpha: bool, findings: &mut Vec<Diagnostic>) 
     let fits = mode != Mode::Combine4 || matches!(function, Function::Add | Function::AddSigned);
     if !fits && half.function.place.is_empty() {
         let what = if alpha { "combine_alpha" } else { "combine_rgb" };
-        findings.push(finding(
-            "NB0353",
-            unit.place.clone(),
-            format!("a unit in mode Combine4 says its `{what}`"),
-            "this one does not",
-            format!("write `{what}: Add` or `AddSigned`; what the API starts with, Modulate, is none of Combine4's"),
-        ));
+        let message = format!("a unit in mode Combine4 says its `{what}`");
+        let help =
+            format!("write `{what}: Add` or `AddSigned`; what the API starts with, Modulate, is none of Combine4's");
+        findings.push(finding("NB0353", unit.place.clone(), message, "this one does not", help));
         return;
     }
     let mut wrong = |message: String, help: &str| {

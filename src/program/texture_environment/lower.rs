@@ -36,13 +36,9 @@ pub fn lower(program: &TextureEnvironment, context: &Context) -> Result<Lowered,
     }
     if let Some(unit) = program.units.get(context.profile.texture_units()) {
         let (index, chip) = (context.profile.texture_units(), context.profile.name());
-        let error = finding(
-            "NB0319",
-            unit.place.clone(),
-            format!("{chip} has no texture unit {index}"),
-            "one too many",
-            format!("units 0 to {} are the entries of this list", index - 1),
-        );
+        let message = format!("{chip} has no texture unit {index}");
+        let help = format!("units 0 to {} are the entries of this list", index - 1);
+        let error = finding("NB0319", unit.place.clone(), message, "one too many", help);
         findings.push(error.rule("CMB-12"));
     }
     for (index, texture) in textures.iter().enumerate() {

@@ -12,22 +12,10 @@ use ninebit::state::{Scale, TEXTURE_UNITS};
 
 /// What is read of OpenGL for the texture environment.
 static ENVIRONMENT: Vocabulary = Vocabulary {
-    calls: &[
-        "TexEnvi",
-        "TexEnvf",
-        "TexEnviv",
-        "TexEnvfv",
-        "ActiveTexture",
-        "ActiveTextureARB",
-        "glEnable",
-        "glDisable",
-        "LightModeli",
-        "LightModelf",
-        "LightModeliv",
-        "LightModelfv",
-    ],
-    silent: &["BindTexture"],
-    states: &[],
+    calls: "TexEnvi TexEnvf TexEnviv TexEnvfv ActiveTexture ActiveTextureARB glEnable glDisable \
+            LightModeli LightModelf LightModeliv LightModelfv",
+    silent: "BindTexture",
+    states: Vec::new,
     instead: opengl::INSTEAD,
     example: "`glTexEnvi(GL_TEXTURE_ENV, GL_TEXTURE_ENV_MODE, GL_MODULATE);`",
     what: "the texture environment",
@@ -67,22 +55,11 @@ enum Parameter {
     Operand(bool, usize),
 }
 
-const MODES: &[&str] = &["REPLACE", "MODULATE", "DECAL", "BLEND", "ADD", "COMBINE", "COMBINE4"];
-const FUNCTIONS: &[&str] = &[
-    "REPLACE",
-    "MODULATE",
-    "ADD",
-    "ADD_SIGNED",
-    "INTERPOLATE",
-    "SUBTRACT",
-    "DOT3_RGB",
-    "DOT3_RGBA",
-    "DOT3_RGB_EXT",
-    "DOT3_RGBA_EXT",
-];
-const SOURCES: &[&str] =
-    &["TEXTURE", "TEXTURE0", "TEXTURE1", "TEXTURE2", "TEXTURE3", "CONSTANT", "PRIMARY_COLOR", "PREVIOUS", "ZERO"];
-const OPERANDS: &[&str] = &["SRC_COLOR", "ONE_MINUS_SRC_COLOR", "SRC_ALPHA", "ONE_MINUS_SRC_ALPHA"];
+const MODES: &str = "REPLACE MODULATE DECAL BLEND ADD COMBINE COMBINE4";
+const FUNCTIONS: &str =
+    "REPLACE MODULATE ADD ADD_SIGNED INTERPOLATE SUBTRACT DOT3_RGB DOT3_RGBA DOT3_RGB_EXT DOT3_RGBA_EXT";
+const SOURCES: &str = "TEXTURE TEXTURE0 TEXTURE1 TEXTURE2 TEXTURE3 CONSTANT PRIMARY_COLOR PREVIOUS ZERO";
+const OPERANDS: &str = "SRC_COLOR ONE_MINUS_SRC_COLOR SRC_ALPHA ONE_MINUS_SRC_ALPHA";
 
 /// Names of parameters. OpenGL 1.5 writes SRC for SOURCE.
 fn parameters() -> Vec<(String, Parameter)> {

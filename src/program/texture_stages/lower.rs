@@ -120,13 +120,9 @@ impl Walk<'_> {
         let stage = &self.program.stages[index];
         let place = written([&half.operation.place, &stage.color.operation.place, &stage.place]);
         if alpha && operation.is_color_only() {
-            self.findings.push(finding(
-                "NB0353",
-                place.clone(),
-                format!("AlphaOp cannot be {}", operation.name()),
-                "a colour operation",
-                "alpha has SelectArg1 to AddSmooth, the Blend operations, PreModulate, MultiplyAdd and Lerp",
-            ));
+            let message = format!("AlphaOp cannot be {}", operation.name());
+            let help = "alpha has SelectArg1 to AddSmooth, the Blend operations, PreModulate, MultiplyAdd and Lerp";
+            self.findings.push(finding("NB0353", place.clone(), message, "a colour operation", help));
         }
         let reads = operation.reads();
         let arguments = std::array::from_fn(|n| {
@@ -163,13 +159,8 @@ impl Walk<'_> {
             ArgumentSource::Constant => Argument::new(Source::Constant(self.program.stages[index].constant)),
         };
         if source == ArgumentSource::Specular && (alpha || alpha_replicate) && self.context.profile == Profile::Nv10 {
-            let error = finding(
-                "NB0309",
-                place,
-                "the alpha of Specular is not defined on Nv10",
-                "undefined",
-                "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of Diffuse",
-            );
+            let help = "profile Nv2a defines it: write `profile: Nv2a`, or read the alpha of Diffuse";
+            let error = finding("NB0309", place, "the alpha of Specular is not defined on Nv10", "undefined", help);
             self.findings.push(error.rule("CMB-13"));
         }
         if alpha_replicate {
@@ -183,16 +174,12 @@ impl Walk<'_> {
         let units = self.context.profile.texture_units();
         if unit >= units {
             let chip = self.context.profile.name();
-            let error = finding(
-                "NB0319",
-                place,
-                format!("stage {unit} reads texture {unit}; {chip} has textures 0 to {}", units - 1),
-                "a texture unit that the chip lacks",
-                match self.context.profile {
-                    Profile::Nv10 => "profile Nv2a has 4: write `profile: Nv2a`, or draw in two passes with `blend`",
-                    Profile::Nv2a => "draw in two passes with `blend`",
-                },
-            );
+            let message = format!("stage {unit} reads texture {unit}; {chip} has textures 0 to {}", units - 1);
+            let help = match self.context.profile {
+                Profile::Nv10 => "profile Nv2a has 4: write `profile: Nv2a`, or draw in two passes with `blend`",
+                Profile::Nv2a => "draw in two passes with `blend`",
+            };
+            let error = finding("NB0319", place, message, "a texture unit that the chip lacks", help);
             self.findings.push(error.rule("CMB-12"));
             return Argument::ONE;
         }
@@ -216,13 +203,8 @@ impl Walk<'_> {
                     )),
                 }
             } else if at.value.set >= 4 {
-                self.findings.push(finding(
-                    "NB0206",
-                    at.place.clone(),
-                    format!("a set of texture coordinates cannot be {}", at.value.set),
-                    "out of range",
-                    "write 0 to 3",
-                ));
+                let message = format!("a set of texture coordinates cannot be {}", at.value.set);
+                self.findings.push(finding("NB0206", at.place.clone(), message, "out of range", "write 0 to 3"));
             } else if let Some(unit) = self.units.get_mut(index) {
                 unit.coordinate_set = Some(at.value.set as usize);
             }
@@ -230,13 +212,9 @@ impl Walk<'_> {
         let At { value: flags, place } = &stage.transform_flags;
         let (count, projected) = (flags & !PROJECTED, flags & PROJECTED != 0);
         if count > 4 {
-            self.findings.push(finding(
-                "NB0206",
-                place.clone(),
-                format!("there are no transform flags {flags:#x}"),
-                "out of range",
-                "write 0 (D3DTTFF_DISABLE) to 4 (D3DTTFF_COUNT4), with 256 (D3DTTFF_PROJECTED) or without",
-            ));
+            let message = format!("there are no transform flags {flags:#x}");
+            let help = "write 0 (D3DTTFF_DISABLE) to 4 (D3DTTFF_COUNT4), with 256 (D3DTTFF_PROJECTED) or without";
+            self.findings.push(finding("NB0206", place.clone(), message, "out of range", help));
         } else if let Some(unit) = self.units.get_mut(index)
             && self.transforms
         {
@@ -249,13 +227,9 @@ impl Walk<'_> {
     fn bump(&mut self, index: usize, stage: &TextureStage) {
         let operation = &stage.color.operation;
         if self.context.profile == Profile::Nv10 {
-            let error = finding(
-                "NB0340",
-                operation.place.clone(),
-                format!("Nv10 has no {}", operation.value.name()),
-                "not on this chip",
-                "it needs the texture shader, which a texture unit of Nv10 does not have: write `profile: Nv2a`",
-            );
+            let message = format!("Nv10 has no {}", operation.value.name());
+            let help = "it needs the texture shader, which a texture unit of Nv10 does not have: write `profile: Nv2a`";
+            let error = finding("NB0340", operation.place.clone(), message, "not on this chip", help);
             self.findings.push(error.rule("TSH-10"));
             return;
         }

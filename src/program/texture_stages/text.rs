@@ -13,19 +13,18 @@ use crate::spelling::closest;
 use draw_state::{DrawStates, OTHER_STATES};
 use ninebit::diagnostic::Diagnostic;
 
+/// States of stages, samplers and the program.
+const OWN_STATES: &str = "ColorOp ColorArg0 ColorArg1 ColorArg2 AlphaOp AlphaArg0 AlphaArg1 AlphaArg2 \
+    BumpEnvMat00 BumpEnvMat01 BumpEnvMat10 BumpEnvMat11 BumpEnvLScale BumpEnvLOffset \
+    TexCoordIndex TextureTransformFlags ResultArg Constant Texture Sampler \
+    Address AddressU AddressV AddressW BorderColor MagFilter MinFilter MipFilter \
+    MipMapLodBias MaxMipLevel MaxAnisotropy SpecularEnable TextureFactor";
+
 /// What is read of Direct3D.
 static DIRECT3D: Vocabulary = Vocabulary {
-    calls: &["SetTextureStageState", "SetRenderState", "SetSamplerState"],
-    silent: &["SetTexture"],
-    states: &[
-        &["ColorOp", "ColorArg0", "ColorArg1", "ColorArg2", "AlphaOp", "AlphaArg0", "AlphaArg1", "AlphaArg2"],
-        &["BumpEnvMat00", "BumpEnvMat01", "BumpEnvMat10", "BumpEnvMat11", "BumpEnvLScale", "BumpEnvLOffset"],
-        &["TexCoordIndex", "TextureTransformFlags", "ResultArg", "Constant", "Texture", "Sampler"],
-        &["Address", "AddressU", "AddressV", "AddressW", "BorderColor", "MagFilter", "MinFilter", "MipFilter"],
-        &["MipMapLodBias", "MaxMipLevel", "MaxAnisotropy", "SpecularEnable", "TextureFactor"],
-        draw_state::NAMES,
-        OTHER_STATES,
-    ],
+    calls: "SetTextureStageState SetRenderState SetSamplerState",
+    silent: "SetTexture",
+    states: || OWN_STATES.split(' ').chain(draw_state::names()).chain(OTHER_STATES.split(' ')).collect(),
     instead: &[
         ("SetTransform", "the draw's `vertices: Matrix(...)` and `texture_matrices` have the matrices"),
         ("MultiplyTransform", "the draw's `vertices: Matrix(...)` and `texture_matrices` have the matrices"),
@@ -275,7 +274,7 @@ impl<'t> Parser<'t> {
             if self.draw.take(bare, number, state, value) {
                 return;
             }
-            if let Some(other) = OTHER_STATES.iter().find(|name| name.eq_ignore_ascii_case(bare)) {
+            if let Some(other) = OTHER_STATES.split(' ').find(|name| name.eq_ignore_ascii_case(bare)) {
                 let message = format!("{} is passed over", other.to_uppercase());
                 let help = draw_state::instead(other);
                 self.reader.pass(state.clone(), other, &message, "no part of a pixel program", help);

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::print::{letters, name};
 use super::{InstructionPlaces, Written, flow};
-use crate::finding::finding;
+use crate::finding::{finding, warning};
 use ninebit::diagnostic::Diagnostic;
 use ninebit::vertex::shader::{
     CONSTANTS, DestinationRegister, INPUTS, Instruction, Opcode, SLOTS, SourceRegister, TEMPORARIES,
@@ -30,13 +30,9 @@ pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
         let before = slots;
         slots += instruction.opcode.slots();
         if before <= SLOTS && slots > SLOTS {
-            findings.push(finding(
-                "NB0385",
-                places.opcode.clone(),
-                format!("more than {SLOTS} instruction slots: this is number {slots}"),
-                "too many from here",
-                "m4x4 takes 4 slots, m3x3 and m4x3 take 3, exp and log 10 each, frc 3",
-            ));
+            let message = format!("more than {SLOTS} instruction slots: this is number {slots}");
+            let help = "m4x4 takes 4 slots, m3x3 and m4x3 take 3, exp and log 10 each, frc 3";
+            findings.push(finding("NB0385", places.opcode.clone(), message, "too many from here", help));
         }
         addresses(instruction, places, &mut addressed, &mut findings);
     }
@@ -44,13 +40,8 @@ pub(super) fn check(written: &Written) -> Vec<Diagnostic> {
     overlaps(written, &mut findings);
     if written.shader.written(DestinationRegister::Position) == 0 {
         let place = written.places.last().map_or(0..0, |places| places.opcode.clone());
-        findings.push(finding(
-            "NB0386",
-            place,
-            "this program does not write oPos",
-            "ends without a position",
-            "write the position in clip space: `m4x4 oPos, v0, c0`",
-        ));
+        let help = "write the position in clip space: `m4x4 oPos, v0, c0`";
+        findings.push(finding("NB0386", place, "this program does not write oPos", "ends without a position", help));
     }
     findings.sort_by_key(Diagnostic::order);
     findings
@@ -67,13 +58,8 @@ fn addresses(
         if matches!(source.register, SourceRegister::Constant { relative: true, .. }) && !*addressed {
             *addressed = true;
             let message = "a0.x is read before anything writes it";
-            findings.push(finding(
-                "NB0383",
-                place.clone(),
-                message,
-                "not written yet",
-                "write it first: `mov a0.x, v1.x`",
-            ));
+            let help = "write it first: `mov a0.x, v1.x`";
+            findings.push(finding("NB0383", place.clone(), message, "not written yet", help));
         }
     }
     if instruction.destination.register == DestinationRegister::Address {
@@ -98,13 +84,9 @@ fn masks(instruction: &Instruction, places: &InstructionPlaces, findings: &mut V
         }),
     };
     if let Some(takes) = takes {
-        findings.push(finding(
-            "NB0384",
-            places.destination.clone(),
-            format!("`{}` writes {takes}", opcode.word()),
-            "another write mask",
-            format!("write the mask {takes}, and `mov` from there"),
-        ));
+        let message = format!("`{}` writes {takes}", opcode.word());
+        let help = format!("write the mask {takes}, and `mov` from there");
+        findings.push(finding("NB0384", places.destination.clone(), message, "another write mask", help));
     }
 }
 
@@ -125,13 +107,10 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
     };
     let relative = matches!(matrix.register, SourceRegister::Constant { relative: true, .. });
     if first + rows > count && !relative {
-        findings.push(finding(
-            "NB0206",
-            places.sources[1].clone(),
-            format!("`{word}` reads {rows} rows, up to {letter}{}", first + rows - 1),
-            "the first of them",
-            format!("there are {letter}0 to {letter}{}: begin at {letter}{} at the latest", count - 1, count - rows),
-        ));
+        let message = format!("`{word}` reads {rows} rows, up to {letter}{}", first + rows - 1);
+        let help =
+            format!("there are {letter}0 to {letter}{}: begin at {letter}{} at the latest", count - 1, count - rows);
+        findings.push(finding("NB0206", places.sources[1].clone(), message, "the first of them", help));
     }
     if letter == 'v' && rows > 1 {
         let help = "move the rows into temporaries first; each of its dot products reads one register v";
@@ -147,13 +126,9 @@ fn rows(instruction: &Instruction, places: &InstructionPlaces, findings: &mut Ve
     let overwritten = vector.register == SourceRegister::Temporary(to)
         || matches!(matrix.register, SourceRegister::Temporary(first) if (first..first + rows).contains(&to));
     if overwritten {
-        findings.push(finding(
-            "NB0384",
-            places.destination.clone(),
-            format!("`{word}` overwrites r{to} while it still reads it"),
-            "also a source",
-            "it is one dot product after the other: write to another temporary",
-        ));
+        let message = format!("`{word}` overwrites r{to} while it still reads it");
+        let help = "it is one dot product after the other: write to another temporary";
+        findings.push(finding("NB0384", places.destination.clone(), message, "also a source", help));
     }
 }
 
@@ -188,16 +163,10 @@ fn scalar(instruction: &Instruction, places: &InstructionPlaces, findings: &mut 
     }
     let word = instruction.opcode.word();
     let taken = letters([source.swizzle[3]]);
-    findings.push(
-        Diagnostic::warning(
-            "NB0912",
-            places.sources[0].clone(),
-            format!("`{word}` reads one component, which is not named"),
-        )
-        .label(format!("taken as .{taken}"))
-        .rule("VTX-1")
-        .help(format!("write `.{taken}` or another component behind the register")),
-    );
+    let message = format!("`{word}` reads one component, which is not named");
+    let label = format!("taken as .{taken}");
+    let help = format!("write `.{taken}` or another component behind the register");
+    findings.push(warning("NB0912", places.sources[0].clone(), message, label, help).rule("VTX-1"));
 }
 
 /// A constant that is a row of a matrix here and something else there.

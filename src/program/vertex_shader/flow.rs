@@ -56,13 +56,10 @@ pub(super) fn unwritten(written: &Written, findings: &mut Vec<Diagnostic>) {
             // Said once.
             known[register] |= missing;
             let letters = letters((0..4).filter(|k| missing >> k & 1 != 0));
-            findings.push(finding(
-                "NB0383",
-                places.sources[source].clone(),
-                format!("r{register}.{letters} is read before anything writes it"),
-                "not written yet",
-                format!("write r{register} first, or leave the component out of the swizzle or of the write mask"),
-            ));
+            let message = format!("r{register}.{letters} is read before anything writes it");
+            let help =
+                format!("write r{register} first, or leave the component out of the swizzle or of the write mask");
+            findings.push(finding("NB0383", places.sources[source].clone(), message, "not written yet", help));
         }
         if let DestinationRegister::Temporary(index) = instruction.destination.register {
             known[index] |= instruction.destination.mask;

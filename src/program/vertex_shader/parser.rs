@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::check::natural;
 use super::{InstructionPlaces, Written, operand};
 use crate::cursor::{Cursor, GivenUp, Read};
-use crate::finding::{finding, foreign, header};
+use crate::finding::{finding, foreign, header, warning};
 use crate::lexer::{Kind, Language};
 use crate::spelling::closest;
 use ninebit::diagnostic::{Diagnostic, shorten};
@@ -89,13 +89,8 @@ impl Parser<'_> {
             false => (self.cursor.place(), self.cursor.found("")),
         };
         let message = format!("expected {what}, found {found}");
-        self.refuse(
-            "NB0108",
-            place,
-            &message,
-            "not an instruction from here",
-            "write lines such as `mul r0.xyz, r1, c4.x`",
-        )
+        let help = "write lines such as `mul r0.xyz, r1, c4.x`";
+        self.refuse("NB0108", place, &message, "not an instruction from here", help)
     }
 
     /// Whether all of the line has been taken.
@@ -146,11 +141,8 @@ impl Parser<'_> {
         if instruction && between.len() < comment.start && !between.contains('\n') {
             let message = "an instruction behind a semicolon, which begins a comment";
             let place = comment.start + hidden.place().start..comment.start + inside.trim_end().len();
-            self.written.warnings.push(
-                Diagnostic::warning("NB0913", place, message)
-                    .label("left out")
-                    .help("write each instruction in a line of its own"),
-            );
+            let help = "write each instruction in a line of its own";
+            self.written.warnings.push(warning("NB0913", place, message, "left out", help));
         }
     }
 

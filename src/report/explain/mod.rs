@@ -187,9 +187,7 @@ fn sampled(scene: &Scene, unit: &PlannedUnit) -> String {
             TextureKind::Cube => "cube map".to_string(),
             TextureKind::TwoDimensional => modes,
             TextureKind::Rectangle => format!("{modes}, in texels"),
-            TextureKind::ThreeDimensional => {
-                format!("{} layers, {modes}/{}", unit.layers, unit.state.address_r.name())
-            }
+            TextureKind::ThreeDimensional => format!("{} layers, {modes}/{}", unit.layers, unit.state.address_r.name()),
         },
         extras(unit),
     )

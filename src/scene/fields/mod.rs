@@ -22,7 +22,6 @@ mod texture;
 
 use std::fmt::Write;
 
-use super::code::meaning;
 use super::field::*;
 use super::notation::Notation;
 use super::outline::{Described, Form};
@@ -47,12 +46,8 @@ pub fn structures() -> Vec<&'static str> {
     declared().map(|(name, _)| *name).collect()
 }
 
-/// What is wrong with a field as such, and its code, as a table of Markdown.
-pub fn codes() -> String {
-    let codes = [UNKNOWN, MISSING, TWICE, WORD, KIND, RANGE, FINITE, COUNT];
-    let rows = codes.map(|code| format!("| {code} | {} |\n", meaning(code).unwrap_or_default()));
-    format!("| code | what is wrong with a field |\n|---|---|\n{}", rows.concat())
-}
+/// Codes of what is wrong with a field as such.
+pub const CODES: [&str; 8] = [UNKNOWN, MISSING, TWICE, WORD, KIND, RANGE, FINITE, COUNT];
 
 /// The fields of one structure, or of several, with what each is called in a scene, as a table of Markdown. `None`: there is no such structure.
 pub fn table(of: &[(&str, &str)]) -> Option<String> {

@@ -2,10 +2,7 @@
 //!
 //! A texel's direction is the one that meets its centre (TEX-12). Vectors are stored as in [`normal_map`](super::normal_map), colours as
 //! 0..255 for 0..1; alpha is 255.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
-)]
+#![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
 use super::byte;
 use super::normal_map::encode;

@@ -2,10 +2,7 @@
 //!
 //! Without signed arithmetic a product f g is f+ g+ + f- g- - f+ g- - f- g+, where f+ is f where it is positive and f- is -f where it is
 //! negative. All four channels of a texel hold the half component.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "makes input data for the model: f64 with + - * / in a fixed order, rounded to bytes"
-)]
+#![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / in a fixed order, rounded")]
 
 use super::byte;
 use super::normal_map::decode;

@@ -7,10 +7,7 @@
 //! A hemisphere holds every direction that a surface can face, so it shows what a light does to all of them; and its normals turn
 //! slowly and evenly, so it shows every step of the bytes. Noise breaks the steps up: it is added to the exact normals of
 //! the sphere, before they are brought back to unit length and become bytes; the flat surface around it stays flat.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
-)]
+#![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
 use super::SIDES;
 use super::hash::hash;

@@ -9,10 +9,7 @@
 //!
 //! A component n in -1..1 is stored as the byte 128 + round(127 n): 0 is 128, -1 is 1, 1 is 255. The byte 0 does not occur. Alpha keeps
 //! the height.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
-)]
+#![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
 use crate::image::Rgba;
 use crate::vector::Vector;

@@ -2,10 +2,7 @@
 //!
 //! Around a texel rays go out in sixteen directions, up to 24 texels far; the steepest slope along a ray is its horizon. A flat
 //! surface weighs the sky by the cosine, so what is left above a horizon at angle h is cos^2 h of a direction's share.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "makes input data for the model: f64 with + - * / and square root in a fixed order, rounded to bytes"
-)]
+#![allow(clippy::float_arithmetic, reason = "input data: f64, + - * / and roots in a fixed order, rounded")]
 
 use super::byte;
 use super::normal_map::{Options, height_at};

@@ -1,10 +1,7 @@
 //! Tables of powers for dependent reads: a texture whose rows hold v^n.
 //!
 //! R, G and B are v to the power n, alpha is u, taken at the centres of texels: u = (column + 1/2) / width, v = (row + 1/2) / height.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "makes input data for the model: f64 products in a fixed order, rounded to bytes"
-)]
+#![allow(clippy::float_arithmetic, reason = "input data: f64 products in a fixed order, rounded")]
 
 use super::byte;
 use crate::image::Rgba;

@@ -2,10 +2,7 @@
 //!
 //! The light of a far sky and ground over the half sphere around a normal depends on nothing but the angle between the normal and the sky's
 //! axis. Truths compute it, and cube maps hold it for every normal.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "makes input data and references for the model: f64 with + - * / and square root in a fixed order"
-)]
+#![allow(clippy::float_arithmetic, reason = "input data and references: f64, + - * / and roots in a fixed order")]
 
 use crate::vector::{Vector, dot, unit_or_zero};
 use ninebit::state::named;

@@ -137,12 +137,8 @@ fn generate(
             if place.is_empty() {
                 continue;
             }
-            findings.push(
-                Diagnostic::error("NB0352", place.clone(), format!("{what} beside the draw's texgen"))
-                    .label(label)
-                    .rule("TSH-11")
-                    .help("leave one of them out"),
-            );
+            let message = format!("{what} beside the draw's texgen");
+            findings.push(finding("NB0352", place.clone(), message, label, "leave one of them out").rule("TSH-11"));
             continue;
         }
         let free = std::iter::once(index).chain(0..profile.texture_units()).find(|set| !taken[*set]);
@@ -168,12 +164,10 @@ fn objection(
     shader: bool,
 ) -> Option<Diagnostic> {
     if shader {
-        return Some(
-            Diagnostic::error("NB0352", bump.place.clone(), "a bump environment map beside a texture shader")
-                .label("becomes a texture shader itself")
-                .rule("TSH-10")
-                .help("leave the draw's `texture_shader` out, or write a BumpEnvironment stage there and Disable here"),
-        );
+        let message = "a bump environment map beside a texture shader";
+        let label = "becomes a texture shader itself";
+        let help = "leave the draw's `texture_shader` out, or write a BumpEnvironment stage there and Disable here";
+        return Some(finding("NB0352", bump.place.clone(), message, label, help).rule("TSH-10"));
     }
     let texture = units.bound[index].and_then(|unit| textures.list.get(unit.texture))?;
     (texture.kind == TextureKind::Cube).then(|| {

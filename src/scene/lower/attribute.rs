@@ -1,8 +1,5 @@
 //! What of a mesh goes into the vertices.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
-)]
+#![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::matrix::{dot, normalize, subtract};
 use super::names::Names;
@@ -62,8 +59,7 @@ pub(super) fn source<'a>(
     }
     let (kind, rest) = reader.variant(raw, "mesh attribute", SOURCES)?;
     if kind < 5 && !rest.is_empty() {
-        reader.unknown_variant(raw, "mesh attribute", SOURCES);
-        return None;
+        return reader.unknown_variant(raw, "mesh attribute", SOURCES);
     }
     Some(match kind {
         0 => Source::Position,
@@ -108,19 +104,16 @@ pub(super) fn place<'a>(
                 None => format!("this {what} has neither `position` nor `direction`"),
             };
             let place = reader.opening(text);
-            reader.push(Diagnostic::error("NB0202", place, message).label("in here").help(
+            reader.refuse(Diagnostic::error("NB0202", place, message).label("in here").help(
                 "write `position: (x, y, z)` for one that is near, `direction: (x, y, z)` (toward it) for one far away",
-            ));
-            None
+            ))
         }
     }
 }
 
 fn space<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, source::Word>>) -> Option<bool> {
-    match raw {
-        Some(raw) => reader.variant(raw, "space", &["Tangent", "Object"]).map(|(index, _)| index == 0),
-        None => Some(true),
-    }
+    raw.as_ref()
+        .map_or(Some(true), |raw| reader.variant(raw, "space", &["Tangent", "Object"]).map(|(index, _)| index == 0))
 }
 
 /// Where the attributes of a mesh go.

@@ -34,11 +34,8 @@ pub(super) fn constants<'a>(
     if parts.0.len() > 2 || parts.0.is_empty() {
         let message = format!("there are two constant colours, not {}", parts.0.len());
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0211", place, message)
-                .label(format!("{} here", parts.0.len()))
-                .help("write `constants: ((255, 0, 0, 255), (0, 255, 0, 255))`"),
-        );
+        let help = "write `constants: ((255, 0, 0, 255), (0, 255, 0, 255))`";
+        reader.push(finding("NB0211", place, message, format!("{} here", parts.0.len()), help));
         return constants;
     }
     for (slot, part) in constants.iter_mut().zip(&parts.0) {
@@ -74,14 +71,9 @@ pub(super) fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>)
     if head != "Float" {
         let found = if head.is_empty() { raw.text } else { head };
         let place = reader.range(found);
-        reader.push(
-            Diagnostic::error("NB0205", place, format!("expected a colour, found `{}`", shorten(found)))
-                .label("not a colour")
-                .help(
-                    "write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, `Vector((0, 0, 1))`, or \"the name of a colour\"",
-                ),
-        );
-        return None;
+        let message = format!("expected a colour, found `{}`", shorten(found));
+        let help = "write bytes `(255, 128, 0, 255)`, floats `Float(1.0, 0.5, 0.0, 1.0)`, `Vector((0, 0, 1))`, or \"the name of a colour\"";
+        return reader.refuse(finding("NB0205", place, message, "not a colour", help));
     }
     let mut numbers = Raw::<Numbers>::new(rest);
     if Raw::<Numbers>::new(rest.strip_prefix('(').unwrap_or(rest)).is_text() {
@@ -105,20 +97,15 @@ fn three_or_four<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Color>) -> O
             wrong = true;
             let place = reader.span(part);
             let message = format!("`{}` is not a byte of a colour", shorten(part.text));
-            reader.push(
-                Diagnostic::error("NB0206", place, message)
-                    .label("bytes are whole numbers from 0 to 255")
-                    .help("for 0.0 to 1.0 write `Float(1.0, 0.5, 0.0, 1.0)`"),
-            );
+            let help = "for 0.0 to 1.0 write `Float(1.0, 0.5, 0.0, 1.0)`";
+            reader.push(finding("NB0206", place, message, "bytes are whole numbers from 0 to 255", help));
         }
     }
     if !wrong {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0211", place, format!("a colour has 3 or 4 bytes, not {}", parts.len()))
-                .label("R, G, B and perhaps A")
-                .help("write `(255, 128, 0)` or `(255, 128, 0, 255)`"),
-        );
+        let message = format!("a colour has 3 or 4 bytes, not {}", parts.len());
+        let help = "write `(255, 128, 0)` or `(255, 128, 0, 255)`";
+        reader.push(finding("NB0211", place, message, "R, G, B and perhaps A", help));
     }
     None
 }

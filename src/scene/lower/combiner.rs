@@ -59,8 +59,7 @@ fn stages<'a>(
     places.set(Place::Stages, reader.span(&list_raw));
     let place = |index: usize| list.get(index).map(|raw| reader.opening(raw.text));
     if let Some(finding) = stage_count(list.len(), reader.profile, place) {
-        reader.push(finding);
-        return None;
+        return reader.refuse(finding);
     }
     let mut stages = Vec::with_capacity(list.len());
     for raw in &list {
@@ -151,12 +150,11 @@ fn output<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Output>) -> Registe
     if head == "Discard" && rest.is_empty() {
         return Register::Zero;
     }
-    let Some(register) = Register::from_name(head).filter(|_| rest.is_empty()) else {
+    let register = Register::from_name(head).filter(|_| rest.is_empty()).or_else(|| {
         let known: Vec<&str> = [&["Discard"], &Register::NAMES[4..]].concat();
-        reader.unknown_variant(raw, "destination", &known);
-        return Register::Zero;
-    };
-    register
+        reader.unknown_variant(raw, "destination", &known)
+    });
+    register.unwrap_or(Register::Zero)
 }
 
 fn final_combiner<'a>(

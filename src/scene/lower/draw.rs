@@ -99,10 +99,7 @@ fn draw<'a>(
     budget: &mut Budget,
     written: &[bool],
 ) -> Option<Drawn> {
-    let target = match &fields.target {
-        Some(raw) => targets.find(reader, raw),
-        None => Some(0),
-    };
+    let target = fields.target.as_ref().map_or(Some(0), |raw| targets.find(reader, raw));
     if let Some(raw) = &fields.clear {
         return clear(reader, names, targets, (fields, raw), header, target?);
     }
@@ -261,11 +258,8 @@ impl Budget {
                 reader.push(vertex::too_many(place.clone(), total, most));
             } else {
                 let message = format!("more than {} indices in a scene", reader.limits.indices);
-                reader.push(
-                    Diagnostic::error("NB0609", place.clone(), message)
-                        .label("too many from here")
-                        .help("`ninebit limits` prints what is allowed"),
-                );
+                let help = "`ninebit limits` prints what is allowed";
+                reader.push(finding("NB0609", place.clone(), message, "too many from here", help));
             }
             return None;
         };
@@ -286,25 +280,13 @@ fn feedback(
     let Some(sampled) = texture.image.target() else { return };
     let name = targets.list.get(sampled).map_or("", |target| target.name.as_str());
     if sampled == target {
-        reader.push(
-            Diagnostic::error(
-                "NB0217",
-                place.clone(),
-                format!("this draw samples its own target \"{}\"", shorten(name)),
-            )
-            .label("shows the target that is drawn into")
-            .help("draw into another target and sample that one"),
-        );
+        let message = format!("this draw samples its own target \"{}\"", shorten(name));
+        let help = "draw into another target and sample that one";
+        reader.push(finding("NB0217", place.clone(), message, "shows the target that is drawn into", help));
     } else if !written.get(sampled).copied().unwrap_or(true) {
-        reader.push(
-            Diagnostic::warning(
-                "NB0904",
-                place.clone(),
-                format!("no earlier draw draws into target \"{}\"", shorten(name)),
-            )
-            .label("shows only the clear colour")
-            .help("draws happen in the order of the text: put the one that fills this target first"),
-        );
+        let message = format!("no earlier draw draws into target \"{}\"", shorten(name));
+        let help = "draws happen in the order of the text: put the one that fills this target first";
+        reader.push(warning("NB0904", place.clone(), message, "shows only the clear colour", help));
     }
 }
 
@@ -321,11 +303,8 @@ fn indices<'a>(
         let topology_raw = fields.topology.as_ref().filter(|_| topology != Topology::Triangles);
         let unwanted = unwanted.or_else(|| topology_raw.map(|raw| reader.span(raw)));
         if let Some(place) = unwanted {
-            reader.push(
-                Diagnostic::error("NB0222", place, "a mesh brings its own triangles")
-                    .label("not with a mesh")
-                    .help("leave `indices` and `topology` out"),
-            );
+            let help = "leave `indices` and `topology` out";
+            reader.push(finding("NB0222", place, "a mesh brings its own triangles", "not with a mesh", help));
         }
         return Some(triangles);
     }
@@ -347,12 +326,8 @@ fn indices<'a>(
                 n => format!("indices run from 0 to {}", n - 1),
             },
         );
-        reader.push(
-            Diagnostic::error("NB0212", place, format!("index {index} is past the vertices"))
-                .label(format!("this draw has {vertices} vertices"))
-                .help(help),
-        );
-        return None;
+        let message = format!("index {index} is past the vertices");
+        return reader.refuse(finding("NB0212", place, message, format!("this draw has {vertices} vertices"), help));
     }
     fits(reader, fields, indices.len(), topology);
     Some(indices.into())
@@ -382,9 +357,7 @@ fn fits<'a>(reader: &mut Reader<'a>, fields: &source::Draw<'a>, count: usize, to
         (false, 1) => "vertex does",
         (false, _) => "vertices do",
     };
-    reader.push(
-        Diagnostic::error("NB0213", place, format!("{count} {what} not make {}", topology.name()))
-            .label(format!("{} needs {wanted}", topology.name()))
-            .help("add what is missing, or choose another `topology`"),
-    );
+    let message = format!("{count} {what} not make {}", topology.name());
+    let help = "add what is missing, or choose another `topology`";
+    reader.push(finding("NB0213", place, message, format!("{} needs {wanted}", topology.name()), help));
 }

@@ -44,11 +44,9 @@ pub(super) fn fog<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Option<R
     };
     let Some(raw) = &fields.mode else {
         if let Some((name, text)) = fields.written().find(|(name, _)| !["enabled", "color"].contains(name)) {
-            reader.push(
-                Diagnostic::error("NB0223", reader.range(text), format!("`{name}` says nothing without a `mode`"))
-                    .label("belongs to a fog function")
-                    .help("add `mode: Linear` (or Exp, Exp2); without a mode the vertices give factors in `fog`"),
-            );
+            let message = format!("`{name}` says nothing without a `mode`");
+            let help = "add `mode: Linear` (or Exp, Exp2); without a mode the vertices give factors in `fog`";
+            reader.push(finding("NB0223", reader.range(text), message, "belongs to a fog function", help));
         }
         return fog;
     };
@@ -78,37 +76,25 @@ fn function<'a>(
     for (field, name) in other {
         if let Some(raw) = field {
             let message = format!("{} fog has no `{name}`", mode.name());
-            reader.push(
-                Diagnostic::error("NB0223", reader.span(raw), message)
-                    .label("does not go with this mode")
-                    .help(format!("{} takes {fitting}, or `parameters: (p0, p1, p2)`", mode.name())),
-            );
-            return None;
+            let help = format!("{} takes {fitting}, or `parameters: (p0, p1, p2)`", mode.name());
+            return reader.refuse(finding("NB0223", reader.span(raw), message, "does not go with this mode", help));
         }
     }
     if let Some(raw) = &fields.parameters {
         if let Some(field) = numbers.iter().find_map(|(field, _)| field.as_ref()) {
-            reader.push(
+            return reader.refuse(
                 Diagnostic::error("NB0223", reader.span(field), "fog has `parameters` or a range or density, not both")
                     .label("one or the other")
                     .related(reader.span(raw), "the parameters"),
             );
-            return None;
         }
         let [p0, p1, p2, _] = fields.parameters(reader)?;
         let per_vertex = evaluation == FogEvaluation::PerVertex;
         if p2 != 0.0 && straight && !per_vertex {
-            reader.push(
-                Diagnostic::error(
-                    "NB0223",
-                    reader.span(raw),
-                    format!("{} fog of each pixel has no third parameter", mode.name()),
-                )
-                .label("p2 multiplies the square of the coordinate")
-                .rule("FOG-2")
-                .help("write two parameters, take an exponential mode, or `evaluation: PerVertex`"),
-            );
-            return None;
+            let message = format!("{} fog of each pixel has no third parameter", mode.name());
+            let label = "p2 multiplies the square of the coordinate";
+            let help = "write two parameters, take an exponential mode, or `evaluation: PerVertex`";
+            return reader.refuse(finding("NB0223", reader.span(raw), message, label, help).rule("FOG-2"));
         }
         return Some(FogFunction { mode, p0, p1, p2, per_vertex });
     }
@@ -120,11 +106,8 @@ fn function<'a>(
     if function.is_some() {
         return function;
     }
-    reader.push(
-        Diagnostic::error("NB0207", place.clone(), "the parameters of this fog are not finite")
-            .label("start and end too close together, or too far away")
-            .rule("FOG-2")
-            .help("write `start` and `end` the same for a wall of fog, or further apart"),
-    );
-    None
+    let message = "the parameters of this fog are not finite";
+    let label = "start and end too close together, or too far away";
+    let help = "write `start` and `end` the same for a wall of fog, or further apart";
+    reader.refuse(finding("NB0207", place.clone(), message, label, help).rule("FOG-2"))
 }

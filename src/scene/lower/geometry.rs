@@ -97,12 +97,10 @@ pub(super) fn vertex_side(
         && let Some(index) = geometry.vertices.iter().position(|vertex| vertex.fog.is_nan())
     {
         // Infinite factors are limited; with a mode FOG-4 and FOG-5 say what a NaN gives.
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(index), format!("oFog of vertex {index} is not a number"))
-                .label("what the vertex program makes of it")
-                .rule("VTX-3")
-                .help("look for 0 times infinity, rsq of 0, and differences of infinities"),
-        );
+        let message = format!("oFog of vertex {index} is not a number");
+        let label = "what the vertex program makes of it";
+        let help = "look for 0 times infinity, rsq of 0, and differences of infinities";
+        reader.push(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
         return false;
     }
     if sets.is_none() && fog.function.is_none() {
@@ -117,12 +115,10 @@ pub(super) fn vertex_side(
     if let (Some(_), FogSource::Vertex, Some(_), None) =
         (&fog.function, fog.source, &geometry.triangles, &geometry.program)
     {
-        reader.push(
-            Diagnostic::error("NB0222", fog.place.clone(), "the vertices of a mesh give no fog coordinates")
-                .label("needs them from the vertices")
-                .rule("FOG-2")
-                .help("add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices"),
-        );
+        let message = "the vertices of a mesh give no fog coordinates";
+        let help =
+            "add `coordinate_source: EyePlaneAbsolute` (or EyePlane, EyeRadial), and `model_view` to the vertices";
+        reader.push(finding("NB0222", fog.place.clone(), message, "needs them from the vertices", help).rule("FOG-2"));
         return false;
     }
     let model_view = ModelView::new(&geometry.model_view);
@@ -143,13 +139,8 @@ pub(super) fn vertex_side(
             return Some(vertex);
         }
         let message = format!("a texture coordinate of vertex {index} is not finite");
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(index), message)
-                .label("beyond all numbers")
-                .rule("TSH-11")
-                .help("use smaller numbers in the matrices, in the planes or in the position"),
-        );
-        None
+        let help = "use smaller numbers in the matrices, in the planes or in the position";
+        reader.refuse(finding("NB0207", spans.vertex(index), message, "beyond all numbers", help).rule("TSH-11"))
     });
     let Some(made) = made.collect() else { return false };
     geometry.vertices = made;
@@ -171,7 +162,7 @@ fn beside_program(
     }
     fog.function.as_ref()?;
     let finding = |message: &str, label: &str, help: &str| {
-        Some(Diagnostic::error("NB0389", fog.place.clone(), message).label(label).rule("VTX-3").help(help))
+        Some(finding("NB0389", fog.place.clone(), message, label, help).rule("VTX-3"))
     };
     if matches!(fog.source, FogSource::EyePlane | FogSource::EyePlaneAbsolute | FogSource::EyeRadial) {
         let help = "take `coordinate_source: Depth` or `W`, or leave it out and write the coordinate to oFog";
@@ -203,16 +194,9 @@ pub(super) fn geometry<'a>(
             let list = Raw::<crate::raw::Tuple<'a, source::VertexList>>::new(rest);
             let parts = reader.read(&list)?.0;
             let [list] = parts[..] else {
-                reader.push(
-                    Diagnostic::error(
-                        "NB0211",
-                        reader.span(&list),
-                        "expected one list of vertices in these parentheses",
-                    )
-                    .label("here")
-                    .help("write `Window([(position: (10, 20)), ...])`"),
-                );
-                return None;
+                let message = "expected one list of vertices in these parentheses";
+                let help = "write `Window([(position: (10, 20)), ...])`";
+                return reader.refuse(finding("NB0211", reader.span(&list), message, "here", help));
             };
             let data = names.vertices(reader, &list)?;
             Some(Geometry {
@@ -242,20 +226,15 @@ fn matrix_geometry<'a>(
     let fields = reader.read(&Raw::<source::MatrixVertices<'a>>::new(text))?;
     let matrix = fields.matrix(reader);
     let matrix = matrix.and_then(|raw| names.matrix(reader, &raw));
-    let model_view = match &fields.model_view {
-        Some(raw) => names.matrix(reader, raw),
-        None => Some(matrix::IDENTITY),
-    };
+    let model_view = fields.model_view.as_ref().map_or(Some(matrix::IDENTITY), |raw| names.matrix(reader, raw));
     let viewport = viewport(reader, &fields.viewport, targets, target);
     let (mut vertices, spans, mesh, objects) = match (&fields.vertices, &fields.mesh) {
         (Some(raw), None) => {
             let outputs = [&fields.diffuse, &fields.specular, &fields.t0, &fields.t1, &fields.t2, &fields.t3];
             if let Some(output) = outputs.iter().find_map(|field| field.as_ref()) {
-                reader.push(
-                    Diagnostic::error("NB0222", reader.span(output), "listed vertices have no mesh attributes")
-                        .label("needs a mesh")
-                        .help("write colours and texture coordinates in the vertices, or use `mesh: ...`"),
-                );
+                let message = "listed vertices have no mesh attributes";
+                let help = "write colours and texture coordinates in the vertices, or use `mesh: ...`";
+                reader.push(finding("NB0222", reader.span(output), message, "needs a mesh", help));
             }
             let data = names.vertices(reader, raw)?;
             (data.vertices.clone(), data.spans.clone(), None, Objects::Listed(data))
@@ -269,8 +248,7 @@ fn matrix_geometry<'a>(
             (vertices, VertexSpans::All(reader.span(raw)), Some(mesh), objects)
         }
         (both, _) => {
-            reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
-            return None;
+            return reader.refuse(one_of_vertices_and_mesh(both.is_some(), opening));
         }
     };
     let (matrix, model_view) = (matrix?, model_view?);
@@ -278,12 +256,9 @@ fn matrix_geometry<'a>(
     let finite = |vertex: usize| vertices.position(vertex).iter().all(|value| value.is_finite());
     if let Some(bad) = (0..vertices.len()).find(|vertex| !finite(*vertex)) {
         let spans = DrawSpans { draw: opening, vertices: spans, ..DrawSpans::default() };
-        reader.push(
-            Diagnostic::error("NB0207", spans.vertex(bad), format!("the matrix takes vertex {bad} beyond all numbers"))
-                .label("not finite after the matrix")
-                .rule("RAS-0")
-                .help("use smaller numbers in the matrix or in the position"),
-        );
+        let message = format!("the matrix takes vertex {bad} beyond all numbers");
+        let help = "use smaller numbers in the matrix or in the position";
+        reader.push(finding("NB0207", spans.vertex(bad), message, "not finite after the matrix", help).rule("RAS-0"));
         return None;
     }
     Some(Geometry {

@@ -24,20 +24,17 @@ fn parts<'a, R: Named>(
     }
     let mapping = mappings.iter().position(|name| *name == head);
     if mapping.is_none() && !(head.is_empty() && rest.starts_with('(')) {
-        if R::from_name(head).is_some() {
-            reader.push(
-                Diagnostic::error("NB0205", reader.range(rest), format!("`{head}` takes nothing in parentheses"))
-                    .label("not expected here")
-                    .help(format!("for a component write `({head}, Alpha)`")),
-            );
+        return if R::from_name(head).is_some() {
+            let message = format!("`{head}` takes nothing in parentheses");
+            let help = format!("for a component write `({head}, Alpha)`");
+            reader.refuse(finding("NB0205", reader.range(rest), message, "not expected here", help))
         } else if FinalRegister::from_name(head).is_some() {
             let help = "use it as input A, B, C or D of `final_combiner`";
-            reader.push(only_final(reader.span(&raw), head, help));
+            reader.refuse(only_final(reader.span(&raw), head, help))
         } else {
             let known: Vec<&'static str> = R::NAMES.iter().chain(mappings).copied().collect();
-            reader.unknown_variant(&raw, "input", &known);
-        }
-        return None;
+            reader.unknown_variant(&raw, "input", &known)
+        };
     }
     let inner = Raw::<Tuple<'a, source::Word>>::new(rest);
     let list = reader.read(&inner)?.0;
@@ -45,12 +42,9 @@ fn parts<'a, R: Named>(
         [register] => (register, None),
         [register, component] => (register, Some(component)),
         _ => {
-            reader.push(
-                Diagnostic::error("NB0211", reader.span(&inner), "an input is a register and perhaps a component")
-                    .label("here")
-                    .help("write `(Texture0, Alpha)` or `ExpandNormal(Texture0)`"),
-            );
-            return None;
+            let message = "an input is a register and perhaps a component";
+            let help = "write `(Texture0, Alpha)` or `ExpandNormal(Texture0)`";
+            return reader.refuse(finding("NB0211", reader.span(&inner), message, "here", help));
         }
     };
     let name = register.split().0;
@@ -87,15 +81,9 @@ pub(super) fn final_input<'a>(
     let (head, _) = raw.split();
     let mapping = InputMapping::from_name(head);
     if mapping.is_some_and(|m| !matches!(m, InputMapping::UnsignedIdentity | InputMapping::UnsignedInvert)) {
-        reader.push(
-            Diagnostic::error("NB0311", reader.range(head), format!("the final combiner has no mapping {head}"))
-                .label("not here")
-                .rule("FIN-1")
-                .help(
-                    "its inputs are taken as they are, or inverted: `Spare0`, `Invert(Spare0)`; map in a general stage",
-                ),
-        );
-        return None;
+        let message = format!("the final combiner has no mapping {head}");
+        let help = "its inputs are taken as they are, or inverted: `Spare0`, `Invert(Spare0)`; map in a general stage";
+        return reader.refuse(finding("NB0311", reader.range(head), message, "not here", help).rule("FIN-1"));
     }
     let words = ["UnsignedIdentity", "Invert", "UnsignedInvert"];
     let Parts { mapping, register, component } = parts::<FinalRegister>(reader, raw.as_other(), &words)?;

@@ -1,8 +1,5 @@
 //! Matrices: four rows, or built from a few parameters. Column vectors: a position p becomes M p.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "the vertex side is 32-bit floats in a fixed order: + - * / and square root only"
-)]
+#![allow(clippy::float_arithmetic, reason = "vertices are 32-bit floats; + - * / and roots in a fixed order")]
 
 use super::names::Table;
 use super::*;
@@ -30,12 +27,9 @@ pub(super) fn evaluate<'a>(
     }
     if depth > DEEPEST {
         let place = reader.opening(raw.text);
-        reader.push(
-            Diagnostic::error("NB0602", place, format!("more than {DEEPEST} products inside each other"))
-                .label("one level too many")
-                .help("a product takes any number of matrices: write them side by side"),
-        );
-        return None;
+        let message = format!("more than {DEEPEST} products inside each other");
+        let help = "a product takes any number of matrices: write them side by side";
+        return reader.refuse(finding("NB0602", place, message, "one level too many", help));
     }
     let (kind, rest) = reader.variant(raw, "matrix", KINDS)?;
     let matrix = match KINDS[kind] {
@@ -59,14 +53,9 @@ pub(super) fn evaluate<'a>(
         return Some(matrix);
     }
     let place = reader.span(raw);
-    reader.push(
-        Diagnostic::error("NB0207", place, "this matrix is not finite")
-            .label("a division by zero, or numbers too large")
-            .help(
-                "near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero",
-            ),
-    );
-    None
+    let label = "a division by zero, or numbers too large";
+    let help = "near and far, left and right, bottom and top, eye and center must differ; a rotation must not be zero";
+    reader.refuse(finding("NB0207", place, "this matrix is not finite", label, help))
 }
 
 fn vector<'a>(reader: &mut Reader<'a>, text: &'a str, what: &str, count: usize) -> Option<[f32; 4]> {
@@ -78,11 +67,10 @@ fn rows<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Tuple<'a, Numbers>>) -> Optio
     let parts = reader.read(raw)?.0;
     if parts.len() != 4 {
         let place = reader.span(raw);
-        reader.push(
+        return reader.refuse(
             Diagnostic::error("NB0211", place, format!("a matrix has four rows, not {}", parts.len()))
                 .label(format!("{} here", parts.len())),
         );
-        return None;
     }
     let mut rows = IDENTITY;
     for (row, part) in rows.iter_mut().zip(&parts) {
@@ -114,12 +102,8 @@ fn transpose<'a>(
     depth: usize,
 ) -> Option<Rows> {
     let [part] = reader.read(raw)?.0[..] else {
-        reader.push(
-            Diagnostic::error("NB0211", reader.span(raw), "one matrix is transposed at a time")
-                .label("here")
-                .help("write `Transpose(\"world\")`"),
-        );
-        return None;
+        let help = "write `Transpose(\"world\")`";
+        return reader.refuse(finding("NB0211", reader.span(raw), "one matrix is transposed at a time", "here", help));
     };
     let matrix = evaluate(reader, table, &part, depth + 1)?;
     Some(std::array::from_fn(|row| std::array::from_fn(|column| matrix[column][row])))

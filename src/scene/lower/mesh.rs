@@ -97,8 +97,7 @@ fn triangles<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
     };
     if !indices.len().is_multiple_of(3) {
         let message = format!("{} indices do not make triangles", indices.len());
-        reader.push(Diagnostic::error("NB0213", place, message).label("three for each").help("add what is missing"));
-        return None;
+        return reader.refuse(finding("NB0213", place, message, "three for each", "add what is missing"));
     }
     if let Some(index) = indices.iter().find(|index| **index as usize >= count) {
         let message = format!("index {index} is past the vertices");
@@ -133,12 +132,9 @@ fn wavefront<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> O
         return known.clone();
     }
     let file = ProgramText::file_up_to(reader, names, &raw, reader.limits.mesh_file());
-    let mesh = file.and_then(|file| match mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices) {
-        Ok(surface) => Some(Arc::new(mesh::mesh(&surface))),
-        Err(findings) => {
-            findings.into_iter().for_each(|finding| reader.push(file.place(finding)));
-            None
-        }
+    let mesh = file.and_then(|file| {
+        let surface = mesh::wavefront(&file.text, reader.limits.vertices, reader.limits.indices);
+        Some(Arc::new(mesh::mesh(&file.parsed(reader, surface)?)))
     });
     names.mesh_files.borrow_mut().insert(name, mesh.clone());
     mesh

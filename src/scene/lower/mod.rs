@@ -48,6 +48,7 @@ use names::Names;
 use ninebit::diagnostic::File;
 use ninebit::plan::{Plan, PlanOptions};
 use ninebit::state::{Profile, Scene};
+use ninebit_program::{finding, warning};
 
 /// Where the draws of a scene stand in its text, for errors that are found later.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -107,11 +108,10 @@ pub(super) fn scene<'a>(
     folder: &Path,
 ) -> Option<Found> {
     if trim(text).is_empty() {
-        reader.push(
+        return reader.refuse(
             Diagnostic::error("NB0101", 0..0, "the scene is empty")
                 .help("a scene starts with `(version: 1, profile: Nv2a, draws: [...])`"),
         );
-        return None;
     }
     let raw = reader.check::<source::Scene<'a>>(text)?;
     let file = reader.read(&raw)?;
@@ -172,11 +172,8 @@ fn version<'a>(reader: &mut Reader<'a>, file: &source::Scene<'a>, opening: Range
     if let Some(version) = version
         && version != 1
     {
-        reader.push(
-            Diagnostic::error("NB0214", place, format!("version {version} of the scene format is not known"))
-                .label("not known")
-                .help("this program reads version 1"),
-        );
+        let message = format!("version {version} of the scene format is not known");
+        reader.push(finding("NB0214", place, message, "not known", "this program reads version 1"));
     }
     version == Some(1)
 }

@@ -64,30 +64,16 @@ impl<'a, S, T: Clone> Table<'a, S, T> {
         match &self.states.borrow()[index] {
             State::Done(value) => return value.clone(),
             State::Active => {
-                reader.push(
-                    Diagnostic::error(
-                        "NB0210",
-                        entry.place.clone(),
-                        format!("the {} \"{}\" is defined by itself", self.what, shorten(&entry.name)),
-                    )
-                    .label("leads back to itself")
-                    .help("give one of the names in the circle a value of its own"),
-                );
-                return None;
+                let message = format!("the {} \"{}\" is defined by itself", self.what, shorten(&entry.name));
+                let help = "give one of the names in the circle a value of its own";
+                return reader.refuse(finding("NB0210", entry.place.clone(), message, "leads back to itself", help));
             }
             State::Waiting => {}
         }
         if depth > LONGEST_CHAIN {
-            reader.push(
-                Diagnostic::error(
-                    "NB0602",
-                    entry.place.clone(),
-                    format!("more than {LONGEST_CHAIN} names that stand for names"),
-                )
-                .label("the chain is too long here")
-                .help("refer to the value more directly"),
-            );
-            return None;
+            let message = format!("more than {LONGEST_CHAIN} names that stand for names");
+            let help = "refer to the value more directly";
+            return reader.refuse(finding("NB0602", entry.place.clone(), message, "the chain is too long here", help));
         }
         self.states.borrow_mut()[index] = State::Active;
         let value = evaluate(reader, self, &entry.value, depth + 1);
@@ -107,8 +93,7 @@ impl<'a, S, T: Clone> Table<'a, S, T> {
         let Some(index) = self.by_name.get(&name).copied() else {
             let known = self.entries.iter().map(|entry| entry.name.as_str());
             let define = format!("define it in `names: ({}: {{ ... }})`", self.table);
-            unknown_name(reader, reader.span(raw), self.what, &name, known, &define);
-            return None;
+            return unknown_name(reader, reader.span(raw), self.what, &name, known, &define);
         };
         self.used.borrow_mut()[index] = true;
         self.entry(reader, index, evaluate, depth)
@@ -166,8 +151,7 @@ impl Index {
             return *index;
         }
         let known = self.names.iter().map(|(name, _)| name.as_str());
-        unknown_name(reader, reader.span(raw), self.what, &name, known, self.define);
-        None
+        unknown_name(reader, reader.span(raw), self.what, &name, known, self.define)
     }
 
     pub(super) fn warn_unused(&self, reader: &mut Reader<'_>) {
@@ -310,10 +294,6 @@ fn value<S>(reader: &mut Reader<'_>, raw: &Raw<'_, S>) -> Option<()> {
         return Some(());
     }
     let place = reader.range(raw.text);
-    reader.push(
-        Diagnostic::error("NB0205", place, "a definition here is a value, not another name")
-            .label("a name")
-            .help("use that name directly in the draws"),
-    );
-    None
+    let help = "use that name directly in the draws";
+    reader.refuse(finding("NB0205", place, "a definition here is a value, not another name", "a name", help))
 }

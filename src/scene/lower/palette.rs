@@ -44,8 +44,7 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
             let Some(value) = texture_source::hexadecimal(word, 8) else {
                 let place = reader.span(text);
                 let message = format!("`{}` is not an entry of a palette", shorten(word));
-                reader.push(Diagnostic::error("NB0233", place, message).label("in this text").help(HELP));
-                return None;
+                return reader.refuse(finding("NB0233", place, message, "in this text", HELP));
             };
             words.push(value);
         }
@@ -53,13 +52,11 @@ fn words<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::List<'a, String>>) -
     let place = reader.span(raw);
     if !Palette::LENGTHS.contains(&words.len()) {
         let message = format!("a palette cannot have {} entries", words.len());
-        reader.push(Diagnostic::error("NB0233", place, message).label("another number").rule("TEX-1").help(HELP));
-        return None;
+        return reader.refuse(finding("NB0233", place, message, "another number", HELP).rule("TEX-1"));
     }
     if words.len() < 256 && reader.profile == Profile::Nv10 {
         let what = format!("a palette of {} entries", words.len());
-        reader.push(target::only_nv2a("NB0332", place, &what, "TEX-1"));
-        return None;
+        return reader.refuse(target::only_nv2a("NB0332", place, &what, "TEX-1"));
     }
     Some(words)
 }

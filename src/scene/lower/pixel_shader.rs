@@ -40,12 +40,9 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
         match (&fields.text, &fields.file) {
             (Some(raw), None) => ProgramText::inline(reader, raw)?,
             (Some(_), Some(raw)) => {
-                reader.push(
-                    Diagnostic::error("NB0356", reader.span(raw), "a pixel shader is given twice")
-                        .label("again here")
-                        .help("keep one of `text` and `file`"),
-                );
-                return None;
+                let help = "keep one of `text` and `file`";
+                let message = "a pixel shader is given twice";
+                return reader.refuse(finding("NB0356", reader.span(raw), message, "again here", help));
             }
             (None, _) => {
                 let raw = fields.file(reader)?;
@@ -54,25 +51,16 @@ pub(super) fn pixel_shader<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text:
         }
     };
     let text = text.expanded(reader, Style::Assembler)?;
-    let program = match pixel_shader::parse(&text.text) {
-        Ok(parsed) => {
-            parsed.warnings.into_iter().for_each(|warning| reader.push(text.place(warning)));
-            parsed.program
-        }
-        Err(findings) => {
-            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
-            return None;
-        }
-    };
+    let parsed = text.parsed(reader, pixel_shader::parse(&text.text))?;
+    text.push(reader, parsed.warnings);
+    let program = parsed.program;
     for read in program.constants_read() {
         let defined = program.definitions.iter().any(|definition| definition.index == read.value);
         if !defined && constants.get(usize::from(read.value)).is_some_and(Option::is_none) {
             let index = read.value;
-            let warning = Diagnostic::warning("NB0910", read.place, format!("c{index} has no value"))
-                .label("is 0")
-                .help(format!(
-                    "write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it"
-                ));
+            let help =
+                format!("write `constants: {{ \"c{index}\": Float(1, 0.5, 0, 1) }}` beside the text, or `def` in it");
+            let warning = warning("NB0910", read.place, format!("c{index} has no value"), "is 0", help);
             reader.push(text.place(warning));
         }
     }
@@ -91,11 +79,9 @@ fn register(
     let digits = name.strip_prefix(letter).filter(|digits| digits.len() == 1);
     let index = digits.and_then(|digits| digits.parse::<usize>().ok()).filter(|index| *index < count);
     if index.is_none() {
-        reader.push(
-            Diagnostic::error("NB0208", place, format!("there is no {what} \"{}\"", shorten(name)))
-                .label("not a register")
-                .help(format!("write \"{letter}0\" to \"{letter}{}\"", count - 1)),
-        );
+        let message = format!("there is no {what} \"{}\"", shorten(name));
+        let help = format!("write \"{letter}0\" to \"{letter}{}\"", count - 1);
+        reader.push(finding("NB0208", place, message, "not a register", help));
     }
     index
 }
@@ -173,11 +159,9 @@ fn without_q(shader: &mut [ShaderStage; TEXTURE_UNITS], sets: &mut [Option<usize
 /// The warning that a texture is bound for nothing.
 fn unsampled(reader: &mut Reader<'_>, units: &Units, index: usize) {
     let place = units.places[index].clone();
-    reader.push(
-        Diagnostic::warning("NB0905", place, format!("unit {index} has a texture that is not sampled"))
-            .label(format!("no instruction of the pixel shader samples into t{index}"))
-            .help(format!("write `Unbound` here, or `tex t{index}` in the shader")),
-    );
+    let label = format!("no instruction of the pixel shader samples into t{index}");
+    let help = format!("write `Unbound` here, or `tex t{index}` in the shader");
+    reader.push(warning("NB0905", place, format!("unit {index} has a texture that is not sampled"), label, help));
 }
 
 /// What keeps a unit from doing what the shader asks of it.

@@ -71,16 +71,9 @@ pub(super) fn program<'a>(
         }
         3 => {
             let program = ProgramText::read(reader, names, rest)?.expanded(reader, Style::Combiners)?;
-            match text::read(&program.text) {
-                Ok(text::Program { combiners, places, warnings }) => {
-                    warnings.into_iter().for_each(|finding| reader.push(program.place(finding)));
-                    judge(reader, combiners, &places, &Words, Some(&program))
-                }
-                Err(findings) => {
-                    findings.into_iter().for_each(|finding| reader.push(program.place(finding)));
-                    return None;
-                }
-            }
+            let read = program.parsed(reader, text::read(&program.text))?;
+            program.push(reader, read.warnings);
+            judge(reader, read.combiners, &read.places, &Words, Some(&program))
         }
         4 => return api(pixel_shader::pixel_shader(reader, names, rest), asides),
         6 => {
@@ -104,21 +97,14 @@ pub(super) fn pasted<P>(
     pasted: Result<Pasted<P>, Vec<Diagnostic>>,
     asides: &mut Asides,
 ) -> Option<P> {
-    match pasted {
-        Ok(Pasted { program, asides: found }) => {
-            for Aside { finding, field } in found {
-                match field {
-                    Some(field) => asides.push((text.place(finding), field)),
-                    None => reader.push(text.place(finding)),
-                }
-            }
-            Some(program)
-        }
-        Err(findings) => {
-            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
-            None
+    let Pasted { program, asides: found } = text.parsed(reader, pasted)?;
+    for Aside { finding, field } in found {
+        match field {
+            Some(field) => asides.push((text.place(finding), field)),
+            None => reader.push(text.place(finding)),
         }
     }
+    Some(program)
 }
 
 /// Holds a program against the chip. `inside`: the text that the places are of, if it is not the scene.
@@ -163,11 +149,7 @@ pub(super) fn calls<'a>(
         };
         return text.expanded(reader, Style::Calls).map(Some);
     };
-    reader.push(
-        Diagnostic::error("NB0356", second, format!("{what} given twice"))
-            .label("again here")
-            .related(first, "first here")
-            .help(format!("keep one of `{name}`, `text` and `file`")),
-    );
-    None
+    let message = format!("{what} given twice");
+    let help = format!("keep one of `{name}`, `text` and `file`");
+    reader.refuse(finding("NB0356", second, message, "again here", help).related(first, "first here"))
 }

@@ -41,7 +41,7 @@ impl ProgramText {
 
     /// A text in a file. `None` once the reason that it cannot be read has been recorded.
     pub(super) fn file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, String>) -> Option<Self> {
-        named(reader, names, raw, reader.limits.program_file())
+        Self::file_up_to(reader, names, raw, reader.limits.program_file())
     }
 
     /// The same of a file within a limit of its own.
@@ -51,15 +51,15 @@ impl ProgramText {
         raw: &Raw<'a, String>,
         most: FileLimit,
     ) -> Option<Self> {
-        named(reader, names, raw, most)
+        let file = text_file(reader, &names.folder, raw, most)?;
+        Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file), before: None })
     }
 
     fn within_limit(self, reader: &mut Reader<'_>) -> Option<Self> {
         let most = reader.limits.program_file();
         if self.text.len() as u64 > most.bytes {
             let place = self.span(0..0);
-            reader.push(too_large(place, most));
-            return None;
+            return reader.refuse(too_large(place, most));
         }
         Some(self)
     }
@@ -70,10 +70,7 @@ impl ProgramText {
         match expand(&self.text, style, most) {
             Ok(None) => Some(self),
             Ok(Some(Expanded { text, places })) => Some(ProgramText { text, before: Some(places), ..self }),
-            Err(finding) => {
-                reader.push(self.place(finding));
-                None
-            }
+            Err(finding) => reader.refuse(self.place(finding)),
         }
     }
 
@@ -96,6 +93,16 @@ impl ProgramText {
             }
             Origin::File(file) => file.named.clone(),
         }
+    }
+
+    /// Records findings about the text.
+    pub(super) fn push(&self, reader: &mut Reader<'_>, findings: Vec<Diagnostic>) {
+        findings.into_iter().for_each(|finding| reader.push(self.place(finding)));
+    }
+
+    /// What was read of the text. `None` once the reasons that it cannot be read have been recorded.
+    pub(super) fn parsed<T>(&self, reader: &mut Reader<'_>, read: Result<T, Vec<Diagnostic>>) -> Option<T> {
+        read.map_err(|findings| self.push(reader, findings)).ok()
     }
 
     /// A finding about the text as one about the scene or the file.
@@ -125,12 +132,8 @@ fn inline<'a>(reader: &mut Reader<'a>, text: &'a str) -> Option<ProgramText> {
     let list = Raw::<Tuple<'a, String>>::new(text);
     let parts = reader.read(&list)?.0;
     let [raw] = parts[..] else {
-        reader.push(
-            Diagnostic::error("NB0211", reader.span(&list), "a program is one text")
-                .label("here")
-                .help("write `(\"...\")`, `(r#\"...\"#)` for a text of many lines, or `(file: \"name\")`"),
-        );
-        return None;
+        let help = "write `(\"...\")`, `(r#\"...\"#)` for a text of many lines, or `(file: \"name\")`";
+        return reader.refuse(finding("NB0211", reader.span(&list), "a program is one text", "here", help));
     };
     literal(reader, &raw)
 }
@@ -154,17 +157,7 @@ fn literal<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<Program
 fn from_file<'a>(reader: &mut Reader<'a>, names: &Names<'a>, text: &'a str) -> Option<ProgramText> {
     let fields = reader.read(&Raw::<source::ProgramFile<'a>>::new(text))?;
     let raw = fields.file(reader)?;
-    named(reader, names, &raw, reader.limits.program_file())
-}
-
-fn named<'a>(
-    reader: &mut Reader<'a>,
-    names: &Names<'a>,
-    raw: &Raw<'a, String>,
-    most: FileLimit,
-) -> Option<ProgramText> {
-    let file = text_file(reader, &names.folder, raw, most)?;
-    Some(ProgramText { text: file.source.text.clone(), origin: Origin::File(file), before: None })
+    ProgramText::file(reader, names, &raw)
 }
 
 /// A text in a file of the scene's folder, within a limit. `None` once the reason that it cannot be read has been recorded.
@@ -176,32 +169,26 @@ pub(super) fn text_file<'a>(
 ) -> Option<Arc<diagnostic::File>> {
     let name = reader.read(raw)?;
     let named = reader.span(raw);
-    let refuse = |code, message: String, help: &str| {
-        Diagnostic::error(code, named.clone(), message).label("this file").help(help)
-    };
+    let refuse = |code, message: String, help: &str| finding(code, named.clone(), message, "this file", help);
     let path = match reader.assets.resolve(folder, &name) {
         Ok(path) => path,
         Err(error) => {
-            reader.push(refuse(error.code(), error.to_string(), error.help()));
-            return None;
+            return reader.refuse(refuse(error.code(), error.to_string(), error.help()));
         }
     };
     let bytes = match reader.assets.bytes(&path, most) {
         Ok(bytes) => bytes,
         Err(ReadError::TooLarge(most)) => {
-            reader.push(too_large(named, most));
-            return None;
+            return reader.refuse(too_large(named, most));
         }
         Err(error) => {
             let message = format!("`{}` cannot be read: {error}", shorten(&name));
-            reader.push(refuse("NB0540", message, "name a regular file that may be read"));
-            return None;
+            return reader.refuse(refuse("NB0540", message, "name a regular file that may be read"));
         }
     };
     let Ok(text) = String::from_utf8(bytes) else {
         let message = format!("`{}` is not UTF-8 text", shorten(&name));
-        reader.push(refuse("NB0541", message, "save the file as UTF-8"));
-        return None;
+        return reader.refuse(refuse("NB0541", message, "save the file as UTF-8"));
     };
     let text = text.strip_prefix('\u{feff}').map(str::to_owned).unwrap_or(text);
     let source = Source { name: ninebit::shown::lossless(&folder.join(&name)), text };

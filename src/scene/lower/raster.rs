@@ -38,16 +38,9 @@ pub(super) fn operations<'a>(
         draw.depth_test = depth_test(reader, raw);
         let steps = draw.depth_test.is_some_and(|test| test.vertex_depths == VertexDepths::Steps);
         if steps && !matches!(draw.positions, Positions::Window) {
-            reader.push(
-                Diagnostic::error(
-                    "NB0206",
-                    reader.span(raw),
-                    "vertex depths are steps of the buffer, and positions are projected",
-                )
-                .label("`vertex_depths: Steps`")
-                .rule("DEP-1")
-                .help("give the vertices as `Window([...])`, or leave `vertex_depths` out"),
-            );
+            let message = "vertex depths are steps of the buffer, and positions are projected";
+            let help = "give the vertices as `Window([...])`, or leave `vertex_depths` out";
+            reader.push(finding("NB0206", reader.span(raw), message, "`vertex_depths: Steps`", help).rule("DEP-1"));
             draw.depth_test = None;
         }
         if target.depth.is_none() {
@@ -70,12 +63,8 @@ pub(super) fn operations<'a>(
         draw.blend = names.blend(reader, raw);
         if !surface::blends(target.format) {
             let message = format!("surface format {:?} cannot be blended", target.format);
-            reader.push(
-                Diagnostic::error("NB0316", reader.span(raw), message)
-                    .label("blending")
-                    .rule("ROP-5")
-                    .help("leave `blend` out, or draw into a target with a colour format"),
-            );
+            let help = "leave `blend` out, or draw into a target with a colour format";
+            reader.push(finding("NB0316", reader.span(raw), message, "blending", help).rule("ROP-5"));
         }
     }
     draw.blend_constant = color::bytes(fields.blend_constant(reader, names));
@@ -97,10 +86,7 @@ pub(super) fn operations<'a>(
 fn alpha_test<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::AlphaTest<'a>>) -> Option<AlphaTest> {
     let fields = reader.read(raw)?;
     let function = fields.function(reader);
-    let reference = match &fields.reference {
-        Some(raw) => alpha_reference(reader, raw),
-        None => Some(0),
-    };
+    let reference = fields.reference.as_ref().map_or(Some(0), |raw| alpha_reference(reader, raw));
     Some(AlphaTest { function: reader.name(&function?)?, reference: reference? })
 }
 
@@ -112,26 +98,16 @@ fn alpha_reference<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> 
     }
     let Some(word) = reader.attempt::<u32>(raw.text) else {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0205", place, format!("expected an alpha reference, found `{}`", shorten(raw.text)))
-                .label("wrong kind of value")
-                .help("write a byte, `128`, or a float, `Float(0.5)`"),
-        );
-        return None;
+        let message = format!("expected an alpha reference, found `{}`", shorten(raw.text));
+        let help = "write a byte, `128`, or a float, `Float(0.5)`";
+        return reader.refuse(finding("NB0205", place, message, "wrong kind of value", help));
     };
     let byte = word as u8;
     if u32::from(byte) != word {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::warning(
-                "NB0914",
-                place,
-                format!("an alpha reference has eight bits: {word:#x} counts as {byte}"),
-            )
-            .label("more than eight bits")
-            .rule("ROP-1")
-            .help(format!("write {byte} if that is what is meant")),
-        );
+        let message = format!("an alpha reference has eight bits: {word:#x} counts as {byte}");
+        let help = format!("write {byte} if that is what is meant");
+        reader.push(warning("NB0914", place, message, "more than eight bits", help).rule("ROP-1"));
     }
     Some(byte)
 }
@@ -151,18 +127,12 @@ fn depth_range<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::DepthRange<'a>
     let (lowest, highest) = (fields.lowest(reader)?, fields.highest(reader)?);
     let (low, high) = (reader.finite(&lowest)?, reader.finite(&highest)?);
     if low > high {
-        reader.push(
-            Diagnostic::error(
-                "NB0206",
-                reader.span(&highest),
-                format!("the highest depth, {high}, is below the lowest"),
-            )
-            .label("below `lowest`")
-            .related(reader.span(&lowest), "the lowest")
-            .rule("DEP-4")
-            .help("exchange the two"),
+        let message = format!("the highest depth, {high}, is below the lowest");
+        return reader.refuse(
+            finding("NB0206", reader.span(&highest), message, "below `lowest`", "exchange the two")
+                .related(reader.span(&lowest), "the lowest")
+                .rule("DEP-4"),
         );
-        return None;
     }
     let (clamps, drops_triangles) = (fields.clamp(reader), fields.drop_triangles(reader));
     Some(DepthRange { lowest: low, highest: high, clamps, drops_triangles })
@@ -193,13 +163,12 @@ fn window_clip<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::WindowClip<'a>
     if !(1..=WINDOW_CLIP_RECTANGLES).contains(&rectangles.len()) {
         let message = format!("a window clip has 1 to {WINDOW_CLIP_RECTANGLES} rectangles, not {}", rectangles.len());
         let finding = Diagnostic::error("NB0211", reader.span(&list), message);
-        reader.push(
+        return reader.refuse(
             finding
                 .label(format!("{} here", rectangles.len()))
                 .rule("CLP-1")
                 .help("leave `window_clip` out to draw everywhere, or draw in several draws"),
         );
-        return None;
     }
     let rectangles = rectangles.iter().map(|raw| rectangle(reader, raw, ("window clip's rectangle", 1)));
     let rectangles = rectangles.collect::<Vec<_>>().into_iter().collect::<Option<Vec<_>>>()?;
@@ -216,11 +185,9 @@ pub(super) fn clip<'a>(
     let clip = rectangle(reader, raw, (what, 0))?;
     let inside = |at: u32, size: u32, whole: u32| at.checked_add(size).is_some_and(|end| end <= whole);
     if !inside(clip.x, clip.width, target.width) || !inside(clip.y, clip.height, target.height) {
-        reader.push(
-            Diagnostic::error("NB0215", reader.span(raw), format!("the {what} reaches outside the target"))
-                .label(format!("target \"{}\" is {} x {}", shorten(&target.name), target.width, target.height))
-                .help("x + width and y + height must not exceed the target"),
-        );
+        let label = format!("target \"{}\" is {} x {}", shorten(&target.name), target.width, target.height);
+        let help = "x + width and y + height must not exceed the target";
+        reader.push(finding("NB0215", reader.span(raw), format!("the {what} reaches outside the target"), label, help));
     }
     Some(clip)
 }

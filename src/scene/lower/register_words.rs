@@ -34,12 +34,10 @@ pub(super) fn register_words<'a>(
             listed(reader, text, &mut inside)?
         }
         _ => {
-            reader.push(
-                Diagnostic::error("NB0202", opening, "register words are those of one chip")
-                    .label("one of `nv10`, `nv20`, `text` and `file` is to be here")
-                    .help("write `RegisterWords(nv10: (rc_in_rgb: [0x08040000], ...))`, `nv20: (...)`, or `file: \"words.txt\"`"),
-            );
-            return None;
+            let label = "one of `nv10`, `nv20`, `text` and `file` is to be here";
+            let help =
+                "write `RegisterWords(nv10: (rc_in_rgb: [0x08040000], ...))`, `nv20: (...)`, or `file: \"words.txt\"`";
+            return reader.refuse(finding("NB0202", opening, "register words are those of one chip", label, help));
         }
     };
     if given.wrong {
@@ -62,16 +60,10 @@ pub(super) fn register_words<'a>(
 
 /// Words in a text of their own, which are those of the scene's chip.
 fn listed(reader: &mut Reader<'_>, text: ProgramText, inside: &mut Option<ProgramText>) -> Option<Given> {
-    match read(&text.text, reader.profile) {
-        Ok(written) => {
-            *inside = Some(text);
-            Some(Given { written, wrong: false })
-        }
-        Err(findings) => {
-            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
-            None
-        }
-    }
+    let read = read(&text.text, reader.profile);
+    let written = text.parsed(reader, read)?;
+    *inside = Some(text);
+    Some(Given { written, wrong: false })
 }
 
 /// Words, and whether one of them is none.

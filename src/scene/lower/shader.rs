@@ -52,12 +52,9 @@ pub(super) fn shader<'a>(
         places[index] = self::stage(reader, raw, stage);
     }
     if let Some(extra) = list.get(TEXTURE_UNITS) {
-        reader.push(
-            Diagnostic::error("NB0319", reader.span(extra), format!("there is no texture unit {TEXTURE_UNITS}"))
-                .label("one too many")
-                .rule("TSH-10")
-                .help("units 0 to 3 are the entries of this list"),
-        );
+        let message = format!("there is no texture unit {TEXTURE_UNITS}");
+        let help = "units 0 to 3 are the entries of this list";
+        reader.push(finding("NB0319", reader.span(extra), message, "one too many", help).rule("TSH-10"));
     }
     for (index, places) in places.iter().enumerate() {
         if let Some(places) = places {
@@ -69,16 +66,10 @@ pub(super) fn shader<'a>(
         let written = &units.places[index];
         if units.bound[index].is_some() && !units.shader[index].operation.samples() {
             let operation = units.shader[index].operation.name();
-            reader.push(
-                Diagnostic::warning(
-                    "NB0905",
-                    written.clone(),
-                    format!("unit {index} has a texture that is not sampled"),
-                )
-                .label(format!("its stage of the texture shader is {operation}"))
-                .rule("TSH-10")
-                .help("write `Unbound` here, or a stage that samples"),
-            );
+            let message = format!("unit {index} has a texture that is not sampled");
+            let label = format!("its stage of the texture shader is {operation}");
+            let help = "write `Unbound` here, or a stage that samples";
+            reader.push(warning("NB0905", written.clone(), message, label, help).rule("TSH-10"));
         }
     }
 }
@@ -109,8 +100,7 @@ fn operation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::ShaderOperation>
     let (kind, rest) = reader.variant(raw, "texture shader operation", OPERATIONS)?;
     let takes = matches!(OPERATIONS[kind], "CullFragment" | "BumpEnvironment" | "DotReflectConstantEye");
     if kind < 13 && !takes && !rest.is_empty() {
-        reader.unknown_variant(raw, "texture shader operation", OPERATIONS);
-        return None;
+        return reader.unknown_variant(raw, "texture shader operation", OPERATIONS);
     }
     Some(match OPERATIONS[kind] {
         "None" => ShaderOperation::None,
@@ -209,21 +199,13 @@ fn order(reader: &mut Reader<'_>, shader: &[ShaderStage; TEXTURE_UNITS], index: 
     let wanted = ShaderStage::misplaced(shader, index);
     if let Some(help) = wanted {
         let message = format!("{} cannot stand at stage {index} here", operation.name());
-        reader.push(
-            Diagnostic::error("NB0341", places.stage.clone(), message)
-                .label("the chip refuses it")
-                .rule("TSH-10")
-                .help(help),
-        );
+        reader.push(finding("NB0341", places.stage.clone(), message, "the chip refuses it", help).rule("TSH-10"));
     } else if ShaderStage::reads_too_late(shader, index) {
         let message = "with DotReflectDiffuse before it, stage 3 cannot read unit 2";
         let place = places.previous.clone().unwrap_or_else(|| places.stage.clone());
-        reader.push(
-            Diagnostic::error("NB0342", place, message)
-                .label("its dot product is part of what unit 2 samples with")
-                .rule("TSH-10")
-                .help("write `(operation: ..., previous: 0)` or `previous: 1`"),
-        );
+        let label = "its dot product is part of what unit 2 samples with";
+        let help = "write `(operation: ..., previous: 0)` or `previous: 1`";
+        reader.push(finding("NB0342", place, message, label, help).rule("TSH-10"));
     }
     wanted.is_none()
 }
@@ -238,16 +220,9 @@ fn texture(reader: &mut Reader<'_>, textures: &Textures, units: &Units, index: u
     let fits = operation.kinds();
     let Some(unit) = units.bound[index] else {
         if units.places[index].is_empty() {
-            reader.push(
-                Diagnostic::error(
-                    "NB0343",
-                    places.stage.clone(),
-                    format!("stage {index} samples, but its unit has no texture"),
-                )
-                .label("nothing to sample")
-                .rule("TSH-10")
-                .help(format!("give the draw `textures: [...]` with an entry for unit {index}")),
-            );
+            let message = format!("stage {index} samples, but its unit has no texture");
+            let help = format!("give the draw `textures: [...]` with an entry for unit {index}");
+            reader.push(finding("NB0343", places.stage.clone(), message, "nothing to sample", help).rule("TSH-10"));
         }
         return;
     };

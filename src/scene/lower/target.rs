@@ -27,13 +27,14 @@ impl<'s> Targets<'s> {
     /// The target of that name; `None` once the reason has been recorded.
     pub(super) fn find<'a>(&self, reader: &mut Reader<'a>, raw: &Raw<'a, String>) -> Option<usize> {
         let name = reader.read(raw)?;
-        let found = self.by_name.get(&name).copied();
-        if found.is_none() && !self.unread {
-            let place = reader.span(raw);
-            let known = self.list.iter().map(|target| target.name.as_str());
-            unknown_name(reader, place, "target", &name, known, "define it in `targets: [(name: \"...\")]`");
+        match self.by_name.get(&name).copied() {
+            None if !self.unread => {
+                let known = self.list.iter().map(|target| target.name.as_str());
+                let define = "define it in `targets: [(name: \"...\")]`";
+                unknown_name(reader, reader.span(raw), "target", &name, known, define)
+            }
+            found => found,
         }
-        found
     }
 
     /// A finding with the target's place beside it.
@@ -70,11 +71,8 @@ pub(super) fn targets<'a>(
                 return targets;
             }
             if list.is_empty() {
-                reader.push(
-                    Diagnostic::error("NB0202", place, "a scene needs a render target")
-                        .label("empty")
-                        .help("leave `targets` out to get one of 640 x 480, or write `[(width: 256, height: 256)]`"),
-                );
+                let help = "leave `targets` out to get one of 640 x 480, or write `[(width: 256, height: 256)]`";
+                reader.push(finding("NB0202", place, "a scene needs a render target", "empty", help));
             }
             list
         }
@@ -114,11 +112,8 @@ pub(super) fn targets<'a>(
     {
         let message = format!("the targets take {bytes} bytes; {} are allowed", reader.limits.surface_bytes);
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0607", place, message)
-                .label("too large together")
-                .help("make the targets smaller, or fewer; `ninebit limits` prints what is allowed"),
-        );
+        let help = "make the targets smaller, or fewer; `ninebit limits` prints what is allowed";
+        reader.push(finding("NB0607", place, message, "too large together", help));
     }
     targets
 }
@@ -194,11 +189,8 @@ pub(super) fn contents<'a>(reader: &mut Reader<'a>, targets: &mut Targets<'a>, t
         };
         if let Some(why) = refused {
             let message = format!("target \"{}\" cannot begin as this texture: it {why}", shorten(name));
-            reader.push(
-                Diagnostic::error("NB0226", reader.span(&raw), message)
-                    .label("does not fit")
-                    .help("take one picture of as many columns and rows, in a format whose texels have as many bytes"),
-            );
+            let help = "take one picture of as many columns and rows, in a format whose texels have as many bytes";
+            reader.push(finding("NB0226", reader.span(&raw), message, "does not fit", help));
         }
     }
 }
@@ -207,20 +199,14 @@ pub(super) fn contents<'a>(reader: &mut Reader<'a>, targets: &mut Targets<'a>, t
 pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, f32>) -> Option<f32> {
     let (place, value) = (reader.span(raw), reader.finite(raw)?);
     let Some(buffer) = target.depth else {
-        reader.push(
-            Diagnostic::error("NB0216", place, "this target has no depth buffer to clear")
-                .label("no depth buffer")
-                .help("add `depth: Z24S8` (or `Z16`) to the target, or leave this out"),
-        );
-        return None;
+        let help = "add `depth: Z24S8` (or `Z16`) to the target, or leave this out";
+        let message = "this target has no depth buffer to clear";
+        return reader.refuse(finding("NB0216", place, message, "no depth buffer", help));
     };
     let highest = if buffer.format.is_float() { f32::MAX } else { 1.0 };
     if !(0.0..=highest).contains(&value) {
         let range = if buffer.format.is_float() { "write 0.0 or more" } else { "write 0.0 (near) to 1.0 (far)" };
-        reader.push(
-            Diagnostic::error("NB0206", place, format!("a depth cannot be {value}")).label("out of range").help(range),
-        );
-        return None;
+        return reader.refuse(finding("NB0206", place, format!("a depth cannot be {value}"), "out of range", range));
     }
     Some(value)
 }
@@ -229,13 +215,9 @@ pub(super) fn clear_depth<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Ra
 pub(super) fn clear_stencil<'a>(reader: &mut Reader<'a>, target: &Target, raw: &Raw<'a, u8>) -> Option<u8> {
     let stencil = reader.read(raw)?;
     if !target.depth.is_some_and(|depth| depth.format.has_stencil()) {
-        reader.push(
-            Diagnostic::error("NB0216", reader.span(raw), "this target has no stencil to clear")
-                .label("no stencil")
-                .rule("STN-1")
-                .help("give the target `depth: Z24S8`, or leave this out"),
-        );
-        return None;
+        let message = "this target has no stencil to clear";
+        let help = "give the target `depth: Z24S8`, or leave this out";
+        return reader.refuse(finding("NB0216", reader.span(raw), message, "no stencil", help).rule("STN-1"));
     }
     Some(stencil)
 }

@@ -39,12 +39,9 @@ pub(super) fn sets<'a>(
 /// Whether the chip has that coordinate set.
 fn exists(reader: &mut Reader<'_>, index: usize, place: Range<usize>) -> bool {
     if index >= TEXTURE_UNITS {
-        reader.push(
-            Diagnostic::error("NB0319", place, format!("there is no coordinate set {index}"))
-                .label("one too many")
-                .rule("TSH-11")
-                .help("sets 0 to 3 are the entries of this list"),
-        );
+        let message = format!("there is no coordinate set {index}");
+        let help = "sets 0 to 3 are the entries of this list";
+        reader.push(finding("NB0319", place, message, "one too many", help).rule("TSH-11"));
         return false;
     }
     if index >= reader.profile.texture_units() {
@@ -64,8 +61,7 @@ fn set<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::CoordinateSource>, ind
         let (word, rest) =
             reader.variant(raw, "coordinate generation", &["None", WHOLE[0], WHOLE[1], WHOLE[2], "Emboss"])?;
         if !rest.is_empty() {
-            reader.unknown_variant(raw, "coordinate generation", &WHOLE);
-            return None;
+            return reader.unknown_variant(raw, "coordinate generation", &WHOLE);
         }
         set.generators = whole(match word {
             1 => Generation::CameraSpacePosition,
@@ -92,10 +88,7 @@ pub(super) fn viewer<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
     let (word, rest) = reader.variant(raw, "viewer", VIEWERS)?;
     match (word, rest) {
         (0, "") => Some(Viewer::Local),
-        (0, _) => {
-            reader.unknown_variant(raw, "viewer", VIEWERS);
-            None
-        }
+        (0, _) => reader.unknown_variant(raw, "viewer", VIEWERS),
         (_, "") => Some(Viewer::FAR),
         (_, rest) => {
             let [x, y, z, _] = reader.numbers(&Raw::<Numbers>::new(rest), "a line of sight", 3..=3, [0.0; 4])?;
@@ -125,8 +118,7 @@ fn generator<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Generator>, comp
         return Some(if kind == 0 { Generator::ObjectLinear(plane) } else { Generator::EyeLinear(plane) });
     }
     if !rest.is_empty() {
-        reader.unknown_variant(raw, "coordinate generator", GENERATORS);
-        return None;
+        return reader.unknown_variant(raw, "coordinate generator", GENERATORS);
     }
     let (generator, components) = match kind {
         2 => (Generator::SphereMap, 2),
@@ -135,12 +127,9 @@ fn generator<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Generator>, comp
     };
     if component >= components {
         let name = ["s", "t", "r", "q"][component];
-        reader.push(
-            Diagnostic::error("NB0224", reader.span(raw), format!("{} makes no {name}", GENERATORS[kind]))
-                .label("not for this component")
-                .rule("TSH-11")
-                .help(if components == 2 { "it makes s and t" } else { "it makes s, t and r" }),
-        );
+        let message = format!("{} makes no {name}", GENERATORS[kind]);
+        let help = if components == 2 { "it makes s and t" } else { "it makes s, t and r" };
+        reader.push(finding("NB0224", reader.span(raw), message, "not for this component", help).rule("TSH-11"));
         return None;
     }
     Some(generator)
@@ -155,22 +144,17 @@ fn emboss<'a>(
 ) -> Option<CoordinateSet> {
     let place = reader.range(raw.split().0);
     if reader.profile != Profile::Nv10 {
-        reader.push(
+        return reader.refuse(
             Diagnostic::error("NB0324", place.clone(), "Emboss exists on Nv10 only")
                 .label("not on this chip")
                 .rule("TSH-11")
                 .help("write `profile: Nv10`, or give the moved coordinates with the vertices"),
         );
-        return None;
     }
     if index != 1 {
-        reader.push(
-            Diagnostic::error("NB0224", place, "Emboss makes coordinate set 1 only")
-                .label(format!("this is set {index}"))
-                .rule("TSH-11")
-                .help("write `texgen: [None, Emboss(...)]`: set 1 becomes set 0, moved"),
-        );
-        return None;
+        let message = "Emboss makes coordinate set 1 only";
+        let help = "write `texgen: [None, Emboss(...)]`: set 1 becomes set 0, moved";
+        return reader.refuse(finding("NB0224", place, message, format!("this is set {index}"), help).rule("TSH-11"));
     }
     let fields = source::Emboss { opening: raw.split().0, ..reader.read(&Raw::new(rest))? };
     let (light, scale) = (fields.light(reader), fields.scale(reader));

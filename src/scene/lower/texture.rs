@@ -90,10 +90,7 @@ fn texture<'a>(
     };
     let palette = fields.palette.as_ref().and_then(|raw| palettes.index.find(reader, raw));
     let border = fields.border(reader);
-    let levels = match &fields.levels {
-        Some(raw) => texture_levels::wanted(reader, raw)?,
-        None => Wanted::Own,
-    };
+    let levels = fields.levels.as_ref().map_or(Some(Wanted::Own), |raw| texture_levels::wanted(reader, raw))?;
     let source = fields.source(reader)?;
     let (variant, rest) = reader.variant(&source, "texture source", Variant::ALL_NAMES)?;
     let texture = if matches!(Variant::ALL[variant], Variant::Target | Variant::Depth) {
@@ -110,12 +107,9 @@ fn texture<'a>(
         let mut given = sources.read(reader, Variant::ALL[variant], &source, rest, &request)?;
         if fields.mips.is_some() && levels != Wanted::Own {
             let place = fields.levels.as_ref().map(|raw| reader.span(raw));
-            reader.push(
-                Diagnostic::error("NB0230", place, "levels are counted and listed at once")
-                    .label("counted here")
-                    .help("keep `levels`, or `mips`, whose sources are levels 1, 2 and so on"),
-            );
-            return None;
+            let help = "keep `levels`, or `mips`, whose sources are levels 1, 2 and so on";
+            let message = "levels are counted and listed at once";
+            return reader.refuse(finding("NB0230", place, message, "counted here", help));
         }
         let made = given.palette.take().map(|entries| palettes.add(&entry.name, entries));
         let place = given.place.clone();
@@ -162,8 +156,7 @@ fn with_palette<'a>(
         && texture.format != TextureFormat::P8
     {
         let place = reader.span(raw);
-        reader.push(palette::not_read(place, texture.format));
-        return None;
+        return reader.refuse(palette::not_read(place, texture.format));
     }
     if fields.palette.is_some() && palette.is_none() {
         return None;
@@ -177,13 +170,9 @@ fn kind<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<Text
 
 fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<TextureFormat>>) -> Option<TextureFormat> {
     if let (name @ ("YUY2" | "UYVY"), "") = raw.split() {
-        reader.push(
-            Diagnostic::error("NB0402", reader.span(raw), format!("how {name} texels are rounded is not known"))
-                .label("not modelled")
-                .rule("TEX-1")
-                .help("convert the picture to A8R8G8B8"),
-        );
-        return None;
+        let message = format!("how {name} texels are rounded is not known");
+        let help = "convert the picture to A8R8G8B8";
+        return reader.refuse(finding("NB0402", reader.span(raw), message, "not modelled", help).rule("TEX-1"));
     }
     if let (name, "") = raw.split()
         && let Some((_, own)) = DEPTH_FORMATS
@@ -191,13 +180,9 @@ fn format<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, crate::reader::Name<Texture
             .find(|(known, own)| known.eq_ignore_ascii_case(name) && !own.eq_ignore_ascii_case(name))
     {
         let help = if own.is_empty() { "take Z16, Z24S8, Z16F or Z24S8F" } else { own };
-        reader.push(
-            Diagnostic::error("NB0204", reader.span(raw), format!("`{name}` is not a texture format here"))
-                .label("a format of depths")
-                .rule("SHD-1")
-                .help(format!("write `{help}`, and give the unit a `shadow` comparison")),
-        );
-        return None;
+        let message = format!("`{name}` is not a texture format here");
+        let help = format!("write `{help}`, and give the unit a `shadow` comparison");
+        return reader.refuse(finding("NB0204", reader.span(raw), message, "a format of depths", help).rule("SHD-1"));
     }
     reader.name(raw)
 }
@@ -252,8 +237,7 @@ fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &G
                 "write `Layers([..., ...])`, or name a DDS file of a volume, or `Raw(...)` with `layers`",
             )
         };
-        reader.push(Diagnostic::error("NB0232", given.place.clone(), message).label("here").rule("VOL-1").help(help));
-        return None;
+        return reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule("VOL-1"));
     }
     let (message, help) = if cube {
         (format!("six faces do not make a texture of kind {}", kind.name()), "write `kind: Cube`, or leave `kind` out")
@@ -263,8 +247,7 @@ fn settled_kind(reader: &mut Reader<'_>, written: Option<TextureKind>, given: &G
             "write `Faces(positive_x: ..., negative_x: ..., ...)`, or name a DDS file of a cube map",
         )
     };
-    reader.push(Diagnostic::error("NB0232", given.place.clone(), message).label("here").rule("TEX-12").help(help));
-    None
+    reader.refuse(finding("NB0232", given.place.clone(), message, "here", help).rule("TEX-12"))
 }
 
 /// Sides without border texels.
@@ -273,13 +256,8 @@ fn interior(reader: &mut Reader<'_>, given: &Given, border: bool) -> Option<(u32
     let (width, height) = (given.width, given.height);
     if width <= beyond || height <= beyond {
         let message = format!("{width} x {height} texels leave nothing inside a border of 4 on each side");
-        reader.push(
-            Diagnostic::error("NB0231", given.place.clone(), message)
-                .label("too small")
-                .rule("TEX-7")
-                .help("with `border: true` a source has 8 columns and rows more than the texture"),
-        );
-        return None;
+        let help = "with `border: true` a source has 8 columns and rows more than the texture";
+        return reader.refuse(finding("NB0231", given.place.clone(), message, "too small", help).rule("TEX-7"));
     }
     Some((width - beyond, height - beyond))
 }
@@ -307,12 +285,9 @@ fn of_target<'a>(
         fields.border.as_ref().map(|raw| (reader.span(raw), "texture with border texels")),
     ];
     if let Some((place, what)) = extra.into_iter().flatten().next() {
-        reader.push(
-            Diagnostic::error("NB0232", place, format!("a render target cannot be a {what}"))
-                .label("does not go with `Target`")
-                .help("a target is sampled as one picture: `TwoDimensional` or `Rectangle`, one level, no border"),
-        );
-        return None;
+        let message = format!("a render target cannot be a {what}");
+        let help = "a target is sampled as one picture: `TwoDimensional` or `Rectangle`, one level, no border";
+        return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
     }
     if depths {
         return of_depths(reader, (target, index), kind, format, place, name);
@@ -320,22 +295,15 @@ fn of_target<'a>(
     let own = target.format.texture_format();
     let (format, format_place) = match format {
         Some((TextureFormat::P8, place)) => {
-            reader.push(
-                Diagnostic::error("NB0232", place, "a render target does not hold indices of a palette")
-                    .label("does not go with `Target`")
-                    .help(format!("leave `format` out, which means {own:?} here")),
-            );
-            return None;
+            let message = "a render target does not hold indices of a palette";
+            let help = format!("leave `format` out, which means {own:?} here");
+            return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
         }
         Some((format, place)) if format.depth().is_some() => {
-            reader.push(
-                Diagnostic::error("NB0232", place, "the colours of a render target are no depths")
-                    .label("does not go with `Target`")
-                    .help(format!(
-                        "write `Depth(...)` for its depth buffer, or leave `format` out, which means {own:?} here"
-                    )),
-            );
-            return None;
+            let message = "the colours of a render target are no depths";
+            let help =
+                format!("write `Depth(...)` for its depth buffer, or leave `format` out, which means {own:?} here");
+            return reader.refuse(finding("NB0232", place, message, "does not go with `Target`", help));
         }
         Some((format, place)) => (format, place),
         None => (own, place.clone()),
@@ -361,12 +329,8 @@ fn of_target<'a>(
     };
     if let Some((message, or)) = problem {
         let size = if pixel == 1 { "1 byte".to_owned() } else { format!("{pixel} bytes") };
-        reader.push(
-            Diagnostic::error("NB0218", format_place, message).label("another size").help(format!(
-                "leave `format` out, which means {own:?} here, or take another with texels of {size}{or}"
-            )),
-        );
-        return None;
+        let help = format!("leave `format` out, which means {own:?} here, or take another with texels of {size}{or}");
+        return reader.refuse(finding("NB0218", format_place, message, "another size", help));
     }
     legal::format(reader, format, format_place)?;
     legal::sides(reader, kind, format, columns.unwrap_or(target.width), target.height, place)?;
@@ -383,13 +347,9 @@ fn of_depths(
     name: &str,
 ) -> Option<Texture> {
     let Some(depth) = target.depth else {
-        reader.push(
-            Diagnostic::error("NB0216", place, format!("target \"{}\" has no depth buffer", shorten(&target.name)))
-                .label("shows its depths")
-                .rule("SHD-1")
-                .help("give the target `depth: Z24S8`"),
-        );
-        return None;
+        let message = format!("target \"{}\" has no depth buffer", shorten(&target.name));
+        let help = "give the target `depth: Z24S8`";
+        return reader.refuse(finding("NB0216", place, message, "shows its depths", help).rule("SHD-1"));
     };
     let own = match depth.format {
         DepthFormat::Z16 => TextureFormat::Z16,
@@ -400,12 +360,8 @@ fn of_depths(
     let (format, format_place) = format.unwrap_or((own, place.clone()));
     if format.depth().is_none_or(|format| format.bits() != depth.format.bits()) {
         let message = format!("depths of {} cannot be read as {}", own.name(), format.name());
-        reader.push(
-            Diagnostic::error("NB0218", format_place, message)
-                .label("another size, or no depths")
-                .help(format!("leave `format` out, which means {} here", own.name())),
-        );
-        return None;
+        let help = format!("leave `format` out, which means {} here", own.name());
+        return reader.refuse(finding("NB0218", format_place, message, "another size, or no depths", help));
     }
     legal::format(reader, format, format_place)?;
     legal::sides(reader, kind, format, target.width, target.height, place)?;

@@ -81,11 +81,8 @@ fn scale<'a>(reader: &mut Reader<'a>, raw: &Option<Raw<'a, u32>>, half: &mut Hal
         Some(2) => Scale::Two,
         Some(4) => Scale::Four,
         Some(other) => {
-            reader.push(
-                Diagnostic::error("NB0206", reader.span(raw), format!("a scale cannot be {other}"))
-                    .label("out of range")
-                    .help("write 1, 2 or 4"),
-            );
+            let message = format!("a scale cannot be {other}");
+            reader.push(finding("NB0206", reader.span(raw), message, "out of range", "write 1, 2 or 4"));
             Scale::One
         }
     };
@@ -99,10 +96,8 @@ fn combine_only<'a>(reader: &mut Reader<'a>, fields: &source::EnvironmentUnit<'a
     let others = ["mode", "color", "base_format"];
     if let Some((_, text)) = fields.written().find(|(name, _)| !others.contains(name)) {
         let place = reader.range(text);
-        reader.push(
-            Diagnostic::error("NB0355", place, format!("mode {} does not combine", mode.name()))
-                .label("read in modes Combine and Combine4 only")
-                .help("write `mode: Combine`, or leave this out"),
-        );
+        let message = format!("mode {} does not combine", mode.name());
+        let help = "write `mode: Combine`, or leave this out";
+        reader.push(finding("NB0355", place, message, "read in modes Combine and Combine4 only", help));
     }
 }

@@ -13,8 +13,7 @@ pub(super) fn largest_side(reader: &Reader<'_>) -> u32 {
 pub(super) fn format(reader: &mut Reader<'_>, format: TextureFormat, place: Range<usize>) -> Option<()> {
     if format.is_nv2a_only() && reader.profile == Profile::Nv10 {
         let what = format!("texture format {}", format.name());
-        reader.push(target::only_nv2a("NB0320", place, &what, "TEX-1"));
-        return None;
+        return reader.refuse(target::only_nv2a("NB0320", place, &what, "TEX-1"));
     }
     Some(())
 }
@@ -30,29 +29,20 @@ pub(super) fn sides(
 ) -> Option<()> {
     let (most, what) = largest(reader, kind, format);
     if width.max(height) > most {
-        reader.push(too_large(reader, what, width, height, most, place));
-        return None;
+        return reader.refuse(too_large(reader, what, width, height, most, place));
     }
     if kind == TextureKind::Rectangle {
         return rectangle(reader, format, width, height, place);
     }
     if !(width.is_power_of_two() && height.is_power_of_two()) {
         let next = |side: u32| side.max(1).checked_next_power_of_two().unwrap_or(most).min(most);
-        reader.push(
-            Diagnostic::error("NB0219", place, format!("{what} cannot be {width} x {height}"))
-                .label("sides must be powers of two")
-                .rule("TEX-7")
-                .help(format!("make it {} x {}, for example, or write `kind: Rectangle`", next(width), next(height))),
-        );
-        return None;
+        let message = format!("{what} cannot be {width} x {height}");
+        let help = format!("make it {} x {}, for example, or write `kind: Rectangle`", next(width), next(height));
+        return reader.refuse(finding("NB0219", place, message, "sides must be powers of two", help).rule("TEX-7"));
     }
     if kind == TextureKind::Cube && width != height {
-        reader.push(
-            Diagnostic::error("NB0231", place, format!("faces of a cube map cannot be {width} x {height}"))
-                .label("not square")
-                .rule("TEX-12")
-                .help("make every face as wide as high"),
-        );
+        let message = format!("faces of a cube map cannot be {width} x {height}");
+        reader.push(finding("NB0231", place, message, "not square", "make every face as wide as high").rule("TEX-12"));
         return None;
     }
     Some(())
@@ -110,8 +100,7 @@ fn rectangle(
     } else {
         return Some(());
     };
-    reader.push(finding);
-    None
+    reader.refuse(finding)
 }
 
 /// Layers of a volume, which nv2a has.
@@ -120,17 +109,12 @@ pub(super) fn layers(reader: &mut Reader<'_>, kind: TextureKind, layers: u32, pl
         return Some(());
     }
     if reader.profile == Profile::Nv10 {
-        reader.push(target::only_nv2a("NB0334", place, "a texture of three dimensions", "VOL-1"));
-        return None;
+        return reader.refuse(target::only_nv2a("NB0334", place, "a texture of three dimensions", "VOL-1"));
     }
     if !layers.is_power_of_two() || layers > LARGEST_VOLUME {
-        reader.push(
-            Diagnostic::error("NB0334", place, format!("a volume cannot have {layers} layers"))
-                .label("a power of two of them")
-                .rule("VOL-1")
-                .help(format!("give it 1, 2, 4 and so on, at most {LARGEST_VOLUME}")),
-        );
-        return None;
+        let message = format!("a volume cannot have {layers} layers");
+        let help = format!("give it 1, 2, 4 and so on, at most {LARGEST_VOLUME}");
+        return reader.refuse(finding("NB0334", place, message, "a power of two of them", help).rule("VOL-1"));
     }
     Some(())
 }
@@ -150,8 +134,7 @@ pub(super) fn levels(reader: &mut Reader<'_>, kind: TextureKind, levels: u32, pl
         return Some(());
     }
     let message = format!("a {what} cannot have {levels} levels");
-    reader.push(Diagnostic::error("NB0230", place, message).label("one at most").rule(rule).help(help));
-    None
+    reader.refuse(Diagnostic::error("NB0230", place, message).label("one at most").rule(rule).help(help))
 }
 
 /// Border texels: of nv2a, two dimensions, no blocks.
@@ -162,18 +145,13 @@ pub(super) fn border(
     place: Range<usize>,
 ) -> Option<()> {
     if reader.profile == Profile::Nv10 {
-        reader.push(target::only_nv2a("NB0331", place, "a texture with border texels", "TEX-7"));
-        return None;
+        return reader.refuse(target::only_nv2a("NB0331", place, "a texture with border texels", "TEX-7"));
     }
     if kind != TextureKind::TwoDimensional || format.is_compressed() {
         let what = if format.is_compressed() { format.name() } else { kind.name() };
-        reader.push(
-            Diagnostic::error("NB0331", place, format!("a texture with border texels cannot be {what}"))
-                .label("does not go with it")
-                .rule("TEX-7")
-                .help("border texels are modelled for uncompressed textures of two dimensions: write `border: false`"),
-        );
-        return None;
+        let message = format!("a texture with border texels cannot be {what}");
+        let help = "border texels are modelled for uncompressed textures of two dimensions: write `border: false`";
+        return reader.refuse(finding("NB0331", place, message, "does not go with it", help).rule("TEX-7"));
     }
     Some(())
 }

@@ -30,12 +30,9 @@ pub(super) fn wanted<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -
     if number.split().0.is_empty() {
         return reader.within(&number, "the number of levels", 1..=13, |finding| finding).map(Wanted::Number);
     }
-    reader.push(
-        Diagnostic::error("NB0205", reader.span(raw), "expected a number of levels, or `All`")
-            .label("wrong kind of value")
-            .help("write `levels: All` for levels down to 1 x 1"),
-    );
-    None
+    let message = "expected a number of levels, or `All`";
+    let help = "write `levels: All` for levels down to 1 x 1";
+    reader.refuse(finding("NB0205", reader.span(raw), message, "wrong kind of value", help))
 }
 
 /// How many levels are wanted of a source that does not say so itself.
@@ -50,10 +47,7 @@ pub(super) fn number(
         Wanted::Own => Some(1),
         Wanted::All => Some(most),
         Wanted::Number(number) if number <= most => Some(number),
-        Wanted::Number(number) => {
-            reader.push(too_many(number, width, height, place));
-            None
-        }
+        Wanted::Number(number) => reader.refuse(too_many(number, width, height, place)),
     }
 }
 
@@ -97,12 +91,9 @@ pub(super) fn counted<'a>(
         None
     };
     if let Some(reason) = reason {
-        reader.push(
-            Diagnostic::error("NB0230", given.place.clone(), format!("{number} levels cannot be made here: {reason}"))
-                .label("of this source")
-                .help("leave `levels` out, or give every level a source in `mips`, or use a file that has them"),
-        );
-        return None;
+        let message = format!("{number} levels cannot be made here: {reason}");
+        let help = "leave `levels` out, or give every level a source in `mips`, or use a file that has them";
+        return reader.refuse(finding("NB0230", given.place.clone(), message, "of this source", help));
     }
     let (mut width, mut height) = (given.width, given.height);
     for _ in 1..number {
@@ -135,18 +126,13 @@ pub(super) fn listed<'a>(
     let inside = [given.width - beyond, given.height - beyond];
     if given.faces.iter().any(|levels| levels.len() > 1) {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0230", place, "levels are listed, and the source of level 0 has several as well")
-                .label("listed here")
-                .help("leave `mips` out"),
-        );
-        return None;
+        let message = "levels are listed, and the source of level 0 has several as well";
+        return reader.refuse(finding("NB0230", place, message, "listed here", "leave `mips` out"));
     }
     let number = list.len() as u32 + 1;
     if number > Level::most(inside[0], inside[1]) {
         let place = reader.span(raw);
-        reader.push(too_many(number, inside[0], inside[1], place));
-        return None;
+        return reader.refuse(too_many(number, inside[0], inside[1], place));
     }
     // Listed sources are of the format of level 0, whoever has chosen it.
     let request = Request { format: Some(given.format), levels: Wanted::Own, ..*request };
@@ -171,16 +157,9 @@ pub(super) fn listed<'a>(
             continue;
         };
         let of = if kind == TextureKind::Cube { "six faces of " } else { "" };
-        reader.push(
-            Diagnostic::error(
-                "NB0231",
-                level.place,
-                format!("level {n} is {of}{} x {}, not {found}", sides[0], sides[1]),
-            )
-            .label("does not fit")
-            .rule("TEX-9")
-            .help("sides halve from level to level, rounded down, and are at least 1"),
-        );
+        let message = format!("level {n} is {of}{} x {}, not {found}", sides[0], sides[1]);
+        let help = "sides halve from level to level, rounded down, and are at least 1";
+        reader.push(finding("NB0231", level.place, message, "does not fit", help).rule("TEX-9"));
         complete = false;
     }
     complete.then_some(())
@@ -192,12 +171,9 @@ pub(super) fn first<'a>(reader: &mut Reader<'a>, given: &mut Given, raw: &Raw<'a
     let levels = given.faces.first().map_or(1, Vec::len);
     if number as usize >= levels {
         let place = reader.span(raw);
-        reader.push(
-            Diagnostic::error("NB0230", place, format!("there is no level {number} to begin with"))
-                .label(if levels == 1 { "one level".to_owned() } else { format!("levels 0 to {}", levels - 1) })
-                .rule("TEX-9")
-                .help("`levels: All` makes levels down to 1 x 1"),
-        );
+        let message = format!("there is no level {number} to begin with");
+        let label = if levels == 1 { "one level".to_owned() } else { format!("levels 0 to {}", levels - 1) };
+        reader.push(finding("NB0230", place, message, label, "`levels: All` makes levels down to 1 x 1").rule("TEX-9"));
         return None;
     }
     for levels in &mut given.faces {

@@ -145,12 +145,8 @@ impl<'a> Sources<'_, 'a> {
         let bytes = words.saturating_mul(4);
         let Some(rest) = self.left.checked_sub(bytes) else {
             let message = format!("the textures take more than {} bytes together", reader.limits.texture_bytes);
-            reader.push(
-                Diagnostic::error("NB0607", place, message)
-                    .label(format!("{bytes} more bytes here"))
-                    .help("make the textures smaller, or fewer; `ninebit limits` prints what is allowed"),
-            );
-            return None;
+            let help = "make the textures smaller, or fewer; `ninebit limits` prints what is allowed";
+            return reader.refuse(finding("NB0607", place, message, format!("{bytes} more bytes here"), help));
         };
         self.left = rest;
         Some(())
@@ -215,8 +211,7 @@ impl<'a> Sources<'_, 'a> {
         let mut all = all.into_iter();
         let Some(mut first) = all.next() else {
             let finding = Diagnostic::error("NB0334", place, "a volume has no layer").label("empty");
-            reader.push(finding.rule("VOL-1").help("list a source for each layer"));
-            return None;
+            return reader.refuse(finding.rule("VOL-1").help("list a source for each layer"));
         };
         first.faces.extend(all.flat_map(|layer| layer.faces));
         (first.place, first.volume) = (place, true);
@@ -229,8 +224,7 @@ impl<'a> Sources<'_, 'a> {
         let fields = reader.read(&raw)?;
         let format = request.format.unwrap_or(TextureFormat::A8R8G8B8);
         if format.is_compressed() {
-            reader.push(cannot_pack(format, reader.span(&raw)));
-            return None;
+            return reader.refuse(cannot_pack(format, reader.span(&raw)));
         }
         let sides = (fields.width(reader), fields.height(reader));
         let (width, height, place) = self.sides(reader, sides, request)?;
@@ -243,8 +237,7 @@ impl<'a> Sources<'_, 'a> {
         if rows.len() != height as usize {
             let message = format!("{} rows of texels for a height of {height}", rows.len());
             let place = reader.span(&list);
-            reader.push(Diagnostic::error("NB0220", place, message).label("another number of rows").help(help));
-            return None;
+            return reader.refuse(finding("NB0220", place, message, "another number of rows", help));
         }
         let mut words = Vec::with_capacity(width as usize * height as usize);
         for raw in &rows {
@@ -254,8 +247,7 @@ impl<'a> Sources<'_, 'a> {
                 let Some(value) = hexadecimal(word, digits) else {
                     let place = reader.span(raw);
                     let message = format!("`{}` is not a texel", shorten(word));
-                    reader.push(Diagnostic::error("NB0220", place, message).label("in this row").help(help));
-                    return None;
+                    return reader.refuse(finding("NB0220", place, message, "in this row", help));
                 };
                 // Bits that the format ignores are zero in the state.
                 words.push(texels::stored(value & texels::used_bits(format), format));
@@ -264,8 +256,7 @@ impl<'a> Sources<'_, 'a> {
             if count != width as usize {
                 let place = reader.span(raw);
                 let message = format!("{count} texels in a row of {width}");
-                reader.push(Diagnostic::error("NB0220", place, message).label("in this row").help(help));
-                return None;
+                return reader.refuse(finding("NB0220", place, message, "in this row", help));
             }
         }
         Some(one(format, width, height, words, place))
@@ -284,16 +275,11 @@ impl<'a> Sources<'_, 'a> {
         let (width, height) = (reader.read(&width)?, reader.read(&height)?);
         let most = legal::largest_side(reader);
         if width.max(height) > most + texture_levels::beyond(request.border) {
-            reader.push(legal::too_large(reader, "a texture", width, height, most, place));
-            return None;
+            return reader.refuse(legal::too_large(reader, "a texture", width, height, most, place));
         }
         if width == 0 || height == 0 {
-            reader.push(
-                Diagnostic::error("NB0219", place, format!("a texture cannot be {width} x {height}"))
-                    .label("no texels")
-                    .rule("TEX-7")
-                    .help("write at least 1 for both"),
-            );
+            let message = format!("a texture cannot be {width} x {height}");
+            reader.push(finding("NB0219", place, message, "no texels", "write at least 1 for both").rule("TEX-7"));
             return None;
         }
         Some((width, height, place))
@@ -308,8 +294,7 @@ pub(super) fn only<'a, T>(reader: &mut Reader<'a>, text: &'a str, what: &str) ->
         return Some(part);
     }
     let place = reader.span(&raw);
-    reader.push(Diagnostic::error("NB0211", place, format!("expected {what} in these parentheses")).label("here"));
-    None
+    reader.refuse(Diagnostic::error("NB0211", place, format!("expected {what} in these parentheses")).label("here"))
 }
 
 /// A word of so many hexadecimal digits.
@@ -351,8 +336,7 @@ fn packable(reader: &mut Reader<'_>, request: &Request, place: Range<usize>) -> 
     if texels::can_pack(format) {
         return Some(format);
     }
-    reader.push(cannot_pack(format, place));
-    None
+    reader.refuse(cannot_pack(format, place))
 }
 
 fn cannot_pack(format: TextureFormat, place: Range<usize>) -> Diagnostic {

@@ -30,11 +30,8 @@ pub(super) fn texture_stages<'a>(
         let list = reader.read(raw)?;
         if let Some(extra) = list.get(STAGES) {
             let place = reader.opening(extra.text);
-            reader.push(
-                Diagnostic::error("NB0206", place, format!("there is no texture stage {STAGES}"))
-                    .label("one too many")
-                    .help(format!("the API has stages 0 to {}", STAGES - 1)),
-            );
+            let help = format!("the API has stages 0 to {}", STAGES - 1);
+            reader.push(finding("NB0206", place, format!("there is no texture stage {STAGES}"), "one too many", help));
         }
         for (index, raw) in list.iter().enumerate().take(STAGES) {
             let Some(fields) = reader.read(raw) else { continue };
@@ -89,8 +86,7 @@ fn argument<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::StageArgument>) -
     }
     let list = reader.read(&raw.as_other::<Tuple<'a, source::Word>>())?.0;
     let Some((first, modifiers)) = list.split_first() else {
-        reader.unknown_variant(raw, "texture argument", ArgumentSource::NAMES);
-        return None;
+        return reader.unknown_variant(raw, "texture argument", ArgumentSource::NAMES);
     };
     let mut argument = StageArgument::new(reader.name(&first.as_other())?);
     for modifier in modifiers {
@@ -112,8 +108,7 @@ fn transform_flags<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::TransformF
     }
     let list = reader.read(&raw.as_other::<Tuple<'a, source::Word>>())?.0;
     let [count, projected] = &list[..] else {
-        reader.unknown_variant(raw, "transform flag", TRANSFORMS);
-        return None;
+        return reader.unknown_variant(raw, "transform flag", TRANSFORMS);
     };
     let (count, _) = reader.variant(count, "transform flag", TRANSFORMS)?;
     reader.variant(projected, "transform flag beside a count", &["Projected"])?;

@@ -37,10 +37,7 @@ pub(super) fn truth<'a>(
     if let (Some(_), Some(shared)) = (own, shared) {
         fields = fields.or(reader.read(shared)?);
     }
-    let equation = match &fields.equation {
-        Some(raw) => equation(reader, raw),
-        None => Some(Equation::Lighting),
-    };
+    let equation = fields.equation.as_ref().map_or(Some(Equation::Lighting), |raw| equation(reader, raw));
     if let (Some(equation), Some(raw)) = (equation, &fields.equation) {
         let place = reader.span(raw);
         only_lighting(reader, equation, &fields, place);
@@ -60,18 +57,13 @@ pub(super) fn truth<'a>(
     });
     let shading_normal = fields.shading_normal.as_ref().and_then(|raw| shading_normal(reader, raw, draws));
     if eye.is_none() && material.specular != [0.0; 3] && !lights.is_empty() {
-        reader.push(
-            Diagnostic::error("NB0391", opening.clone(), "a truth with highlights has no eye")
-                .label("`specular` is not zero, and nothing says from where it is seen")
-                .help("add `eye: (position: (x, y, z))`, or `eye: (direction: (x, y, z))` for one far away"),
-        );
+        let label = "`specular` is not zero, and nothing says from where it is seen";
+        let help = "add `eye: (position: (x, y, z))`, or `eye: (direction: (x, y, z))` for one far away";
+        reader.push(finding("NB0391", opening.clone(), "a truth with highlights has no eye", label, help));
     }
     if equation == Some(Equation::Lighting) && lights.is_empty() && hemisphere.is_none() && fields.lights.is_none() {
-        reader.push(
-            Diagnostic::error("NB0391", opening, "a truth without any light")
-                .label("neither `lights` nor `hemisphere`")
-                .help("add `lights: [(direction: (x, y, z))]`, or say with `equation` what else is computed"),
-        );
+        let help = "add `lights: [(direction: (x, y, z))]`, or say with `equation` what else is computed";
+        reader.push(finding("NB0391", opening, "a truth without any light", "neither `lights` nor `hemisphere`", help));
     }
     let meshes = draws.iter().map(|drawn| mesh(reader, drawn)).collect();
     Some(Truth {
@@ -94,11 +86,9 @@ pub(super) fn truth<'a>(
 /// Draws cannot be taken out of a truth that is not there.
 fn without_truth(reader: &mut Reader<'_>, draws: &[Drawn]) {
     for (_, place) in draws.iter().filter_map(|drawn| drawn.truth.clone()) {
-        reader.push(
-            Diagnostic::error("NB0394", place, "the scene has no truth that a draw could take part in")
-                .label("says nothing here")
-                .help("leave it out, or give the scene a `truth: (...)`"),
-        );
+        let message = "the scene has no truth that a draw could take part in";
+        let help = "leave it out, or give the scene a `truth: (...)`";
+        reader.push(finding("NB0394", place, message, "says nothing here", help));
     }
 }
 
@@ -123,8 +113,7 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
     const KINDS: &[&str] = &["Lighting", "SignedProduct", "Difference", "DotProduct"];
     let (kind, rest) = reader.variant(raw, "equation", KINDS)?;
     if kind < 3 && !rest.is_empty() {
-        reader.unknown_variant(raw, "equation", KINDS);
-        return None;
+        return reader.unknown_variant(raw, "equation", KINDS);
     }
     Some(match kind {
         0 => Equation::Lighting,
@@ -134,12 +123,9 @@ fn equation<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, source::Word>) -> Option<
             let list = Raw::<Tuple<'a, Name<Interpolated>>>::new(rest);
             let parts = reader.read(&list)?.0;
             let [a, b] = parts[..] else {
-                reader.push(
-                    Diagnostic::error("NB0211", reader.span(&list), "a dot product has two vectors")
-                        .label("here")
-                        .help("write `DotProduct(PrimaryColor, SecondaryColor)`"),
-                );
-                return None;
+                let help = "write `DotProduct(PrimaryColor, SecondaryColor)`";
+                let message = "a dot product has two vectors";
+                return reader.refuse(finding("NB0211", reader.span(&list), message, "here", help));
             };
             Equation::DotProduct(reader.name(&a)?, reader.name(&b)?)
         }
@@ -186,12 +172,8 @@ fn long<'a>(reader: &mut Reader<'a>, raw: &Raw<'a, Numbers>, vector: [f32; 3]) -
     if vector.iter().any(|c| *c != 0.0) {
         return Some(());
     }
-    reader.push(
-        Diagnostic::error("NB0392", reader.span(raw), "the zero vector points nowhere")
-            .label("has no direction")
-            .help("write the direction toward it, of any length"),
-    );
-    None
+    let help = "write the direction toward it, of any length";
+    reader.refuse(finding("NB0392", reader.span(raw), "the zero vector points nowhere", "has no direction", help))
 }
 
 fn light<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::TruthLight<'a>>) -> Option<Light> {
@@ -254,10 +236,7 @@ fn normal<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::
     let (kind, rest) = reader.variant(raw, "source of normals", KINDS)?;
     match KINDS[kind] {
         "Mesh" if rest.is_empty() => Some(NormalSource::Mesh),
-        "Mesh" => {
-            reader.unknown_variant(raw, "source of normals", KINDS);
-            None
-        }
+        "Mesh" => reader.unknown_variant(raw, "source of normals", KINDS),
         "Radial" => {
             let rest = if rest.is_empty() { "()" } else { rest };
             let [x, y, z, _] = reader.read(&Raw::<source::RadialNormals<'a>>::new(rest))?.center(reader);
@@ -338,8 +317,8 @@ fn shading_normal<'a>(
     let holder = match (&fields.register, &fields.unit) {
         (Some(_), Some(unit)) => {
             let message = "`unit` and `register` both say where the normals are";
-            refuse_normals(reader, reader.span(unit), message, "one too many", "leave one of the two out");
-            return None;
+            let help = "leave one of the two out";
+            return reader.refuse(finding("NB0393", reader.span(unit), message, "one too many", help));
         }
         (_, Some(written)) => {
             let unit = fields.unit(reader)? as usize;
@@ -360,8 +339,7 @@ fn normal_register<'a>(reader: &mut Reader<'a>, written: &Raw<'a, Name<Register>
     }
     let message = format!("{} holds no normals when a pixel begins", register.name());
     let help = "write Texture0 to Texture3, PrimaryColor or SecondaryColor";
-    refuse_normals(reader, reader.span(written), message, "not a texture or a colour", help);
-    None
+    reader.refuse(finding("NB0393", reader.span(written), message, "not a texture or a colour", help))
 }
 
 /// A unit whose dot product reads the normals, in any draw.
@@ -371,12 +349,7 @@ fn normal_unit(reader: &mut Reader<'_>, place: Range<usize>, unit: usize, draws:
     }
     let message = format!("unit {unit} of the texture shader takes no dot product in any draw");
     let help = "name a unit whose operation is a dot product or a reflection, or write `register` for one that is read in the combiners";
-    refuse_normals(reader, place, message, "reads no vector", help);
-    None
-}
-
-fn refuse_normals(reader: &mut Reader<'_>, place: Range<usize>, message: impl Into<String>, label: &str, help: &str) {
-    reader.push(Diagnostic::error("NB0393", place, message).label(label).help(help));
+    reader.refuse(finding("NB0393", place, message, "reads no vector", help))
 }
 
 /// Whether a register holds something that the vertices or a texture gave.

@@ -33,12 +33,9 @@ pub(super) fn units<'a>(
         }
         let place = reader.span(raw);
         if index >= TEXTURE_UNITS {
-            reader.push(
-                Diagnostic::error("NB0319", place, format!("there is no texture unit {index}"))
-                    .label("one too many")
-                    .rule("CMB-12")
-                    .help("units 0 to 3 are the entries of this list"),
-            );
+            let message = format!("there is no texture unit {index}");
+            let help = "units 0 to 3 are the entries of this list";
+            reader.push(finding("NB0319", place, message, "one too many", help).rule("CMB-12"));
             break;
         }
         if index >= available {
@@ -117,12 +114,9 @@ fn lod<'a>(reader: &mut Reader<'a>, fields: &source::UnitState<'a>, unit: &mut T
     if let Some(raw) = fields.max_lod.as_ref().or(fields.min_lod.as_ref())
         && unit.min_lod > unit.max_lod
     {
-        reader.push(
-            Diagnostic::error("NB0206", reader.span(raw), "the least lod is greater than the greatest")
-                .label("nothing lies between them")
-                .rule("TEX-9")
-                .help("give a `min_lod` that is at most `max_lod`"),
-        );
+        let message = "the least lod is greater than the greatest";
+        let help = "give a `min_lod` that is at most `max_lod`";
+        reader.push(finding("NB0206", reader.span(raw), message, "nothing lies between them", help).rule("TEX-9"));
     }
 }
 
@@ -137,12 +131,9 @@ fn color_key<'a>(
     let color = fields.color(reader);
     let mode = fields.mode(reader);
     if !unit.is_nearest() {
-        reader.push(
-            Diagnostic::error("NB0402", reader.span(raw), "it is not known what a colour key does under a filter")
-                .label("cannot be modelled")
-                .rule("KEY-1")
-                .help("write `min_filter: Nearest, mag_filter: Nearest`, as programs with keyed textures did"),
-        );
+        let message = "it is not known what a colour key does under a filter";
+        let help = "write `min_filter: Nearest, mag_filter: Nearest`, as programs with keyed textures did";
+        reader.push(finding("NB0402", reader.span(raw), message, "cannot be modelled", help).rule("KEY-1"));
     }
     let color = color.and_then(|raw| color::constant(reader, names, &raw));
     Some(ColorKey { mode: reader.name(&mode?)?, color: color? })

@@ -23,12 +23,8 @@ pub(super) fn check<'a>(
         };
         if unit.palette.is_none() && raw.is_none() {
             let message = format!("the texture `{}` is of format P8 and has no palette", shorten(&texture.name));
-            reader.push(
-                Diagnostic::error("NB0234", place.clone(), message)
-                    .label("which colours?")
-                    .rule("TEX-1")
-                    .help("write `palette: \"...\"` in the texture or in this unit"),
-            );
+            let help = "write `palette: \"...\"` in the texture or in this unit";
+            reader.push(finding("NB0234", place.clone(), message, "which colours?", help).rule("TEX-1"));
         }
     } else if let Some(raw) = raw {
         reader.push(palette::not_read(reader.span(raw), format));
@@ -38,11 +34,8 @@ pub(super) fn check<'a>(
         let wrong = modes.into_iter().find(|mode| *mode != AddressMode::ClampToEdge).map_or("", Named::name);
         let field = fields.and_then(|f| [&f.address_s, &f.address_t, &f.address].into_iter().flatten().next().copied());
         let place = field.map_or(place, |raw| reader.span(&raw));
-        reader.push(
-            Diagnostic::error("NB0330", place, format!("a rectangle texture cannot be addressed with {wrong} on Nv10"))
-                .label("not as a rectangle")
-                .rule("TEX-7")
-                .help("write `address: ClampToEdge`, or `profile: Nv2a`"),
-        );
+        let message = format!("a rectangle texture cannot be addressed with {wrong} on Nv10");
+        let help = "write `address: ClampToEdge`, or `profile: Nv2a`";
+        reader.push(finding("NB0330", place, message, "not as a rectangle", help).rule("TEX-7"));
     }
 }

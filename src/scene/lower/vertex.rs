@@ -36,8 +36,7 @@ pub(super) fn list<'a>(
 ) -> Option<VertexData> {
     let list = reader.read(&raw.as_other::<source::List<'a, source::Vertex<'a>>>())?;
     if list.len() > reader.limits.vertices {
-        reader.push(too_many(reader.span(raw), list.len(), reader.limits.vertices));
-        return None;
+        return reader.refuse(too_many(reader.span(raw), list.len(), reader.limits.vertices));
     }
     let mut vertices = Vec::with_capacity(list.len());
     let mut extras = Vec::with_capacity(list.len());

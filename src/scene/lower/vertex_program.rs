@@ -86,36 +86,20 @@ fn program<'a>(
         (None, Some(raw)) => ProgramText::file(reader, names, raw)?,
         (Some(first), Some(second)) => {
             let (first, second) = (reader.span(first), reader.span(second));
-            reader.push(
-                Diagnostic::error("NB0388", second, "the vertex program is given twice")
-                    .label("again here")
-                    .related(first, "first here")
-                    .help("keep one of `text` and `file`"),
-            );
-            return None;
+            let message = "the vertex program is given twice";
+            let help = "keep one of `text` and `file`";
+            return reader.refuse(finding("NB0388", second, message, "again here", help).related(first, "first here"));
         }
         (None, None) => {
-            reader.push(
-                Diagnostic::error("NB0202", opening, "this vertex program has neither `text` nor `file`")
-                    .label("in here")
-                    .help("write `text: r#\"vs.1.1 ...\"#`, or `file: \"name.vsh\"`"),
-            );
-            return None;
+            let message = "this vertex program has neither `text` nor `file`";
+            let help = "write `text: r#\"vs.1.1 ...\"#`, or `file: \"name.vsh\"`";
+            return reader.refuse(finding("NB0202", opening, message, "in here", help));
         }
     };
     let text = text.expanded(reader, Style::Assembler)?;
-    match vertex_shader::read(&text.text) {
-        Ok(written) => {
-            for warning in written.warnings.clone() {
-                reader.push(text.place(warning));
-            }
-            Some((written, text))
-        }
-        Err(findings) => {
-            findings.into_iter().for_each(|finding| reader.push(text.place(finding)));
-            None
-        }
-    }
+    let written = text.parsed(reader, vertex_shader::read(&text.text))?;
+    text.push(reader, written.warnings.clone());
+    Some((written, text))
 }
 
 /// The vertices that the program takes.
@@ -134,10 +118,7 @@ fn given<'a>(
             let mesh = names.mesh(reader, raw)?;
             Some(Given { spans: VertexSpans::All(reader.span(raw)), listed: None, mesh: Some(mesh) })
         }
-        (both, _) => {
-            reader.push(one_of_vertices_and_mesh(both.is_some(), opening));
-            None
-        }
+        (both, _) => reader.refuse(one_of_vertices_and_mesh(both.is_some(), opening)),
     }
 }
 
@@ -160,13 +141,10 @@ fn run(
         let outputs = evaluate(shader, constants, &registers);
         if let Some(what) = written.not_finite(&outputs) {
             let spans = DrawSpans { draw: 0..0, vertices: given.spans.clone(), ..DrawSpans::default() };
-            reader.push(
-                Diagnostic::error("NB0207", spans.vertex(index), format!("{what} of vertex {index} is not finite"))
-                    .label("what the vertex program makes of it")
-                    .rule("VTX-3")
-                    .help("look for rcp or rsq of 0, log of 0, and numbers too large"),
-            );
-            return None;
+            let message = format!("{what} of vertex {index} is not finite");
+            let label = "what the vertex program makes of it";
+            let help = "look for rcp or rsq of 0, log of 0, and numbers too large";
+            return reader.refuse(finding("NB0207", spans.vertex(index), message, label, help).rule("VTX-3"));
         }
         fog_coordinates.push(outputs.fog[0]);
         Some(written.vertex(&outputs))

@@ -1,8 +1,5 @@
 //! Tori and cylinders.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "vertices are floats in the chip's programming model; the order of operations is fixed"
-)]
+#![allow(clippy::float_arithmetic, reason = "vertices are floats for the chip, too; the order is fixed")]
 
 use super::{Mesh, MeshError, at_least, cells, circle, with_room};
 

@@ -1,8 +1,5 @@
 //! VTX-4: tangent bases of a mesh, from its positions and texture coordinates.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "vertices are floats in the chip's programming model; the order of operations is fixed"
-)]
+#![allow(clippy::float_arithmetic, reason = "vertices are floats for the chip, too; the order is fixed")]
 
 use std::collections::HashMap;
 

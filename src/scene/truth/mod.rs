@@ -4,10 +4,7 @@
 //! interpolates what the mesh gives at their centres in perspective, and computes the light there. Nothing in it is quantised unless the
 //! truth is told to start from stored bytes; so what the chip's picture is off by is the whole error of a technique: its inputs, its
 //! shortcuts, and its arithmetic.
-#![allow(
-    clippy::float_arithmetic,
-    reason = "the reference that pictures are measured against; it never feeds a stored byte"
-)]
+#![allow(clippy::float_arithmetic, reason = "what pictures are measured against; no stored byte")]
 
 mod field;
 mod lighting;

@@ -1,7 +1,8 @@
 //! ROP-1 to ROP-6: blend equations with all factors, surface formats, the alpha test and the colour mask.
 
 use super::draws::{
-    Canvas, OVER, WHOLE, abgr, draw, nearest, pasted, rectangle, sized, unprojected, vertex, without_alpha,
+    Canvas, OVER, WHOLE, abgr, corners, draw, nearest, pasted, places, rectangle, sized, unprojected, vertex,
+    without_alpha,
 };
 use super::images::{self, checker, four_gradients, solid};
 use super::{Drawn, Frames};
@@ -100,13 +101,12 @@ fn through(canvas: &mut Canvas, first: &Texture, draws: Vec<Draw>, edges: [f32; 
 }
 
 /// Blend_tests: one pair of factors large, and for each factor of the source all of the destination.
-pub(super) fn tests() -> Frames {
+pub(super) fn tests(frames: &mut Frames) {
     let grey = |dark: u32, size| checker([abgr(dark), abgr(0xff00_0000)], size);
     let background = |size| images::texture(TextureFormat::A8B8G8R8, [256, 256], grey(0xff20_2020, size));
     let first = |size, field| Arc::new(images::texture(TextureFormat::A8B8G8R8, size, grey(0x3333_3333, field)));
     let (large, small) = (Arc::new(background(24)), Arc::new(background(16)));
     let (square, strip, sheet) = (first([256, 256], 16), first([64, 256], 16), first([512, 512], 8));
-    let mut frames = Frames::default();
     for (equation_name, equation) in EQUATIONS {
         for (source_name, source) in FACTORS {
             for (name, destination) in FACTORS {
@@ -129,23 +129,18 @@ pub(super) fn tests() -> Frames {
             frames.make(format!("#spot_{source_name}_{equation_name}"), move || {
                 let mut canvas = over(&small);
                 let mut draws = Vec::new();
-                // Five in a row, and the sixth below before the row begins anew.
-                let (mut corner, mut count) = ([0.0, 0.0], 0);
-                for (_, destination) in FACTORS {
+                for ((_, destination), corner) in FACTORS.into_iter().zip(places([0.0; 2], [103.0, 136.0], 5)) {
                     let blend = Blend { equation, source, destination };
                     let [left, top] = corner;
                     draws.extend(colors_blended(blend, corner, 24.0));
                     draws.extend(all_blended(blend, [left + 24.0, top], 24.0));
                     draws.extend(nested(blend, [left + 48.0, top], 51.0, 4.0));
-                    count += 1;
-                    corner = if count % 5 == 0 { [0.0, top + 136.0] } else { [left + 103.0, top] };
                 }
                 through(&mut canvas, &sheet, draws, [64.0, 64.0, 576.0, 576.0]);
                 canvas.colors()
             });
         }
     }
-    frames
 }
 
 /// The formats that are blended, and how their words are read.
@@ -165,7 +160,7 @@ const WHOLE_TILE: [f32; 4] = [0.0, 0.0, TILE, TILE];
 
 /// Places of tiles: four in a row, so far from one row to the next.
 fn tiles(down: f32) -> impl Iterator<Item = [f32; 2]> {
-    (0..8_u8).map(move |n| [32.0 + 144.0 * f32::from(n % 4), 92.0 + down * f32::from(n / 4)])
+    places([32.0, 92.0], [144.0, down], 4)
 }
 
 fn tile(canvas: &mut Canvas, format: SurfaceFormat, draws: Vec<Draw>, read: TextureFormat) -> usize {
@@ -220,21 +215,15 @@ fn textures_blended(format: SurfaceFormat, read: TextureFormat, destination: Ble
     let mut canvas = Canvas::new(0xff55_5555);
     let blend = Some(Blend { equation: BlendEquation::Add, source: BlendFactor::SourceAlpha, destination });
     for (number, (blended, place)) in BLENDED.into_iter().zip(tiles(144.0)).enumerate() {
-        let [picture, grey, hole] = if number < 2 {
-            let written = TextureFormat::A8B8G8R8;
-            [
-                images::texture(written, [64, 64], four_gradients([64, 64])),
-                images::texture(written, [8, 8], solid([0x44; 4])),
-                images::texture(written, [8, 8], solid(abgr(0x00ff_ff55))),
-            ]
+        let side = [64, 64];
+        let (written, picture, grey, hole) = if number < 2 {
+            let picture = images::texture(TextureFormat::A8B8G8R8, side, four_gradients(side));
+            (TextureFormat::A8B8G8R8, picture, [0x44; 4], abgr(0x00ff_ff55))
         } else {
-            let written = TextureFormat::A4R4G4B4;
-            [
-                images::texture(written, [64, 64], four_bits(64)),
-                images::texture(written, [8, 8], solid([0x40; 4])),
-                images::texture(written, [8, 8], solid([0xf0, 0xf0, 0x50, 0])),
-            ]
+            let picture = images::texture(TextureFormat::A4R4G4B4, side, four_bits(64));
+            (TextureFormat::A4R4G4B4, picture, [0x40; 4], [0xf0, 0xf0, 0x50, 0])
         };
+        let [grey, hole] = [grey, hole].map(|color| images::texture(written, [8, 8], solid(color)));
         let [picture, grey, hole] = [picture, grey, hole].map(|image| canvas.texture(&images::read_as(image, blended)));
         let first = rectangle(unprojected(WHOLE_TILE), VertexColor::Floats([0.1, 0.1, 0.1, 0.7]));
         let mut draws = vec![Draw { blend: None, ..first }];
@@ -258,8 +247,7 @@ fn textures_blended(format: SurfaceFormat, read: TextureFormat, destination: Ble
 }
 
 /// Blend_surface.
-pub(super) fn surfaces() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn surfaces(frames: &mut Frames) {
     for (name, format, read) in SURFACES {
         for (prefix, factor) in
             [("DstAlpha", BlendFactor::DestinationAlpha), ("1-DstAlpha", BlendFactor::OneMinusDestinationAlpha)]
@@ -271,7 +259,6 @@ pub(super) fn surfaces() -> Frames {
             frames.make(format!("{name}_Add_SrcA_{suffix}"), move || textures_blended(format, read, factor));
         }
     }
-    frames
 }
 
 /// A picture blended and opaque into memory of zeros, which is then read as 32 bits a pixel, whatever they were.
@@ -304,8 +291,7 @@ fn surface_format(format: SurfaceFormat) -> Drawn {
 }
 
 /// Surface_format.
-pub(super) fn surface_formats() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn surface_formats(frames: &mut Frames) {
     for (name, format) in [
         ("X1R5G5B5_Z1R5G5B5", SurfaceFormat::X1R5G5B5Z),
         ("X1R5G5B5_O1R5G5B5", SurfaceFormat::X1R5G5B5O),
@@ -320,12 +306,10 @@ pub(super) fn surface_formats() -> Frames {
     ] {
         frames.make(format!("Fmt_{name}"), move || surface_format(format));
     }
-    frames
 }
 
 /// Alpha_func: ramps of alpha, wide and steep, and one value.
-pub(super) fn alpha_function() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn alpha_function(frames: &mut Frames) {
     let names = "Never LessThan Equal LessThanOrEqual GreaterThan NotEqual GreaterThanOrEqual Always".split(' ');
     for (name, function) in names.zip(CompareFunction::ALL.iter().copied()) {
         for (state, enabled) in [("Enabled", true), ("Disabled", false)] {
@@ -348,11 +332,10 @@ pub(super) fn alpha_function() -> Frames {
             frames.push(format!("AlphaFunc{name}_{state}"), Drawn::colors(scene));
         }
     }
-    frames
 }
 
 /// Color_mask_blend: the destination's alpha as a factor where alpha itself is not written.
-pub(super) fn color_mask() -> Frames {
+pub(super) fn color_mask(frames: &mut Frames) {
     let mut canvas = Canvas::new(0x3022_2222);
     for (edges, color) in [
         ([20.0, 120.0, 320.0, 360.0], 0xccff_ffff),
@@ -363,9 +346,8 @@ pub(super) fn color_mask() -> Frames {
     }
     let mut alphas = [0.5_f32, 1.0, 0.9, 0.75];
     for left in [71.0, 213.0, 355.0, 497.0] {
-        let [x0, y0, x1, y1] = sized([left, 180.0], [71.0, 120.0]);
+        let corners = corners(sized([left, 180.0], [71.0, 120.0]));
         let colors = [[1.0, 0.0, 0.0], [0.5; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]];
-        let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
         let corner = |n: usize| {
             let [r, g, b] = colors[n];
             vertex(corners[n], VertexColor::Floats([r, g, b, alphas[n]]))
@@ -376,7 +358,5 @@ pub(super) fn color_mask() -> Frames {
         canvas.draw(Draw { blend, color_mask: COLORS, ..triangles });
         alphas = alphas.map(|alpha| alpha * 0.75);
     }
-    let mut frames = Frames::default();
     frames.push("C00010101_O32774_S772_D0", canvas.colors());
-    frames
 }

@@ -1,6 +1,8 @@
 //! TEX-7: addressing, border colours and border texels.
 
-use super::draws::{Canvas, FETCHED, WHOLE, abgr, argb, far, nearest, pasted, sized, unprojected, without_alpha};
+use super::draws::{
+    Canvas, FETCHED, WHOLE, abgr, argb, far, nearest, pasted, places, sized, unprojected, without_alpha,
+};
 use super::images::{self, Color, Image, checker};
 use super::texel_formats::texture;
 use super::{Drawn, Frames, space};
@@ -104,56 +106,43 @@ fn border_sizes() -> Drawn {
     let mut canvas = Canvas::new(0xfe18_1818);
     let textures = sizes.map(|size| canvas.texture(&bordered(size)));
     for (top, shows_border) in [(80.0, false), (272.0, true)] {
-        let mut corner = [32.0, top];
-        for ([width, height], texture) in sizes.into_iter().zip(textures) {
+        let corners = places([32.0, top], [96.0; 2], 6);
+        for (([width, height], texture), corner) in sizes.into_iter().zip(textures).zip(corners) {
             let [s, t] = [width, height].map(|side| if shows_border { 4.0 / side as f32 } else { 0.0 });
             let unit = addressed(AddressMode::ClampToBorder, [0; 4], nearest(texture));
             canvas.draw(pasted(sized(corner, [64.0; 2]), 0, unit, [-s, -t, 1.0 + s, 1.0 + t]));
-            corner[0] += 96.0;
-            if corner[0] >= 32.0 + 96.0 * 6.0 {
-                corner = [32.0, corner[1] + 96.0];
-            }
         }
     }
     canvas.colors()
 }
 
 /// Texture_border, without its cube maps.
-pub(super) fn borders() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn borders(frames: &mut Frames) {
     frames.make("2D", || modes([255, 0, 255, 0xf0], None));
     frames.make("xemu#1034", || modes([0x55, 0x9f, 0xff, 0xf0], Some([0xff, 0x55, 0x33, 0xf0])));
     frames.make("2D_BorderTex_SZ", border_sizes);
-    frames
 }
 
 /// Texture_border_color: the border colour beside texels of every format.
-pub(super) fn border_color() -> Frames {
+pub(super) fn border_color(frames: &mut Frames) {
     use TextureFormat::*;
     let formats = [A8, R5G6B5, R8B8, G8B8, R6G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
     let in_texels = [A8, R5G6B5, G8B8, X1R5G5B5, A8R8G8B8, X8R8G8B8, A8B8G8R8, B8G8R8A8, R8G8B8A8];
-    let mut frames = Frames::default();
     frames.make("TextureBorderColor", move || {
         let mut canvas = Canvas::new(0xff10_1010);
         let fields = checker([abgr(0xff00_0000), abgr(0xff44_4444)], 8);
         let background = canvas.texture(&images::texture(A8B8G8R8, [256, 256], fields));
         let behind = pasted(unprojected([0.0, 0.0, 640.0, 480.0]), 0, nearest(background), WHOLE);
         canvas.draw(without_alpha(behind, FETCHED[0]));
-        let mut corner = [64.0, 96.0];
         let all = formats.map(|format| (format, false)).into_iter().chain(in_texels.map(|format| (format, true)));
-        for (format, in_texels) in all {
+        for ((format, in_texels), corner) in all.zip(places([64.0, 96.0], [99.0; 2], 5)) {
             // Every byte is 0x80.
             let word = 0x8080_8080 & ninebit_files::texels::used_bits(format);
             let number = canvas.texture(&texture(format, in_texels, [8, 8], vec![word; 64]));
             let unit = addressed(AddressMode::ClampToBorder, argb(0x33ff_22cc), nearest(number));
             let (low, high) = if in_texels { (-4.0, 12.0) } else { (-0.5, 1.5) };
             canvas.draw(pasted(unprojected(sized(corner, [64.0; 2])), 0, unit, [low, low, high, high]));
-            corner[0] += 99.0;
-            if corner[0] > 640.0 - 99.0 {
-                corner = [64.0, corner[1] + 99.0];
-            }
         }
         canvas.colors()
     });
-    frames
 }

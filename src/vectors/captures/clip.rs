@@ -1,6 +1,6 @@
 //! CLP-1, CLP-2: clips on the frame buffer, on a texture that is drawn into, and on narrower views of the frame buffer.
 
-use super::draws::{frame_buffer, nearest, opaque, rectangle, scene, target_texture, textured};
+use super::draws::{frame_buffer, nearest, pasted, rectangle, scene, target_texture, without_alpha};
 use super::{Drawn, Frames, SIZE, Shown};
 use ninebit::state::{Draw, FinalRegister, Rectangle, SurfaceFormat, Target, TextureFormat, VertexColor, WindowClip};
 
@@ -29,20 +29,16 @@ fn bytes(r: u8, g: u8, b: u8) -> VertexColor {
 
 /// Copies the second target to the frame buffer.
 fn show(from: [f32; 4], to: [f32; 4]) -> Draw {
-    let [left, top, right, bottom] = from;
-    let texels = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    let draw = textured(rectangle(to, VertexColor::Bytes([255; 4])), 0, nearest(0), texels);
-    Draw { combiners: opaque(FinalRegister::Texture0), blend: None, ..draw }
+    Draw { blend: None, ..without_alpha(pasted(to, 0, nearest(0), from), FinalRegister::Texture0) }
 }
 
 /// Window_clip: on the frame buffer, and (`r`) on a texture.
-pub(super) fn window_clip() -> Frames {
+pub(super) fn window_clip(frames: &mut Frames) {
     let mut cases = Vec::new();
     for exclusive in [false, true] {
         cases.extend(SECOND.iter().flat_map(|second| FIRST.map(|first| (exclusive, false, first, *second))));
         cases.push((exclusive, true, [60, 60, 64, 64], [0, 0, 64, 64]));
     }
-    let mut frames = Frames::default();
     for (exclusive, first_is_last, first, second) in cases {
         let name = |[x, y, width, height]: Area| format!("x{x}y{y}_w{width}h{height}");
         let (order, kind) = (if first_is_last { "s" } else { "" }, if exclusive { "E" } else { "I" });
@@ -65,7 +61,6 @@ pub(super) fn window_clip() -> Frames {
         let through = scene(vec![frame_buffer(0xfe33_2233), target], textures, draws);
         frames.push(format!("r{name}"), Drawn::colors(through));
     }
-    frames
 }
 
 /// The clips of Surface_clip.
@@ -105,8 +100,7 @@ fn image([x, y, width, height]: Area, clip: Area) -> Vec<Draw> {
 }
 
 /// Surface_clip: on the frame buffer, on views of it, and on a texture.
-pub(super) fn surface_clip() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn surface_clip(frames: &mut Frames) {
     for area in CLIPS {
         let [x, y, width, height] = area;
         let name = format!("x{x}y{y}_w{width}h{height}");
@@ -135,5 +129,4 @@ pub(super) fn surface_clip() -> Frames {
         let through = scene(vec![frame_buffer(0xff26_2422), target], textures, draws);
         frames.push(format!("rt_{name}"), Drawn::colors(through));
     }
-    frames
 }

@@ -1,6 +1,6 @@
 //! KEY-1: four units, each with a key and with an opposite that shares its alpha, in every mode.
 
-use super::draws::{frame_buffer, linear_texture, nearest, opaque, quads, scene, textured};
+use super::draws::{FETCHED, argb, corners, frame_buffer, linear_texture, nearest, opaque, quads, scene, textured};
 use super::{Drawn, Frames};
 use ninebit::state::{
     ColorKey, ColorKeyMode, Combiners, Draw, FinalRegister, Scene, Texture, TextureFormat, TextureUnit, VertexColor,
@@ -11,9 +11,6 @@ const KEYS: [u32; 4] = [0xf000_00ff, 0xf1ff_00ff, 0xf280_0080, 0xf3ff_0000];
 /// Words with a key's place in the second quad.
 const OTHERS: [u32; 4] = [0xf470_7071, 0xf570_7072, 0xf670_7073, 0xf770_7074];
 const GREYS: [u32; 2] = [0xfdcc_cccc, 0xfe99_9999];
-
-const REGISTERS: [FinalRegister; 4] =
-    [FinalRegister::Texture0, FinalRegister::Texture1, FinalRegister::Texture2, FinalRegister::Texture3];
 
 /// How a chequered field of some size goes on.
 fn checker(x: u32, y: u32, [first, second]: [u32; 2], size: u32) -> u32 {
@@ -34,26 +31,23 @@ fn texture(unit: usize) -> Texture {
 }
 
 fn key(word: u32, mode: ColorKeyMode) -> ColorKey {
-    let [b, g, r, a] = word.to_le_bytes();
-    ColorKey { color: [r, g, b, a], mode }
+    ColorKey { color: argb(word), mode }
 }
 
 /// A square around a point of the plane z = 0.1, seen from z = -7 through an angle of 45 degrees; `offset`: of the viewport, in pixels.
 fn square(center: [f32; 2], offset: f32) -> Vec<[f32; 2]> {
     // 240 / tan(22.5 degrees) pixels at the distance 1.
     const SCALE: f32 = 579.411_2 / 7.1;
-    let corners = [[-0.75, 0.75], [0.75, 0.75], [0.75, -0.75], [-0.75, -0.75]];
     let place = |[x, y]: [f32; 2]| {
         let (right, up) = (x + center[0], y + center[1]);
         [320.0 + SCALE * right + offset, 240.0 - SCALE * up + offset]
     };
-    corners.map(place).to_vec()
+    corners([-0.75, 0.75, 0.75, -0.75]).map(place).to_vec()
 }
 
 fn keyed(unit: usize, place: Vec<[f32; 2]>, state: TextureUnit, combiners: Combiners) -> Draw {
-    let texels = [[0.0, 0.0], [64.0, 0.0], [64.0, 64.0], [0.0, 64.0]];
-    let draw = quads(&place, VertexColor::Bytes([255; 4]), REGISTERS[unit]);
-    Draw { combiners, ..textured(draw, unit, state, texels) }
+    let draw = quads(&place, VertexColor::Bytes([255; 4]), FETCHED[unit]);
+    Draw { combiners, ..textured(draw, unit, state, corners([0.0, 0.0, 64.0, 64.0])) }
 }
 
 fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> Drawn {
@@ -62,7 +56,7 @@ fn drawn(clear: u32, textures: Vec<Texture>, draws: Vec<Draw>) -> Drawn {
 }
 
 /// Color_key.
-pub(super) fn frames() -> Frames {
+pub(super) fn frames(frames: &mut Frames) {
     let textures: Vec<Texture> = (0..4).map(texture).collect();
     let centers = [
         [[-2.6, 1.25], [-1.0, 1.25]],
@@ -76,7 +70,6 @@ pub(super) fn frames() -> Frames {
         ("Color", Some(ColorKeyMode::Color)),
         ("AlphaColor", Some(ColorKeyMode::Texel)),
     ];
-    let mut frames = Frames::default();
     for (prefix, ignores_alpha) in [("", false), ("IgnAlphaCh_", true)] {
         for (suffix, mode) in modes {
             for (kind, offset) in [("FixedTex", 0.53125), ("ProgTex", 0.0)] {
@@ -85,7 +78,7 @@ pub(super) fn frames() -> Frames {
                     for (center, word) in centers[unit].into_iter().zip([KEYS[unit], OTHERS[unit]]) {
                         let color_key = mode.map(|mode| key(word, mode));
                         let state = TextureUnit { color_key, ..nearest(unit) };
-                        let register = REGISTERS[unit];
+                        let register = FETCHED[unit];
                         let combiners = if ignores_alpha { opaque(register) } else { Combiners::showing(register) };
                         draws.push(keyed(unit, square(center, offset), state, combiners));
                     }
@@ -106,5 +99,4 @@ pub(super) fn frames() -> Frames {
     let without_alpha = linear_texture(TextureFormat::X8R8G8B8, 64, |x, y| checker(x, y, opposites, 16));
     let draw = keyed(0, square([0.0, 0.0], 0.0), texel(0, 0xcc00_ff00), shown());
     frames.push("XAlphaFormat", drawn(0xff99_9999, vec![without_alpha], vec![draw]));
-    frames
 }

@@ -1,8 +1,6 @@
 //! CMB-7 to CMB-12, FIN-1 to FIN-4: the programs of Combiner, which change one state from draw to draw.
 
-use super::draws::{
-    Canvas, UNPROJECTED, WHOLE, abgr, draw, nearest, pasted, sized, unprojected, vertex, without_alpha,
-};
+use super::draws::{Canvas, WHOLE, abgr, corners, draw, nearest, pasted, sized, unprojected, vertex, without_alpha};
 use super::images::{self, checker};
 use super::{Drawn, Frames, space};
 use ninebit::state::{
@@ -14,7 +12,7 @@ fn input(register: Register, component: Component) -> CombinerInput {
     CombinerInput { register, component, mapping: InputMapping::UnsignedIdentity }
 }
 
-fn one(component: Component) -> CombinerInput {
+const fn one(component: Component) -> CombinerInput {
     CombinerInput { register: Register::Zero, component, mapping: InputMapping::UnsignedInvert }
 }
 
@@ -22,8 +20,7 @@ fn one(component: Component) -> CombinerInput {
 fn rgb(register: Register) -> CombinerInput {
     input(register, Component::Rgb)
 }
-const ONE: CombinerInput =
-    CombinerInput { register: Register::Zero, component: Component::Rgb, mapping: InputMapping::UnsignedInvert };
+const ONE: CombinerInput = one(Component::Rgb);
 
 fn final_rgb(register: FinalRegister) -> FinalInput {
     FinalInput { register, component: Component::Rgb, invert: false }
@@ -136,11 +133,11 @@ fn six() -> Vec<Draw> {
     let (mut x, mut y) = (left, top - gap);
     let mut draws = Vec::new();
     for _ in 0..6 {
-        let corners = [[x, y], [x + width, y], [x + width, y - height], [x, y - height]];
+        let corners = corners([x, y, x + width, y - height]);
         let corner = |n: usize| {
             let ([x, y], [r, g, b]) = (corners[n], colors[n]);
             let diffuse = VertexColor::Floats([r, g, b, 1.0]);
-            Vertex { position: flat(space::fixed_function([x, y, 1.0, 1.0])), diffuse, ..Vertex::default() }
+            Vertex { position: space::flat([x, y, 1.0, 1.0]), diffuse, ..Vertex::default() }
         };
         draws.push(draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(corner).to_vec()));
         x += width + gap;
@@ -149,11 +146,6 @@ fn six() -> Vec<Draw> {
         }
     }
     draws
-}
-
-/// A position without its depth.
-fn flat([x, y, _, w]: [f32; 4]) -> [f32; 4] {
-    [x, y, 0.0, w]
 }
 
 /// The frame buffer over which a grey chequered field is drawn.
@@ -168,10 +160,8 @@ fn chequered() -> Canvas {
 
 /// A rectangle in four colours, one a corner.
 fn gradient(edges: [f32; 4], colors: [[f32; 4]; 4]) -> Draw {
-    let [left, top, right, bottom] = edges.map(|edge| edge + UNPROJECTED);
-    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    let vertices = corners.into_iter().zip(colors).map(|(corner, color)| vertex(corner, VertexColor::Floats(color)));
-    draw(Topology::Quads, vertices.collect())
+    let corners = corners(unprojected(edges)).into_iter().zip(colors);
+    draw(Topology::Quads, corners.map(|(corner, color)| vertex(corner, VertexColor::Floats(color))).collect())
 }
 
 /// The mux, by bits of SPARE0's alpha.
@@ -234,10 +224,9 @@ fn color_and_alpha() -> Drawn {
     let (mut canvas, mut state) = (Canvas::new(0xff30_3030), State::new());
     let place = |[x, y]: [f32; 2]| {
         let diffuse = VertexColor::Floats([0.1, 1.0, 0.1, 1.0]);
-        Vertex { position: flat(space::fixed_function([x, y, 0.0, 1.0])), diffuse, ..Vertex::default() }
+        Vertex { position: space::flat([x, y, 0.0, 1.0]), diffuse, ..Vertex::default() }
     };
-    let corners = [[-2.75, 1.75], [2.75, 1.75], [2.75, -1.75], [-2.75, -1.75]];
-    let whole = draw(Topology::Quads, corners.map(place).to_vec());
+    let whole = draw(Topology::Quads, corners([-2.75, 1.75, 2.75, -1.75]).map(place).to_vec());
     state.shows(FinalRegister::PrimaryColor);
     state.opaque();
     canvas.draw(state.on(&whole));
@@ -385,8 +374,7 @@ fn special_inputs() -> Drawn {
 }
 
 /// Combiner.
-pub(super) fn frames() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn frames(frames: &mut Frames) {
     frames.make("Mux", mux);
     frames.make("Independence", independence);
     frames.make("ColorAlphaIndependence", color_and_alpha);
@@ -395,5 +383,4 @@ pub(super) fn frames() -> Frames {
     frames.make("AlphaFromBlue", alpha_from_blue);
     frames.make("CombinerOps", operations);
     frames.make("SpecialInputs", special_inputs);
-    frames
 }

@@ -1,12 +1,8 @@
 //! DEP-1 and DEP-3: 992 small quads from the nearest depth to the farthest, three large ones behind them, in four formats, over 49 cleared depths.
 
-use super::draws::{OVER, frame_buffer, scene};
+use super::draws::{corners, draw, frame_buffer, in_steps, scene};
 use super::{Drawn, Frames, Shown};
-use ninebit::state::{
-    Combiners, CompareFunction, DepthBuffer, DepthFormat, DepthRange, DepthTest, Draw, FinalRegister, Topology, Vertex,
-    VertexColor, VertexDepths,
-};
-use std::sync::Arc;
+use ninebit::state::{CompareFunction, DepthBuffer, DepthFormat, DepthRange, Draw, Topology, Vertex, VertexColor};
 
 /// Formats, the words of 16 or 24 in the names of frames, and the deepest word that the programs use.
 const FORMATS: [(DepthFormat, &str, u32); 4] = [
@@ -33,10 +29,9 @@ fn depth_of_word(format: DepthFormat, word: u32) -> f32 {
 }
 
 /// Two triangles over a rectangle, from its upper left corner on: depths and colours of the corners, clockwise.
-fn quad(vertices: &mut Vec<Vertex>, [left, top, right, bottom]: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]) {
-    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+fn quad(vertices: &mut Vec<Vertex>, edges: [f32; 4], depths: [f32; 4], colors: [[f32; 3]; 4]) {
     for n in [0, 1, 2, 0, 2, 3] {
-        let ([x, y], [r, g, b]) = (corners[n], colors[n]);
+        let ([x, y], [r, g, b]) = (corners(edges)[n], colors[n]);
         let diffuse = VertexColor::Floats([r, g, b, 1.0]);
         vertices.push(Vertex { position: [x, y, depths[n], 1.0], diffuse, ..Vertex::default() });
     }
@@ -78,23 +73,11 @@ fn vertices(format: DepthFormat, deepest: u32) -> Vec<Vertex> {
 }
 
 /// Depth_buffer.
-pub(super) fn formats() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn formats(frames: &mut Frames) {
     for (format, bits, deepest) in FORMATS {
-        let vertices = vertices(format, deepest);
-        let draw = Draw {
-            indices: (0..vertices.len() as u32).collect::<Arc<[u32]>>(),
-            vertices: vertices.into(),
-            topology: Topology::Triangles,
-            combiners: Combiners::showing(FinalRegister::PrimaryColor),
-            blend: OVER,
-            depth_test: Some(DepthTest {
-                vertex_depths: VertexDepths::Steps,
-                range: (format == DepthFormat::Z24S8F).then_some(FLOAT_RANGE),
-                ..DepthTest::new(CompareFunction::Less, true)
-            }),
-            ..Draw::default()
-        };
+        let range = (format == DepthFormat::Z24S8F).then_some(FLOAT_RANGE);
+        let depth_test = Some(in_steps(CompareFunction::Less, true, range));
+        let draw = Draw { depth_test, ..draw(Topology::Triangles, vertices(format, deepest)) };
         for step in 0..=STEPS {
             let clear = deepest - step * (deepest / STEPS);
             let mut target = frame_buffer(0xff00_0000);
@@ -110,5 +93,4 @@ pub(super) fn formats() -> Frames {
             }
         }
     }
-    frames
 }

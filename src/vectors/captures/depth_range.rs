@@ -1,12 +1,11 @@
 //! DEP-4, DEP-5: depths beyond a range that are dropped or limited, triangles that are dropped whole.
 
-use super::draws::{Canvas, FETCHED, UNPROJECTED, argb, draw, nearest};
+use super::draws::{self, Canvas, UNPROJECTED, argb, draw, fetching, in_steps, nearest, placed};
 use super::images::{self, checker};
 use super::primitives::FAR_DEPTHS;
 use super::{Drawn, Frames, space};
 use ninebit::state::{
-    Combiners, CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, ShaderStage, TEXTURE_UNITS, TextureFormat,
-    Topology, Vertex, VertexColor, VertexDepths,
+    CompareFunction, DepthRange, DepthTest, Draw, PolygonOffset, TextureFormat, Topology, Vertex, VertexColor,
 };
 
 /// The deepest depth of 24 bits.
@@ -17,23 +16,14 @@ const WHOLE_RANGE: DepthRange = DepthRange { lowest: 0.0, highest: DEEPEST, clam
 /// A quad of the world with a texture of 256 texels.
 fn textured(corners: [[f32; 3]; 4], depth_test: DepthTest) -> Draw {
     let matrix = space::product(space::eye(), space::window_to(f64::from(DEEPEST)));
-    let texels = [[0.0, 0.0], [256.0, 0.0], [256.0, 256.0], [0.0, 256.0]];
     let vertex = |n: usize| {
         let [x, y, z] = corners[n].map(f64::from);
         let [x, y, z, w] = space::transform([x, y, z, 1.0], &matrix);
         let [x, y, z, w] = [x / w, y / w, z / w, w].map(|value| value as f32);
-        let [s, t] = texels[n];
-        Vertex {
-            position: [x + UNPROJECTED, y + UNPROJECTED, z, w],
-            diffuse: VertexColor::Bytes([255; 4]),
-            texture_coordinates: [[s, t, 0.0, 1.0]; TEXTURE_UNITS],
-            ..Vertex::default()
-        }
+        placed([x + UNPROJECTED, y + UNPROJECTED, z, w], draws::corners([0.0, 0.0, 256.0, 256.0])[n])
     };
-    let mut draw = draw(Topology::Quads, [0, 1, 2, 3].map(vertex).to_vec());
-    draw.textures[0] = Some(nearest(0));
-    draw.texture_shader[0] = ShaderStage::conventional(0, true);
-    Draw { combiners: Combiners::showing(FETCHED[0]), depth_test: Some(depth_test), ..draw }
+    let draw = fetching(draw(Topology::Quads, [0, 1, 2, 3].map(vertex).to_vec()), 0, nearest(0));
+    Draw { depth_test: Some(depth_test), ..draw }
 }
 
 /// Two upright quads and a floor through both, whose depths have the range.
@@ -42,11 +32,7 @@ fn floor(range: DepthRange, bias: f32) -> Drawn {
     canvas.frame_buffer().depth = Some(FAR_DEPTHS);
     let fields = checker([argb(0xff00_ffff), argb(0xff00_0000)], 8);
     canvas.texture(&images::in_texels(images::texture(TextureFormat::A8R8G8B8, [256, 256], fields)));
-    let test = |range| DepthTest {
-        vertex_depths: VertexDepths::Steps,
-        range: Some(range),
-        ..DepthTest::new(CompareFunction::Less, true)
-    };
+    let test = |range| in_steps(CompareFunction::Less, true, Some(range));
     for (left, z) in [(-2.0, 2.0), (1.0, 10.0)] {
         let right = left + 1.0;
         let corners = [[left, 2.0, z], [right, 2.0, z], [right, -6.5, z], [left, -6.5, z]];
@@ -59,8 +45,7 @@ fn floor(range: DepthRange, bias: f32) -> Drawn {
 }
 
 /// Depth_Clamp: the frames of z buffers whose vertices lie before the eye.
-pub(super) fn clamped() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn clamped(frames: &mut Frames) {
     for clamps in [false, true] {
         for biased in [false, true] {
             for whole in [false, true] {
@@ -76,7 +61,6 @@ pub(super) fn clamped() -> Frames {
             }
         }
     }
-    frames
 }
 
 /// What z and w of a block's quads are.
@@ -140,7 +124,7 @@ fn block([left, top]: [f32; 2], block: Block, vertices: &mut Vec<Vertex>) {
 }
 
 /// ZMinMaxControl: the frames of z buffers whose vertices go straight to the window.
-pub(super) fn controls() -> Frames {
+pub(super) fn controls(frames: &mut Frames) {
     let mut vertices = Vec::new();
     let columns = [90.0_f32, 90.0 + 126.72 + 90.0, 90.0 + 126.72 + 90.0 + 126.72 + 90.0];
     for (column, [upper, lower]) in columns.into_iter().zip([
@@ -152,18 +136,13 @@ pub(super) fn controls() -> Frames {
         block([column, 252.0], lower, &mut vertices);
     }
     let quads = draw(Topology::Quads, vertices);
-    let mut frames = Frames::default();
     for (prefix, drops_triangles) in [("", false), ("NEARFAR_", true)] {
         for (mode, clamps) in [("ZCULL", false), ("ZCLAMP", true)] {
             let range = DepthRange { lowest: 10.0, highest: 100.0, clamps, drops_triangles };
-            let depth_test = DepthTest {
-                vertex_depths: VertexDepths::Steps,
-                range: Some(range),
-                ..DepthTest::new(CompareFunction::Always, false)
-            };
+            let depth_test = Some(in_steps(CompareFunction::Always, false, Some(range)));
             let mut canvas = Canvas::new(0xff22_2228);
             canvas.frame_buffer().depth = Some(FAR_DEPTHS);
-            canvas.draw(Draw { depth_test: Some(depth_test), ..quads.clone() });
+            canvas.draw(Draw { depth_test, ..quads.clone() });
             let drawn = canvas.colors();
             // A bit about w changes nothing here.
             for suffix in ["", "_IgnW"] {
@@ -171,5 +150,4 @@ pub(super) fn controls() -> Frames {
             }
         }
     }
-    frames
 }

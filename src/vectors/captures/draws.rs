@@ -2,9 +2,9 @@
 
 use super::{Drawn, SIZE, images};
 use ninebit::state::{
-    AddressMode, Blend, BlendEquation, BlendFactor, Combiners, Draw, Filter, FinalRegister, Palette, Profile, Scene,
-    ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texels, Texture, TextureFormat, TextureImage, TextureKind,
-    TextureUnit, Topology, Vertex, VertexColor,
+    AddressMode, Blend, BlendEquation, BlendFactor, Combiners, CompareFunction, DepthRange, DepthTest, Draw, Filter,
+    FinalRegister, Palette, Profile, Scene, ShaderStage, SurfaceFormat, TEXTURE_UNITS, Target, Texels, Texture,
+    TextureFormat, TextureImage, TextureKind, TextureUnit, Topology, Vertex, VertexColor, VertexDepths,
 };
 use std::sync::Arc;
 
@@ -17,8 +17,7 @@ pub(super) const OVER: Option<Blend> = Some(Blend {
 
 /// The frame buffer, cleared to a word A8R8G8B8.
 pub(super) fn frame_buffer(clear: u32) -> Target {
-    let [b, g, r, a] = clear.to_le_bytes();
-    Target { clear_color: [r, g, b, a], ..Target::new(SIZE.0, SIZE.1, SurfaceFormat::A8R8G8B8) }
+    Target { clear_color: argb(clear), ..Target::new(SIZE.0, SIZE.1, SurfaceFormat::A8R8G8B8) }
 }
 
 /// A scene of the chip that the captures are of.
@@ -39,6 +38,17 @@ pub(super) fn with_primary_alpha(register: FinalRegister) -> Combiners {
     let mut combiners = Combiners::showing(register);
     combiners.final_combiner.g.register = FinalRegister::PrimaryColor;
     combiners
+}
+
+/// A white vertex with coordinates.
+pub(super) fn placed(position: [f32; 4], at: [f32; 2]) -> Vertex {
+    let diffuse = VertexColor::Bytes([255; 4]);
+    Vertex { position, diffuse, texture_coordinates: coordinates(at), ..Vertex::default() }
+}
+
+/// Coordinates of all units.
+pub(super) fn coordinates([s, t]: [f32; 2]) -> [[f32; 4]; TEXTURE_UNITS] {
+    [[s, t, 0.0, 1.0]; TEXTURE_UNITS]
 }
 
 /// A vertex at a window position.
@@ -64,10 +74,14 @@ pub(super) fn quads(corners: &[[f32; 2]], color: VertexColor, shows: FinalRegist
     Draw { combiners: Combiners::showing(shows), ..draw(Topology::Quads, vertices) }
 }
 
+/// Corners of a rectangle, clockwise from the upper left.
+pub(super) fn corners([left, top, right, bottom]: [f32; 4]) -> [[f32; 2]; 4] {
+    [[left, top], [right, top], [right, bottom], [left, bottom]]
+}
+
 /// A rectangle, given by its edges.
-pub(super) fn rectangle([left, top, right, bottom]: [f32; 4], color: VertexColor) -> Draw {
-    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    quads(&corners, color, FinalRegister::PrimaryColor)
+pub(super) fn rectangle(edges: [f32; 4], color: VertexColor) -> Draw {
+    quads(&corners(edges), color, FinalRegister::PrimaryColor)
 }
 
 /// How far the programs' inverse of the viewport lies off, in pixels: positions that went through it have this added.
@@ -83,24 +97,29 @@ pub(super) fn sized([left, top]: [f32; 2], [width, height]: [f32; 2]) -> [f32; 4
     [left, top, left + width, top + height]
 }
 
+/// Places row by row from the upper left one on, so many in a row.
+pub(super) fn places([left, top]: [f32; 2], [across, down]: [f32; 2], columns: u8) -> impl Iterator<Item = [f32; 2]> {
+    (0..).map(move |n: u8| [left + across * f32::from(n % columns), top + down * f32::from(n / columns)])
+}
+
+/// A test of depths in steps of the buffer.
+pub(super) fn in_steps(function: CompareFunction, writes: bool, range: Option<DepthRange>) -> DepthTest {
+    DepthTest { vertex_depths: VertexDepths::Steps, range, ..DepthTest::new(function, writes) }
+}
+
 /// The register that a unit fetches into.
 pub(super) const FETCHED: [FinalRegister; TEXTURE_UNITS] =
     [FinalRegister::Texture0, FinalRegister::Texture1, FinalRegister::Texture2, FinalRegister::Texture3];
 
 /// A white rectangle that shows the texture of a unit: coordinates at its edges.
-pub(super) fn pasted(edges: [f32; 4], unit: usize, state: TextureUnit, [s0, t0, s1, t1]: [f32; 4]) -> Draw {
-    let draw = rectangle(edges, VertexColor::Bytes([255; 4]));
-    let draw = textured(draw, unit, state, [[s0, t0], [s1, t0], [s1, t1], [s0, t1]]);
-    Draw { combiners: Combiners::showing(FETCHED[unit]), ..draw }
+pub(super) fn pasted(edges: [f32; 4], unit: usize, state: TextureUnit, texels: [f32; 4]) -> Draw {
+    textured(rectangle(edges, VertexColor::Bytes([255; 4])), unit, state, corners(texels))
 }
 
 /// The draw so far away.
-pub(super) fn far(draw: Draw, w: f32) -> Draw {
-    let vertices = draw.vertices.iter().map(|vertex| {
-        let [x, y, z, _] = vertex.position;
-        Vertex { position: [x, y, z, w], ..vertex }
-    });
-    Draw { vertices: vertices.collect(), ..draw }
+pub(super) fn far(mut draw: Draw, w: f32) -> Draw {
+    draw.vertices.update(|_, vertex| vertex.position[3] = w);
+    draw
 }
 
 /// Coordinates of a whole texture whose size counts as 1.
@@ -189,13 +208,15 @@ impl Canvas {
     }
 }
 
-/// A draw whose first unit shows a texture by coordinates in texels: those of `texels` at its four vertices.
-pub(super) fn textured(draw: Draw, unit: usize, state: TextureUnit, texels: [[f32; 2]; 4]) -> Draw {
-    let mut vertices: Vec<Vertex> = (0..draw.vertices.len()).map(|n| draw.vertices.at(n)).collect();
-    for (vertex, [s, t]) in vertices.iter_mut().zip(texels) {
-        vertex.texture_coordinates = [[s, t, 0.0, 1.0]; TEXTURE_UNITS];
-    }
-    let mut draw = Draw { vertices: vertices.into(), ..draw };
+/// A draw whose unit shows a texture by coordinates in texels: those of `texels` at its four vertices.
+pub(super) fn textured(mut draw: Draw, unit: usize, state: TextureUnit, texels: [[f32; 2]; 4]) -> Draw {
+    draw.vertices.update(|n, vertex| vertex.texture_coordinates = coordinates(texels[n]));
+    fetching(draw, unit, state)
+}
+
+/// The draw whose fragment is what a unit fetches from a texture.
+pub(super) fn fetching(draw: Draw, unit: usize, state: TextureUnit) -> Draw {
+    let mut draw = Draw { combiners: Combiners::showing(FETCHED[unit]), ..draw };
     draw.textures[unit] = Some(state);
     draw.texture_shader[unit] = ShaderStage::conventional(unit, true);
     draw

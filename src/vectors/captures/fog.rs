@@ -1,11 +1,11 @@
 //! FOG-1 to FOG-5: all modes over coordinates of every origin, of every size, and of no number.
 
-use super::draws::{Canvas, draw, sized, unprojected};
+use super::draws::{Canvas, corners, draw, in_steps, sized, unprojected};
 use super::primitives::FAR_DEPTHS;
 use super::{Drawn, Frames, space};
 use ninebit::state::{
-    Combiners, CompareFunction, Component, DepthRange, DepthTest, Draw, FinalCombiner, FinalInput, FinalRegister, Fog,
-    FogFunction, FogMode, Profile, Topology, Vertex, VertexColor, VertexDepths,
+    Combiners, CompareFunction, Component, DepthRange, Draw, FinalCombiner, FinalInput, FinalRegister, Fog,
+    FogFunction, FogMode, Profile, Topology, Vertex, VertexColor,
 };
 use ninebit::vertex::fog::passed;
 
@@ -53,11 +53,8 @@ fn foggy(
     function: FogFunction,
     color: [u8; 3],
 ) -> Draw {
-    let vertex = |(vertex, d): (Vertex, f32)| Vertex {
-        fog: passed(&function, Profile::Nv2a, d),
-        fog_coordinate: Some(d),
-        ..vertex
-    };
+    let fog = |d| passed(&function, Profile::Nv2a, d);
+    let vertex = |(vertex, d): (Vertex, f32)| Vertex { fog: fog(d), fog_coordinate: Some(d), ..vertex };
     let fog = Fog { enabled: true, color, function: Some(function) };
     let combiners = mixed(FinalRegister::PrimaryColor, FinalRegister::Fog);
     Draw { fog, combiners, ..draw(topology, vertices.map(vertex).collect()) }
@@ -90,13 +87,8 @@ fn triangles(is_program: bool, coordinate: impl Fn(f32) -> f32, function: FogFun
         let position = place([x, y, z, 1.0]);
         (Vertex { position, ..Vertex::default() }, coordinate(position[3]))
     });
-    let depth_test = DepthTest {
-        vertex_depths: VertexDepths::Steps,
-        range: Some(FARTHEST),
-        ..DepthTest::new(CompareFunction::Always, false)
-    };
     // The programs' own depths end farther away.
-    let depth_test = (!is_program).then_some(depth_test);
+    let depth_test = (!is_program).then(|| in_steps(CompareFunction::Always, false, Some(FARTHEST)));
     Draw { depth_test, ..foggy(Topology::Triangles, vertices, function, color) }
 }
 
@@ -107,29 +99,27 @@ fn one(clear: u32, draw: Draw) -> Drawn {
     canvas.colors()
 }
 
-fn all_modes(is_program: bool, coordinate: fn(f32) -> f32) -> Frames {
-    let mut frames = Frames::default();
+fn all_modes(frames: &mut Frames, is_program: bool, coordinate: fn(f32) -> f32) {
     for (name, mode) in MODES {
         let function = function(mode, parameters(mode, 1.0));
         let draw = triangles(is_program, coordinate, function, [0x30, 0x20, 0x7f]);
         frames.push(format!("AFF-{name}-planar"), one(0xff30_3030, draw));
     }
-    frames
 }
 
 /// Fog: the depth before the eye.
-pub(super) fn planar() -> Frames {
-    all_modes(false, |w| w)
+pub(super) fn planar(frames: &mut Frames) {
+    all_modes(frames, false, |w| w);
 }
 
 /// Fog_vsh: a vertex program passes w.
-pub(super) fn of_program() -> Frames {
-    all_modes(true, |w| w)
+pub(super) fn of_program(frames: &mut Frames) {
+    all_modes(frames, true, |w| w);
 }
 
 /// Fog_inf_coord: a vertex program passes the reciprocal of 0.
-pub(super) fn infinite() -> Frames {
-    all_modes(true, |_| f32::INFINITY)
+pub(super) fn infinite(frames: &mut Frames) {
+    all_modes(frames, true, |_| f32::INFINITY);
 }
 
 /// Components that a vertex program writes, in its order, one instruction after the other, and the four values. An instruction that writes
@@ -185,8 +175,7 @@ fn taken(written: &str, values: [f32; 4]) -> f32 {
 }
 
 /// Fog_coord_vec4.
-pub(super) fn of_components() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn of_components(frames: &mut Frames) {
     let function = function(FogMode::Linear, [1.0, 1.0]);
     for (written, values) in COMPONENTS {
         let draw = triangles(true, |_| taken(written, values), function, [0, 255, 0]);
@@ -200,7 +189,6 @@ pub(super) fn of_components() -> Frames {
     let mut combiners = mixed(FinalRegister::ConstantColor0, FinalRegister::PrimaryColor);
     combiners.final_combiner.constants[0] = [127, 0, 191, 255];
     frames.push("CoordNotSet", one(0xff34_1010, Draw { combiners, ..draw }));
-    frames
 }
 
 /// A rectangle of the screen whose right edge lies farther away: corners clockwise from the upper left, w on the left and on the right.
@@ -208,18 +196,14 @@ fn panel(edges: [f32; 4], [left_w, right_w]: [f32; 2], colors: [[f32; 4]; 4], is
     // The programs' inverse of their vertex program, and that, leave what lies before the centre before its pixel, a sixteenth after RAS-1.
     let before = |edge: f32, centre: f32| if edge < centre { edge - 0.0625 } else { edge };
     let [left, top, right, bottom] = edges;
-    let [left, top, right, bottom] = if is_program {
+    let edges = if is_program {
         [before(left, 320.0), before(top, 240.0), before(right, 320.0), before(bottom, 240.0)]
     } else {
         unprojected(edges)
     };
-    let corners =
-        [([left, top], left_w), ([right, top], right_w), ([right, bottom], right_w), ([left, bottom], left_w)];
-    let mut number = 0;
-    corners.map(|([x, y], w)| {
-        number += 1;
-        let diffuse = VertexColor::Floats(colors[number - 1]);
-        Vertex { position: [x, y, 0.0, w], diffuse, ..Vertex::default() }
+    std::array::from_fn(|n| {
+        let ([x, y], w) = (corners(edges)[n], [left_w, right_w, right_w, left_w][n]);
+        Vertex { position: [x, y, 0.0, w], diffuse: VertexColor::Floats(colors[n]), ..Vertex::default() }
     })
 }
 
@@ -245,8 +229,7 @@ fn steps(first: f32, step: f32) -> impl Iterator<Item = f32> {
 const RED: [u8; 3] = [255, 0, 0];
 
 /// Fog_param: 320 coordinates through eight multipliers, and 340 biases.
-pub(super) fn parameters_varied() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn parameters_varied(frames: &mut Frames) {
     for (name, mode) in MODES {
         let name = name.replace("linear", "lin");
         let bias = match mode {
@@ -274,7 +257,6 @@ pub(super) fn parameters_varied() -> Frames {
             canvas.colors()
         });
     }
-    frames
 }
 
 /// Where Fog_gen takes its coordinates from.
@@ -285,16 +267,14 @@ const SECONDARY_ALPHAS: [f32; 4] = [0.0, 1.0, 0.75, 0.25];
 
 /// The distance of a point from the eye.
 fn distance(edges: [f32; 4], corner: usize, w: f32) -> f32 {
-    let [left, top, right, bottom] = edges;
-    let [x, y] = [[left, top], [right, top], [right, bottom], [left, bottom]][corner];
+    let [x, y] = corners(edges)[corner];
     let scale = space::window()[0][0];
     let [x, y] = [f64::from(x) - 320.0, f64::from(y) - 240.0].map(|offset| offset * f64::from(w) / scale);
     (x * x + y * y + f64::from(w) * f64::from(w)).sqrt() as f32
 }
 
 /// Fog_gen: panels farther and farther away, with coordinates of five sources; with a vertex program all but one take what it passes.
-pub(super) fn generated() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn generated(frames: &mut Frames) {
     for (name, mode) in MODES {
         for source in SOURCES {
             for is_program in [false, true] {
@@ -313,8 +293,8 @@ pub(super) fn generated() -> Frames {
                     let places = grid([48.0, 70.0], 22.0, [2.0, 2.0]).zip(steps(-6.0, 0.5)).zip(steps(50.0, -0.2));
                     let panels = places.flat_map(|((edges, z), fog_x)| {
                         let w = [z + 7.0, z + 8.0];
-                        let mut corner = 0;
-                        panel(edges, w, [[0.0, 0.0, 1.0, 1.0]; 4], is_program).map(|vertex| {
+                        let panel = panel(edges, w, [[0.0, 0.0, 1.0, 1.0]; 4], is_program);
+                        panel.into_iter().enumerate().map(move |(corner, vertex)| {
                             let [.., w] = vertex.position;
                             let d = match source {
                                 _ if is_program => fog_x,
@@ -324,7 +304,6 @@ pub(super) fn generated() -> Frames {
                                 // The plane is twice the depth.
                                 _ => 2.0 * w,
                             };
-                            corner += 1;
                             (vertex, d)
                         })
                     });
@@ -333,7 +312,6 @@ pub(super) fn generated() -> Frames {
             }
         }
     }
-    frames
 }
 
 /// Coordinates of every kind, as words.
@@ -373,9 +351,8 @@ fn exceptional_panel(edges: [f32; 4], d: f32) -> impl Iterator<Item = (Vertex, f
 }
 
 /// Fog_exceptional_value: a vertex program passes coordinates of every kind, or their reciprocals; one of no number under 24 pairs of parameters.
-pub(super) fn exceptional() -> Frames {
+pub(super) fn exceptional(frames: &mut Frames) {
     let places = || grid([48.0, 70.0], 64.0, [24.0, 38.0]);
-    let mut frames = Frames::default();
     for (name, mode) in MODES {
         for source in SOURCES.into_iter().filter(|source| *source != "radial") {
             for (prefix, is_reciprocal) in [("", false), ("RCP-", true)] {
@@ -388,9 +365,8 @@ pub(super) fn exceptional() -> Frames {
             }
             for (prefix, d) in [("INF", f32::INFINITY), ("NaN", f32::NAN)] {
                 frames.make(format!("{prefix}-FogExc-{name}-{source}"), move || {
-                    let multipliers =
-                        [FogMode::Linear, FogMode::Exp, FogMode::Exp2].map(|mode| parameters(mode, 1.0)[1]);
-                    let [linear, exp, exp2] = multipliers;
+                    let modes = [FogMode::Linear, FogMode::Exp, FogMode::Exp2];
+                    let [linear, exp, exp2] = modes.map(|mode| parameters(mode, 1.0)[1]);
                     let biases = [-1.0, 1.0, 1.5, 1000.0].into_iter();
                     let pairs = biases.flat_map(|p0| [linear, exp, exp2, 1.0, 0.0, -1000.0].map(|p1| [p0, p1]));
                     let mut canvas = Canvas::new(0xff23_2623);
@@ -402,5 +378,4 @@ pub(super) fn exceptional() -> Frames {
             }
         }
     }
-    frames
 }

@@ -23,10 +23,14 @@ pub(super) fn of_words(
     Texture { name: String::from("image"), kind, format, image: TextureImage::Texels(texels) }
 }
 
+/// Columns and rows of all texels, row by row from the top.
+pub(super) fn each_texel([width, height]: [u32; 2]) -> impl Iterator<Item = (u32, u32)> {
+    (0..height).flat_map(move |y| (0..width).map(move |x| (x, y)))
+}
+
 /// The words of an image, row by row from the top.
-pub(super) fn words(format: TextureFormat, [width, height]: [u32; 2], image: impl Image) -> Vec<u32> {
-    let rows = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
-    rows.map(|(x, y)| texels::word(image(x, y), format)).collect()
+pub(super) fn words(format: TextureFormat, size: [u32; 2], image: impl Image) -> Vec<u32> {
+    each_texel(size).map(|(x, y)| texels::word(image(x, y), format)).collect()
 }
 
 /// An image as a texture whose size counts as 1.

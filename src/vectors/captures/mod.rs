@@ -76,12 +76,16 @@ impl Drawn {
 /// A frame that was captured.
 #[derive(Clone)]
 pub struct Frame {
-    suite: &'static str,
-    name: String,
+    /// The suite of the test programs.
+    pub suite: &'static str,
+    /// The frame's name: that of the picture, without its ending.
+    pub name: String,
     make: Make,
-    text: Vec<Rectangle>,
+    /// Where the programs printed text: pixels there are not compared.
+    pub text: Vec<Rectangle>,
     digest: &'static str,
-    open: Option<Open>,
+    /// What is known to be wrong with it.
+    pub open: Option<Open>,
 }
 
 /// A frame that is not drawn exactly, and the rule of which something is not known.
@@ -100,16 +104,9 @@ impl fmt::Debug for Frame {
 }
 
 /// Frames of the table that nothing here draws, or the other way round: an error of this crate.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{} frames and rows do not meet: {}", .0.len(), .0[..self.0.len().min(3)].join("; "))]
 pub struct Unmatched(pub Vec<String>);
-
-impl fmt::Display for Unmatched {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{} frames and rows do not meet: {}", self.0.len(), self.0[..self.0.len().min(3)].join("; "))
-    }
-}
-
-impl std::error::Error for Unmatched {}
 
 /// All suites, in the order of the table.
 pub fn suites() -> impl Iterator<Item = &'static str> {
@@ -136,7 +133,7 @@ impl Frames {
 }
 
 /// A suite by name, and what draws its frames.
-type Suite = (&'static str, fn() -> Frames);
+type Suite = (&'static str, fn(&mut Frames));
 
 const SUITES: &[Suite] = &[
     ("3D_primitive", primitives::solids),
@@ -198,17 +195,18 @@ pub fn frames(wanted: &[&str]) -> Result<Vec<Frame>, Unmatched> {
     let mut unmatched = Vec::new();
     let rows: Vec<_> = TABLE.lines().filter(|line| !line.starts_with('#')).filter_map(row).collect();
     for (suite, make) in SUITES.iter().filter(|(suite, _)| wanted.is_empty() || wanted.contains(suite)) {
-        let Frames(mut drawn) = make();
+        let mut drawn = Frames::default();
+        make(&mut drawn);
         for Row { name, text, digest, open, .. } in rows.iter().filter(|row| row.suite == *suite) {
-            match drawn.iter().position(|(other, _)| other == name) {
+            match drawn.0.iter().position(|(other, _)| other == name) {
                 Some(at) => {
-                    let (name, make) = drawn.swap_remove(at);
+                    let (name, make) = drawn.0.swap_remove(at);
                     all.push(Frame { suite, name, make, text: text.clone(), digest, open: *open });
                 }
                 None => unmatched.push(format!("{suite}/{name} of the table is drawn by nothing")),
             }
         }
-        unmatched.extend(drawn.iter().map(|(name, _)| format!("{suite}/{name} is not in the table")));
+        unmatched.extend(drawn.0.iter().map(|(name, _)| format!("{suite}/{name} is not in the table")));
     }
     if unmatched.is_empty() { Ok(all) } else { Err(Unmatched(unmatched)) }
 }
@@ -258,26 +256,6 @@ fn row(line: &'static str) -> Option<Row> {
 }
 
 impl Frame {
-    /// The suite of the test programs.
-    pub fn suite(&self) -> &'static str {
-        self.suite
-    }
-
-    /// The frame's name: that of the picture, without its ending.
-    pub fn name(&self) -> &str {
-        &self.name
-    }
-
-    /// Where the programs printed text: pixels there are not compared.
-    pub fn text(&self) -> &[Rectangle] {
-        &self.text
-    }
-
-    /// What is known to be wrong with it.
-    pub fn open(&self) -> Option<Open> {
-        self.open
-    }
-
     /// Draws it: R, G, B, A of every pixel, row by row from the top.
     ///
     /// # Errors

@@ -1,12 +1,10 @@
 //! DEP-1, DEP-5 and DEP-6 on triangles of up to 3,000 pixels and depths beyond the buffer: the buffers of W_buffering.
 
-use super::draws::{frame_buffer, scene};
+use super::draws::{draw, frame_buffer, in_steps, scene};
 use super::{Drawn, Frames, SIZE, Shown};
 use ninebit::state::{
-    Combiners, CompareFunction, DepthBuffer, DepthFormat, DepthRange, DepthTest, Draw, FinalRegister, PolygonOffset,
-    Rectangle, Topology, Vertex, VertexDepths,
+    CompareFunction, DepthBuffer, DepthFormat, DepthRange, DepthTest, Draw, PolygonOffset, Rectangle, Topology, Vertex,
 };
-use std::sync::Arc;
 
 const FORMATS: [(DepthFormat, &str); 4] = [
     (DepthFormat::Z16, "ZBuf16D"),
@@ -75,27 +73,14 @@ fn frame(
     let mut target = frame_buffer(0xff25_1135);
     target.depth = Some(DepthBuffer { format, clear: format.largest(), clear_stencil: 0 });
     let range = DepthRange { lowest: 0.0, highest: 16_777_215.0 * 16.0, clamps: true, drops_triangles: false };
-    let draw = Draw {
-        vertices: positions.iter().map(vertex).collect::<Vec<_>>().into(),
-        indices: (0..positions.len() as u32).collect::<Arc<[u32]>>(),
-        topology,
-        scissor: Some(DRAWN),
-        combiners: Combiners::showing(FinalRegister::PrimaryColor),
-        depth_test: Some(DepthTest {
-            vertex_depths: VertexDepths::Steps,
-            range: Some(range),
-            offset,
-            w_buffer,
-            ..DepthTest::new(CompareFunction::LessOrEqual, true)
-        }),
-        ..Draw::default()
-    };
+    let depth_test = DepthTest { offset, w_buffer, ..in_steps(CompareFunction::LessOrEqual, true, Some(range)) };
+    let draw = draw(topology, positions.iter().map(vertex).collect());
+    let draw = Draw { scissor: Some(DRAWN), depth_test: Some(depth_test), blend: None, ..draw };
     Drawn { scene: scene(vec![target], vec![], vec![draw]), before: None, view: None, shown: Shown::DepthStencil }
 }
 
 /// W_buffering: words of the z buffers, and of w buffers where no w is beyond what draws may have.
-pub(super) fn buffers() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn buffers(frames: &mut Frames) {
     for (format, prefix) in FORMATS {
         for (shape, topology, positions) in shapes() {
             for (biased, sloped) in [(0_u8, 0_u8), (0, 1), (1, 0), (1, 1)] {
@@ -119,5 +104,4 @@ pub(super) fn buffers() -> Frames {
         let drawn = frame(DepthFormat::Z24S8, Topology::Quads, &positions, PolygonOffset::default(), false);
         frames.push(format!("ZBuf24D_{name}_V1_ZB0_ZS0_ZB"), drawn);
     }
-    frames
 }

@@ -1,28 +1,13 @@
 //! RAS-1 to RAS-5, INT-1, NUM-4: every topology smooth and flat, with and without perspective; colours of floats; many vertices.
 
-use super::draws::{Canvas, FETCHED, abgr, argb, draw, nearest, vertex};
+use super::draws::{Canvas, abgr, argb, corners, draw, fetching, nearest, placed, sized, vertex};
 use super::images::{self, checker};
-use super::{Drawn, Frames, space};
+use super::space::{self, without_depth};
+use super::{Drawn, Frames};
 use ninebit::state::{
-    Combiners, CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, ProvokingVertex, ShadeModel, ShaderStage,
-    TEXTURE_UNITS, Texture, TextureFormat, TextureUnit, Topology, Vertex, VertexColor,
+    CompareFunction, DepthBuffer, DepthFormat, DepthTest, Draw, ProvokingVertex, ShadeModel, Texture, TextureFormat,
+    Topology, Vertex, VertexColor,
 };
-
-const WHITE: VertexColor = VertexColor::Bytes([255; 4]);
-
-/// A vertex that lies somewhere and has coordinates.
-fn placed([x, y, _, w]: [f32; 4], [s, t]: [f32; 2]) -> Vertex {
-    let texture_coordinates = [[s, t, 0.0, 1.0]; TEXTURE_UNITS];
-    Vertex { position: [x, y, 0.0, w], diffuse: WHITE, texture_coordinates, ..Vertex::default() }
-}
-
-/// The draw with a texture of the first unit.
-fn textured(draw: Draw, unit: TextureUnit) -> Draw {
-    let mut draw = Draw { combiners: Combiners::showing(FETCHED[0]), ..draw };
-    draw.textures[0] = Some(unit);
-    draw.texture_shader[0] = ShaderStage::conventional(0, true);
-    draw
-}
 
 /// Colours of the vertices, A8B8G8R8.
 const COLORS: [u32; 10] = [
@@ -38,144 +23,92 @@ const COLORS: [u32; 10] = [
     0xffcc_33ff,
 ];
 
-/// A shape of Shade_model.
-struct Shape {
-    name: &'static str,
-    topology: Topology,
-    /// Where the vertex programs put the vertices, in sixteenths of a pixel.
-    snapped: &'static [[u16; 2]],
-    /// x, y in the world, s and t.
-    points: &'static [[f32; 4]],
-}
+/// x, y, z in the world, red, green and blue, s and t; what no frame shows of a corner is 0.
+type Corner = [f32; 8];
 
-const SHAPES: [Shape; 6] = [
-    Shape {
-        name: "Tri",
-        topology: Topology::Triangles,
-        snapped: &[
-            [1529, 1554],
-            [5119, 1554],
-            [1529, 3839],
-            [8710, 1554],
-            [5250, 6125],
-            [5446, 3839],
-            [4597, 6125],
-            [3291, 5668],
-            [5119, 3839],
-        ],
-        points: &[
-            [-2.75, 1.75, 0.0, 0.0],
-            [0.0, 1.75, 1.0, 0.0],
-            [-2.75, 0.0, 0.0, 1.0],
-            [2.75, 1.75, 1.0, 0.0],
-            [0.1, -1.75, 0.1, 1.0],
-            [0.25, 0.0, 0.25, 0.5],
-            [-0.4, -1.75, 0.5, 1.0],
-            [-1.4, -1.4, 0.2, 0.5],
-            [0.0, 0.0, 1.0, 0.0],
-        ],
-    },
-    Shape {
-        name: "TriStrip",
-        topology: Topology::TriangleStrip,
-        snapped: &[
-            [1529, 3839],
-            [2182, 1554],
-            [2508, 6125],
-            [3422, 1750],
-            [5119, 5798],
-            [5642, 2534],
-            [6948, 4623],
-            [8710, 1554],
-        ],
-        points: &[
-            [-2.75, 0.0, 0.0, 0.0],
-            [-2.25, 1.75, 0.0, 1.0],
-            [-2.0, -1.75, 0.0, 0.0],
-            [-1.3, 1.6, 1.15, 0.25],
-            [0.0, -1.5, 1.3, 0.75],
-            [0.4, 1.0, 1.7, 0.33],
-            [1.4, -0.6, 0.7, 0.7],
-            [2.75, 1.75, 0.5, 0.5],
-        ],
-    },
-    Shape {
-        name: "TriFan",
-        topology: Topology::TriangleFan,
-        snapped: &[
-            [5119, 4819],
-            [2182, 6125],
-            [2508, 1554],
-            [4336, 2991],
-            [5119, 1881],
-            [5642, 2534],
-            [8253, 3056],
-            [8710, 6125],
-        ],
-        points: &[
-            [0.0, -0.75, 1.0, 1.0],
-            [-2.25, -1.75, 0.0, 0.0],
-            [-2.0, 1.75, 0.0, 1.0],
-            [-0.6, 0.65, 1.15, 0.25],
-            [0.0, 1.5, 1.3, 0.75],
-            [0.4, 1.0, 1.7, 0.33],
-            [2.4, 0.6, 0.7, 0.7],
-            [2.75, -1.75, 0.5, 0.5],
-        ],
-    },
-    Shape {
-        name: "Quad",
-        topology: Topology::Quads,
-        snapped: &[
-            [1529, 1554],
-            [4597, 1554],
-            [4597, 6125],
-            [1529, 6125],
-            [5315, 1554],
-            [8710, 1554],
-            [8710, 6125],
-            [5119, 6125],
-        ],
-        points: &[
-            [-2.75, 1.75, 0.0, 0.0],
-            [-0.4, 1.75, 1.0, 0.0],
-            [-0.4, -1.75, 1.0, 1.0],
-            [-2.75, -1.75, 0.0, 1.0],
-            [0.15, 1.75, 0.0, 0.0],
-            [2.75, 1.75, 1.0, 0.0],
-            [2.75, -1.75, 1.0, 1.0],
-            [0.0, -1.75, 0.0, 1.0],
-        ],
-    },
-    Shape {
-        name: "QuadStrip",
-        topology: Topology::QuadStrip,
-        snapped: &[[1529, 6125], [1529, 1554], [5119, 5602], [5119, 2534], [8710, 6125], [8710, 1554]],
-        points: &[
-            [-2.75, -1.75, 0.33, 0.33],
-            [-2.75, 1.75, 1.0, 1.0],
-            [0.0, -1.35, 0.7, 0.1],
-            [0.0, 1.0, 0.0, 0.9],
-            [2.75, -1.75, 0.33, 0.33],
-            [2.75, 1.75, 0.0, 0.7],
-        ],
-    },
-    Shape {
-        name: "Poly",
-        topology: Topology::Polygon,
-        snapped: &[[1529, 6125], [3291, 2403], [4728, 1554], [7731, 3448], [8710, 5798]],
-        points: &[
-            [-2.75, -1.75, 0.33, 0.33],
-            [-1.4, 1.1, 0.7, 0.1],
-            [-0.3, 1.75, 0.1, 0.7],
-            [2.0, 0.3, 0.0, 0.9],
-            [2.75, -1.5, 0.7, 0.7],
-        ],
-    },
+const TRIANGLES: &[Corner] = &[
+    [-2.75, 1.75, 1.0, 0.25, 0.25, 0.25, 0.0, 0.0],
+    [0.0, 1.75, 1.0, 0.55, 0.55, 0.55, 1.0, 0.0],
+    [-2.75, 0.0, 1.0, 0.75, 0.75, 0.75, 0.0, 1.0],
+    [2.75, 1.75, 1.0, 0.8, 0.25, 0.1, 1.0, 0.0],
+    [0.1, -1.75, 5.0, 0.1, 0.85, 0.1, 0.1, 1.0],
+    [0.25, 0.0, 1.0, 0.1, 0.25, 0.9, 0.25, 0.5],
+    [-0.4, -1.75, 5.0, 0.8, 0.25, 0.9, 0.5, 1.0],
+    [-1.4, -1.4, 5.0, 0.1, 0.85, 0.9, 0.2, 0.5],
+    [0.0, 0.0, 5.0, 0.85, 0.95, 0.1, 1.0, 0.0],
+];
+const STRIP: &[Corner] = &[
+    [-2.75, 0.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.0],
+    [-2.25, 1.75, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0],
+    [-2.0, -1.75, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+    [-1.3, 1.6, 1.15, 0.25, 0.0, 0.8, 1.15, 0.25],
+    [0.0, -1.5, 1.3, 0.75, 0.0, 0.25, 1.3, 0.75],
+    [0.4, 1.0, 1.7, 0.33, 0.33, 0.33, 1.7, 0.33],
+    [1.4, -0.6, 5.0, 0.7, 0.7, 0.7, 0.7, 0.7],
+    [2.75, 1.75, 5.0, 0.5, 0.5, 0.6, 0.5, 0.5],
+];
+const FAN: &[Corner] = &[
+    [0.0, -0.75, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+    [-2.25, -1.75, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0],
+    [-2.0, 1.75, 1.0, 0.0, 1.0, 0.0, 0.0, 1.0],
+    [-0.6, 0.65, 1.15, 0.25, 0.0, 0.8, 1.15, 0.25],
+    [0.0, 1.5, 1.3, 0.75, 0.0, 0.25, 1.3, 0.75],
+    [0.4, 1.0, 1.7, 0.33, 0.33, 0.33, 1.7, 0.33],
+    [2.4, 0.6, 5.0, 0.7, 0.7, 0.7, 0.7, 0.7],
+    [2.75, -1.75, 5.0, 0.5, 0.5, 0.6, 0.5, 0.5],
+];
+const QUADS: &[Corner] = &[
+    [-2.75, 1.75, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [-0.4, 1.75, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    [-0.4, -1.75, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0],
+    [-2.75, -1.75, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+    [0.15, 1.75, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    [2.75, 1.75, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0],
+    [2.75, -1.75, 0.0, 0.0, 0.0, 0.0, 1.0, 1.0],
+    [0.0, -1.75, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0],
+];
+const SOLID_QUADS: &[Corner] = &[
+    [-2.75, 1.75, 1.0, 1.0, 1.0, 1.0, 0.0, 0.0],
+    [-0.6, 1.6, 1.7, 0.5, 0.5, 0.6, 0.0, 0.0],
+    [-1.35, -0.6, 1.7, 0.7, 0.7, 0.7, 0.0, 0.0],
+    [-2.4, -1.75, 1.7, 0.33, 0.33, 0.33, 0.0, 0.0],
+    [0.06, -0.09, 1.0, 1.0, 0.0, 1.0, 0.0, 0.0],
+    [1.9, -0.25, 1.0, 0.1, 0.3, 0.6, 0.0, 0.0],
+    [2.62, -1.03, 1.0, 1.0, 1.0, 0.0, 0.0, 0.0],
+    [1.25, -1.65, 1.0, 0.0, 1.0, 1.0, 0.0, 0.0],
+    [-1.25, 1.3, 5.0, 0.25, 0.25, 0.25, 0.0, 0.0],
+    [0.3, 1.25, 5.0, 0.1, 0.3, 0.1, 0.0, 0.0],
+    [2.62, -0.03, 5.0, 0.65, 0.65, 0.65, 0.0, 0.0],
+    [-1.0, -1.0, 5.0, 0.45, 0.45, 0.45, 0.0, 0.0],
+];
+const QUAD_STRIP: &[Corner] = &[
+    [-2.75, -1.75, 1.0, 0.33, 0.33, 0.33, 0.33, 0.33],
+    [-2.75, 1.75, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0],
+    [0.0, -1.35, 1.0, 0.7, 0.1, 0.0, 0.7, 0.1],
+    [0.0, 1.0, 1.0, 0.0, 0.9, 0.2, 0.0, 0.9],
+    [2.75, -1.75, 1.0, 0.33, 0.33, 0.33, 0.33, 0.33],
+    [2.75, 1.75, 1.0, 0.0, 0.7, 0.9, 0.0, 0.7],
+];
+const POLYGON: &[Corner] = &[
+    [-2.75, -1.75, 1.0, 0.33, 0.33, 0.33, 0.33, 0.33],
+    [-1.4, 1.1, 1.0, 0.7, 0.1, 0.0, 0.7, 0.1],
+    [-0.3, 1.75, 1.0, 0.1, 0.7, 0.5, 0.1, 0.7],
+    [2.0, 0.3, 1.0, 0.0, 0.9, 0.2, 0.0, 0.9],
+    [2.75, -1.5, 1.0, 0.7, 0.7, 0.7, 0.7, 0.7],
 ];
 
-/// The w of everything that the vertex programs of Shade_model draw.
-const FLAT_W: f32 = 7.1;
+/// A name, how the corners are joined, and the corners.
+type Shape = (&'static str, Topology, &'static [Corner]);
+
+/// The shapes of Shade_model.
+const SHAPES: [Shape; 6] = [
+    ("Tri", Topology::Triangles, TRIANGLES),
+    ("TriStrip", Topology::TriangleStrip, STRIP),
+    ("TriFan", Topology::TriangleFan, FAN),
+    ("Quad", Topology::Quads, QUADS),
+    ("QuadStrip", Topology::QuadStrip, QUAD_STRIP),
+    ("Poly", Topology::Polygon, POLYGON),
+];
 
 fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> Drawn {
     let mut canvas = Canvas::new(clear);
@@ -187,33 +120,28 @@ fn one(clear: u32, texture: Option<&Texture>, draw: Draw) -> Drawn {
 }
 
 /// Shade_model: colours, smooth and flat by either vertex, and textures, which do not heed it.
-pub(super) fn shade_model() -> Frames {
+pub(super) fn shade_model(frames: &mut Frames) {
     let colors = [abgr(0xff20_c0c0), abgr(0xff00_0070)];
     let texture = images::texture(TextureFormat::A8B8G8R8, [64, 64], checker(colors, 8));
-    let mut frames = Frames::default();
-    for Shape { name, topology, snapped, points } in &SHAPES {
-        let programmed: Vec<[f32; 4]> =
-            snapped.iter().map(|[x, y]| [f32::from(*x) / 16.0, f32::from(*y) / 16.0, 0.0, FLAT_W]).collect();
+    for (name, topology, points) in SHAPES {
+        let programmed = points.iter().map(|[x, y, ..]| without_depth(space::programmed([*x, *y, 0.1, 1.0])));
+        let programmed: Vec<[f32; 4]> = programmed.collect();
         // w of the points grows by so much from one to the next.
-        let fixed = |mut w: f32, more: f32| {
-            let place = move |point: &[f32; 4]| {
-                let placed = space::fixed_function([point[0], point[1], 0.1, w]);
-                w += more;
-                placed
-            };
-            points.iter().map(place).collect::<Vec<_>>()
+        let fixed = |w: f32, more: f32| {
+            let w = std::iter::successors(Some(w), |w| Some(w + more));
+            points.iter().zip(w).map(|([x, y, ..], w)| space::flat([*x, *y, 0.1, w])).collect()
         };
         let pictures = |positions: Vec<[f32; 4]>| {
-            let vertices = positions.iter().zip(*points).map(|(at, [.., s, t])| placed(*at, [*s, *t]));
-            one(0xff2c_302e, Some(&texture), textured(draw(*topology, vertices.collect()), nearest(0)))
+            let vertices = positions.iter().zip(points).map(|(at, [.., s, t])| placed(*at, [*s, *t]));
+            one(0xff2c_302e, Some(&texture), fetching(draw(topology, vertices.collect()), 0, nearest(0)))
         };
         let [program, flat_w, varying_w] = [programmed.clone(), fixed(1.0, 0.0), fixed(0.5, 0.05)].map(pictures);
-        let shaded = programmed.iter().zip(COLORS).map(|(position, color)| Vertex {
-            position: *position,
+        let shaded = programmed.into_iter().zip(COLORS).map(|(position, color)| Vertex {
+            position,
             diffuse: VertexColor::Bytes(abgr(color)),
             ..Vertex::default()
         });
-        let shaded = draw(*topology, shaded.collect());
+        let shaded = draw(topology, shaded.collect());
         for (mode, shade_model) in [("Smooth", ShadeModel::Smooth), ("Flat", ShadeModel::Flat)] {
             for (vertex, provoking_vertex) in [("First", ProvokingVertex::First), ("Last", ProvokingVertex::Last)] {
                 let suffix = format!("{name}_{mode}_{vertex}");
@@ -225,42 +153,39 @@ pub(super) fn shade_model() -> Frames {
             }
         }
     }
-    frames
 }
 
 /// Texture_perspective: a square whose corners have other w, with perspective and without, as two triangles and as a quad.
-pub(super) fn perspective() -> Frames {
+pub(super) fn perspective(frames: &mut Frames) {
     let colors = [argb(0xff00_ffff), argb(0xff00_0000)];
     let texture = images::texture(TextureFormat::A8R8G8B8, [256, 256], checker(colors, 8));
     let texture = images::in_texels(texture);
-    let corners = [[-1.75, 1.75], [1.75, 1.75], [1.75, -1.75], [-1.75, -1.75]];
-    let place = |n: usize, w: f32| space::fixed_function([corners[n][0], corners[n][1], 0.0, w]);
-    let mut frames = Frames::default();
+    let place = |n: usize, w: f32| {
+        let [x, y] = corners([-1.75, 1.75, 1.75, -1.75])[n];
+        space::flat([x, y, 0.0, w])
+    };
     for (letter, perspective) in [("y", true), ("n", false)] {
         for (kind, topology, order) in
             [("bitri", Topology::Triangles, &[0, 1, 3, 2, 3, 1][..]), ("quad", Topology::Quads, &[0, 1, 2, 3])]
         {
             let bytes = [[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255; 4]];
             let colored = |n: usize| {
-                let [x, y, _, w] = place(n, [0.3, 1.0, 0.3, 1.0][n]);
-                Vertex { position: [x, y, 0.0, w], diffuse: VertexColor::Bytes(bytes[n]), ..Vertex::default() }
+                let position = place(n, [0.3, 1.0, 0.3, 1.0][n]);
+                Vertex { position, diffuse: VertexColor::Bytes(bytes[n]), ..Vertex::default() }
             };
             let all = draw(topology, order.iter().map(|n| colored(*n)).collect());
             let all = Draw { perspective, ..all };
             frames.push(format!("tex_diff_pers_{letter}_{kind}"), one(0xfe25_1135, None, all));
-            let texels = [[0.0, 0.0], [256.0, 0.0], [256.0, 256.0], [0.0, 256.0]];
-            let shown = |n: usize| placed(place(n, [0.3, 1.0, 3.0, 1.0][n]), texels[n]);
-            let all = textured(draw(topology, order.iter().map(|n| shown(*n)).collect()), nearest(0));
+            let shown = |n: usize| placed(place(n, [0.3, 1.0, 3.0, 1.0][n]), corners([0.0, 0.0, 256.0, 256.0])[n]);
+            let all = fetching(draw(topology, order.iter().map(|n| shown(*n)).collect()), 0, nearest(0));
             let all = Draw { perspective, ..all };
             frames.push(format!("tex_tex_pers_{letter}_{kind}"), one(0xfe25_1135, Some(&texture), all));
         }
     }
-    frames
 }
 
 /// Attrib_float: colours beyond 0 to 1, as they are, times 1 and times 0. What the programs multiply by infinities is not drawn.
-pub(super) fn float_colors() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn float_colors(frames: &mut Frames) {
     for (name, lowest, highest) in [("0_1", 0.0, 1.0), ("-1_1", -1.0, 1.0), ("-8_1", -8.0, 1.0), ("0_8", 0.0, 8.0)] {
         let mut canvas = Canvas::new(0xff64_95ed);
         let inset = 0.2_f32;
@@ -270,17 +195,16 @@ pub(super) fn float_colors() -> Frames {
             let (x, y) = ((inset + column * wide) * 640.0, (inset + 0.1) * 480.0);
             let (right, bottom) = (x + wide * 0.8 * 640.0, y + tall * 480.0);
             let color = |value: f32| VertexColor::Floats([value * factor, value * factor, value * factor, 1.0]);
-            let corners = [([x, y], lowest), ([right, y], lowest), ([right, bottom], highest), ([x, bottom], highest)];
+            let corners = corners([x, y, right, bottom]).into_iter().zip([lowest, lowest, highest, highest]);
             let corners = corners.map(|(corner, value)| vertex(corner, color(value)));
-            canvas.draw(draw(Topology::Quads, corners.to_vec()));
+            canvas.draw(draw(Topology::Quads, corners.collect()));
         }
         frames.push(name, canvas.colors());
     }
-    frames
 }
 
 /// High_vertex_count: small squares over each other, 34,952 vertices, however they reach the chip.
-pub(super) fn many_vertices() -> Frames {
+pub(super) fn many_vertices(frames: &mut Frames) {
     const SQUARES: u32 = 0x7ffff / 60;
     let mut vertices = Vec::new();
     let mut color = [0.0_f32, 0.5, 0.75];
@@ -288,7 +212,7 @@ pub(super) fn many_vertices() -> Frames {
     while count < SQUARES {
         for column in 0..106_u8.min((SQUARES - count).min(106) as u8) {
             let left = 2.0 + 6.0 * f32::from(column);
-            for corner in [[left, top], [left + 6.0, top], [left + 6.0, top + 6.0], [left, top + 6.0]] {
+            for corner in corners(sized([left, top], [6.0; 2])) {
                 let [r, g, b] = color;
                 vertices.push(vertex(corner, VertexColor::Floats([r, g, b, alpha])));
                 for _ in 0..2 {
@@ -308,102 +232,19 @@ pub(super) fn many_vertices() -> Frames {
         }
     }
     let drawn = one(0xff44_4444, None, draw(Topology::Quads, vertices));
-    let mut frames = Frames::default();
     for kind in ["arrays", "inlinearrays", "inlinebuffers", "inlineelements"] {
         frames.push(format!("HighVtxCount-{kind}"), drawn.clone());
     }
-    frames
 }
 
-/// x, y, z in the world, and red, green and blue.
-type Colored = [f32; 6];
-
 /// The shapes of 3D_primitive.
-const SOLIDS: [(&str, Topology, &[Colored]); 6] = [
-    (
-        "Triangles",
-        Topology::Triangles,
-        &[
-            [-2.75, 1.75, 1.0, 0.25, 0.25, 0.25],
-            [0.0, 1.75, 1.0, 0.55, 0.55, 0.55],
-            [-2.75, 0.0, 1.0, 0.75, 0.75, 0.75],
-            [2.75, 1.75, 1.0, 0.8, 0.25, 0.1],
-            [0.1, -1.75, 5.0, 0.1, 0.85, 0.1],
-            [0.25, 0.0, 1.0, 0.1, 0.25, 0.9],
-            [-0.4, -1.75, 5.0, 0.8, 0.25, 0.9],
-            [-1.4, -1.4, 5.0, 0.1, 0.85, 0.9],
-            [0.0, 0.0, 5.0, 0.85, 0.95, 0.1],
-        ],
-    ),
-    (
-        "TriStrip",
-        Topology::TriangleStrip,
-        &[
-            [-2.75, 0.0, 1.0, 1.0, 0.0, 0.0],
-            [-2.25, 1.75, 1.0, 0.0, 1.0, 0.0],
-            [-2.0, -1.75, 1.0, 0.0, 0.0, 1.0],
-            [-1.3, 1.6, 1.15, 0.25, 0.0, 0.8],
-            [0.0, -1.5, 1.3, 0.75, 0.0, 0.25],
-            [0.4, 1.0, 1.7, 0.33, 0.33, 0.33],
-            [1.4, -0.6, 5.0, 0.7, 0.7, 0.7],
-            [2.75, 1.75, 5.0, 0.5, 0.5, 0.6],
-        ],
-    ),
-    (
-        "TriFan",
-        Topology::TriangleFan,
-        &[
-            [0.0, -0.75, 1.0, 1.0, 1.0, 1.0],
-            [-2.25, -1.75, 1.0, 0.0, 0.0, 1.0],
-            [-2.0, 1.75, 1.0, 0.0, 1.0, 0.0],
-            [-0.6, 0.65, 1.15, 0.25, 0.0, 0.8],
-            [0.0, 1.5, 1.3, 0.75, 0.0, 0.25],
-            [0.4, 1.0, 1.7, 0.33, 0.33, 0.33],
-            [2.4, 0.6, 5.0, 0.7, 0.7, 0.7],
-            [2.75, -1.75, 5.0, 0.5, 0.5, 0.6],
-        ],
-    ),
-    (
-        "Quads",
-        Topology::Quads,
-        &[
-            [-2.75, 1.75, 1.0, 1.0, 1.0, 1.0],
-            [-0.6, 1.6, 1.7, 0.5, 0.5, 0.6],
-            [-1.35, -0.6, 1.7, 0.7, 0.7, 0.7],
-            [-2.4, -1.75, 1.7, 0.33, 0.33, 0.33],
-            [0.06, -0.09, 1.0, 1.0, 0.0, 1.0],
-            [1.9, -0.25, 1.0, 0.1, 0.3, 0.6],
-            [2.62, -1.03, 1.0, 1.0, 1.0, 0.0],
-            [1.25, -1.65, 1.0, 0.0, 1.0, 1.0],
-            [-1.25, 1.3, 5.0, 0.25, 0.25, 0.25],
-            [0.3, 1.25, 5.0, 0.1, 0.3, 0.1],
-            [2.62, -0.03, 5.0, 0.65, 0.65, 0.65],
-            [-1.0, -1.0, 5.0, 0.45, 0.45, 0.45],
-        ],
-    ),
-    (
-        "QuadStrip",
-        Topology::QuadStrip,
-        &[
-            [-2.75, -1.75, 1.0, 0.33, 0.33, 0.33],
-            [-2.75, 1.75, 1.0, 1.0, 1.0, 1.0],
-            [0.0, -1.35, 1.0, 0.7, 0.1, 0.0],
-            [0.0, 1.0, 1.0, 0.0, 0.9, 0.2],
-            [2.75, -1.75, 1.0, 0.33, 0.33, 0.33],
-            [2.75, 1.75, 1.0, 0.0, 0.7, 0.9],
-        ],
-    ),
-    (
-        "Polygon",
-        Topology::Polygon,
-        &[
-            [-2.75, -1.75, 1.0, 0.33, 0.33, 0.33],
-            [-1.4, 1.1, 1.0, 0.7, 0.1, 0.0],
-            [-0.3, 1.75, 1.0, 0.1, 0.7, 0.5],
-            [2.0, 0.3, 1.0, 0.0, 0.9, 0.2],
-            [2.75, -1.5, 1.0, 0.7, 0.7, 0.7],
-        ],
-    ),
+const SOLIDS: [Shape; 6] = [
+    ("Triangles", Topology::Triangles, TRIANGLES),
+    ("TriStrip", Topology::TriangleStrip, STRIP),
+    ("TriFan", Topology::TriangleFan, FAN),
+    ("Quads", Topology::Quads, SOLID_QUADS),
+    ("QuadStrip", Topology::QuadStrip, QUAD_STRIP),
+    ("Polygon", Topology::Polygon, POLYGON),
 ];
 
 /// A depth buffer that is cleared to the farthest.
@@ -411,10 +252,9 @@ pub(super) const FAR_DEPTHS: DepthBuffer =
     DepthBuffer { format: DepthFormat::Z24S8, clear: 0xff_ffff, clear_stencil: 0 };
 
 /// 3D_primitive, however vertices reach the chip.
-pub(super) fn solids() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn solids(frames: &mut Frames) {
     for (name, topology, vertices) in SOLIDS {
-        let vertex = |[x, y, z, r, g, b]: &Colored| {
+        let vertex = |[x, y, z, r, g, b, ..]: &Corner| {
             let [x, y, z, w] = space::fixed_function([*x, *y, *z, 1.0]);
             let diffuse = VertexColor::Floats([*r, *g, *b, 1.0]);
             Vertex { position: [x, y, z / 65535.0, w], diffuse, ..Vertex::default() }
@@ -429,11 +269,10 @@ pub(super) fn solids() -> Frames {
             frames.push(format!("{name}{kind}"), drawn.clone());
         }
     }
-    frames
 }
 
 /// Attrib_setter: colours in one format or another, where they are plain.
-pub(super) fn setters() -> Frames {
+pub(super) fn setters(frames: &mut Frames) {
     let bytes = |words: [u32; 3]| words.map(|word| VertexColor::Bytes(abgr(word)));
     let floats = |colors: [[f32; 4]; 3]| colors.map(VertexColor::Floats);
     let mut canvas = Canvas::new(0xff33_3333);
@@ -448,7 +287,5 @@ pub(super) fn setters() -> Frames {
         let corners = corners.into_iter().zip(colors).map(|(corner, color)| vertex(corner, color));
         canvas.draw(draw(Topology::Triangles, corners.collect()));
     }
-    let mut frames = Frames::default();
     frames.push("Setters-alpha", canvas.colors());
-    frames
 }

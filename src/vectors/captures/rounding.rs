@@ -1,6 +1,8 @@
 //! RAS-1 to RAS-3: vertices on and beside sixteenths of a pixel, on the frame buffer and on textures; edges that meet pixels' centres.
 
-use super::draws::{Canvas, abgr, argb, draw, nearest, opaque, pasted, rectangle, sized, vertex, without_alpha};
+use super::draws::{
+    Canvas, abgr, argb, draw, nearest, opaque, pasted, places, rectangle, sized, vertex, without_alpha,
+};
 use super::images;
 use super::{Drawn, Frames};
 use ninebit::state::{Draw, FinalRegister, SurfaceFormat, Target, TextureFormat, TextureKind, Topology, VertexColor};
@@ -52,9 +54,8 @@ fn on_textures(bias: f32, is_large: bool) -> Drawn {
     let mut canvas = Canvas::new(0xfe41_4041);
     let first = |_, y| if y < 16 { argb(0xffff_00ff) } else { abgr(GREEN) };
     let large = images::texture(TextureFormat::A8R8G8B8, [1024, 1024], first);
-    let mut corner = [248.0_f32, 168.0];
     let mut shown = Vec::new();
-    for [width, height] in SIZES {
+    for ([width, height], corner) in SIZES.into_iter().zip(places([248.0, 168.0], [144.0; 2], 2)) {
         let size = [width, height].map(|side| f32::from(side as u16));
         let draws = [patch([bias, bias, size[0] + bias, size[1] + bias], GREEN)];
         let target = if is_large {
@@ -68,14 +69,8 @@ fn on_textures(bias: f32, is_large: bool) -> Drawn {
         let texture = canvas.shown(target, TextureKind::Rectangle, TextureFormat::X8R8G8B8);
         let draw = pasted(sized(corner, size), 0, nearest(texture), [0.0, 0.0, size[0], size[1]]);
         shown.push(without_alpha(draw, FinalRegister::Texture0));
-        corner[0] += 144.0;
-        if corner[0] >= 496.0 {
-            corner = [248.0, corner[1] + 144.0];
-        }
     }
-    for draw in shown {
-        canvas.draw(draw);
-    }
+    canvas.draw_into(0, shown);
     canvas.colors()
 }
 
@@ -162,8 +157,7 @@ fn edges() -> Drawn {
 }
 
 /// Vertex_shader_rounding_tests.
-pub(super) fn frames() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn frames(frames: &mut Frames) {
     for (name, bias) in BIASES {
         frames.push(format!("Geometry_{name}"), geometry(bias));
         frames.push(format!("AdjacentGeometry_{name}"), adjacent(bias));
@@ -172,5 +166,4 @@ pub(super) fn frames() -> Frames {
     }
     frames.push("TopLeftRaster", edges());
     frames.push("TopLeftRaster_Fixed", edges());
-    frames
 }

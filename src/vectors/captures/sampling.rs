@@ -1,11 +1,13 @@
 //! VOL-1, TEX-17, CYL-1: volumes in all formats, anisotropy, and a coordinate that goes around a cylinder.
 
-use super::draws::{Canvas, FETCHED, argb, draw, nearest, pasted, sized, unprojected, without_alpha};
+use super::draws::{
+    Canvas, FETCHED, argb, corners, draw, fetching, nearest, pasted, placed, sized, unprojected, without_alpha,
+};
 use super::images::{checker, gradient};
 use super::{Frames, images, space, texel_formats};
 use ninebit::state::{
-    AddressMode, Combiners, Draw, ShaderStage, TEXTURE_UNITS, Texels, Texture, TextureFormat, TextureImage,
-    TextureKind, TextureUnit, Topology, Vertex, VertexColor,
+    AddressMode, Draw, TEXTURE_UNITS, Texels, Texture, TextureFormat, TextureImage, TextureKind, TextureUnit, Topology,
+    Vertex, VertexColor,
 };
 
 const SIDE: u32 = 256;
@@ -49,18 +51,14 @@ fn pairs(unit: TextureUnit) -> Draw {
         }));
         r += 1.0 / 7.0;
     }
-    let mut draw = Draw { combiners: Combiners::showing(FETCHED[0]), ..draw(Topology::Triangles, vertices) };
-    draw.textures[0] = Some(unit);
-    draw.texture_shader[0] = ShaderStage::conventional(0, true);
-    draw
+    fetching(draw(Topology::Triangles, vertices), 0, unit)
 }
 
 /// Formats whose layers the programs store as they convert them, in another order than the chip reads them: they are left out, as is DXT1.
 const CONVERTED: [&str; 9] = ["A8", "A8Y8", "AY8", "G8B8", "R16B16", "R6G5B5", "R8B8", "Y16", "Y8"];
 
 /// Volume_texture, ten formats.
-pub(super) fn volumes() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn volumes(frames: &mut Frames) {
     let unit = TextureUnit { address_r: AddressMode::ClampToEdge, ..nearest(0) };
     for variant in texel_formats::variants().filter(|v| !v.in_texels && !CONVERTED.contains(&v.base)) {
         frames.make(variant.base, move || {
@@ -91,40 +89,25 @@ pub(super) fn volumes() -> Frames {
         canvas.draw(pairs(TextureUnit { palette, ..unit }));
         canvas.colors()
     });
-    frames
 }
 
 /// Texture_anisotropy: a floor to the horizon, with one to eight taps.
-pub(super) fn anisotropy() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn anisotropy(frames: &mut Frames) {
     for anisotropy in [1, 2, 4, 8] {
         let mut canvas = Canvas::new(0xfe20_2020);
         let image = checker([0xffff_ff00, 0xff66_3333].map(argb), 4);
         canvas.texture(&images::texture(TextureFormat::A8R8G8B8, [128; 2], image));
         let (address_s, address_t) = (AddressMode::Wrap, AddressMode::Wrap);
         let unit = TextureUnit { anisotropy, address_s, address_t, ..nearest(0) };
-        let corners = [[-4.0, 200.0], [4.0, 200.0], [4.0, 0.0], [-4.0, 0.0]];
-        let texels = [[0.0, 0.0], [1.0, 0.0], [1.0, 32.0], [0.0, 32.0]];
-        let vertex = |n: usize| {
-            let ([x, z], [s, t]) = (corners[n], texels[n]);
-            Vertex {
-                position: space::fixed_function([x, -1.5, z, 1.0]),
-                texture_coordinates: [[s, t, 0.0, 1.0]; TEXTURE_UNITS],
-                ..Vertex::default()
-            }
-        };
-        let mut draw = without_alpha(draw(Topology::Quads, (0..4).map(vertex).collect()), FETCHED[0]);
-        draw.textures[0] = Some(unit);
-        draw.texture_shader[0] = ShaderStage::conventional(0, true);
-        canvas.draw(draw);
+        let floor = corners([-4.0, 200.0, 4.0, 0.0]).into_iter().zip(corners([0.0, 0.0, 1.0, 32.0]));
+        let floor = floor.map(|([x, z], texel)| placed(space::fixed_function([x, -1.5, z, 1.0]), texel));
+        canvas.draw(without_alpha(fetching(draw(Topology::Quads, floor.collect()), 0, unit), FETCHED[0]));
         frames.push(format!("Anisotropy-{anisotropy}"), canvas.colors());
     }
-    frames
 }
 
 /// TextureWrapMode: coordinates that jump by one repeat and by a fifth, as they are and around a cylinder.
-pub(super) fn wrap_modes() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn wrap_modes(frames: &mut Frames) {
     let mut canvas = Canvas::new(0xff00_0000);
     let image = images::radial(SIDE, |distance| distance);
     let image = move |x: u32, y: u32| {
@@ -148,5 +131,4 @@ pub(super) fn wrap_modes() -> Frames {
         }
     }
     frames.push("CylinderWrapping", canvas.colors());
-    frames
 }

@@ -1,10 +1,12 @@
 //! TSH-1 to TSH-9, TEX-12: cube maps, dot products, reflections, bump maps and their luminance, dependent reads.
 
-use super::draws::{Canvas, FETCHED, WHOLE, abgr, draw, nearest, pasted, rectangle, sized, unprojected};
+use super::draws::{
+    self, Canvas, FETCHED, WHOLE, abgr, draw, fetching, nearest, pasted, places, rectangle, sized, unprojected,
+};
 use super::images::{self, Color, checker, four_gradients, gradient, luminance, solid};
 use super::primitives::FAR_DEPTHS;
 use super::space::{self, DEGREES_45, DEGREES_225, Matrix, STRAIGHT};
-use super::texel_formats::{packed, texture, variants};
+use super::texel_formats::{Variant, packed, texture, variants};
 use super::{Drawn, Frames, assets};
 use ninebit::state::{
     Combiners, CompareFunction, DepthTest, DotMapping, Draw, Filter, ShaderOperation, ShaderStage, TEXTURE_UNITS,
@@ -13,31 +15,13 @@ use ninebit::state::{
 use std::sync::Arc;
 
 /// The corners of a cube's six faces.
-const CUBE: [[f32; 3]; 24] = [
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-    [1.0, -1.0, -1.0],
-    [-1.0, -1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, -1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, 1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, -1.0, 1.0],
-    [-1.0, -1.0, 1.0],
+const CUBE: [[[f32; 3]; 4]; 6] = [
+    [[-1.0, -1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, 1.0], [-1.0, 1.0, 1.0]],
+    [[1.0, -1.0, -1.0], [-1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [1.0, 1.0, -1.0]],
+    [[1.0, -1.0, 1.0], [1.0, -1.0, -1.0], [1.0, 1.0, -1.0], [1.0, 1.0, 1.0]],
+    [[-1.0, -1.0, -1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, 1.0], [-1.0, 1.0, -1.0]],
+    [[-1.0, 1.0, 1.0], [1.0, 1.0, 1.0], [1.0, 1.0, -1.0], [-1.0, 1.0, -1.0]],
+    [[-1.0, -1.0, -1.0], [1.0, -1.0, -1.0], [1.0, -1.0, 1.0], [-1.0, -1.0, 1.0]],
 ];
 
 /// Left, top, right and bottom of the faces in the image of normals.
@@ -65,10 +49,10 @@ fn through(vector: [f64; 4], matrix: &Matrix) -> [f64; 4] {
     space::transform(vector, matrix).map(|value| f64::from(value as f32))
 }
 
-/// Both cubes, of which the faces are drawn that are turned to the viewer. `coordinates`: of a corner of a model, by number.
+/// Both cubes, of which the faces are drawn that are turned to the viewer. `coordinates`: of a corner of a model, by face and number.
 fn cubes(
     canvas: &mut Canvas,
-    coordinates: impl Fn(&Matrix, usize) -> [[f32; 4]; TEXTURE_UNITS],
+    coordinates: impl Fn(&Matrix, [usize; 2]) -> [[f32; 4]; TEXTURE_UNITS],
     state: impl Fn(Draw) -> Draw,
 ) {
     canvas.frame_buffer().depth = Some(FAR_DEPTHS);
@@ -78,18 +62,17 @@ fn cubes(
             let [x, y, z, w] = seen.map(|value| value as f32);
             [x / w, y / w, z / w, w]
         };
-        let corners = CUBE.map(position);
         let mut vertices = Vec::new();
-        for face in 0..6 {
-            let corner = |n: usize| corners[4 * face + n % 4].map(f64::from);
+        for (face, points) in CUBE.into_iter().enumerate() {
+            let corners = points.map(position);
+            let corner = |n: usize| corners[n % 4].map(f64::from);
             let area: f64 = (0..4).map(|n| corner(n)[0] * corner(n + 1)[1] - corner(n + 1)[0] * corner(n)[1]).sum();
             if area <= 0.0 {
                 continue;
             }
-            vertices.extend((4 * face..4 * face + 4).map(|n| {
-                let [x, y, z, w] = corners[n];
+            vertices.extend(corners.into_iter().enumerate().map(|(n, [x, y, z, w])| {
                 let (position, diffuse) = ([x, y, z / 65535.0, w], VertexColor::Bytes([255; 4]));
-                Vertex { position, diffuse, texture_coordinates: coordinates(&model, n), ..Vertex::default() }
+                Vertex { position, diffuse, texture_coordinates: coordinates(&model, [face, n]), ..Vertex::default() }
             }));
         }
         let depth_test = Some(DepthTest::new(CompareFunction::Less, true));
@@ -161,22 +144,20 @@ enum Eye {
 }
 
 /// The normals' place, and rows of a matrix for three dot products, with the eye behind them.
-fn surface(model: &Matrix, eye: Eye, corner: usize) -> [[f32; 4]; TEXTURE_UNITS] {
+fn surface(model: &Matrix, eye: Eye, [face, corner]: [usize; 2]) -> [[f32; 4]; TEXTURE_UNITS] {
     let rows = inverse(space::product(space::product(*model, space::eye()), space::window()));
     let eye = match eye {
         Eye::Unread => [1.0; 3],
         Eye::Along(axis) => axis.map(f64::from),
         Eye::Vertex => {
-            let [x, y, z, _] = space::transform(homogeneous(CUBE[corner]), model);
+            let [x, y, z, _] = space::transform(homogeneous(CUBE[face][corner]), model);
             let vector = [x, y, z + 7.0];
             let length = vector.iter().map(|value| value * value).sum::<f64>().sqrt();
             vector.map(|value| value / length)
         }
     };
-    let [left, top, right, bottom] = UNFOLDED[corner / 4];
-    let [s, t] = [[left, top], [right, top], [right, bottom], [left, bottom]][corner % 4];
     let row = |n: usize| [rows[n][0], rows[n][1], rows[n][2], eye[n]].map(|value| value as f32);
-    [[s, t, 0.0, 1.0], row(0), row(1), row(2)]
+    [corners(UNFOLDED[face])[corner], row(0), row(1), row(2)]
 }
 
 /// The stage of a texture shader that reads the first unit.
@@ -212,25 +193,20 @@ fn dotted(operation: ShaderOperation, mapping: DotMapping, eye: Eye, cube: &Text
 }
 
 /// Texture_cubemap.
-pub(super) fn cube_maps() -> Frames {
+pub(super) fn cube_maps(frames: &mut Frames) {
     let [checks, radial] = [chequered(), radial()].map(Arc::new);
     let normals = images::texture(TextureFormat::A8B8G8R8, [256, 256], assets::pixels(assets::NORMALS));
     let normals = Arc::new(normals);
-    let mut frames = Frames::default();
     for (name, q) in [("0.0", 0.0), ("-0.0", -0.0), ("1.0", 1.0), ("-1.0", -1.0)] {
         let checks = Arc::clone(&checks);
         frames.make(format!("Cubemap_q{name}"), move || {
             let mut canvas = Canvas::new(0xfe12_1212);
             canvas.texture(&checks);
-            let along = |_: &Matrix, corner: usize| {
-                let [x, y, z] = CUBE[corner];
+            let along = |_: &Matrix, [face, corner]: [usize; 2]| {
+                let [x, y, z] = CUBE[face][corner];
                 [[x, y, z, q]; TEXTURE_UNITS]
             };
-            cubes(&mut canvas, along, |mut draw| {
-                draw.textures[3] = Some(nearest(0));
-                draw.texture_shader[3] = ShaderStage::conventional(3, true);
-                Draw { combiners: Combiners::showing(FETCHED[3]), ..draw }
-            });
+            cubes(&mut canvas, along, |draw| fetching(draw, 3, nearest(0)));
             canvas.colors()
         });
     }
@@ -256,12 +232,11 @@ pub(super) fn cube_maps() -> Frames {
             make(format!("DotReflectConst_{axis}"), constant(eye), Eye::Unread, &checks);
         }
     }
-    frames
 }
 
 /// Coordinates of a rectangle's four corners.
-fn corners([s0, t0, s1, t1]: [f32; 4]) -> [[f32; 4]; 4] {
-    [[s0, t0], [s1, t0], [s1, t1], [s0, t1]].map(|[s, t]| [s, t, 0.0, 1.0])
+fn corners(edges: [f32; 4]) -> [[f32; 4]; 4] {
+    draws::corners(edges).map(|[s, t]| [s, t, 0.0, 1.0])
 }
 
 /// A rectangle with coordinate sets of its corners, whose fragment is what a unit fetched.
@@ -276,11 +251,19 @@ fn with_sets(edges: [f32; 4], sets: [[[f32; 4]; 4]; 3], shows: usize) -> Draw {
 
 const NO_SET: [[f32; 4]; 4] = [[0.0, 0.0, 0.0, 1.0]; 4];
 
-/// The draw with units and stages from the first on.
-fn shaded(mut draw: Draw, units: &[(Option<TextureUnit>, ShaderStage)]) -> Draw {
-    for (number, (unit, stage)) in units.iter().enumerate() {
-        (draw.textures[number], draw.texture_shader[number]) = (*unit, *stage);
+/// The draw whose first unit reads a texture for the stages behind it, of which the last shows another.
+fn shaded(
+    mut draw: Draw,
+    first: TextureUnit,
+    operations: &[ShaderOperation],
+    mapping: DotMapping,
+    last: TextureUnit,
+) -> Draw {
+    (draw.textures[0], draw.texture_shader[0]) = (Some(first), ShaderStage::conventional(0, true));
+    for (number, operation) in (1..).zip(operations) {
+        draw.texture_shader[number] = stage(number, *operation, mapping);
     }
+    draw.textures[operations.len()] = Some(last);
     draw
 }
 
@@ -313,14 +296,8 @@ fn dot_2d() -> Drawn {
     let to_light = points.map(|[x, y, z]| unit_vector([-1.5 - x, 5.0 - y, -z]));
     let draw = with_sets(unprojected(LARGE), [corners(TEXELS), from_eye, to_light], 2);
     let mapping = DotMapping::ZeroToOne;
-    canvas.draw(shaded(
-        draw,
-        &[
-            (Some(nearest(waves)), ShaderStage::conventional(0, true)),
-            (None, stage(1, ShaderOperation::DotProduct, mapping)),
-            (Some(nearest(seen)), stage(2, ShaderOperation::DotProduct2D, mapping)),
-        ],
-    ));
+    let dots = [ShaderOperation::DotProduct, ShaderOperation::DotProduct2D];
+    canvas.draw(shaded(draw, nearest(waves), &dots, mapping, nearest(seen)));
     canvas.colors()
 }
 
@@ -330,21 +307,16 @@ fn dependent(operation: ShaderOperation) -> Drawn {
     let read = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, size, four_gradients(size)));
     let shown = canvas.texture(&images::texture(TextureFormat::A8B8G8R8, size, gradient(size)));
     let draw = with_sets(unprojected(LARGE), [corners(WHOLE), NO_SET, NO_SET], 1);
-    canvas.draw(shaded(
-        draw,
-        &[
-            (Some(nearest(read)), ShaderStage::conventional(0, true)),
-            (Some(nearest(shown)), stage(1, operation, DotMapping::ZeroToOne)),
-        ],
-    ));
+    canvas.draw(shaded(draw, nearest(read), &[operation], DotMapping::ZeroToOne, nearest(shown)));
     canvas.colors()
 }
 
 fn pass_through() -> Drawn {
     let mut canvas = Canvas::new(0xff22_2222);
     let colors = [[0.0, 0.0, 1.0, 0.25], [0.0, 1.0, 0.0, 0.5], [1.0, 0.0, 0.0, 0.75], [1.0, 1.0, 0.4, 0.33]];
-    let draw = with_sets(unprojected(LARGE), [colors, NO_SET, NO_SET], 0);
-    canvas.draw(shaded(draw, &[(None, stage(0, ShaderOperation::PassThrough, DotMapping::ZeroToOne))]));
+    let mut draw = with_sets(unprojected(LARGE), [colors, NO_SET, NO_SET], 0);
+    draw.texture_shader[0] = stage(0, ShaderOperation::PassThrough, DotMapping::ZeroToOne);
+    canvas.draw(draw);
     canvas.colors()
 }
 
@@ -360,13 +332,7 @@ fn framed(canvas: &mut Canvas, edges: [f32; 4], texture: usize) {
 fn moved(edges: [f32; 4], [first, second]: [usize; 2], matrix: [f32; 4], luminance: Option<[f32; 2]>) -> Draw {
     let draw = with_sets(unprojected(edges), [corners(TEXELS), corners(TEXELS), NO_SET], 1);
     let operation = ShaderOperation::BumpEnvironment { matrix, luminance };
-    shaded(
-        draw,
-        &[
-            (Some(nearest(first)), ShaderStage::conventional(0, true)),
-            (Some(nearest(second)), stage(1, operation, DotMapping::ZeroToOne)),
-        ],
-    )
+    shaded(draw, nearest(first), &[operation], DotMapping::ZeroToOne, nearest(second))
 }
 
 fn bump_environment() -> Drawn {
@@ -374,8 +340,7 @@ fn bump_environment() -> Drawn {
     let [waves, seen] = water().map(|texture| canvas.texture(&texture));
     framed(&mut canvas, sized([8.0, 64.0], [128.0; 2]), seen);
     framed(&mut canvas, sized([8.0, 208.0], [128.0; 2]), waves);
-    let mut corner = [152.0, 64.0];
-    for matrix in [
+    let matrices = [
         [-1.0, 0.0, 1.0, 0.0],
         [1.0, 1.0, 1.0, 1.0],
         [0.0, 0.2, 0.0, 0.75],
@@ -384,12 +349,9 @@ fn bump_environment() -> Drawn {
         [0.0, 1.0, -1.0, 0.0],
         [0.0, 0.0, 1.0, 1.0],
         [0.5, 0.8, 0.0, 0.0],
-    ] {
+    ];
+    for (matrix, corner) in matrices.into_iter().zip(places([152.0, 64.0], [144.0; 2], 3)) {
         canvas.draw(moved(sized(corner, [128.0; 2]), [waves, seen], matrix, None));
-        corner[0] += 144.0;
-        if corner[0] + 128.0 > 640.0 {
-            corner = [152.0, corner[1] + 144.0];
-        }
     }
     canvas.colors()
 }
@@ -416,15 +378,13 @@ fn bump_luminance() -> Drawn {
 }
 
 /// Pixel_shader.
-pub(super) fn programs() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn programs(frames: &mut Frames) {
     frames.make("DotST", dot_2d);
     frames.make("StageDependentGreenBlue", || dependent(ShaderOperation::DependentGreenBlue));
     frames.make("StageDependentAlphaRed", || dependent(ShaderOperation::DependentAlphaRed));
     frames.make("Passthru", pass_through);
     frames.make("BumpEnvMap", bump_environment);
     frames.make("BumpEnvMapLuminance", bump_luminance);
-    frames
 }
 
 /// Squares in which the second column and the second row read more channels as signed.
@@ -442,20 +402,14 @@ fn quarters(colors: [Color; 4]) -> impl images::Image {
 
 const SIZE: [u32; 2] = [256, 256];
 
-/// A bump map of four colours that moves a chequered field.
-struct Bumped {
-    format: TextureFormat,
-    is_grey: bool,
-    in_texels: bool,
-    /// R, G, B, A.
+/// A bump map of four colours that moves a chequered field. `words`: R, G, B, A.
+fn bumped(
+    &Variant { format, is_grey, in_texels, .. }: &Variant,
     words: [u32; 4],
     matrix: [f32; 4],
-    luminance: Option<[f32; 2]>,
+    with_luminance: Option<[f32; 2]>,
     fields: [Color; 2],
-}
-
-fn bumped(of: &Bumped) -> Drawn {
-    let Bumped { format, is_grey, in_texels, words, matrix, luminance: with_luminance, fields } = *of;
+) -> Drawn {
     let colors = words.map(u32::to_be_bytes).map(|color| {
         let l = luminance(color);
         if is_grey { [l, l, l, color[3]] } else { color }
@@ -475,13 +429,8 @@ fn bumped(of: &Bumped) -> Drawn {
         let signed = [with_luminance.is_some() && blue, green, blue, false];
         let unit = TextureUnit { signed, ..bilinear(bumps) };
         let operation = ShaderOperation::BumpEnvironment { matrix, luminance: with_luminance };
-        canvas.draw(shaded(
-            with_sets(square_at(place), sets, 1),
-            &[
-                (Some(unit), ShaderStage::conventional(0, true)),
-                (Some(nearest(field)), stage(1, operation, DotMapping::ZeroToOne)),
-            ],
-        ));
+        let draw = with_sets(square_at(place), sets, 1);
+        canvas.draw(shaded(draw, unit, &[operation], DotMapping::ZeroToOne, nearest(field)));
     }
     canvas.colors()
 }
@@ -508,14 +457,8 @@ fn hilo(words: [u32; 4], fields: [Color; 2]) -> Drawn {
         // The sign of the low half is G's flag, and that of the high half A's.
         let [low, high] = place.map(|n| n == 1);
         let unit = TextureUnit { signed: [false, low, false, high], ..bilinear(bumps) };
-        canvas.draw(shaded(
-            with_sets(square_at(place), sets, 2),
-            &[
-                (Some(unit), ShaderStage::conventional(0, true)),
-                (None, stage(1, ShaderOperation::DotProduct, DotMapping::Hilo1)),
-                (Some(nearest(field)), stage(2, ShaderOperation::DotProduct2D, DotMapping::Hilo1)),
-            ],
-        ));
+        let dots = [ShaderOperation::DotProduct, ShaderOperation::DotProduct2D];
+        canvas.draw(shaded(with_sets(square_at(place), sets, 2), unit, &dots, DotMapping::Hilo1, nearest(field)));
     }
     canvas.colors()
 }
@@ -526,11 +469,10 @@ type Maps = [(&'static str, bool, bool); 4];
 const MAPS: Maps = [("", false, false), ("_R90", false, true), ("_B", true, false), ("_B_R90", true, true)];
 
 /// Bump_map.
-pub(super) fn bump_maps() -> Frames {
+pub(super) fn bump_maps(frames: &mut Frames) {
     let fields = [[0xfe, 0, 0, 255], [0x22, 0x21, 0x20, 0x7f]];
     let maps =
         [[0x007f_4500, 0x0080_4500, 0x007f_4500, 0x0080_4500], [0x0045_7f00, 0x0045_7f00, 0x0045_8000, 0x0045_8000]];
-    let mut frames = Frames::default();
     for variant in variants() {
         let name = variant.name();
         let count = match name.as_str() {
@@ -539,16 +481,9 @@ pub(super) fn bump_maps() -> Frames {
             _ => 1,
         };
         for (suffix, is_other, is_turned) in MAPS.into_iter().take(count) {
-            let bumps = Bumped {
-                format: variant.format,
-                is_grey: variant.is_grey,
-                in_texels: variant.in_texels,
-                words: maps[usize::from(is_other)],
-                matrix: if is_turned { TURNED_MATRIX } else { STRAIGHT_MATRIX },
-                luminance: None,
-                fields,
-            };
-            frames.make(format!("BumpMap_{name}{suffix}"), move || bumped(&bumps));
+            let matrix = if is_turned { TURNED_MATRIX } else { STRAIGHT_MATRIX };
+            let drawn = move || bumped(&variant, maps[usize::from(is_other)], matrix, None, fields);
+            frames.make(format!("BumpMap_{name}{suffix}"), drawn);
         }
     }
     for (suffix, words) in [
@@ -557,30 +492,20 @@ pub(super) fn bump_maps() -> Frames {
     ] {
         frames.make(format!("BumpMap_R16B16{suffix}"), move || hilo(words, fields));
     }
-    frames
 }
 
 /// Bump_env_lum.
-pub(super) fn bump_maps_with_luminance() -> Frames {
+pub(super) fn bump_maps_with_luminance(frames: &mut Frames) {
     let fields = [[0xfe, 0, 0, 0x7f], [0x22, 0x21, 0x20, 0x7f]];
     let maps =
         [[0x7f01_4500, 0x8003_4500, 0x7f01_4500, 0x8003_4500], [0x0001_7f00, 0x0001_7f00, 0xff03_8000, 0xff03_8000]];
-    let mut frames = Frames::default();
     for variant in variants() {
         let name = variant.name();
         let count = if matches!(name.as_str(), "R6G5B5" | "X8R8G8B8") { 4 } else { 1 };
         for (suffix, is_other, is_turned) in MAPS.into_iter().take(count) {
-            let bumps = Bumped {
-                format: variant.format,
-                is_grey: variant.is_grey,
-                in_texels: variant.in_texels,
-                words: maps[usize::from(is_other)],
-                matrix: if is_turned { TURNED_MATRIX } else { [0.3, 0.0, 0.0, 5.0] },
-                luminance: Some([0.7, 0.3]),
-                fields,
-            };
-            frames.make(format!("BumpEnvLum_{name}{suffix}"), move || bumped(&bumps));
+            let matrix = if is_turned { TURNED_MATRIX } else { [0.3, 0.0, 0.0, 5.0] };
+            let drawn = move || bumped(&variant, maps[usize::from(is_other)], matrix, Some([0.7, 0.3]), fields);
+            frames.make(format!("BumpEnvLum_{name}{suffix}"), drawn);
         }
     }
-    frames
 }

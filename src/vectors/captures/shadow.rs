@@ -1,10 +1,10 @@
 //! SHD-1: a picture of depths, as large as the frame, compared by eight functions with one r; in three dimensions and in two.
 
-use super::draws::{Canvas, nearest, quads, with_primary_alpha};
+use super::draws::{Canvas, corners, nearest, quads, rectangle, textured, with_primary_alpha};
 use super::{Frames, SIZE, images};
 use ninebit::state::{
-    CompareFunction, Draw, FinalRegister, ShaderStage, ShadowComparison, ShadowReference, TEXTURE_UNITS, TextureFormat,
-    TextureKind, TextureUnit, Topology, Vertex, VertexColor,
+    CompareFunction, Draw, FinalRegister, ShadowComparison, ShadowReference, TextureFormat, TextureKind, TextureUnit,
+    Topology, VertexColor,
 };
 
 /// Functions by their names in frames.
@@ -89,8 +89,7 @@ fn markers() -> Vec<Draw> {
 }
 
 /// Texture_shadow_comparator, the frames whose depths are given as they are.
-pub(super) fn given() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn given(frames: &mut Frames) {
     for (format, bits, values) in RANGES {
         let memory = words(format, values);
         let texels = memory.iter().map(|word| if bits == 24 { word.rotate_right(8) } else { *word });
@@ -100,16 +99,10 @@ pub(super) fn given() -> Frames {
                 let unit = TextureUnit { shadow: Some(ShadowComparison { function, reference }), ..nearest(0) };
                 let [least, greatest, r] = values;
                 let (width, height) = (SIZE.0 as f32, SIZE.1 as f32);
-                let corners = [[0.0, 100.0], [width, 100.0], [width, height - 100.0], [0.0, height - 100.0]];
-                let texels = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
-                let mut draw = quads(&corners, color(0xff22_77ff), FinalRegister::Texture0);
+                let draw = rectangle([0.0, 100.0, width, height - 100.0], color(0xff22_77ff));
+                let mut draw = textured(draw, 0, unit, corners([0.0, 0.0, width, height]));
+                draw.vertices.update(|_, vertex| vertex.texture_coordinates.iter_mut().for_each(|at| at[2] = r as f32));
                 draw.combiners = with_primary_alpha(FinalRegister::Texture0);
-                draw.vertices.update(|n, vertex: &mut Vertex| {
-                    let [s, t] = texels[n];
-                    vertex.texture_coordinates = [[s, t, r as f32, 1.0]; TEXTURE_UNITS];
-                });
-                draw.textures[0] = Some(unit);
-                draw.texture_shader[0] = ShaderStage::conventional(0, true);
                 let (texture, name) = (texture.clone(), format!("{stage}R{bits}_{least:X}-{greatest:X}_{r:X}_{name}"));
                 frames.make(name, move || {
                     let mut canvas = Canvas::new(0xfe11_2233);
@@ -121,5 +114,4 @@ pub(super) fn given() -> Frames {
             }
         }
     }
-    frames
 }

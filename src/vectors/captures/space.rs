@@ -66,16 +66,24 @@ pub(super) fn eye() -> Matrix {
 
 /// A point of the world through the fixed function, whose pixels lie off by [`UNPROJECTED`](super::draws::UNPROJECTED).
 pub(super) fn fixed_function(point: [f32; 4]) -> [f32; 4] {
-    let matrix = product(eye(), window());
-    let [x, y, z, w] = transform(point.map(f64::from), &matrix);
+    let [x, y, z, w] = transform(point.map(f64::from), &product(eye(), window()));
     let off = f64::from(super::draws::UNPROJECTED);
     [x / w + off, y / w + off, z / w, w].map(|value| value as f32)
 }
 
+/// A position without its depth.
+pub(super) fn without_depth([x, y, _, w]: [f32; 4]) -> [f32; 4] {
+    [x, y, 0.0, w]
+}
+
+/// A point through the fixed function, without its depth.
+pub(super) fn flat(point: [f32; 4]) -> [f32; 4] {
+    without_depth(fixed_function(point))
+}
+
 /// A point of the world through the programs' vertex program, which multiplies by the reciprocal of w, cut to single precision.
 pub(super) fn programmed(point: [f32; 4]) -> [f32; 4] {
-    let matrix = product(eye(), window());
-    let [x, y, z, w] = transform(point.map(f64::from), &matrix).map(|value| value as f32);
+    let [x, y, z, w] = transform(point.map(f64::from), &product(eye(), window())).map(|value| value as f32);
     let exact = 1.0 / f64::from(w);
     let nearest = exact as f32;
     let reciprocal = if f64::from(nearest) > exact { f32::from_bits(nearest.to_bits() - 1) } else { nearest };

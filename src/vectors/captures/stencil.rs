@@ -36,8 +36,7 @@ fn square(side: f32, color: VertexColor) -> Draw {
 }
 
 /// Stencil.
-pub(super) fn operations() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn operations(frames: &mut Frames) {
     for (stencil_on, depth_on) in [(true, false), (false, true), (true, true), (false, false)] {
         for (operation, cleared, reference) in [(StencilOperation::Zero, 255, 0), (StencilOperation::Replace, 0, 1)] {
             let mut second = square(100.0, color(0.0, 0.0, 1.0));
@@ -53,17 +52,16 @@ pub(super) fn operations() -> Frames {
                 if depth_on { "_DT" } else { "" }
             );
             let draws = vec![square(200.0, color(1.0, 0.0, 0.0)), second, third];
-            both(&mut frames, &name, target(cleared), draws);
+            both(frames, &name, target(cleared), draws);
         }
     }
-    frames
 }
 
 /// The reference of Stencil_func.
 const REFERENCE: u8 = 0x7f;
 
 /// Stencil_func.
-pub(super) fn functions() -> Frames {
+pub(super) fn functions(frames: &mut Frames) {
     use StencilOperation::*;
     let upper: [&[StencilOperation]; 5] =
         [&[Zero], &[Replace, Decrement], &[Replace], &[Replace, Increment], &[Zero, Invert]];
@@ -92,14 +90,12 @@ pub(super) fn functions() -> Frames {
             left += 81.0;
         }
     }
-    let mut frames = Frames::default();
     let names = "Never Less Equal LessThanOrEqual Greater NotEqual GreaterThanOrEqual Always".split(' ');
     for (name, function) in names.zip(CompareFunction::ALL.iter().copied()) {
         let mut last = rectangle([120.0, 40.0, 530.0, 450.0], color(0.0, 0.75, 0.0));
         last.color_mask = [true, true, true, false];
         last.stencil_test = Some(test(function, REFERENCE, Keep));
         let draws = stacks.iter().cloned().chain([last]).collect();
-        both(&mut frames, name, target(0), draws);
+        both(frames, name, target(0), draws);
     }
-    frames
 }

@@ -1,31 +1,21 @@
 //! TEX-1 to TEX-4, TEX-9, TEX-18: formats of texels, palettes, signed channels, levels.
 
-use super::draws::{Canvas, FETCHED, WHOLE, abgr, draw, far, nearest, pasted, sized, unprojected, without_alpha};
+use super::draws::{
+    Canvas, FETCHED, WHOLE, abgr, corners, draw, far, fetching, nearest, pasted, placed, places, sized, unprojected,
+    without_alpha,
+};
 use super::images::{self, Color, Image, bulge, checker, gradient, grey};
 use super::{Drawn, Frames, assets, space};
 use ninebit::state::{
-    Combiners, Draw, Filter, FinalRegister, GeneralStage, MipFilter, Named, Register, ShaderStage, SurfaceFormat,
-    TEXTURE_UNITS, Target, Texture, TextureFormat, TextureKind, TextureUnit, Topology, Vertex, VertexColor,
+    Combiners, Draw, Filter, FinalRegister, GeneralStage, MipFilter, Named, Register, SurfaceFormat, Target, Texture,
+    TextureFormat, TextureKind, TextureUnit, Topology,
 };
 
 /// A square of two triangles as a vertex program shows it, whose first unit has a texture. `side`: coordinates of its far edges.
 fn square(side: f32, unit: TextureUnit) -> Draw {
-    let corners = [[-0.75, 0.75], [0.75, 0.75], [0.75, -0.75], [-0.75, -0.75]];
-    let texels = [[0.0, 0.0], [side, 0.0], [side, side], [0.0, side]];
-    let vertex = |n: usize| {
-        let [s, t] = texels[n];
-        Vertex {
-            position: space::vertex_program(corners[n]),
-            texture_coordinates: [[s, t, 0.0, 1.0]; TEXTURE_UNITS],
-            diffuse: VertexColor::Bytes([255; 4]),
-            ..Vertex::default()
-        }
-    };
-    let draw = draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(vertex).to_vec());
-    let mut draw = Draw { combiners: Combiners::showing(FETCHED[0]), ..draw };
-    draw.textures[0] = Some(unit);
-    draw.texture_shader[0] = ShaderStage::conventional(0, true);
-    draw
+    let (places, texels) = (corners([-0.75, 0.75, 0.75, -0.75]), corners([0.0, 0.0, side, side]));
+    let vertex = |n: usize| placed(space::vertex_program(places[n]), texels[n]);
+    fetching(draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(vertex).to_vec()), 0, unit)
 }
 
 const SIDE: u32 = 256;
@@ -60,6 +50,7 @@ const FORMATS: [(&str, TextureFormat, Content, bool); 17] = [
 ];
 
 /// A format of the frames: its name there, whether its texture is grey, and whether its coordinates are texels.
+#[derive(Clone, Copy)]
 pub(super) struct Variant {
     pub(super) base: &'static str,
     pub(super) format: TextureFormat,
@@ -92,8 +83,7 @@ pub(super) fn packed(format: TextureFormat, size: [u32; 2], image: impl Image) -
         TextureFormat::Y16 => (f32::from(color[0]) / 255.0 * 65535.0) as u32,
         _ => ninebit_files::texels::word(color, format),
     };
-    let rows = (0..size[1]).flat_map(|y| (0..size[0]).map(move |x| (x, y)));
-    rows.map(|(x, y)| wide(image(x, y))).collect()
+    images::each_texel(size).map(|(x, y)| wide(image(x, y))).collect()
 }
 
 /// Words of a texture whose kind says how its coordinates count.
@@ -121,25 +111,23 @@ fn swizzled(x: u32, y: u32) -> u32 {
 fn bytes_of_gradient(is_swizzled: bool) -> Vec<u32> {
     let mut memory = vec![0; (4 * SIDE * SIDE) as usize];
     let image = gradient(SIZE);
-    for (x, y) in (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))) {
-        let at = 4 * if is_swizzled { swizzled(x, y) } else { y * SIDE + x } as usize;
+    let place = |(x, y)| if is_swizzled { swizzled(x, y) } else { y * SIDE + x } as usize;
+    for (x, y) in images::each_texel(SIZE) {
         let [r, g, b, a] = image(x, y).map(u32::from);
-        memory[at..at + 4].copy_from_slice(&[a, r, g, b]);
+        memory[4 * place((x, y))..][..4].copy_from_slice(&[a, r, g, b]);
     }
-    let place = |x, y| if is_swizzled { swizzled(x, y) } else { y * SIDE + x };
-    (0..SIDE).flat_map(|y| (0..SIDE).map(move |x| (x, y))).map(|(x, y)| memory[place(x, y) as usize]).collect()
+    images::each_texel(SIZE).map(|at| memory[place(at)]).collect()
 }
 
 /// Blocks of four colours of which the first is black and the second an upper left texel of the gradient, chosen by its alpha.
 fn blocks_of_gradient() -> Vec<u32> {
     let image = gradient(SIZE);
-    let corners = (0..SIDE / 4).flat_map(|y| (0..SIDE / 4).map(move |x| (4 * x, 4 * y)));
     let block = |(x, y)| {
-        let [r, g, b, a] = image(x, y).map(u32::from);
+        let [r, g, b, a] = image(4 * x, 4 * y).map(u32::from);
         let color = (((r & 0xf8) + (g >> 5)) << 8) | (((g & 0x1c) << 3) + (b >> 3));
         [color << 16, if a >= 125 { 0x5555_5555 } else { 0xffff_ffff }]
     };
-    corners.flat_map(block).collect()
+    images::each_texel([SIDE / 4; 2]).flat_map(block).collect()
 }
 
 /// Blue, green, red and grey, each falling from full in a quarter of the entries.
@@ -185,8 +173,7 @@ fn pictures(six_bits: TextureFormat) -> Vec<(String, Box<dyn Fn() -> Pictured + 
 }
 
 /// Texture_format.
-pub(super) fn formats() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn formats(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R5G6B5) {
         frames.make(name, move || {
             let mut canvas = Canvas::new(0xfe20_2020);
@@ -195,12 +182,10 @@ pub(super) fn formats() -> Frames {
             canvas.colors()
         });
     }
-    frames
 }
 
 /// Texture_render_target: the same on a texture first.
-pub(super) fn render_targets() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn render_targets(frames: &mut Frames) {
     for (name, picture) in pictures(TextureFormat::R6G5B5) {
         frames.make(name, move || {
             let mut canvas = Canvas::new(0xfe21_2021);
@@ -211,12 +196,11 @@ pub(super) fn render_targets() -> Frames {
             let shown = canvas.shown(target, TextureKind::TwoDimensional, TextureFormat::A8R8G8B8);
             let [left, top, _, w] = space::fixed_function([-1.75, 1.75, 0.1, 1.0]);
             let [right, bottom, ..] = space::fixed_function([1.75, -1.75, 0.1, 1.0]);
-            canvas
-                .draw(without_alpha(far(pasted([left, top, right, bottom], 0, nearest(shown), WHOLE), w), FETCHED[0]));
+            let draw = pasted([left, top, right, bottom], 0, nearest(shown), WHOLE);
+            canvas.draw(without_alpha(far(draw, w), FETCHED[0]));
             canvas.colors()
         });
     }
-    frames
 }
 
 /// A palette whose red grows, green falls and blue repeats, under a mask.
@@ -238,8 +222,7 @@ fn row_of_palettes(canvas: &mut Canvas, top: f32, texture: usize, palettes: &[Ve
 /// Indices that are highest in the middle, times a factor.
 fn indices(factor: u32) -> Texture {
     let distance = bulge([128, 128]);
-    let words = (0..128).flat_map(|y| (0..128).map(move |x| (x, y)));
-    let words = words.map(|(x, y)| (u32::from(distance(x, y)) * factor) & 255).collect();
+    let words = images::each_texel([128; 2]).map(|(x, y)| (u32::from(distance(x, y)) * factor) & 255).collect();
     texture(TextureFormat::P8, false, [128, 128], words)
 }
 
@@ -278,15 +261,13 @@ fn moved_palettes() -> Drawn {
 }
 
 /// Texture_palette.
-pub(super) fn palettes() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn palettes(frames: &mut Frames) {
     frames.make("PaletteSwapping", swapped_palettes);
     frames.make("XemuHighPaletteBug", moved_palettes);
-    frames
 }
 
 /// Texture_signed_component_tests: every set of signed channels. Fields of largest and smallest bytes stand in a larger one.
-pub(super) fn signed() -> Frames {
+pub(super) fn signed(frames: &mut Frames) {
     let image = |x: u32, y: u32| {
         let (column, row) = (x.wrapping_sub(5), y.wrapping_sub(10));
         let inside = column / 38 < 6 && column % 38 < 36 && row / 53 < 3 && row % 53 < 51;
@@ -306,7 +287,6 @@ pub(super) fn signed() -> Frames {
         portion.sum_output = Register::Zero;
     }
     let combiners = Combiners { stages: vec![stage], ..Combiners::showing(FinalRegister::Spare0) };
-    let mut frames = Frames::default();
     for flags in 0..16_u8 {
         let signed = [2, 4, 8, 1].map(|bit| flags & bit != 0);
         let mut canvas = Canvas::new(0xfe20_2020);
@@ -315,7 +295,6 @@ pub(super) fn signed() -> Frames {
         canvas.draw(Draw { combiners: combiners.clone(), ..draw });
         frames.push(format!("A8R8G8B8_0x{flags:04X}"), canvas.colors());
     }
-    frames
 }
 
 /// A unit that mixes two levels where the texture is minified.
@@ -324,21 +303,12 @@ fn levels(texture: usize) -> TextureUnit {
 }
 
 /// Texture_LOD_Bias: levels of other colours through fifteen biases.
-pub(super) fn lod_bias() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn lod_bias(frames: &mut Frames) {
     frames.make("LODBias", || {
-        let colors = [
-            [0, 0, 255],
-            [0, 255, 0],
-            [255, 0, 0],
-            [255, 255, 255],
-            [0, 255, 255],
-            [255, 0, 255],
-            [255, 255, 0],
-            [128, 128, 128],
-        ];
-        let level = |(n, [r, g, b]): (u32, [u8; 3])| {
-            let fields = checker([[r, g, b, 255], [5, 5, 5, 255]], 4);
+        // A8B8G8R8.
+        let colors = [0xff_0000, 0xff00, 0xff, 0xff_ffff, 0xff_ff00, 0xff_00ff, 0xffff, 0x80_8080];
+        let level = |(n, color): (u32, u32)| {
+            let fields = checker([color, 0x05_0505].map(|color| abgr(0xff00_0000 | color)), 4);
             images::words(TextureFormat::A8B8G8R8, [512 >> n; 2], fields)
         };
         let words: Vec<u32> = (0..).zip(colors).flat_map(level).collect();
@@ -350,24 +320,18 @@ pub(super) fn lod_bias() -> Frames {
             let edges = sized([160.0 - side, 272.0 - side / 2.0], [side; 2]);
             canvas.draw(without_alpha(pasted(edges, 0, levels(texture), WHOLE), FETCHED[0]));
         }
-        let mut corner = [192.0, 200.0];
         // 1/256 steps, cut.
-        for lod_bias in [-3840, -1024, -512, -256, 0, 256, 512, 768, 1024, 3840, -204, 307, 460, 640, 896] {
+        let biases = [-3840, -1024, -512, -256, 0, 256, 512, 768, 1024, 3840, -204, 307, 460, 640, 896];
+        for (lod_bias, corner) in biases.into_iter().zip(places([192.0, 200.0], [96.0; 2], 5)) {
             let unit = TextureUnit { lod_bias, ..levels(texture) };
             canvas.draw(without_alpha(pasted(sized(corner, [64.0; 2]), 0, unit, WHOLE), FETCHED[0]));
-            corner[0] += 96.0;
-            if corner[0] + 64.0 > 640.0 {
-                corner = [192.0, corner[1] + 96.0];
-            }
         }
         canvas.colors()
     });
-    frames
 }
 
 /// Texture_DXT: the programs' images, large and through their levels.
-pub(super) fn compressed() -> Frames {
-    let mut frames = Frames::default();
+pub(super) fn compressed(frames: &mut Frames) {
     for (name, format, size, count, file) in assets::COMPRESSED {
         let words = assets::blocks(format, file);
         let code = format.name();
@@ -381,20 +345,13 @@ pub(super) fn compressed() -> Frames {
         }
         let mut canvas = Canvas::new(0xfe10_1010);
         let texture = canvas.texture(&of(count, words));
-        for ([left, top], side) in [
-            ([5.0, 80.0], 256.0),
-            ([270.0, 80.0], 128.0),
-            ([410.0, 80.0], 64.0),
-            ([480.0, 80.0], 32.0),
-            ([520.0, 80.0], 16.0),
-            ([270.0, 220.0], 8.0),
-            ([280.0, 220.0], 4.0),
-            ([290.0, 220.0], 2.0),
-            ([300.0, 220.0], 1.0),
-        ] {
-            canvas.draw(pasted(sized([left, top], [side; 2]), 0, levels(texture), WHOLE));
+        let upper = [(5.0, 256.0), (270.0, 128.0), (410.0, 64.0), (480.0, 32.0), (520.0, 16.0)];
+        let lower = [(270.0, 8.0), (280.0, 4.0), (290.0, 2.0), (300.0, 1.0)];
+        for (top, row) in [(80.0, &upper[..]), (220.0, &lower)] {
+            for (left, side) in row {
+                canvas.draw(pasted(sized([*left, top], [*side; 2]), 0, levels(texture), WHOLE));
+            }
         }
         frames.push(format!("MIP{code}_{name}"), canvas.colors());
     }
-    frames
 }

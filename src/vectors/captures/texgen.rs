@@ -1,10 +1,10 @@
 //! TEX-15 and INT-4: coordinates that the fixed function makes, and matrices over them.
 
-use super::draws::{Canvas, FETCHED, draw, nearest, opaque};
+use super::draws::{Canvas, FETCHED, WHOLE, corners, draw, fetching, nearest, without_alpha};
 use super::images::{self, gradient};
 use super::space::{self, DEGREES_90, IDENTITY, Matrix, STRAIGHT};
 use super::{Drawn, Frames};
-use ninebit::state::{Draw, ShaderStage, TEXTURE_UNITS, Texture, TextureFormat, Topology, Vertex, VertexColor};
+use ninebit::state::{TEXTURE_UNITS, Texture, TextureFormat, Topology, Vertex, VertexColor};
 
 /// What coordinates are made of.
 const MODES: [&str; 6] = ["Disabled", "EyeLinear", "ObjectLinear", "SphereMap", "NormalMap", "ReflectionMap"];
@@ -67,53 +67,43 @@ fn image() -> Texture {
 
 /// Two triangles over a rectangle of the world. A matrix stands to the left of its column.
 fn shown(texture: &Texture, [top, bottom]: [f32; 2], mode: &str, matrix: &Matrix) -> Drawn {
-    let corners = [[-2.75, top], [2.75, top], [2.75, bottom], [-2.75, bottom]];
-    let given = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let vertex = |n: usize| {
-        let [x, y] = corners[n];
-        let made = generated(mode, [f64::from(x), f64::from(y)], given[n]);
+        let [x, y] = corners([-2.75, top, 2.75, bottom])[n];
+        let made = generated(mode, [x, y].map(f64::from), corners(WHOLE)[n].map(f64::from));
         let made = matrix.map(|row| row.iter().zip(made).map(|(a, b)| a * b).sum::<f64>() as f32);
         let [x, y, _, w] = space::fixed_function([x, y, 0.0, 1.0]);
         let diffuse = VertexColor::Bytes([255; 4]);
         Vertex { position: [x, y, 0.0, w], diffuse, texture_coordinates: [made; TEXTURE_UNITS], ..Vertex::default() }
     };
-    let mut draw = draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(vertex).to_vec());
-    draw.textures[0] = Some(nearest(0));
-    draw.texture_shader[0] = ShaderStage::conventional(0, true);
+    let draw = draw(Topology::Triangles, [0, 1, 2, 0, 2, 3].map(vertex).to_vec());
     let mut canvas = Canvas::new(0xfe20_2020);
     canvas.texture(texture);
-    canvas.draw(Draw { combiners: opaque(FETCHED[0]), ..draw });
+    canvas.draw(without_alpha(fetching(draw, 0, nearest(0)), FETCHED[0]));
     canvas.colors()
 }
 
 /// Texgen. The frame of SphereMap is not drawn: normals of no length have no rule there.
-pub(super) fn generation() -> Frames {
+pub(super) fn generation(frames: &mut Frames) {
     let texture = image();
-    let mut frames = Frames::default();
     for mode in MODES.into_iter().filter(|mode| *mode != "SphereMap") {
         frames.push(mode, shown(&texture, [1.75, -1.75], mode, &IDENTITY));
     }
-    frames
 }
 
 /// Texgen_with_texture_matrix.
-pub(super) fn generation_and_matrices() -> Frames {
+pub(super) fn generation_and_matrices(frames: &mut Frames) {
     let texture = image();
-    let mut frames = Frames::default();
     for mode in MODES {
         for (name, matrix) in matrices() {
             frames.push(format!("{mode}_{name}"), shown(&texture, [1.0, -2.5], mode, &matrix));
         }
     }
-    frames
 }
 
 /// Texture_Matrix: matrices over coordinates that are given.
-pub(super) fn texture_matrices() -> Frames {
+pub(super) fn texture_matrices(frames: &mut Frames) {
     let texture = image();
-    let mut frames = Frames::default();
     for (name, matrix) in matrices() {
         frames.push(name, shown(&texture, [1.0, -2.5], "Disabled", &matrix));
     }
-    frames
 }

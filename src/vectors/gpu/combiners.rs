@@ -4,10 +4,12 @@
 //! shows 0 to 255: a second draw shows it negated, and a third tells -256 from -255.
 
 use super::{Draw, Path, Placement, Read};
+use ninebit::legality::Notation;
 use ninebit::state::{
-    Bias, CombinerInput, Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, InputMapping, MuxSelect,
-    Portion, Profile, Register, Scale,
+    CombinerInput, Combiners, Component, FinalCombiner, FinalRegister, GeneralStage, InputMapping, MuxSelect, Named,
+    Portion, Profile, Register,
 };
+use ninebit_program::combiner_calls::{self, Words};
 
 /// 1 as an input.
 pub(super) fn one(component: Component) -> CombinerInput {
@@ -216,69 +218,37 @@ fn times_minus_one(register: Register, less_one: bool) -> GeneralStage {
 }
 
 /// `GL_` is left out of all names, `ZERO` is a destination's `DISCARD_NV`.
-fn register_name(register: FinalRegister) -> &'static str {
-    match register {
-        FinalRegister::Zero => "ZERO",
-        FinalRegister::ConstantColor0 => "CONSTANT_COLOR0_NV",
-        FinalRegister::ConstantColor1 => "CONSTANT_COLOR1_NV",
-        FinalRegister::Fog => "FOG",
-        FinalRegister::PrimaryColor => "PRIMARY_COLOR_NV",
-        FinalRegister::SecondaryColor => "SECONDARY_COLOR_NV",
-        FinalRegister::Texture0 => "TEXTURE0_ARB",
-        FinalRegister::Texture1 => "TEXTURE1_ARB",
-        FinalRegister::Texture2 => "TEXTURE2_ARB",
-        FinalRegister::Texture3 => "TEXTURE3_ARB",
-        FinalRegister::Spare0 => "SPARE0_NV",
-        FinalRegister::Spare1 => "SPARE1_NV",
-        FinalRegister::Spare0PlusSecondary => "SPARE0_PLUS_SECONDARY_COLOR_NV",
-        FinalRegister::ETimesF => "E_TIMES_F_NV",
-    }
+fn register_name(register: FinalRegister) -> String {
+    use FinalRegister::{Fog, Texture0, Texture1, Texture2, Texture3, Zero};
+    let vendor = match register {
+        Zero | Fog => "",
+        Texture0 | Texture1 | Texture2 | Texture3 => "_ARB",
+        _ => "_NV",
+    };
+    format!("{}{vendor}", Words.register(register))
 }
 
-fn mapping_name(mapping: InputMapping) -> &'static str {
-    match mapping {
-        InputMapping::UnsignedIdentity => "UNSIGNED_IDENTITY_NV",
-        InputMapping::UnsignedInvert => "UNSIGNED_INVERT_NV",
-        InputMapping::ExpandNormal => "EXPAND_NORMAL_NV",
-        InputMapping::ExpandNegate => "EXPAND_NEGATE_NV",
-        InputMapping::HalfBiasNormal => "HALF_BIAS_NORMAL_NV",
-        InputMapping::HalfBiasNegate => "HALF_BIAS_NEGATE_NV",
-        InputMapping::SignedIdentity => "SIGNED_IDENTITY_NV",
-        InputMapping::SignedNegate => "SIGNED_NEGATE_NV",
-    }
+fn component_name(component: Component) -> String {
+    component.name().to_uppercase()
 }
 
-fn component_name(component: Component) -> &'static str {
-    match component {
-        Component::Rgb => "RGB",
-        Component::Blue => "BLUE",
-        Component::Alpha => "ALPHA",
-    }
+/// A scale or bias, of which only none is no vendor's.
+fn output_name(name: &str) -> String {
+    if name == "NONE" { name.to_owned() } else { format!("{name}_NV") }
 }
 
 /// `portion STAGE RGB|ALPHA`, three words for each of A to D, destinations of AB, CD and the sum, scale, bias, and three flags.
 fn portion_line(n: usize, name: &str, portion: &Portion) -> String {
     let mut words = vec!["portion".to_owned(), n.to_string(), name.to_owned()];
     for input in &portion.inputs {
-        let parts =
-            [register_name(input.register.into()), mapping_name(input.mapping), component_name(input.component)];
-        words.extend(parts.map(str::to_owned));
+        let mapping = format!("{}_NV", combiner_calls::mapping_name(input.mapping));
+        words.extend([register_name(input.register.into()), mapping, component_name(input.component)]);
     }
     for output in [portion.ab_output, portion.cd_output, portion.sum_output] {
-        let name = if output == Register::Zero { "DISCARD_NV" } else { register_name(output.into()) };
-        words.push(name.to_owned());
+        let is_dropped = output == Register::Zero;
+        words.push(if is_dropped { "DISCARD_NV".to_owned() } else { register_name(output.into()) });
     }
-    let scale = match portion.scale {
-        Scale::One => "NONE",
-        Scale::Two => "SCALE_BY_TWO_NV",
-        Scale::Four => "SCALE_BY_FOUR_NV",
-        Scale::Half => "SCALE_BY_ONE_HALF_NV",
-    };
-    let bias = match portion.bias {
-        Bias::None => "NONE",
-        Bias::NegativeHalf => "BIAS_BY_NEGATIVE_ONE_HALF_NV",
-    };
-    words.extend([scale, bias].map(str::to_owned));
+    words.extend([Words.scale(portion.scale), combiner_calls::bias_name(portion.bias)].map(output_name));
     words.extend([portion.ab_dot_product, portion.cd_dot_product, portion.mux].map(|flag| u8::from(flag).to_string()));
     words.join(" ")
 }

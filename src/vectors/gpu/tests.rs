@@ -1,5 +1,4 @@
 //! What recipes ask of the combiners, the model answers as the tables say.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::*;
 use crate::cases::{self, Level};

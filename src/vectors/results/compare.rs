@@ -10,8 +10,8 @@ use crate::column::Kind;
 use crate::error::VectorError;
 use crate::read::{Table, TableRow};
 use crate::table::LAST;
-use crate::unit::Conditions;
-use ninebit::state::{POLICIES, Policies, Profile};
+use crate::unit::{Conditions, other_policies};
+use ninebit::state::{Policies, Profile};
 
 /// How results and a pack differ.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
@@ -241,29 +241,22 @@ fn unit(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)],
 fn policies(table: &Table, results: &UnitResults, pairs: &[(&TableRow, &ResultRow)]) -> Vec<Explanation> {
     let unit = table.contents.unit;
     let mut found = Vec::new();
-    for policy in POLICIES.iter().filter(|policy| unit.rules().contains(&policy.rule)) {
-        for (index, (value, _)) in policy.values.iter().enumerate() {
-            let mut policies = Policies::DEFAULT;
-            if policies.chosen(policy.rule) == index {
-                continue;
+    for (policy, value, policies) in other_policies().filter(|(policy, ..)| unit.rules().contains(&policy.rule)) {
+        let mut explanation = Explanation { policy: format!("{}={value}", policy.rule), explains: 0, breaks: 0 };
+        for (row, result) in pairs {
+            let Some(observed) = &result.values else { continue };
+            let other = evaluated(table, row, policies, table.contents.profile);
+            let agrees = |results_of: &[i64]| {
+                results.columns.iter().zip(observed).all(|(column, value)| expected(results_of, column) == *value)
+            };
+            match (agrees(&row.results), agrees(&other)) {
+                (false, true) => explanation.explains += 1,
+                (true, false) => explanation.breaks += 1,
+                _ => {}
             }
-            policies.choose(policy.rule, index);
-            let mut explanation = Explanation { policy: format!("{}={value}", policy.rule), explains: 0, breaks: 0 };
-            for (row, result) in pairs {
-                let Some(observed) = &result.values else { continue };
-                let other = evaluated(table, row, policies, table.contents.profile);
-                let agrees = |results_of: &[i64]| {
-                    results.columns.iter().zip(observed).all(|(column, value)| expected(results_of, column) == *value)
-                };
-                match (agrees(&row.results), agrees(&other)) {
-                    (false, true) => explanation.explains += 1,
-                    (true, false) => explanation.breaks += 1,
-                    _ => {}
-                }
-            }
-            if explanation.explains > 0 {
-                found.push(explanation);
-            }
+        }
+        if explanation.explains > 0 {
+            found.push(explanation);
         }
     }
     found.sort_by_key(|explanation| -explanation.gain());

@@ -58,7 +58,7 @@ pub(super) struct Product;
 impl Unit for Product {
     known_as!(
         "product", &["CMB-6", "NUM-2", "NUM-3"],
-        "AB: the product of two factors, rounded to the nearest 255th, saturated";
+        "AB: the product of two factors, rounded to the nearest 255th, saturated"; shows .. => 1..;
         takes [Column::factor("in.a"), Column::factor("in.b")];
         gives [Column::result("mid.product", WIDE), Column::result("out.ab", Kind::Signed(9))]
     );
@@ -77,10 +77,6 @@ impl Unit for Product {
     fn regressions(&self) -> Vec<Vec<i64>> {
         vec![vec![100, 200], vec![-256, 256], vec![-256, -256]]
     }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(inputs, &results[1..])
-    }
 }
 
 /// A B + C D.
@@ -89,20 +85,11 @@ pub(super) struct Sum;
 
 impl Unit for Sum {
     known_as!(
-        "sum",
-        &["CMB-7", "NUM-2", "NUM-3"],
-        "AB + CD: the sum of two products at full width, rounded once, saturated"
+        "sum", &["CMB-7", "NUM-2", "NUM-3"],
+        "AB + CD: the sum of two products at full width, rounded once, saturated"; shows .. => 3..;
+        takes [["in.a", "in.b", "in.c", "in.d"].map(Column::factor)];
+        gives [Column::results(["mid.ab", "mid.cd", "mid.sum"], WIDE), Column::result("out.sum", Kind::Signed(9))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        ["in.a", "in.b", "in.c", "in.d"].map(Column::factor).to_vec()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = ["mid.ab", "mid.cd", "mid.sum"].map(|name| Column::result(name, WIDE)).to_vec();
-        columns.push(Column::result("out.sum", Kind::Signed(9)));
-        columns
-    }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let mut silent = Silent;
@@ -119,10 +106,6 @@ impl Unit for Sum {
         let [first, other, a, b] = [varying, varying ^ 1, varying ^ 2, varying ^ 3].map(|n| inputs[n] as i16);
         Some(block::multiply_add(Factor::product(a, b), other, first, out.as_chunks_mut().0))
     }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(inputs, &results[3..])
-    }
 }
 
 /// A . B.
@@ -132,23 +115,16 @@ pub(super) struct DotProduct;
 impl Unit for DotProduct {
     known_as!(
         "dot-product", &["CMB-8", "NUM-2", "NUM-3"],
-        "A . B: the sum of three products at full width, rounded once, saturated";
+        "A . B: the sum of three products at full width, rounded once, saturated"; shows .. => 1..;
+        takes [["in.a.r", "in.a.g", "in.a.b", "in.b.r", "in.b.g", "in.b.b"].map(Column::factor)];
         gives [Column::result("mid.sum", Kind::Signed(20)), Column::result("out.dot", Kind::Signed(9))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        ["in.a.r", "in.a.g", "in.a.b", "in.b.r", "in.b.g", "in.b.b"].map(Column::factor).to_vec()
-    }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let [a, b] = [0, 3].map(|first| [0, 1, 2].map(|n| factor(inputs[first + n])));
         let raw = general::dot(a, b, &mut Direct::<i32, _>::new(&conditions.policies, &mut Silent)).sum;
         results[0] = wide(raw);
         results[1] = written(raw, conditions);
-    }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(inputs, &results[1..])
     }
 }
 
@@ -158,17 +134,13 @@ pub(super) struct Mux;
 
 impl Unit for Mux {
     known_as!(
-        "mux", &["CMB-10"], "whether the mux takes CD, by the most or the least significant bit of SPARE0.a";
+        "mux", &["CMB-10"], "whether the mux takes CD, by the most or the least significant bit of SPARE0.a"; shows 1.. => 1..;
         takes [Column::choice::<MuxSelect>("cfg.select"), Column::register("in.spare0.a")];
         gives [Column::result("out.takes_cd", Kind::Unsigned(1))]
     );
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         results[0] = output::mux_takes_cd(inputs[1] as i32, named(inputs[0]), &conditions.policies).into();
-    }
-
-    fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {
-        Reach::of(&inputs[1..], &[])
     }
 }
 
@@ -179,8 +151,8 @@ pub(super) struct ScaleBias;
 impl Unit for ScaleBias {
     known_as!(
         "scale-bias", &["CMB-9", "NUM-2", "NUM-3"],
-        "AB through the output of a portion: rounded to the nearest 255th, biased, scaled, saturated";
-        takes [Column::choice::<Scale>("cfg.scale"), Column::choice::<Bias>("cfg.bias"), Column::factor("in.a"), Column::factor("in.b")];
+        "AB through the output of a portion: rounded to the nearest 255th, biased, scaled, saturated"; shows 2.. => 3..;
+        takes [Column::choice::<Scale>("cfg.scale"), Column::choice::<Bias>("cfg.bias"), ["in.a", "in.b"].map(Column::factor)];
         gives [
             Column::result("mid.product", WIDE),
             Column::result("mid.rounded", Kind::Signed(10)),
@@ -201,10 +173,6 @@ impl Unit for ScaleBias {
         let raw = direct.product(Rule::Cmb6, factor(inputs[2]), factor(inputs[3]));
         let value = general::output(&portion, raw, &mut direct);
         results.copy_from_slice(&[wide(raw.sum), tap.of(Rule::Cmb6), tap.of(Rule::Cmb9), value.into()]);
-    }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(&inputs[2..], &results[3..])
     }
 }
 

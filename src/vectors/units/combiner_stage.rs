@@ -1,7 +1,7 @@
 //! Whole general stages: everything is read before anything is written.
 
 use super::block::{self, Sixteen};
-use super::{named, scale_takes_bias, step};
+use super::{channels, named, put, scale_takes_bias, step};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
@@ -11,18 +11,13 @@ use ninebit::state::{Bias, CombinerInput, Component, InputMapping, MuxSelect, Po
 use ninebit::trace::{Observer, Recorder, Silent};
 
 const INPUTS: [&str; 4] = ["a", "b", "c", "d"];
+const FACTORS: [&str; 4] = ["mid.A", "mid.B", "mid.C", "mid.D"];
+const OUTPUTS: [&str; 3] = ["out.ab", "out.cd", "out.third"];
+const RGB: [&str; 3] = ["r", "g", "b"];
 
 /// Where the four inputs of a tested portion come from.
 const SOURCES: [Register; 4] =
     [Register::Texture0, Register::Texture1, Register::PrimaryColor, Register::SecondaryColor];
-
-fn registers(names: &[&str]) -> Vec<Column> {
-    names.iter().map(|name| Column::register(name)).collect()
-}
-
-fn results(names: &[&str], kind: &Kind) -> Vec<Column> {
-    names.iter().map(|name| Column::result(name, kind.clone())).collect()
-}
 
 /// A stage whose every output is needed.
 fn stage(rgb: Portion, alpha: Portion) -> PlannedStage {
@@ -40,14 +35,10 @@ fn portion(component: Component, mappings: &[i64]) -> Portion {
 }
 
 /// The configuration that the RGB and the alpha portion share.
-fn configuration(dots: bool) -> Vec<Column> {
-    let mut columns: Vec<Column> =
-        INPUTS.iter().map(|name| Column::choice::<InputMapping>(&format!("cfg.mapping_{name}"))).collect();
+fn configuration() -> Vec<Column> {
+    let mut columns = INPUTS.map(|name| Column::choice::<InputMapping>(&format!("cfg.mapping_{name}"))).to_vec();
     columns.extend([Column::choice::<Scale>("cfg.scale"), Column::choice::<Bias>("cfg.bias"), Column::flag("cfg.mux")]);
     columns.push(Column::choice::<MuxSelect>("cfg.mux_select"));
-    if dots {
-        columns.extend([Column::flag("cfg.ab_dot"), Column::flag("cfg.cd_dot")]);
-    }
     columns
 }
 
@@ -82,31 +73,20 @@ impl Unit for GeneralStage {
     known_as!(
         "general-stage",
         &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "NUM-2", "NUM-3"],
-        "an RGB portion of texture0, texture1, primary and secondary: AB to spare0, CD to spare1, AB + CD or the mux to texture2"
+        "an RGB portion of texture0, texture1, primary and secondary: AB to spare0, CD to spare1, AB + CD or the mux to texture2";
+        shows 10.. => 13..;
+        takes [
+            configuration(),
+            ["cfg.ab_dot", "cfg.cd_dot"].map(Column::flag),
+            INPUTS.map(|name| channels(&format!("in.{name}"), RGB, Column::register)).concat(),
+            Column::register("in.spare0.a"),
+        ];
+        gives [
+            FACTORS.map(|name| channels(name, RGB, |name| Column::result(name, Kind::Halves(11)))).concat(),
+            Column::result("mid.takes_cd", Kind::Unsigned(1)),
+            OUTPUTS.map(|name| channels(name, RGB, |name| Column::result(name, Kind::Signed(9)))).concat(),
+        ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = configuration(true);
-        for name in INPUTS {
-            columns.extend(["r", "g", "b"].map(|channel| Column::register(&format!("in.{name}.{channel}"))));
-        }
-        columns.push(Column::register("in.spare0.a"));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = Vec::new();
-        for name in ["A", "B", "C", "D"] {
-            let names = ["r", "g", "b"].map(|channel| format!("mid.{name}.{channel}"));
-            columns.extend(names.iter().map(|name| Column::result(name, Kind::Halves(11))));
-        }
-        columns.push(Column::result("mid.takes_cd", Kind::Unsigned(1)));
-        for name in ["ab", "cd", "third"] {
-            let names = ["r", "g", "b"].map(|channel| format!("out.{name}.{channel}"));
-            columns.extend(names.iter().map(|name| Column::result(name, Kind::Signed(9))));
-        }
-        columns
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         scale_takes_bias(inputs[4], inputs[5])
@@ -125,9 +105,7 @@ impl Unit for GeneralStage {
             }
         }
         results[12] = takes_cd.into();
-        for (result, value) in results[13..].iter_mut().zip(general_stage(inputs, file, conditions)) {
-            *result = value.into();
-        }
+        put(&mut results[13..], general_stage(inputs, file, conditions));
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
@@ -135,10 +113,6 @@ impl Unit for GeneralStage {
         // The mux decides by the last.
         let has = varying >= 10 && !(varying == 22 && inputs[6] != 0);
         has.then(|| block::registers(inputs, varying, out, rows))
-    }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(&inputs[10..], &results[13..])
     }
 }
 
@@ -180,25 +154,16 @@ impl Unit for AlphaPortion {
     known_as!(
         "alpha-portion",
         &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-9", "CMB-10", "NUM-2", "NUM-3"],
-        "an alpha portion of the blue or alpha of four registers: AB to spare1, CD to texture2, AB + CD or the mux to texture3"
+        "an alpha portion of the blue or alpha of four registers: AB to spare1, CD to texture2, AB + CD or the mux to texture3";
+        shows 12.. => 4..;
+        takes [
+            configuration(),
+            INPUTS.map(|name| Column::names(&format!("cfg.component_{name}"), &["Blue", "Alpha"])),
+            INPUTS.map(|name| channels(&format!("in.{name}"), ["b", "a"], Column::register)).concat(),
+            Column::register("in.spare0.a"),
+        ];
+        gives [Column::results(FACTORS, Kind::Halves(11)), Column::results(OUTPUTS, Kind::Signed(9))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = configuration(false);
-        columns.extend(INPUTS.map(|name| Column::names(&format!("cfg.component_{name}"), &["Blue", "Alpha"])));
-        for name in INPUTS {
-            columns.extend(["b", "a"].map(|channel| Column::register(&format!("in.{name}.{channel}"))));
-        }
-        columns.push(Column::register("in.spare0.a"));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns: Vec<Column> =
-            ["A", "B", "C", "D"].map(|name| Column::result(&format!("mid.{name}"), Kind::Halves(11))).to_vec();
-        columns.extend(results(&["out.ab", "out.cd", "out.third"], &Kind::Signed(9)));
-        columns
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         scale_takes_bias(inputs[4], inputs[5])
@@ -211,19 +176,13 @@ impl Unit for AlphaPortion {
             let [factor] = ninebit::combiner::mapping::map([x], input.mapping, &conditions.policies);
             results[n] = <i32 as Lane>::observe_factor(factor).0;
         }
-        for (result, value) in results[4..].iter_mut().zip(alpha_portion(inputs, file, conditions)) {
-            *result = value.into();
-        }
+        put(&mut results[4..], alpha_portion(inputs, file, conditions));
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         let rows = |rows: &Sixteen| alpha_portion(inputs, alpha_file(|n| rows.at(n)), conditions);
         let has = varying >= 12 && !(varying == 20 && inputs[6] != 0);
         has.then(|| block::registers(inputs, varying, out, rows))
-    }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(&inputs[12..], &results[4..])
     }
 }
 
@@ -252,34 +211,18 @@ fn blue_to_alpha<L: Lane>(inputs: &[i64], at: impl Fn(usize) -> L, conditions: &
 impl Unit for BlueToAlpha {
     known_as!(
         "blue-to-alpha", &["CMB-1", "CMB-6", "CMB-8", "CMB-11", "NUM-2", "NUM-3"],
-        "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1"; on &[Profile::Nv2a]
+        "AB and CD of an RGB portion, whose blue also goes to the alpha of spare0 and of spare1";
+        shows 3.. => 2..; on &[Profile::Nv2a];
+        takes [
+            ["cfg.ab_dot", "cfg.ab_to_alpha", "cfg.cd_to_alpha"].map(Column::flag),
+            ["in.a.r", "in.a.g", "in.a.b", "in.b.r", "in.b.g", "in.b.b", "in.c.b", "in.d.b"].map(Column::register),
+            ["in.spare0.a", "in.spare1.a"].map(Column::register),
+        ];
+        gives [Column::results(["mid.ab.b", "mid.cd.b", "out.spare0.a", "out.spare1.a"], Kind::Signed(9))]
     );
 
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = ["cfg.ab_dot", "cfg.ab_to_alpha", "cfg.cd_to_alpha"].map(Column::flag).to_vec();
-        columns.extend(registers(&[
-            "in.a.r",
-            "in.a.g",
-            "in.a.b",
-            "in.b.r",
-            "in.b.g",
-            "in.b.b",
-            "in.c.b",
-            "in.d.b",
-            "in.spare0.a",
-            "in.spare1.a",
-        ]));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        results(&["mid.ab.b", "mid.cd.b", "out.spare0.a", "out.spare1.a"], &Kind::Signed(9))
-    }
-
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
-        for (result, value) in results.iter_mut().zip(blue_to_alpha(inputs, |n| inputs[n] as i32, conditions)) {
-            *result = value.into();
-        }
+        put(results, blue_to_alpha(inputs, |n| inputs[n] as i32, conditions));
     }
 
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
@@ -288,10 +231,6 @@ impl Unit for BlueToAlpha {
             [spare0, spare1]
         };
         (varying >= 3).then(|| block::registers(inputs, varying, out, rows))
-    }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(&inputs[3..], &results[2..])
     }
 }
 
@@ -331,24 +270,19 @@ impl Unit for TwoStages {
     known_as!(
         "two-stages", &["CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-7", "CMB-9", "NUM-2", "NUM-3"],
         "AB + CD of four registers to spare0, then spare0 and the four again: what the first stage wrote is read through any mapping";
+        shows 4.. => 2..;
         takes [
             Column::choice::<Scale>("cfg.scale"),
             Column::choice::<Bias>("cfg.bias"),
-            Column::choice::<InputMapping>("cfg.mapping_spare0"),
-            Column::choice::<InputMapping>("cfg.mapping_b"),
-            Column::register("in.a"),
-            Column::register("in.b"),
-            Column::register("in.c"),
-            Column::register("in.d"),
+            ["cfg.mapping_spare0", "cfg.mapping_b"].map(Column::choice::<InputMapping>),
+            ["in.a", "in.b", "in.c", "in.d"].map(Column::register),
+        ];
+        gives [
+            Column::result("mid.spare0", Kind::Signed(9)),
+            Column::result("mid.spare0_mapped", Kind::Halves(11)),
+            Column::result("out.spare0", Kind::Signed(9)),
         ]
     );
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = vec![Column::result("mid.spare0", Kind::Signed(9))];
-        columns.push(Column::result("mid.spare0_mapped", Kind::Halves(11)));
-        columns.push(Column::result("out.spare0", Kind::Signed(9)));
-        columns
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         scale_takes_bias(inputs[0], inputs[1])
@@ -367,9 +301,5 @@ impl Unit for TwoStages {
     fn block(&self, inputs: &[i64], varying: usize, conditions: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
         let rows = |rows: &Sixteen| [two_stages(inputs, |n| rows.at(n), conditions, &mut Silent)];
         (varying >= 4).then(|| block::registers(inputs, varying, out, rows))
-    }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(&inputs[4..], &results[2..])
     }
 }

@@ -1,18 +1,12 @@
 //! What becomes of a depth: offset, range, the word that is stored; and w buffers.
 
-use super::named;
-use super::raster::{fit, geometry, is_covered, triangle};
+use super::raster::{LARGE, fit, geometry, is_covered, triangle};
+use super::{float, named};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::raster::depth::{Binary, DepthPlane, ranged, slope, word};
 use ninebit::raster::setup::Triangle;
 use ninebit::state::{self, CompareFunction, DepthFormat, DepthTest, Profile, VertexDepths};
-
-const Z: [&str; 3] = ["in.z0", "in.z1", "in.z2"];
-
-fn float(bits: i64) -> f32 {
-    f32::from_bits(bits as u32)
-}
 
 fn floats(inputs: &[i64]) -> [f32; 3] {
     std::array::from_fn(|n| float(inputs[n]))
@@ -25,7 +19,7 @@ fn test() -> DepthTest {
 
 /// A triangle, where any will do.
 fn any() -> Option<Triangle> {
-    Triangle::new([[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]], true, Profile::Nv2a)
+    Triangle::new(LARGE, true, Profile::Nv2a)
 }
 
 /// Whether the chip has the depth format of that number.
@@ -114,23 +108,13 @@ impl Unit for DepthRange {
     known_as!(
         "depth-range", &["DEP-3", "DEP-4"],
         "whether a triangle of three depths is drawn, whether a pixel of it is kept, and its word, by a range of depths; floats, in steps", Geometry;
-        gives [
-            Column::result("mid.drawn", Kind::Unsigned(1)),
-            Column::result("out.kept", Kind::Unsigned(1)),
-            Column::result("out.word", Kind::Hex(24)),
-        ]
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![
+        takes [
             Column::choice::<DepthFormat>("cfg.format"),
-            Column::flag("cfg.clamps"),
-            Column::flag("cfg.drops_triangles"),
+            ["cfg.clamps", "cfg.drops_triangles"].map(Column::flag),
+            ["in.lowest", "in.highest", "in.z0", "in.z1", "in.z2", "in.depth"].map(|name| Column::float(name, true, 26)),
         ];
-        let names = ["in.lowest", "in.highest", "in.z0", "in.z1", "in.z2", "in.depth"];
-        columns.extend(names.map(|name| Column::float(name, true, 26)));
-        columns
-    }
+        gives [Column::results(["mid.drawn", "out.kept"], Kind::Unsigned(1)), Column::result("out.word", Kind::Hex(24))]
+    );
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // The handbook's examples, and all that a depth can be to two limits.
@@ -186,21 +170,19 @@ impl Unit for PixelDepth {
     known_as!(
         "pixel-depth", &["DEP-1", "DEP-3", "DEP-5"],
         "the depth word of a covered pixel, from three vertex depths in steps (floats), a bias and the factor of the steepest slope", Geometry;
+        takes [
+            geometry(),
+            Column::choice::<DepthFormat>("cfg.format"),
+            ["in.z0", "in.z1", "in.z2"].map(|name| Column::float(name, false, 24)),
+            Column::float("in.bias", true, 16),
+            Column::float("in.factor", true, 8),
+        ];
         gives [
             Column::result("mid.slope", Kind::Unsigned(60)),
             Column::result("mid.exponent", Kind::Signed(10)),
             Column::result("out.word", Kind::Hex(24)),
         ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = geometry();
-        columns.push(Column::choice::<DepthFormat>("cfg.format"));
-        columns.extend(Z.map(|name| Column::float(name, false, 24)));
-        columns.push(Column::float("in.bias", true, 16));
-        columns.push(Column::float("in.factor", true, 8));
-        columns
-    }
 
     fn fit(&self, inputs: &mut [i64]) {
         fit(inputs);
@@ -238,16 +220,14 @@ impl Unit for WBuffer {
     known_as!(
         "w-buffer", &["DEP-3", "DEP-6"],
         "the word of a w buffer where three edge functions have these values, from w of the vertices and a bias (floats)", Geometry;
+        takes [
+            Column::choice::<DepthFormat>("cfg.format"),
+            ["in.e0", "in.e1", "in.e2"].map(|name| Column::unsigned(name, 30, (1 << 30) - 1)),
+            ["in.w0", "in.w1", "in.w2"].map(|name| Column::float(name, false, 25)),
+            Column::float("in.bias", true, 16),
+        ];
         gives [Column::result("out.word", Kind::Hex(24))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::choice::<DepthFormat>("cfg.format")];
-        columns.extend(["in.e0", "in.e1", "in.e2"].map(|name| Column::unsigned(name, 30, (1 << 30) - 1)));
-        columns.extend(["in.w0", "in.w1", "in.w2"].map(|name| Column::float(name, false, 25)));
-        columns.push(Column::float("in.bias", true, 16));
-        columns
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Pixels of captured buffers: TriH and LargeZ.

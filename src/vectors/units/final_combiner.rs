@@ -1,6 +1,6 @@
 //! The final combiner, one colour channel and alpha.
 
-use super::{block, named, step};
+use super::{block, named, put, step};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
@@ -85,29 +85,23 @@ fn planned(inputs: &[i64], all: bool) -> PlannedFinal {
 
 impl Unit for FinalCombiner {
     known_as!(
-        "final-combiner",
-        &["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"],
-        "A B + (1 - A) C + D of red, G of alpha; an input is a register of its own, SPARE0 + SECONDARY, or E F"
+        "final-combiner", &["FIN-1", "FIN-2", "FIN-3", "FIN-4", "FIN-5"],
+        "A B + (1 - A) C + D of red, G of alpha; an input is a register of its own, SPARE0 + SECONDARY, or E F";
+        shows CONFIGURATION.. => 7..;
+        takes [
+            ["cfg.source_a", "cfg.source_b", "cfg.source_c", "cfg.source_d"].map(Column::choice::<Source>),
+            ["a", "b", "c", "d", "e", "f", "g"].map(|name| Column::flag(&format!("cfg.invert_{name}"))),
+            ["cfg.sum_clamp", "cfg.invert_spare0", "cfg.invert_secondary"].map(Column::flag),
+            ["in.a", "in.b", "in.c", "in.d", "in.e", "in.f", "in.spare0", "in.secondary", "in.g"].map(Column::register),
+        ];
+        gives [
+            Column::result("mid.sum", Kind::Unsigned(9)),
+            Column::result("mid.product", Kind::Unsigned(8)),
+            Column::results(["mid.a", "mid.b", "mid.c", "mid.d"], Kind::Unsigned(9)),
+            Column::result("mid.unclamped", Kind::Signed(12)),
+            Column::results(["out.r", "out.a"], Kind::Unsigned(8)),
+        ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns: Vec<Column> =
-            ["a", "b", "c", "d"].map(|name| Column::choice::<Source>(&format!("cfg.source_{name}"))).to_vec();
-        columns.extend(["a", "b", "c", "d", "e", "f", "g"].map(|name| Column::flag(&format!("cfg.invert_{name}"))));
-        columns.extend(["cfg.sum_clamp", "cfg.invert_spare0", "cfg.invert_secondary"].map(Column::flag));
-        let names = ["in.a", "in.b", "in.c", "in.d", "in.e", "in.f", "in.spare0", "in.secondary", "in.g"];
-        columns.extend(names.map(Column::register));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns =
-            vec![Column::result("mid.sum", Kind::Unsigned(9)), Column::result("mid.product", Kind::Unsigned(8))];
-        columns.extend(["mid.a", "mid.b", "mid.c", "mid.d"].map(|name| Column::result(name, Kind::Unsigned(9))));
-        columns.push(Column::result("mid.unclamped", Kind::Signed(12)));
-        columns.extend(["out.r", "out.a"].map(|name| Column::result(name, Kind::Unsigned(8))));
-        columns
-    }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let mut recorder = Recorder::default();
@@ -118,9 +112,7 @@ impl Unit for FinalCombiner {
         let Conditions { profile, policies } = conditions;
         let out = final_combiner::run(&planned(inputs, true), *profile, policies, &mut file, &mut recorder);
         let names = ["final.sum.r", "final.EF.r", "final.A.r", "final.B.r", "final.C.r", "final.D.r", "final.rgb.r"];
-        for (result, name) in results.iter_mut().zip(names) {
-            *result = step(&recorder.steps, name);
-        }
+        put(results, names.map(|name| step(&recorder.steps, name)));
         (results[7], results[8]) = (out[0].into(), out[3].into());
     }
 
@@ -136,9 +128,5 @@ impl Unit for FinalCombiner {
             let [r, _, _, a] = final_combiner::run(&planned, *profile, policies, &mut file, &mut Silent);
             [r, a]
         }))
-    }
-
-    fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
-        Reach::of(&inputs[14..], &results[7..])
     }
 }

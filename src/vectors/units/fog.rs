@@ -1,6 +1,7 @@
 //! Fog: the light unit's words, the table of the exponentials, and the factor of a coordinate.
 
-use super::named;
+use super::raster::LARGE;
+use super::{named, put};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::number::light;
@@ -27,19 +28,18 @@ impl Unit for FogFactor {
     known_as!(
         "fog-factor", &["FOG-1", "FOG-2", "FOG-3", "FOG-4", "FOG-5", "INT-5n", "NUM-6"],
         "the fog of a coordinate by a mode's function of three parameters: what the vertex passes, its steps, FOG.a", Geometry;
+        takes [
+            Column::choice::<FogMode>("cfg.mode"),
+            Column::flag("cfg.per_vertex"),
+            ["in.p0", "in.p1", "in.p2"].map(|name| Column::float(name, true, 8)),
+            Column::word("in.coordinate", 32),
+        ];
         gives [
             Column::result("mid.passed", Kind::Hex(32)),
             Column::result("mid.steps", Kind::Signed(20)),
             Column::result("out.byte", Kind::Unsigned(8)),
         ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::choice::<FogMode>("cfg.mode"), Column::flag("cfg.per_vertex")];
-        columns.extend(["in.p0", "in.p1", "in.p2"].map(|name| Column::float(name, true, 8)));
-        columns.push(Column::word("in.coordinate", 32));
-        columns
-    }
 
     fn fit(&self, inputs: &mut [i64]) {
         // Parameters as a start and an end or a density give them: p0 near 1.5, p1 small and mostly negative, mostly without p2.
@@ -63,11 +63,7 @@ impl Unit for FogFactor {
         let per_vertex = inputs[1] != 0;
         let function = FogFunction { mode: named(inputs[0]), p0: float(2), p1: float(3), p2: float(4), per_vertex };
         let value = passed(&function, conditions.profile, float(5));
-        let Some(triangle) =
-            Triangle::new([[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]], true, Profile::Nv2a)
-        else {
-            return;
-        };
+        let Some(triangle) = Triangle::new(LARGE, true, Profile::Nv2a) else { return };
         let found = FogPlane::new(&triangle, Some(function), [value; 3]).at(&Sample::new(&triangle, [1; 3]));
         results[0] = value.to_bits().into();
         results[1] = match found.from {
@@ -102,21 +98,11 @@ pub(super) struct LightUnit;
 
 impl Unit for LightUnit {
     known_as!(
-        "light-unit",
-        &["FOG-1", "FOG-3"],
-        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth",
-        Geometry
+        "light-unit", &["FOG-1", "FOG-3"],
+        "numbers as words of 14 significant bits, the product of the first two, and its sum with the third and the fourth", Geometry;
+        takes [["in.a", "in.b", "in.c", "in.d"].map(|name| Column::word(name, 32))];
+        gives [Column::results(["mid.a", "mid.b", "mid.c", "mid.d", "out.product", "out.sum"], Kind::Hex(32))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        ["in.a", "in.b", "in.c", "in.d"].map(|name| Column::word(name, 32)).to_vec()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        ["mid.a", "mid.b", "mid.c", "mid.d", "out.product", "out.sum"]
-            .map(|name| Column::result(name, Kind::Hex(32)))
-            .to_vec()
-    }
 
     fn fit(&self, inputs: &mut [i64]) {
         // Mostly of sizes that reach each other.
@@ -131,8 +117,6 @@ impl Unit for LightUnit {
         let words: [u32; 4] = std::array::from_fn(|n| light::word(inputs[n] as u32));
         let product = light::product(words[0], words[1]);
         let sum = light::sum([product, words[2], words[3]]);
-        for (result, word) in results.iter_mut().zip(words.into_iter().chain([product, sum])) {
-            *result = word.into();
-        }
+        put(results, words.into_iter().chain([product, sum]));
     }
 }

@@ -1,10 +1,10 @@
 //! The units that vectors are made of, in the order of the pipe.
 
-/// A unit's name, the rules that it applies, and what it does, in one line. Behind these may stand how a frame buffer shows every row, the chips
-/// that have it, if not both, and the columns that it takes and gives.
+/// A unit's name, the rules that it applies, and what it does, in one line. Behind these may stand how a frame buffer shows every row, or of which
+/// inputs and results that depends (`shows`); the chips that have it, if not both; and the columns that it takes and gives, one by one or several at once.
 macro_rules! known_as {
     (
-        $name:expr, $rules:expr, $about:expr $(, $reach:ident)? $(; on $profiles:expr)?
+        $name:expr, $rules:expr, $about:expr $(, $reach:ident)? $(; shows $operands:expr => $shown:expr)? $(; on $profiles:expr)?
         $(; takes [$($input:expr),+ $(,)?])? $(; gives [$($result:expr),+ $(,)?])?
     ) => {
         fn name(&self) -> &'static str {
@@ -23,16 +23,20 @@ $(
             Reach::$reach
         }
 )?$(
+        fn reach(&self, inputs: &[i64], results: &[i64]) -> Reach {
+            Reach::of(&inputs[$operands], &results[$shown])
+        }
+)?$(
         fn profiles(&self) -> &'static [Profile] {
             $profiles
         }
 )?$(
         fn inputs(&self) -> Vec<Column> {
-            vec![$($input),+]
+            [$(Vec::from($input)),+].concat()
         }
 )?$(
         fn results(&self) -> Vec<Column> {
-            vec![$($result),+]
+            [$(Vec::from($result)),+].concat()
         }
 )?    };
 }
@@ -57,6 +61,7 @@ mod texture;
 mod texture_environment;
 mod texture_stage;
 
+use super::column::{Column, Kind};
 use super::unit::Unit;
 use ninebit::state::{Bias, Named, Scale};
 use ninebit::trace::Step;
@@ -135,6 +140,41 @@ pub(super) fn named<T: Named>(number: i64) -> T {
 /// CMB-12: whether the scale and the bias of those numbers go together.
 fn scale_takes_bias(scale: i64, bias: i64) -> bool {
     named::<Bias>(bias) == Bias::None || matches!(named(scale), Scale::One | Scale::Two)
+}
+
+const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
+
+/// Columns of a name's channels.
+fn channels<const N: usize>(name: &str, channels: [&str; N], column: impl Fn(&str) -> Column) -> [Column; N] {
+    channels.map(|channel| column(&format!("{name}.{channel}")))
+}
+
+/// Byte columns, four for each name.
+fn colors(names: &[&str]) -> Vec<Column> {
+    names.iter().flat_map(|name| channels(&format!("in.{name}"), CHANNELS, Column::byte)).collect()
+}
+
+/// Results of a byte, four for each name.
+fn color_results<const N: usize>(names: [&str; N]) -> Vec<Column> {
+    let byte = |name: &str| Column::result(name, Kind::Unsigned(8));
+    names.iter().flat_map(|name| channels(name, CHANNELS, byte)).collect()
+}
+
+/// Four numbers as a colour of bytes.
+fn bytes(values: &[i64]) -> [u8; 4] {
+    std::array::from_fn(|n| values[n] as u8)
+}
+
+/// The float of these bits.
+fn float(bits: i64) -> f32 {
+    f32::from_bits(bits as u32)
+}
+
+/// Writes results in their order.
+fn put<T: Into<i64>>(results: &mut [i64], values: impl IntoIterator<Item = T>) {
+    for (result, value) in results.iter_mut().zip(values) {
+        *result = value.into();
+    }
 }
 
 /// The value of a step, 0 if nobody reported it.

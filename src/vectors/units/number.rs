@@ -1,12 +1,9 @@
 //! Where floats enter: colours, positions and depths.
 
+use super::float;
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::number::convert;
-
-fn float(bits: i64) -> f32 {
-    f32::from_bits(bits as u32)
-}
 
 /// A float vertex colour to a byte.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! One arithmetic instruction of ps.1.1.
 
-use super::named;
-use super::program::{self, CHANNELS, Through};
+use super::program::{self, Through};
+use super::{CHANNELS, channels, named};
 use crate::column::Column;
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::state::{Combiners, Profile, Register, Scale};
@@ -26,6 +26,15 @@ const EACH: usize = 3;
 
 /// Columns of configuration.
 const CONFIGURATION: usize = FIRST + 3 * EACH;
+
+/// The configuration of a source.
+fn configuration(name: &str) -> [Column; EACH] {
+    [
+        Column::names(&format!("cfg.selector_{name}"), &["own", "a", "b"]),
+        Column::names(&format!("cfg.modifier_{name}"), &["plain", "bias", "bx2", "invert"]),
+        Column::flag(&format!("cfg.negate_{name}")),
+    ]
+}
 
 fn register(bank: Bank, index: u8) -> ShaderRegister {
     ShaderRegister { bank, index }
@@ -106,34 +115,22 @@ impl Unit for Instruction {
             "CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-10", "CMB-11",
             "NUM-2", "NUM-3", "FIN-1", "FIN-2",
         ],
-        "an instruction of ps.1.1 from a = t0, b = t1, c = v0 to r0, after mov r0, t3 (before); the a of cnd is r0.a; with signed textures t0, t1, t3 may be negative"; on &[Profile::Nv2a]
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![
+        "an instruction of ps.1.1 from a = t0, b = t1, c = v0 to r0, after mov r0, t3 (before); the a of cnd is r0.a; with signed textures t0, t1, t3 may be negative";
+        shows CONFIGURATION.. => 8..; on &[Profile::Nv2a];
+        takes [
             Column::choice::<Operation>("cfg.operation"),
             Column::choice::<Scale>("cfg.scale"),
             Column::flag("cfg.saturate"),
             Column::names("cfg.mask", &["rgba", "rgb", "a"]),
             Column::flag("cfg.signed_textures"),
+            ["a", "b", "c"].map(configuration).concat(),
+            channels("in.a", CHANNELS, Column::register),
+            channels("in.b", CHANNELS, Column::register),
+            channels("in.c", CHANNELS, Column::byte),
+            channels("in.before", CHANNELS, Column::register),
         ];
-        for name in ["a", "b", "c"] {
-            columns.push(Column::names(&format!("cfg.selector_{name}"), &["own", "a", "b"]));
-            columns.push(Column::names(&format!("cfg.modifier_{name}"), &["plain", "bias", "bx2", "invert"]));
-            columns.push(Column::flag(&format!("cfg.negate_{name}")));
-        }
-        for name in ["a", "b", "c", "before"] {
-            columns.extend(CHANNELS.map(|channel| match name {
-                "c" => Column::byte(&format!("in.{name}.{channel}")),
-                _ => Column::register(&format!("in.{name}.{channel}")),
-            }));
-        }
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        program::results()
-    }
+        gives [program::results()]
+    );
 
     fn accepts(&self, inputs: &[i64], profile: Profile) -> bool {
         let mut fitting = inputs.to_vec();
@@ -175,9 +172,5 @@ impl Unit for Instruction {
         let lower = |inputs: &[i64]| lowered(inputs, conditions.profile);
         let has = varying >= CONFIGURATION;
         has.then(|| program::block(inputs, varying, through, &PLACES, conditions, out, lower))?
-    }
-
-    fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {
-        Reach::of(&inputs[CONFIGURATION..], &[])
     }
 }

@@ -1,6 +1,6 @@
 //! Programs of APIs as tables: one stage, unit or instruction, lowered to combiners as for a draw, and run on the registers of one pixel.
 
-use super::block;
+use super::{CHANNELS, block, channels, color_results};
 use crate::column::{Column, Kind};
 use crate::unit::Conditions;
 use ninebit::combiner::final_combiner::{self, PlannedFinal};
@@ -10,30 +10,16 @@ use ninebit::number::{Lane, Lanes16};
 use ninebit::state::{Combiners, FinalRegister, MuxSelect, Register};
 use ninebit::trace::Silent;
 
-pub(super) const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
-
 /// Rules behind every lowered program.
 pub(super) const RULES: &[&str] = &[
     "CMB-1", "CMB-2", "CMB-3", "CMB-4", "CMB-5", "CMB-6", "CMB-7", "CMB-8", "CMB-9", "CMB-11", "NUM-2", "NUM-3",
     "NUM-5", "FIN-1", "FIN-2",
 ];
 
-/// Byte columns, four for each name.
-pub(super) fn colors(names: &[&str]) -> Vec<Column> {
-    let each = |name: &&str| CHANNELS.map(|channel| Column::byte(&format!("in.{name}.{channel}")));
-    names.iter().flat_map(each).collect()
-}
-
 /// What the last general stage leaves in SPARE0, and the fragment.
 pub(super) fn results() -> Vec<Column> {
-    let mid = CHANNELS.map(|channel| Column::result(&format!("mid.spare0.{channel}"), Kind::Signed(9)));
-    let out = CHANNELS.map(|channel| Column::result(&format!("out.{channel}"), Kind::Unsigned(8)));
-    [mid, out].concat()
-}
-
-/// Four numbers as a colour of bytes.
-pub(super) fn bytes(values: &[i64]) -> [u8; 4] {
-    std::array::from_fn(|n| values[n] as u8)
+    let spare0 = channels("mid.spare0", CHANNELS, |name| Column::result(name, Kind::Signed(9)));
+    [spare0.to_vec(), color_results(["out"])].concat()
 }
 
 /// Registers that a row fills, each with the place of its red among the inputs; green, blue and alpha follow.

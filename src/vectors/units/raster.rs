@@ -1,6 +1,6 @@
 //! Triangles: which pixels they cover, and what the pixels get from the vertices.
 
-use crate::column::{Column, Domain, Kind};
+use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::raster::depth;
 use ninebit::raster::interpolate::{self, Sample};
@@ -9,6 +9,9 @@ use ninebit::state::{DepthFormat, Profile};
 
 const POSITIONS: [&str; 6] = ["in.x0", "in.y0", "in.x1", "in.y1", "in.x2", "in.y2"];
 const EDGES: [&str; 3] = ["mid.e0", "mid.e1", "mid.e2"];
+
+/// The corners of a triangle, where any will do.
+pub(super) const LARGE: [[f32; 4]; 3] = [[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]];
 
 /// The farthest position that is drawn, 1/16 pixel.
 const FARTHEST: i64 = 640 * 16;
@@ -66,21 +69,11 @@ pub(super) struct Coverage;
 
 impl Unit for Coverage {
     known_as!(
-        "coverage",
-        &["RAS-2", "RAS-3"],
-        "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel",
-        Geometry
+        "coverage", &["RAS-2", "RAS-3"],
+        "whether a triangle of snapped positions (1/16 pixel) covers a pixel; edge functions in 1/256 square pixel", Geometry;
+        takes [geometry()];
+        gives [Column::results(EDGES, Kind::Signed(36)), Column::result("out.covered", Kind::Unsigned(1))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        geometry()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = EDGES.map(|name| Column::result(name, Kind::Signed(36))).to_vec();
-        columns.push(Column::result("out.covered", Kind::Unsigned(1)));
-        columns
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // A sample on an edge: top, bottom, left, right, and a corner; both windings.
@@ -113,25 +106,16 @@ pub(super) struct ColorWeights;
 
 impl Unit for ColorWeights {
     known_as!(
-        "color-weights",
-        &["INT-1", "INT-2", "INT-3", "INT-6"],
-        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder",
-        Geometry
+        "color-weights", &["INT-1", "INT-2", "INT-3", "INT-6"],
+        "the weights, in 256ths, of the colours of vertices 0 and 2 at a covered pixel; vertex 1 takes the remainder", Geometry;
+        takes [geometry(), W.map(w)];
+        gives [
+            Column::results(EDGES, Kind::Signed(36)),
+            Column::results(["mid.p0", "mid.p1", "mid.p2"], Kind::Unsigned(28)),
+            Column::results(["mid.lowered0", "mid.lowered2"], Kind::Unsigned(1)),
+            Column::results(["out.weight0", "out.weight2"], Kind::Unsigned(9)),
+        ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = geometry();
-        columns.extend(W.map(w));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = EDGES.map(|name| Column::result(name, Kind::Signed(36))).to_vec();
-        columns.extend(["mid.p0", "mid.p1", "mid.p2"].map(|name| Column::result(name, Kind::Unsigned(28))));
-        columns.extend(["mid.lowered0", "mid.lowered2"].map(|name| Column::result(name, Kind::Unsigned(1))));
-        columns.extend(["out.weight0", "out.weight2"].map(|name| Column::result(name, Kind::Unsigned(9))));
-        columns
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Exact weights of which several could dominate: eighths 1 3 4, 3 1 4, 3 4 1, and sixteenths 5 6 5. Then halves and quarters of an area that is a
@@ -146,12 +130,8 @@ impl Unit for ColorWeights {
         let three = i64::from(3.0_f32.to_bits());
         let unequal = vec![8, 8, 72, 8, 8, 72, 1, 1, three, one, one];
         let exact = [one, two, other].map(|w| vec![8, 8, 72, 8, 8, 72, 1, 1, w, w, w]);
-        positions
-            .into_iter()
-            .map(|row| [&row[..], &[5, 13, one, one, one]].concat())
-            .chain(exact)
-            .chain([unequal])
-            .collect()
+        let tied = positions.into_iter().map(|row| [&row[..], &[5, 13, one, one, one]].concat());
+        tied.chain(exact).chain([unequal]).collect()
     }
 
     fn fit(&self, inputs: &mut [i64]) {
@@ -180,24 +160,15 @@ pub(super) struct DepthInterpolation;
 
 impl Unit for DepthInterpolation {
     known_as!(
-        "depth-interpolation",
-        &["DEP-1"],
-        "the depth of a covered pixel from three vertex depths in units of the buffer's last bit",
-        Geometry
+        "depth-interpolation", &["DEP-1"],
+        "the depth of a covered pixel from three vertex depths in units of the buffer's last bit", Geometry;
+        takes [
+            geometry(),
+            Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]),
+            ["in.z0", "in.z1", "in.z2"].map(|name| Column::unsigned(name, 24, (1 << 24) - 1)),
+        ];
+        gives [Column::results(EDGES, Kind::Signed(36)), Column::result("out.depth", Kind::Unsigned(24))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = geometry();
-        columns.push(Column::listed("cfg.bits", Kind::Unsigned(5), &[16, 24]));
-        columns.extend(["in.z0", "in.z1", "in.z2"].map(|name| Column::unsigned(name, 24, (1 << 24) - 1)));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = EDGES.map(|name| Column::result(name, Kind::Signed(36))).to_vec();
-        columns.push(Column::result("out.depth", Kind::Unsigned(24)));
-        columns
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // A large quad of a captured frame, one edge number the largest after the other, and exponents of two and of three edge numbers that are equal.
@@ -255,14 +226,12 @@ impl Unit for ColorInterpolation {
     known_as!(
         "color-interpolation", &["INT-2"],
         "one colour channel from three vertices' bytes and the weights of vertices 0 and 2 in 256ths";
+        takes [
+            ["in.c0", "in.c1", "in.c2"].map(Column::byte),
+            ["in.weight0", "in.weight2"].map(|name| Column::unsigned(name, 9, 256)),
+        ];
         gives [Column::result("out.color", Kind::Unsigned(8))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = ["in.c0", "in.c1", "in.c2"].map(Column::byte).to_vec();
-        columns.extend(["in.weight0", "in.weight2"].map(|name| Column::unsigned(name, 9, 256)));
-        columns
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         inputs[3] + inputs[4] <= 256
@@ -284,30 +253,20 @@ pub(super) struct TextureCoordinate;
 
 impl Unit for TextureCoordinate {
     known_as!(
-        "texture-coordinate",
-        &["INT-1", "INT-4", "INT-4t", "INT-6"],
-        "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1",
-        Geometry
+        "texture-coordinate", &["INT-1", "INT-4", "INT-4t", "INT-6"],
+        "u of a covered pixel in 1/256 texel from a float coordinate at each vertex, q being 1", Geometry;
+        takes [
+            geometry(),
+            W.map(w),
+            ["in.s0", "in.s1", "in.s2"].map(|name| Column::float(name, true, 5)),
+            Column::listed("in.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512, 4096]),
+        ];
+        gives [
+            Column::results(["mid.g0", "mid.g1", "mid.g2"], Kind::Signed(56)),
+            Column::result("mid.lowered", Kind::Unsigned(1)),
+            Column::result("out.u", Kind::Signed(26)),
+        ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = geometry();
-        columns.extend(W.map(w));
-        columns.extend(["in.s0", "in.s1", "in.s2"].map(|name| Column {
-            name: name.to_owned(),
-            kind: Kind::Hex(32),
-            domain: Some(Domain::Float(true, 5)),
-        }));
-        columns.push(Column::listed("in.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512, 4096]));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = ["mid.g0", "mid.g1", "mid.g2"].map(|name| Column::result(name, Kind::Signed(56))).to_vec();
-        columns.push(Column::result("mid.lowered", Kind::Unsigned(1)));
-        columns.push(Column::result("out.u", Kind::Signed(26)));
-        columns
-    }
 
     fn fit(&self, inputs: &mut [i64]) {
         fit(inputs);

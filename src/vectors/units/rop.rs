@@ -1,6 +1,6 @@
 //! Alpha test, blending, surfaces.
 
-use super::{block, named};
+use super::{CHANNELS, block, bytes, channels, color_results, colors, named, put};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::combiner::direct::Direct;
@@ -9,19 +9,8 @@ use ninebit::rop::{blend, surface};
 use ninebit::state::{self, BlendEquation, BlendFactor, CompareFunction, SurfaceFormat};
 use ninebit::trace::Silent;
 
-const CHANNELS: [&str; 4] = ["r", "g", "b", "a"];
-
-fn colors(names: &[&str]) -> Vec<Column> {
-    let each = |name: &&str| CHANNELS.map(|channel| Column::byte(&format!("in.{name}.{channel}")));
-    names.iter().flat_map(each).collect()
-}
-
 fn color(values: &[i64]) -> [i32; 4] {
     std::array::from_fn(|n| values[n] as i32)
-}
-
-fn bytes(values: &[i64]) -> [u8; 4] {
-    std::array::from_fn(|n| values[n] as u8)
 }
 
 /// Whether a fragment passes the alpha test.
@@ -31,7 +20,7 @@ pub(super) struct AlphaTest;
 impl Unit for AlphaTest {
     known_as!(
         "alpha-test", &["ROP-1"], "whether a fragment of this alpha passes", Direct;
-        takes [Column::choice::<CompareFunction>("cfg.function"), Column::byte("cfg.reference"), Column::byte("in.alpha")];
+        takes [Column::choice::<CompareFunction>("cfg.function"), ["cfg.reference", "in.alpha"].map(Column::byte)];
         gives [Column::result("out.passes", Kind::Unsigned(1))]
     );
 
@@ -51,27 +40,15 @@ fn blend_state(inputs: &[i64]) -> state::Blend {
 
 impl Unit for Blend {
     known_as!(
-        "blend",
-        &["ROP-2", "ROP-3", "ROP-4"],
-        "a fragment blended with what a surface of eight bits a channel holds",
-        Direct
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![
+        "blend", &["ROP-2", "ROP-3", "ROP-4"],
+        "a fragment blended with what a surface of eight bits a channel holds", Direct;
+        takes [
             Column::choice::<BlendEquation>("cfg.equation"),
-            Column::choice::<BlendFactor>("cfg.source_factor"),
-            Column::choice::<BlendFactor>("cfg.destination_factor"),
+            ["cfg.source_factor", "cfg.destination_factor"].map(Column::choice::<BlendFactor>),
+            colors(&["source", "destination", "constant"]),
         ];
-        columns.extend(colors(&["source", "destination", "constant"]));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let results =
-            |name: &str| CHANNELS.map(|channel| Column::result(&format!("{name}.{channel}"), Kind::Unsigned(8)));
-        [results("mid.source_factor"), results("mid.destination_factor"), results("out")].concat()
-    }
+        gives [color_results(["mid.source_factor", "mid.destination_factor", "out"])]
+    );
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let state = blend_state(inputs);
@@ -86,9 +63,7 @@ impl Unit for Blend {
             results[4 + channel] = factor(state.destination);
         }
         let out = blend::run(&state, 15, bytes(&inputs[11..15]), &source, &destination, &mut Silent);
-        for (result, value) in results[8..].iter_mut().zip(out) {
-            *result = value.into();
-        }
+        put(&mut results[8..], out);
     }
 
     fn block(&self, inputs: &[i64], varying: usize, _: &Conditions, out: &mut [u8]) -> Option<[u64; 2]> {
@@ -116,14 +91,9 @@ pub(super) struct SurfaceStore;
 impl Unit for SurfaceStore {
     known_as!(
         "surface-store", &["ROP-5"], "a colour as the word that a surface of this format keeps", Direct;
+        takes [Column::choice::<SurfaceFormat>("cfg.format"), channels("in", CHANNELS, Column::byte)];
         gives [Column::result("out.word", Kind::Hex(32))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::choice::<SurfaceFormat>("cfg.format")];
-        columns.extend(CHANNELS.map(|channel| Column::byte(&format!("in.{channel}"))));
-        columns
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = surface::pack(named(inputs[0]), bytes(&inputs[1..])).into();
@@ -137,12 +107,9 @@ pub(super) struct SurfaceLoad;
 impl Unit for SurfaceLoad {
     known_as!(
         "surface-load", &["ROP-5"], "the word of a surface as the colour that a blend reads", Direct;
-        takes [Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)]
+        takes [Column::choice::<SurfaceFormat>("cfg.format"), Column::word("in.word", 32)];
+        gives [color_results(["out"])]
     );
-
-    fn results(&self) -> Vec<Column> {
-        CHANNELS.map(|channel| Column::result(&format!("out.{channel}"), Kind::Unsigned(8))).to_vec()
-    }
 
     fn accepts(&self, inputs: &[i64], _: state::Profile) -> bool {
         let bytes = named::<SurfaceFormat>(inputs[0]).bytes();
@@ -154,8 +121,6 @@ impl Unit for SurfaceLoad {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        for (result, byte) in results.iter_mut().zip(surface::read(named(inputs[0]), inputs[1] as u32)) {
-            *result = byte.into();
-        }
+        put(results, surface::read(named(inputs[0]), inputs[1] as u32));
     }
 }

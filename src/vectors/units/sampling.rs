@@ -1,8 +1,9 @@
 //! How a texture unit samples volumes and long footprints, and what keys and comparisons make of a texel.
 
-use super::named;
+use super::raster::LARGE;
 use super::texel::formats;
-use super::texture::planned;
+use super::texture::{footprint, planned};
+use super::{float, named};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::raster::depth::word;
@@ -18,19 +19,12 @@ use ninebit::texture::unit::{PlannedUnit, layer};
 use ninebit::texture::{anisotropy, color_key, shadow};
 use ninebit::trace::Silent;
 
-fn float(bits: i64) -> f32 {
-    f32::from_bits(bits as u32)
-}
-
 /// Hands on a place inside a triangle whose vertices all have the coordinates (0, 0, r, q).
 fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interpolated<'_>) -> T) -> Option<T> {
-    let corners = [[0.0, 0.0, 0.0, 1.0], [64.0, 0.0, 0.0, 1.0], [0.0, 64.0, 0.0, 1.0]];
-    let triangle = Triangle::new(corners, true, Profile::Nv2a)?;
-    let mut vertices = Vertices::new();
+    let triangle = Triangle::new(LARGE, true, Profile::Nv2a)?;
     let texture_coordinates = [[0.0, 0.0, r, q]; 4];
-    for position in corners {
-        vertices.push(Vertex { position, texture_coordinates, ..Vertex::default() });
-    }
+    let vertex = |position| Vertex { position, texture_coordinates, ..Vertex::default() };
+    let vertices: Vertices = LARGE.into_iter().map(vertex).collect();
     let vertices = vertices.triangle([0, 1, 2]);
     let coordinates = Coordinates::new(&triangle, vertices.coordinates(0), unit);
     let at = Sample::new(&triangle, triangle.edges(8, 8));
@@ -232,18 +226,10 @@ const PAIRS: usize = anisotropy::MAX_TAPS / 2;
 
 impl Unit for AnisotropyTaps {
     known_as!(
-        "anisotropy-taps",
-        &["TEX-11", "TEX-17"],
-        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel",
-        Geometry
+        "anisotropy-taps", &["TEX-11", "TEX-17"],
+        "how many taps a footprint has, where each pair lies (1/256 texel, to both sides) and what each of the two weighs; coordinates of a quad in 1/65536 texel", Geometry;
+        takes [Column::listed("cfg.limit", Kind::Unsigned(4), &[2, 4, 8]), footprint()]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::listed("cfg.limit", Kind::Unsigned(4), &[2, 4, 8])];
-        let names = ["in.u_right", "in.v_right", "in.u_lower", "in.v_lower"];
-        columns.extend(names.map(|name| Column::signed(name, 34, -(1 << 32), 1 << 32)));
-        columns
-    }
 
     fn results(&self) -> Vec<Column> {
         let mut columns = vec![Column::result("out.count", Kind::Unsigned(4))];
@@ -306,21 +292,14 @@ pub(super) struct CylindricalWrap;
 
 impl Unit for CylindricalWrap {
     known_as!(
-        "cylindrical-wrap",
-        &["CYL-1"],
-        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign",
-        Geometry
+        "cylindrical-wrap", &["CYL-1"],
+        "s of a triangle's vertices (floats) as they are interpolated where s wraps cylindrically; 0 has no sign", Geometry;
+        takes [
+            Column::choice::<AddressMode>("cfg.mode"),
+            ["in.s0", "in.s1", "in.s2"].map(|name| Column::float(name, true, 8)),
+        ];
+        gives [Column::results(["out.s0", "out.s1", "out.s2"], Kind::Hex(32))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::choice::<AddressMode>("cfg.mode")];
-        columns.extend(["in.s0", "in.s1", "in.s2"].map(|name| Column::float(name, true, 8)));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        ["out.s0", "out.s1", "out.s2"].map(|name| Column::result(name, Kind::Hex(32))).to_vec()
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // The handbook's example, and differences of halves and wholes, either way.

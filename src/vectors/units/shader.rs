@@ -1,6 +1,6 @@
 //! The texture shader's arithmetic.
 
-use super::named;
+use super::{CHANNELS, bytes, channels, float, named, put};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::number::convert::split;
@@ -9,43 +9,19 @@ use ninebit::texture::{dot, shader};
 
 const NV2A: &[Profile] = &[Profile::Nv2a];
 
-fn float(bits: i64) -> f32 {
-    f32::from_bits(bits as u32)
-}
-
-fn color() -> Vec<Column> {
-    ["in.r", "in.g", "in.b", "in.a"].map(Column::byte).to_vec()
-}
-
-fn bytes(inputs: &[i64]) -> [u8; 4] {
-    std::array::from_fn(|n| inputs[n] as u8)
-}
-
-fn floats(names: &[&str]) -> Vec<Column> {
-    names.iter().map(|name| Column::result(name, Kind::Hex(32))).collect()
-}
-
 /// A colour as the vector of a dot product.
 #[derive(Debug)]
 pub(super) struct Remap;
 
 impl Unit for Remap {
     known_as!(
-        "shader-remap", &["TSH-1", "TSH-2", "TSH-3"], "a colour's bytes as the three floats that the dot unit reads"; on NV2A
+        "shader-remap", &["TSH-1", "TSH-2", "TSH-3"], "a colour's bytes as the three floats that the dot unit reads"; on NV2A;
+        takes [Column::choice::<DotMapping>("cfg.mapping"), channels("in", CHANNELS, Column::byte)];
+        gives [Column::results(["out.x", "out.y", "out.z"], Kind::Hex(32))]
     );
 
-    fn inputs(&self) -> Vec<Column> {
-        [vec![Column::choice::<DotMapping>("cfg.mapping")], color()].concat()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        floats(&["out.x", "out.y", "out.z"])
-    }
-
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        for (result, value) in results.iter_mut().zip(dot::remap(named(inputs[0]), bytes(&inputs[1..]))) {
-            *result = value.to_bits().into();
-        }
+        put(results, dot::remap(named(inputs[0]), bytes(&inputs[1..])).map(f32::to_bits));
     }
 }
 
@@ -56,27 +32,19 @@ pub(super) struct DotProduct;
 impl Unit for DotProduct {
     known_as!(
         "shader-dot-product", &["TSH-1", "TSH-2", "TSH-3", "TSH-4"],
-        "the dot product of float coordinates and a remapped colour, in single precision"; on NV2A
+        "the dot product of float coordinates and a remapped colour, in single precision"; on NV2A;
+        takes [
+            Column::choice::<DotMapping>("cfg.mapping"),
+            channels("in", CHANNELS, Column::byte),
+            ["in.s", "in.t", "in.q"].map(|name| Column::float(name, true, 8)),
+        ];
+        gives [Column::results(["mid.product_x", "mid.product_y", "mid.product_z", "out.dot"], Kind::Hex(32))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::choice::<DotMapping>("cfg.mapping")];
-        columns.extend(color());
-        columns.extend(["in.s", "in.t", "in.q"].map(|name| Column::float(name, true, 8)));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        floats(&["mid.product_x", "mid.product_y", "mid.product_z", "out.dot"])
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let color = dot::remap(named(inputs[0]), bytes(&inputs[1..]));
         let products = dot::products([5, 6, 7].map(|n| float(inputs[n])), color);
-        let all = products.into_iter().chain([dot::sum(products)]);
-        for (result, value) in results.iter_mut().zip(all) {
-            *result = value.to_bits().into();
-        }
+        put(results, products.into_iter().chain([dot::sum(products)]).map(f32::to_bits));
     }
 }
 
@@ -88,15 +56,13 @@ impl Unit for BumpOffset {
     known_as!(
         "bump-offset", &["TSH-7"],
         "by how much blue and green (two's complement) move one coordinate, in 2^-24 of 1/256 texel", Geometry; on NV2A;
+        takes [
+            Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 64, 256, 4096]),
+            ["in.entry_blue", "in.entry_green"].map(|name| Column::float(name, true, 3)),
+            ["in.blue", "in.green"].map(Column::byte),
+        ];
         gives [Column::result("out.offset", Kind::Signed(56))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 64, 256, 4096])];
-        columns.extend(["in.entry_blue", "in.entry_green"].map(|name| Column::float(name, true, 3)));
-        columns.extend(["in.blue", "in.green"].map(Column::byte));
-        columns
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         let entries = [1, 2].map(|n| float(inputs[n]));
@@ -112,14 +78,12 @@ impl Unit for Luminance {
     known_as!(
         "bump-luminance", &["TSH-8", "NUM-6"],
         "a channel times R / 255 scale + offset, in 4096ths and as a byte", Direct; on NV2A;
+        takes [
+            ["in.channel", "in.red"].map(Column::byte),
+            ["in.scale", "in.offset"].map(|name| Column::float(name, true, 3)),
+        ];
         gives [Column::result("mid.value", Kind::Unsigned(21)), Column::result("out.byte", Kind::Unsigned(8))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = ["in.channel", "in.red"].map(Column::byte).to_vec();
-        columns.extend(["in.scale", "in.offset"].map(|name| Column::float(name, true, 3)));
-        columns
-    }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
         results[0] = shader::luminance(inputs[0] as i32, inputs[1] as u8, [2, 3].map(|n| float(inputs[n])));

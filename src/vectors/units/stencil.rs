@@ -14,20 +14,18 @@ impl Unit for StencilTest {
     known_as!(
         "stencil-test", &["STN-1"],
         "whether a fragment passes the stencil test, and the byte that is stored, given what the depth test says", Geometry;
+        takes [
+            Column::choice::<CompareFunction>("cfg.function"),
+            ["cfg.fail", "cfg.depth_fail", "cfg.pass"].map(Column::choice::<StencilOperation>),
+            ["in.reference", "in.mask", "in.write_mask", "in.stored"].map(Column::byte),
+            Column::flag("in.depth_passes"),
+        ];
         gives [
             Column::result("mid.operation", Kind::Name(StencilOperation::NAMES)),
             Column::result("out.passes", Kind::Unsigned(1)),
             Column::result("out.stored", Kind::Unsigned(8)),
         ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::choice::<CompareFunction>("cfg.function")];
-        columns.extend(["cfg.fail", "cfg.depth_fail", "cfg.pass"].map(Column::choice::<StencilOperation>));
-        columns.extend(["in.reference", "in.mask", "in.write_mask", "in.stored"].map(Column::byte));
-        columns.push(Column::flag("in.depth_passes"));
-        columns
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Every operation at both ends and around the middle, where each of the three is chosen.

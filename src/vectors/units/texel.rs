@@ -1,14 +1,10 @@
 //! Texels: words and blocks to bytes.
 
-use super::named;
+use super::{color_results, named, put};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::state::{Named, Profile, TextureFormat};
 use ninebit::texture::{compressed, format};
-
-fn channels() -> Vec<Column> {
-    ["out.r", "out.g", "out.b", "out.a"].map(|name| Column::result(name, Kind::Unsigned(8))).to_vec()
-}
 
 /// The formats for which `wanted` holds, as a column.
 pub(super) fn formats(wanted: fn(TextureFormat) -> bool) -> Column {
@@ -30,12 +26,9 @@ pub(super) struct TexelExpansion;
 impl Unit for TexelExpansion {
     known_as!(
         "texel-expansion", &["TEX-1"], "the word of a texel as the bytes that a unit reads", Direct;
-        takes [formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)]
+        takes [formats(|f| !is_compressed(f) && f != TextureFormat::P8), Column::word("in.word", 32)];
+        gives [color_results(["out"])]
     );
-
-    fn results(&self) -> Vec<Column> {
-        channels()
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         inputs[1] >> (8 * named::<TextureFormat>(inputs[0]).bytes()) == 0
@@ -46,9 +39,7 @@ impl Unit for TexelExpansion {
     }
 
     fn evaluate(&self, inputs: &[i64], _: &Conditions, results: &mut [i64]) {
-        for (result, byte) in results.iter_mut().zip(format::expand(named(inputs[0]), inputs[1] as u32)) {
-            *result = byte.into();
-        }
+        put(results, format::expand(named(inputs[0]), inputs[1] as u32));
     }
 }
 
@@ -58,22 +49,15 @@ pub(super) struct CompressedBlock;
 
 impl Unit for CompressedBlock {
     known_as!(
-        "compressed-block",
-        &["TEX-2", "TEX-3", "TEX-4"],
-        "the texel in a column and row of a DXT block; DXT1 has two words, the others four",
-        Direct
+        "compressed-block", &["TEX-2", "TEX-3", "TEX-4"],
+        "the texel in a column and row of a DXT block; DXT1 has two words, the others four", Direct;
+        takes [
+            formats(is_compressed),
+            ["in.word0", "in.word1", "in.word2", "in.word3"].map(|name| Column::word(name, 32)),
+            ["in.column", "in.row"].map(|name| Column::unsigned(name, 2, 3)),
+        ];
+        gives [color_results(["out"])]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![formats(is_compressed)];
-        columns.extend(["in.word0", "in.word1", "in.word2", "in.word3"].map(|name| Column::word(name, 32)));
-        columns.extend(["in.column", "in.row"].map(|name| Column::unsigned(name, 2, 3)));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        channels()
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         named::<TextureFormat>(inputs[0]) != TextureFormat::Dxt1 || inputs[3..5] == [0, 0]
@@ -91,8 +75,6 @@ impl Unit for CompressedBlock {
         let block = if format == TextureFormat::Dxt1 { &words[..2] } else { &words[..] };
         let dithered = conditions.profile == Profile::Nv2a;
         let decoded = compressed::decode(format, dithered, block, inputs[5] as u32, inputs[6] as u32);
-        for (result, byte) in results.iter_mut().zip(decoded.bytes) {
-            *result = byte.into();
-        }
+        put(results, decoded.bytes);
     }
 }

@@ -32,13 +32,18 @@ pub(super) fn planned(state: TextureUnit, format: TextureFormat) -> PlannedUnit 
 }
 
 /// Mode, size, and a coordinate in 1/256 texel.
-fn addressing() -> Vec<Column> {
-    vec![
+fn addressing() -> [Column; 4] {
+    [
         Column::choice::<AddressMode>("cfg.mode"),
         Column::flag("cfg.border_texels"),
         Column::listed("cfg.size", Kind::Unsigned(13), &SIZES),
         Column::signed("in.u", 24, -(1 << 23), (1 << 23) - 1),
     ]
+}
+
+/// By how much coordinates differ in the pixels to the right and below, 1/65536 texel.
+pub(super) fn footprint() -> [Column; 4] {
+    ["in.u_right", "in.v_right", "in.u_lower", "in.v_lower"].map(|name| Column::signed(name, 34, -(1 << 32), 1 << 32))
 }
 
 /// Coordinates around the image, most of the time.
@@ -62,16 +67,13 @@ impl Unit for NearestAddress {
     known_as!(
         "nearest-address", &["TEX-5", "TEX-7", "TEX-8"],
         "the texel that the nearest filter meets at a coordinate in 1/256 texel, brought inside; not inside: the border colour", Geometry;
+        takes [addressing()];
         gives [
             Column::result("mid.index", Kind::Signed(17)),
             Column::result("out.inside", Kind::Unsigned(1)),
             Column::result("out.texel", Kind::Signed(14)),
         ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        addressing()
-    }
 
     fn fit(&self, inputs: &mut [i64]) {
         near(inputs);
@@ -89,27 +91,18 @@ pub(super) struct LinearAddress;
 
 impl Unit for LinearAddress {
     known_as!(
-        "linear-address",
-        &["TEX-6", "TEX-7", "TEX-8"],
-        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths",
-        Geometry
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        addressing()
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let (inside, texel) = (Kind::Unsigned(1), Kind::Signed(14));
-        vec![
+        "linear-address", &["TEX-6", "TEX-7", "TEX-8"],
+        "the two texels that the linear filter mixes along one axis, brought inside, and the weight of the second in 256ths", Geometry;
+        takes [addressing()];
+        gives [
             Column::result("mid.index", Kind::Signed(17)),
             Column::result("out.weight", Kind::Unsigned(8)),
-            Column::result("out.inside0", inside.clone()),
-            Column::result("out.texel0", texel.clone()),
-            Column::result("out.inside1", inside),
-            Column::result("out.texel1", texel),
+            Column::result("out.inside0", Kind::Unsigned(1)),
+            Column::result("out.texel0", Kind::Signed(14)),
+            Column::result("out.inside1", Kind::Unsigned(1)),
+            Column::result("out.texel1", Kind::Signed(14)),
         ]
-    }
+    );
 
     fn fit(&self, inputs: &mut [i64]) {
         near(inputs);
@@ -131,7 +124,7 @@ impl Unit for LinearStep {
     known_as!(
         "linear-step", &["TEX-6", "TEX-9"],
         "two bytes mixed by the weight of the second in 256ths: between texels, and between levels (trilinear)", Direct;
-        takes [Column::byte("in.first"), Column::byte("in.second"), Column::byte("in.weight")];
+        takes [["in.first", "in.second", "in.weight"].map(Column::byte)];
         gives [Column::result("out.value", Kind::Unsigned(8))]
     );
 
@@ -146,21 +139,15 @@ pub(super) struct Bilinear;
 
 impl Unit for Bilinear {
     known_as!(
-        "bilinear",
-        &["TEX-6"],
-        "one channel of four texels mixed along u on both rows, then along v; signed channels are -128..127"
+        "bilinear", &["TEX-6"],
+        "one channel of four texels mixed along u on both rows, then along v; signed channels are -128..127";
+        shows ..4 => 3..;
+        takes [
+            ["in.t00", "in.t10", "in.t01", "in.t11"].map(|name| Column::signed(name, 9, -128, 255)),
+            ["in.weight_u", "in.weight_v"].map(Column::byte),
+        ];
+        gives [Column::results(["mid.row0", "mid.row1", "out.value"], Kind::Signed(9))]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns =
-            ["in.t00", "in.t10", "in.t01", "in.t11"].map(|name| Column::signed(name, 9, -128, 255)).to_vec();
-        columns.extend(["in.weight_u", "in.weight_v"].map(Column::byte));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        ["mid.row0", "mid.row1", "out.value"].map(|name| Column::result(name, Kind::Signed(9))).to_vec()
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         let texels = &inputs[..4];
@@ -183,10 +170,6 @@ impl Unit for Bilinear {
             value
         });
     }
-
-    fn reach(&self, inputs: &[i64], _: &[i64]) -> Reach {
-        Reach::of(&inputs[..4], &[])
-    }
 }
 
 /// A look-up in a cube map.
@@ -195,23 +178,17 @@ pub(super) struct CubeFace;
 
 impl Unit for CubeFace {
     known_as!(
-        "cube-face",
-        &["TEX-12", "TEX-13"],
-        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel",
-        Geometry
+        "cube-face", &["TEX-12", "TEX-13"],
+        "the face of a cube map that a float direction meets, and u and v on it in 1/256 texel", Geometry;
+        takes [
+            Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512]),
+            ["in.x", "in.y", "in.z"].map(|name| Column::float(name, true, 4)),
+        ];
+        gives [
+            Column::result("out.face", Kind::Name(Face::NAMES)),
+            Column::results(["out.u", "out.v"], Kind::Unsigned(18)),
+        ]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![Column::listed("cfg.size", Kind::Unsigned(13), &[1, 2, 16, 64, 256, 512])];
-        columns.extend(["in.x", "in.y", "in.z"].map(|name| Column::float(name, true, 4)));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        let mut columns = vec![Column::result("out.face", Kind::Name(Face::NAMES))];
-        columns.extend(["out.u", "out.v"].map(|name| Column::result(name, Kind::Unsigned(18))));
-        columns
-    }
 
     fn regressions(&self) -> Vec<Vec<i64>> {
         // Every direction of components -1, 0 and 1: the ties.
@@ -240,30 +217,21 @@ impl Unit for LevelChoice {
     known_as!(
         "level-choice", &["TEX-9", "TEX-10", "TEX-11"],
         "the lod, in 256ths, of coordinates at three pixels of a quad (1/65536 texel), then filter, levels and their weight", Geometry;
-        gives [
-            Column::result("mid.log2_ratio", Kind::Signed(16)),
-            Column::result("mid.lod", Kind::Signed(16)),
-            Column::result("out.filter", Kind::Name(Filter::NAMES)),
-            Column::result("out.level", Kind::Unsigned(4)),
-            Column::result("out.next_level", Kind::Unsigned(4)),
-            Column::result("out.weight", Kind::Unsigned(8)),
-        ]
-    );
-
-    fn inputs(&self) -> Vec<Column> {
-        let mut columns = vec![
-            Column::choice::<Filter>("cfg.min_filter"),
-            Column::choice::<Filter>("cfg.mag_filter"),
+        takes [
+            ["cfg.min_filter", "cfg.mag_filter"].map(Column::choice::<Filter>),
             Column::choice::<MipFilter>("cfg.mip_filter"),
             Column::unsigned("cfg.levels", 4, 10),
             Column::signed("cfg.lod_bias", 13, -4096, 4095),
-            Column::unsigned("cfg.min_lod", 12, 4095),
-            Column::unsigned("cfg.max_lod", 12, 4095),
+            ["cfg.min_lod", "cfg.max_lod"].map(|name| Column::unsigned(name, 12, 4095)),
+            footprint(),
         ];
-        let names = ["in.u_right", "in.v_right", "in.u_lower", "in.v_lower"];
-        columns.extend(names.map(|name| Column::signed(name, 34, -(1 << 32), 1 << 32)));
-        columns
-    }
+        gives [
+            Column::results(["mid.log2_ratio", "mid.lod"], Kind::Signed(16)),
+            Column::result("out.filter", Kind::Name(Filter::NAMES)),
+            Column::results(["out.level", "out.next_level"], Kind::Unsigned(4)),
+            Column::result("out.weight", Kind::Unsigned(8)),
+        ]
+    );
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         inputs[3] >= 1 && inputs[5] <= inputs[6]

@@ -1,7 +1,7 @@
 //! One unit of the OpenGL texture environment.
 
-use super::named;
-use super::program::{self, RULES, Through, bytes, colors};
+use super::program::{self, RULES, Through};
+use super::{bytes, colors, named};
 use crate::column::{Column, Kind};
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::state::{Combiners, Named, Profile, Register, Scale};
@@ -11,9 +11,10 @@ use ninebit_program::texture_environment::{
     lower,
 };
 
-/// The numbers of the variants for which `wanted` holds.
-fn numbers<T: Named>(wanted: impl Fn(T) -> bool) -> Vec<i64> {
-    (0..).zip(T::ALL).filter(|(_, variant)| wanted(**variant)).map(|(n, _)| n).collect()
+/// A choice among the variants for which `wanted` holds.
+pub(super) fn some<T: Named>(name: &str, wanted: impl Fn(T) -> bool) -> Column {
+    let numbers: Vec<i64> = (0..).zip(T::ALL).filter(|(_, variant)| wanted(**variant)).map(|(n, _)| n).collect();
+    Column::listed(name, Kind::Name(T::NAMES), &numbers)
 }
 
 fn is_combining(mode: Mode) -> bool {
@@ -73,23 +74,15 @@ fn classic(inputs: &[i64], profile: Profile) -> Option<Combiners> {
 
 impl Unit for Classic {
     known_as!(
-        "texture-environment",
-        RULES,
-        "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format",
-        Direct
+        "texture-environment", RULES,
+        "an OpenGL texture unit in the modes Replace, Modulate, Decal, Blend and Add, by the texture's base format", Direct;
+        takes [
+            some("cfg.mode", |mode| !is_combining(mode)),
+            Column::choice::<BaseFormat>("cfg.base_format"),
+            colors(&["texture", "primary", "constant"]),
+        ];
+        gives [program::results()]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let modes = numbers(|mode: Mode| !is_combining(mode));
-        let mut columns = vec![Column::listed("cfg.mode", Kind::Name(Mode::NAMES), &modes)];
-        columns.push(Column::choice::<BaseFormat>("cfg.base_format"));
-        columns.extend(colors(&["texture", "primary", "constant"]));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        program::results()
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         inputs[2..6] == texture(inputs)
@@ -150,26 +143,17 @@ fn combine(inputs: &[i64], profile: Profile) -> Option<Combiners> {
 
 impl Unit for Combine {
     known_as!(
-        "texture-combine",
-        RULES,
-        "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone",
-        Direct
+        "texture-combine", RULES,
+        "an OpenGL texture unit in the modes Combine and Combine4: arguments 0 to 3 are the texture, the primary colour, the constant and the texture; alpha has the same function, or Modulate beside a dot product of R, G, B alone", Direct;
+        takes [
+            some("cfg.mode", is_combining),
+            Column::choice::<Function>("cfg.function"),
+            some("cfg.scale", |scale: Scale| scale != Scale::Half),
+            ["cfg.operand0", "cfg.operand1", "cfg.operand2", "cfg.operand3"].map(Column::choice::<Operand>),
+            colors(&["texture", "primary", "constant"]),
+        ];
+        gives [program::results()]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let modes = numbers(is_combining);
-        let mut columns = vec![Column::listed("cfg.mode", Kind::Name(Mode::NAMES), &modes)];
-        columns.push(Column::choice::<Function>("cfg.function"));
-        let scales = numbers(|scale: Scale| scale != Scale::Half);
-        columns.push(Column::listed("cfg.scale", Kind::Name(Scale::NAMES), &scales));
-        columns.extend([0, 1, 2, 3].map(|n| Column::choice::<Operand>(&format!("cfg.operand{n}"))));
-        columns.extend(colors(&["texture", "primary", "constant"]));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        program::results()
-    }
 
     fn accepts(&self, inputs: &[i64], _: Profile) -> bool {
         let (mode, function): (Mode, Function) = (named(inputs[0]), named(inputs[1]));

@@ -1,8 +1,9 @@
 //! One Direct3D texture stage.
 
-use super::named;
-use super::program::{self, RULES, Through, bytes, colors};
-use crate::column::{Column, Kind};
+use super::program::{self, RULES, Through};
+use super::texture_environment::some;
+use super::{bytes, colors, named};
+use crate::column::Column;
 use crate::unit::{Conditions, Reach, Unit};
 use ninebit::state::{Combiners, Named, Profile, Register};
 use ninebit_program::At;
@@ -73,24 +74,15 @@ fn places(inputs: &[i64]) -> [(Register, usize); 3] {
 
 impl Unit for Stage {
     known_as!(
-        "texture-stage",
-        RULES,
-        "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current",
-        Direct
+        "texture-stage", RULES,
+        "a Direct3D texture stage: ColorOp and, where alpha can be it, AlphaOp of Arg1 Texture, Arg2 Current, Arg0 TextureFactor; PreModulate takes `other` as the next stage's texture, all others as Current", Direct;
+        takes [
+            some("cfg.operation", combines),
+            ["cfg.complement1", "cfg.alpha_replicate1", "cfg.complement2", "cfg.alpha_replicate2"].map(Column::flag),
+            colors(&["texture", "other", "diffuse", "factor"]),
+        ];
+        gives [program::results()]
     );
-
-    fn inputs(&self) -> Vec<Column> {
-        let operations: Vec<i64> = (0..).zip(Operation::ALL).filter(|(_, o)| combines(**o)).map(|(n, _)| n).collect();
-        let mut columns = vec![Column::listed("cfg.operation", Kind::Name(Operation::NAMES), &operations)];
-        let flags = ["cfg.complement1", "cfg.alpha_replicate1", "cfg.complement2", "cfg.alpha_replicate2"];
-        columns.extend(flags.map(Column::flag));
-        columns.extend(colors(&["texture", "other", "diffuse", "factor"]));
-        columns
-    }
-
-    fn results(&self) -> Vec<Column> {
-        program::results()
-    }
 
     fn evaluate(&self, inputs: &[i64], conditions: &Conditions, results: &mut [i64]) {
         let lowered = lowered(inputs, conditions.profile);

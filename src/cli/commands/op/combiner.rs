@@ -5,7 +5,7 @@ use std::fmt::Write;
 use clap::{Args, ValueEnum};
 use ninebit::combiner::general::{self, PlannedPortion, PlannedStage};
 use ninebit::combiner::registers::{self, channel_name};
-use ninebit::state::{Bias, Component, GeneralStage, MuxSelect, Named, Policies, Portion, Profile, Register, Scale};
+use ninebit::state::{Bias, GeneralStage, MuxSelect, Named, Policies, Profile, Register, Scale};
 use ninebit::trace::Observer;
 use serde_json::json;
 
@@ -85,13 +85,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let template = Template { draw: program(arguments), ..Template::default() };
     let combiners = template.combiners(profile.profile, context)?;
     let stage = combiners.stages.first().copied();
-    let none = GeneralStage {
-        rgb: Portion::idle(Component::Rgb),
-        alpha: Portion::idle(Component::Alpha),
-        constants: [[0; 4]; 2],
-    };
     let operation = Stage {
-        stage: stage.unwrap_or(none),
+        stage: stage.unwrap_or(GeneralStage::idle([[0; 4]; 2])),
         half: arguments.portion,
         mux_select: combiners.mux_select,
         columns,

@@ -56,10 +56,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
     let own = |n: usize| OWN.iter().any(|register| n / 4 == *register as usize);
     if let Some((_, column)) = columns.iter().enumerate().find(|(n, column)| own(*n) && column.value != Some(0)) {
         let message = format!("`{}` is no input of a program", column.name);
-        return Err(Failure::usage(
-            message,
-            "constants stand in the program; give tex0 to tex3, primary, secondary and fog",
-        ));
+        let help = "constants stand in the program; give tex0 to tex3, primary, secondary and fog";
+        return Err(Failure::usage(message, help));
     }
     let (file, language) = match (&arguments.file, &arguments.words) {
         (Some(file), _) => (file, arguments.program.language(file)),
@@ -67,10 +65,8 @@ pub(crate) fn run(arguments: &Arguments, context: Context) -> Result<(), Failure
         (None, None) => return Err(Failure::usage("no program is given", "name its file")),
     };
     let language = language.ok_or_else(|| {
-        Failure::usage(
-            "which language the program is in is not said",
-            "say it by `--from`, for example `--from registers`",
-        )
+        let help = "say it by `--from`, for example `--from registers`";
+        Failure::usage("which language the program is in is not said", help)
     })?;
     let (scene, _) = arguments.program.read(file, language, context)?;
     let combiners = scene.draws.into_iter().next().map(|draw| draw.combiners).unwrap_or_default();

@@ -114,10 +114,8 @@ fn of_scene(
     context: Context,
 ) -> Result<Opened, Failure> {
     if arguments.profile.is_some() || arguments.format.is_some() {
-        return Err(Failure::usage(
-            "a scene says itself what its profile and formats are",
-            "leave out `--profile` and `--format`",
-        ));
+        let help = "leave out `--profile` and `--format`";
+        return Err(Failure::usage("a scene says itself what its profile and formats are", help));
     }
     let (scene, plan) = load(path, &PolicyArguments::default(), context)?;
     let Some(index) = scene.textures.iter().position(|known| known.name == texture) else {
@@ -157,10 +155,8 @@ fn palette(arguments: &Arguments, scene: &Scene, texture: usize) -> Result<Arc<[
     let index = match &arguments.palette {
         Some(_) if scene.textures[texture].format != TextureFormat::P8 => {
             let format = scene.textures[texture].format.name();
-            return Err(Failure::usage(
-                format!("a texture of format {format} reads no palette"),
-                "leave out `--palette`",
-            ));
+            let message = format!("a texture of format {format} reads no palette");
+            return Err(Failure::usage(message, "leave out `--palette`"));
         }
         Some(name) => {
             let found = scene.palettes.iter().position(|palette| palette.name == *name);

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use ninebit::shown;
-use ninebit_files::output::{write_json, write_text};
 use ninebit_vectors::pack::{self, Manifest};
 use ninebit_vectors::results::compare::{self, Comparison, UnitComparison};
 use ninebit_vectors::results::{self, Device, waiver};
@@ -39,21 +38,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (manifest, tables) = pack::open(&arguments.pack)?;
     let results = results::open(&arguments.results, &manifest)?;
     let comparison = compare::compare(&tables, &results, &waivers, arguments.rows)?;
-    match arguments.format {
-        Format::Text => write_text(&text(&manifest, &results.device, &comparison))?,
-        Format::Json => {
-            let value = json!({
-                "format": "ninebit-comparison-1",
-                "pack": manifest.root,
-                "profile": manifest.profile,
-                "level": manifest.level,
-                "behaviour_rev": manifest.behaviour_rev,
-                "device": results.device,
-                "comparison": comparison,
-            });
-            write_json(&format!("{value:#}"))?;
-        }
-    }
+    let json = || {
+        let value = json!({
+            "format": "ninebit-comparison-1",
+            "pack": manifest.root,
+            "profile": manifest.profile,
+            "level": manifest.level,
+            "behaviour_rev": manifest.behaviour_rev,
+            "device": results.device,
+            "comparison": comparison,
+        });
+        format!("{value:#}")
+    };
+    arguments.format.print(|| text(&manifest, &results.device, &comparison), json)?;
     if comparison.is_clean() { Ok(()) } else { Err(Failure::difference()) }
 }
 

@@ -29,10 +29,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
     let (a, first) = pack::open(&arguments.first)?;
     let (b, second) = pack::open(&arguments.second)?;
     if a.profile != b.profile {
-        return Err(Failure::usage(
-            format!("the packs are of {} and of {}", a.profile, b.profile),
-            "packs of one chip can be compared",
-        ));
+        let help = "packs of one chip can be compared";
+        return Err(Failure::usage(format!("the packs are of {} and of {}", a.profile, b.profile), help));
     }
     let mut text = String::new();
     let mut differs = false;

@@ -4,7 +4,6 @@ use std::fmt::Write;
 
 use clap::Args;
 use ninebit::state::Named;
-use ninebit_files::output::{write_json, write_text};
 use ninebit_vectors::{cases, handbook, units};
 use serde_json::json;
 
@@ -42,9 +41,5 @@ pub(crate) fn run(arguments: &Arguments) -> Result<(), Failure> {
             "results": results.iter().map(column).collect::<Vec<_>>(),
         }));
     }
-    match arguments.format {
-        Format::Text => write_text(&text)?,
-        Format::Json => write_json(&format!("{:#}", json!({ "format": "ninebit-units-1", "units": list })))?,
-    }
-    Ok(())
+    arguments.format.print(|| text, || format!("{:#}", json!({ "format": "ninebit-units-1", "units": list })))
 }

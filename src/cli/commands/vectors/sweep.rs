@@ -49,10 +49,8 @@ pub(crate) fn sweep(arguments: &SweepArguments) -> Result<(), Failure> {
         return Err(super::lacks(*unit, *profile));
     }
     let part = Part::new(*unit, only).map_err(|message| {
-        Failure::usage(
-            format!("--only: {message}"),
-            "`ninebit vectors list --format json` has the columns of every unit",
-        )
+        let help = "`ninebit vectors list --format json` has the columns of every unit";
+        Failure::usage(format!("--only: {message}"), help)
     })?;
     let Some(sweep) = Exhaustive::of(*unit, *profile, part) else {
         return Err(Failure::usage(

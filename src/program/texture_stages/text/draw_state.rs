@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use crate::Aside;
 use crate::calls::{Part, PartKind, Value, without_prefix};
-use ninebit::diagnostic::Diagnostic;
+use crate::finding::warning;
 use ninebit::state::{BlendEquation, BlendFactor, CompareFunction, Named as _, StencilOperation};
 
 /// A field of the draw, and the states that it holds: name and D3DRS value.
@@ -61,111 +61,22 @@ const GROUPS: [Group; 8] = [
 ];
 
 /// Their names.
-pub(super) const NAMES: &[&str] = &[
-    "AlphaBlendEnable",
-    "SrcBlend",
-    "DestBlend",
-    "BlendOp",
-    "AlphaTestEnable",
-    "AlphaRef",
-    "AlphaFunc",
-    "ZEnable",
-    "ZWriteEnable",
-    "ZFunc",
-    "StencilEnable",
-    "StencilFail",
-    "StencilZFail",
-    "StencilPass",
-    "StencilFunc",
-    "StencilRef",
-    "StencilMask",
-    "StencilWriteMask",
-    "FogEnable",
-    "FogColor",
-    "FogTableMode",
-    "FogStart",
-    "FogEnd",
-    "FogDensity",
-    "RangeFogEnable",
-    "FogVertexMode",
-    "CullMode",
-    "ShadeMode",
-    "ColorWriteEnable",
-];
+pub(super) fn names() -> impl Iterator<Item = &'static str> {
+    GROUPS.iter().flat_map(|group| group.states.iter().map(|(name, _)| *name))
+}
 
 /// Render states of the API that are passed over.
-pub(super) const OTHER_STATES: &[&str] = &[
-    "Lighting",
-    "Ambient",
-    "LocalViewer",
-    "ColorVertex",
-    "NormalizeNormals",
-    "DiffuseMaterialSource",
-    "SpecularMaterialSource",
-    "AmbientMaterialSource",
-    "EmissiveMaterialSource",
-    "DitherEnable",
-    "FillMode",
-    "LastPixel",
-    "LinePattern",
-    "Clipping",
-    "ClipPlaneEnable",
-    "ZBias",
-    "ZVisible",
-    "DepthBias",
-    "SlopeScaleDepthBias",
-    "EdgeAntialias",
-    "Antialias",
-    "MultisampleAntialias",
-    "MultisampleMask",
-    "TextureHandle",
-    "TexturePerspective",
-    "TextureMapBlend",
-    "TextureMag",
-    "TextureMin",
-    "TextureAddress",
-    "MonoEnable",
-    "Rop2",
-    "PlaneMask",
-    "SubPixel",
-    "StippledAlpha",
-    "StippleEnable",
-    "ColorKeyEnable",
-    "Extents",
-    "VertexBlend",
-    "IndexedVertexBlendEnable",
-    "TweenFactor",
-    "PointSize",
-    "PointSize_Min",
-    "PointSize_Max",
-    "PointSpriteEnable",
-    "PointScaleEnable",
-    "PointScale_A",
-    "PointScale_B",
-    "PointScale_C",
-    "SoftwareVertexProcessing",
-    "PatchEdgeStyle",
-    "PatchSegments",
-    "DebugMonitorToken",
-    "ScissorTestEnable",
-    "SRGBWriteEnable",
-    "BlendFactor",
-    "SeparateAlphaBlendEnable",
-    "SrcBlendAlpha",
-    "DestBlendAlpha",
-    "BlendOpAlpha",
-    "TwoSidedStencilMode",
-    "Wrap0",
-    "Wrap1",
-    "Wrap2",
-    "Wrap3",
-    "Wrap4",
-    "Wrap5",
-    "Wrap6",
-    "Wrap7",
-    "VertexShader",
-    "PixelShader",
-];
+pub(super) const OTHER_STATES: &str = "Lighting Ambient LocalViewer ColorVertex NormalizeNormals \
+    DiffuseMaterialSource SpecularMaterialSource AmbientMaterialSource EmissiveMaterialSource \
+    DitherEnable FillMode LastPixel LinePattern Clipping ClipPlaneEnable \
+    ZBias ZVisible DepthBias SlopeScaleDepthBias EdgeAntialias Antialias MultisampleAntialias MultisampleMask \
+    TextureHandle TexturePerspective TextureMapBlend TextureMag TextureMin TextureAddress \
+    MonoEnable Rop2 PlaneMask SubPixel StippledAlpha StippleEnable ColorKeyEnable Extents \
+    VertexBlend IndexedVertexBlendEnable TweenFactor PointSize PointSize_Min PointSize_Max \
+    PointSpriteEnable PointScaleEnable PointScale_A PointScale_B PointScale_C \
+    SoftwareVertexProcessing PatchEdgeStyle PatchSegments DebugMonitorToken ScissorTestEnable SRGBWriteEnable \
+    BlendFactor SeparateAlphaBlendEnable SrcBlendAlpha DestBlendAlpha BlendOpAlpha TwoSidedStencilMode \
+    Wrap0 Wrap1 Wrap2 Wrap3 Wrap4 Wrap5 Wrap6 Wrap7 VertexShader PixelShader";
 
 /// What to write instead of one of [`OTHER_STATES`].
 pub(super) fn instead(state: &str) -> &'static str {
@@ -229,9 +140,8 @@ impl DrawStates {
                 [] => format!("{last} is a state of the draw"),
                 _ => format!("{} and {last} are states of the draw", rest.join(", ")),
             };
-            let finding = Diagnostic::warning("NB0918", place, message)
-                .label("no part of a pixel program")
-                .help(format!("write it in the draw: `{written}`"));
+            let help = format!("write it in the draw: `{written}`");
+            let finding = warning("NB0918", place, message, "no part of a pixel program", help);
             Some(Aside { finding, field: Some(group.field) })
         });
         asides.collect()
@@ -261,35 +171,21 @@ fn off(values: &Values, name: &str) -> bool {
 }
 
 /// Values of a state: as the API has them, in the order of its numbers from 1, and as the scene has them.
-type Named = (&'static [&'static str], &'static [&'static str]);
+type Named = (&'static str, &'static [&'static str]);
 
 const FACTORS: Named = (
-    &[
-        "ZERO",
-        "ONE",
-        "SRCCOLOR",
-        "INVSRCCOLOR",
-        "SRCALPHA",
-        "INVSRCALPHA",
-        "DESTALPHA",
-        "INVDESTALPHA",
-        "DESTCOLOR",
-        "INVDESTCOLOR",
-        "SRCALPHASAT",
-    ],
+    "ZERO ONE SRCCOLOR INVSRCCOLOR SRCALPHA INVSRCALPHA DESTALPHA INVDESTALPHA DESTCOLOR INVDESTCOLOR SRCALPHASAT",
     BlendFactor::NAMES,
 );
-const EQUATIONS: Named = (&["ADD", "SUBTRACT", "REVSUBTRACT", "MIN", "MAX"], BlendEquation::NAMES);
-const FUNCTIONS: Named =
-    (&["NEVER", "LESS", "EQUAL", "LESSEQUAL", "GREATER", "NOTEQUAL", "GREATEREQUAL", "ALWAYS"], CompareFunction::NAMES);
-const OPERATIONS: Named =
-    (&["KEEP", "ZERO", "REPLACE", "INCRSAT", "DECRSAT", "INVERT", "INCR", "DECR"], StencilOperation::NAMES);
+const EQUATIONS: Named = ("ADD SUBTRACT REVSUBTRACT MIN MAX", BlendEquation::NAMES);
+const FUNCTIONS: Named = ("NEVER LESS EQUAL LESSEQUAL GREATER NOTEQUAL GREATEREQUAL ALWAYS", CompareFunction::NAMES);
+const OPERATIONS: Named = ("KEEP ZERO REPLACE INCRSAT DECRSAT INVERT INCR DECR", StencilOperation::NAMES);
 
 /// The scene's word for a value.
 fn named(values: &Values, state: &str, (api, scene): Named, default: &'static str) -> String {
     let found = match find(values, state) {
-        Some(Told::Number(number)) => Some((*number as usize).wrapping_sub(1)).filter(|number| *number < api.len()),
-        Some(Told::Word(word)) => api.iter().position(|known| known == word),
+        Some(Told::Number(number)) => (0..api.split(' ').count()).nth((*number as usize).wrapping_sub(1)),
+        Some(Told::Word(word)) => api.split(' ').position(|known| known == word),
         Some(Told::Other) => None,
         None => return default.to_owned(),
     };
@@ -354,7 +250,7 @@ fn stencil_test(values: &Values) -> Option<String> {
 }
 
 fn fog(values: &Values) -> Option<String> {
-    const MODES: Named = (&["EXP", "EXP2", "LINEAR"], &["Exp", "Exp2", "Linear"]);
+    const MODES: Named = ("EXP EXP2 LINEAR", &["Exp", "Exp2", "Linear"]);
     if off(values, "FogEnable") {
         return None;
     }
@@ -388,7 +284,7 @@ fn fog(values: &Values) -> Option<String> {
 }
 
 fn cull(values: &Values) -> Option<String> {
-    let names: Named = (&["NONE", "CW", "CCW"], &["None", "Clockwise", "CounterClockwise"]);
+    let names: Named = ("NONE CW CCW", &["None", "Clockwise", "CounterClockwise"]);
     match named(values, "CullMode", names, "None").as_str() {
         "None" => None,
         // What is culled is the back: the front faces the other way round.
@@ -399,7 +295,7 @@ fn cull(values: &Values) -> Option<String> {
 }
 
 fn shade_model(values: &Values) -> Option<String> {
-    let names: Named = (&["FLAT", "GOURAUD", "PHONG"], &["Flat", "Smooth", "Smooth"]);
+    let names: Named = ("FLAT GOURAUD PHONG", &["Flat", "Smooth", "Smooth"]);
     let mode = named(values, "ShadeMode", names, "Smooth");
     (mode != "Smooth").then(|| format!("shade_model: {mode}, provoking_vertex: First"))
 }

@@ -36,12 +36,8 @@ impl<'a> Sources<'_, 'a> {
         let format = request.format.unwrap_or(dds.format);
         let Some(words) = dds.words_as(format) else {
             let message = format!("the file holds {}, not {}", dds.format.name(), format.name());
-            reader.push(
-                Diagnostic::error("NB0232", place, message)
-                    .label("of another format")
-                    .help(format!("leave `format` out, which means {} here", dds.format.name())),
-            );
-            return None;
+            let help = format!("leave `format` out, which means {} here", dds.format.name());
+            return reader.refuse(finding("NB0232", place, message, "of another format", help));
         };
         let faces = if dds.cube { CUBE_FACES } else { dds.layers.unwrap_or(1) };
         let faces = divide(words, format, [dds.width, dds.height], faces, dds.levels, false);
@@ -71,7 +67,7 @@ impl<'a> Sources<'_, 'a> {
         if bytes.len() as u64 != expected {
             let message = format!("the file has {} bytes, and the texture takes {expected}", bytes.len());
             let counted = |n: u32, what: &str| if n == 1 { format!("1 {what}") } else { format!("{n} {what}s") };
-            reader.push(
+            return reader.refuse(
                 Diagnostic::error("NB0235", reader.span(&file), message)
                     .label("another length")
                     .note(format!(
@@ -82,7 +78,6 @@ impl<'a> Sources<'_, 'a> {
                     ))
                     .help("check `width`, `height`, `format`, `kind` and `levels`"),
             );
-            return None;
         }
         let words = texels::from_bytes(&bytes, format);
         let faces = divide(words, format, inside, pictures, levels, request.border);
@@ -114,8 +109,7 @@ pub(in crate::lower) fn read_file<'a, T>(
         Err(error) => {
             // The name as the scene has it: where the folder lies does not matter here.
             let message = error.to_string().replace(&ninebit::shown::path(&path), &name);
-            reader.push(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()));
-            None
+            reader.refuse(Diagnostic::error(error.code(), place, message).label("this file").help(error.help()))
         }
     }
 }

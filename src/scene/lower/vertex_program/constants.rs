@@ -29,11 +29,9 @@ pub(super) fn constants<'a>(
     for (key, raw) in raw.as_ref().and_then(|raw| reader.read(raw)).map(|entries| entries.0).unwrap_or_default() {
         let place = reader.span(&key);
         let Some(first) = index(key.text) else {
-            reader.push(
-                Diagnostic::error("NB0204", place, format!("there is no constant `{}`", shorten(key.text)))
-                    .label("not known")
-                    .help("constants are c0 to c95: `constants: { c0: Matrix(Identity), c12: (0, 0, 1) }`"),
-            );
+            let message = format!("there is no constant `{}`", shorten(key.text));
+            let help = "constants are c0 to c95: `constants: { c0: Matrix(Identity), c12: (0, 0, 1) }`";
+            reader.push(finding("NB0204", place, message, "not known", help));
             continue;
         };
         let Some(value) = value(reader, names, &raw) else { continue };
@@ -43,25 +41,15 @@ pub(super) fn constants<'a>(
         };
         if first + rows.len() > CONSTANTS {
             let message = format!("a matrix at c{first} reaches up to c{}", first + rows.len() - 1);
-            reader.push(
-                Diagnostic::error("NB0206", place, message)
-                    .label("out of range")
-                    .help("there are c0 to c95: a matrix takes four"),
-            );
+            reader.push(finding("NB0206", place, message, "out of range", "there are c0 to c95: a matrix takes four"));
             continue;
         }
         let taken = (first..first + rows.len()).find_map(|index| Some((index, given[index].clone()?)));
         if let Some((index, other)) = taken {
-            reader.push(
-                Diagnostic::error("NB0388", place, format!("c{index} has a value already"))
-                    .label(if rows.len() == 1 {
-                        "again here".to_owned()
-                    } else {
-                        format!("c{first} to c{}", first + 3)
-                    })
-                    .related(other, "first here")
-                    .help("keep one of them; a matrix takes four constants, and `def` gives one its value as well"),
-            );
+            let message = format!("c{index} has a value already");
+            let label = if rows.len() == 1 { "again here".to_owned() } else { format!("c{first} to c{}", first + 3) };
+            let help = "keep one of them; a matrix takes four constants, and `def` gives one its value as well";
+            reader.push(finding("NB0388", place, message, label, help).related(other, "first here"));
             continue;
         }
         for (offset, row) in rows.iter().enumerate() {
@@ -110,14 +98,12 @@ fn compare(
             format!("nothing reads {}: is that the number that is meant?", given.join(", "))
         };
         let message = format!("{name} {verb} no value");
-        reader.push(text.place(Diagnostic::error("NB0387", place, message).label("read here").help(help)));
+        reader.push(text.place(finding("NB0387", place, message, "read here", help)));
     }
     for (place, first, _) in unread {
-        reader.push(
-            Diagnostic::warning("NB0901", place.clone(), format!("the constant c{first} is not used"))
-                .label("the vertex program does not read it")
-                .help("remove it, or check its number"),
-        );
+        let message = format!("the constant c{first} is not used");
+        let help = "remove it, or check its number";
+        reader.push(warning("NB0901", place.clone(), message, "the vertex program does not read it", help));
     }
 }
 
@@ -174,12 +160,9 @@ fn value<'a>(reader: &mut Reader<'a>, names: &Names<'a>, raw: &Raw<'a, source::S
     let list = reader.read(&Raw::<Tuple<'a, source::Matrix>>::new(rest))?;
     let [part] = list.0[..] else {
         let what = ["a matrix", "a colour"][kind];
-        reader.push(
-            Diagnostic::error("NB0211", reader.range(rest), format!("expected {what} in these parentheses"))
-                .label("here")
-                .help("write `c0: Matrix(\"world\")`, `c41: Color((255, 240, 220))` or four numbers"),
-        );
-        return None;
+        let message = format!("expected {what} in these parentheses");
+        let help = "write `c0: Matrix(\"world\")`, `c41: Color((255, 240, 220))` or four numbers";
+        return reader.refuse(finding("NB0211", reader.range(rest), message, "here", help));
     };
     if kind == 0 {
         return names.matrix(reader, &part).map(Value::Rows);

@@ -94,12 +94,9 @@ pub(super) fn sources<'a>(
         let input = match (chosen, read) {
             (Some(_), None) => {
                 let place = field.as_ref().map_or(0..0, |raw| reader.span(raw));
-                reader.push(
-                    Diagnostic::warning("NB0901", place, format!("the input v{register} is not used"))
-                        .label("the vertex program does not read it")
-                        .help("remove it, or check its number"),
-                );
-                None
+                let message = format!("the input v{register} is not used");
+                let help = "remove it, or check its number";
+                reader.refuse(warning("NB0901", place, message, "the vertex program does not read it", help))
             }
             (Some(chosen), Some(_)) => chosen,
             (None, None) => None,
@@ -137,19 +134,14 @@ fn input<'a>(
     }
     if ["Tangent", "Binormal", "LightVector", "HalfVector"].contains(&head) {
         let message = format!("listed vertices have no {head}");
-        reader.push(
-            Diagnostic::error("NB0222", reader.span(raw), message)
-                .label("needs a mesh")
-                .help("use `mesh: Triangles(vertices: [...], indices: [...])`, which has tangents of its own"),
-        );
-        return None;
+        let help = "use `mesh: Triangles(vertices: [...], indices: [...])`, which has tangents of its own";
+        return reader.refuse(finding("NB0222", reader.span(raw), message, "needs a mesh", help));
     }
     match FIELDS.iter().find(|(word, _)| *word == head && rest.is_empty()) {
         Some((_, field)) => Some(Input::Field(*field)),
         None => {
             let words: Vec<&'static str> = FIELDS.iter().map(|(word, _)| *word).collect();
-            reader.unknown_variant(raw, "vertex attribute", &words);
-            None
+            reader.unknown_variant(raw, "vertex attribute", &words)
         }
     }
 }
