@@ -37,7 +37,7 @@ impl ErrorKind {
 /// One finding.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Stable code, for example "NB0201"; `ninebit_scene::code::CODES` lists them.
+    /// Stable code, for example "NB0201"; `docs/errors.md` lists them.
     pub code: &'static str,
     /// Error or warning.
     pub severity: Severity,

@@ -26,15 +26,17 @@ pub(super) fn only_face(g: &[[i64; 3]; 3]) -> Option<Face> {
     (look(1)? == face && look(2)? == face).then_some(face)
 }
 
-/// Whether the three are the same at all vertices but for a factor above 0: so they are everywhere, and so is what they lose (INT-4t).
-pub(super) fn is_constant(g: &[[i64; 3]; 3]) -> bool {
-    let product = |a: usize, k: usize, b: usize, l: usize| i128::from(g[a][k]) * i128::from(g[b][l]);
-    let along = |k: usize| {
-        let parallel = |a: usize, b: usize| product(a, 0, b, k) == product(a, k, b, 0);
-        let towards = (0..3).map(|a| product(a, 0, a, k)).sum::<i128>();
-        parallel(0, 1) && parallel(1, 2) && parallel(0, 2) && towards > 0
-    };
-    along(1) && along(2)
+/// TEX-12 of a component that is the same multiple of the major one at all vertices, and so everywhere: nor does a tie lose anything (INT-4t).
+/// `None`: it varies.
+#[inline(always)]
+fn constant(planes: &[Plane; 3], of: Signed, major: Signed, size: u32) -> Option<f64> {
+    let ([s, s1, s2], [m, m1, m2]) = (planes[of.axis].g, planes[major.axis].g);
+    // 28 bits each.
+    if m == 0 || s * m1 != s1 * m || s * m2 != s2 * m {
+        return None;
+    }
+    let (s, m) = (if of.negative { -s } else { s }, if major.negative { -m } else { m });
+    Some((m.signum() * (s + m) * i64::from(128 * size)).div_euclid(m.abs()) as f64)
 }
 
 /// s, t and q, so that q is positive, and more than the magnitudes of s/q and t/q. `None`: q has no sign, or coordinates reach the limit.
@@ -164,7 +166,12 @@ impl Setup<'_> {
         let size = f64::from(sampler.sides[0]) * 128.0;
         // Twice the error of either component, once what is taken off, and as much again.
         let margin = 8.0 * looking.error * size * widest;
-        let (along, down) = (looking.component(s).plus(m).times(size), looking.component(t).plus(m).times(size));
+        let line = |of: Signed| match constant(planes, of, major, sampler.sides[0]) {
+            // Far from where a floor changes.
+            Some(floor) => m.times(floor + 0.5),
+            None => looking.component(of).plus(m).times(size),
+        };
+        let (along, down) = (line(s), line(t));
         faces[batch.lanes()].fill(face as u32);
         self.quotients::<FMA, ROW>(batch, sampler, [along, down, m], widest, margin, bounds, numbers, faces)
     }

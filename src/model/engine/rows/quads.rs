@@ -207,7 +207,7 @@ impl Setup<'_> {
                 let (floors, planes, losses, gaps) = (0.0, None, None, [(0.0, 0); 2]);
                 (Ground { along, down, denominator: m, off, floors, face, behind, planes, losses, gaps }, range)
             }
-            Planes::Constant | Planes::Other | Planes::Shared => return None,
+            Planes::Other | Planes::Shared => return None,
         };
         // Also refuses what is no number.
         let proves = lowest > 0.0

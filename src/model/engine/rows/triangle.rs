@@ -4,7 +4,7 @@
 use super::color::{colors, narrow_weights};
 use super::dda::DdaRow;
 use super::depth::Steps;
-use super::direction::{Looking, is_constant, only_face, positive};
+use super::direction::{Looking, only_face, positive};
 use super::fetch::PerLane;
 use super::fog::Fog;
 use super::kernels::{LANES, Lanes256, STEP};
@@ -42,8 +42,6 @@ pub(super) enum Planes {
     Direction([Plane; 3], Option<Face>),
     /// s, t and q, which is positive, and more than the magnitudes of s/q and t/q.
     Ratio([Plane; 3], f64),
-    /// A direction, or s, t and q, whose ratios are the same everywhere, so that no tie is lowered: the definition, for one pixel.
-    Constant,
     /// Anything else: the definition, pixel by pixel.
     Other,
     /// None: an earlier sampler's coordinates are used, or those that a stage of the texture shader makes.
@@ -185,11 +183,6 @@ impl<'a> Setup<'a> {
                 Some(Coordinates::Plane(g)) => {
                     Planes::Plane([Plane::new(triangle, &inverse, g[0]), Plane::new(triangle, &inverse, g[1])])
                 }
-                Some(Coordinates::Direction(g) | Coordinates::Ratio(g))
-                    if !sampler.mixes && sampler.pairs == 0 && sampler.third.is_none() && is_constant(g) =>
-                {
-                    Planes::Constant
-                }
                 Some(Coordinates::Direction(g)) => Planes::Direction(Plane::three(triangle, &inverse, g), only_face(g)),
                 Some(Coordinates::Ratio(g)) => match positive(*g, sampler.sides) {
                     Some((g, reach)) => Planes::Ratio(Plane::three(triangle, &inverse, &g), reach),
@@ -320,16 +313,6 @@ impl<'a> Setup<'a> {
                     if !done {
                         self.defined(batch, sampler, numbers, faces);
                     }
-                }
-                Planes::Constant => {
-                    let (numbers, faces, lanes) = (&mut varying.coordinates[n], &mut varying.faces[n], batch.lanes());
-                    self.defined_lane(batch, 0, sampler, numbers, faces);
-                    for lanes_of_axis in numbers {
-                        let value = lanes_of_axis[lanes.start];
-                        lanes_of_axis[lanes.clone()].fill(value);
-                    }
-                    let face = faces[lanes.start];
-                    faces[lanes].fill(face);
                 }
                 Planes::Other => {
                     self.defined(batch, sampler, &mut varying.coordinates[n], &mut varying.faces[n]);
