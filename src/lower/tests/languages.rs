@@ -11,10 +11,6 @@
     reason = "tests fail by panicking, and modules share files of which each uses its part"
 )]
 
-#[path = "../../../tests/common/random_program.rs"]
-mod random_program;
-#[path = "../../../tests/common/random_scene.rs"]
-mod random_scene;
 #[path = "common/setting.rs"]
 mod setting;
 #[path = "common/traced.rs"]
@@ -32,6 +28,7 @@ use ninebit::random::Random;
 use ninebit::state::{Policies, Scene};
 use ninebit_lower::code::{Kind, Test, run_changed, value_of};
 use ninebit_lower::{Function, Input, Language, Named, Options, Result, Textures};
+use ninebit_test_support::{random_program, random_scene};
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, compiler, python, runner, setting, works};
 use traced::Traced;

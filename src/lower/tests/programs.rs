@@ -8,8 +8,6 @@
     reason = "tests fail by panicking, and modules share files of which each uses its part"
 )]
 
-#[path = "../../../tests/common/random_program.rs"]
-mod random_program;
 #[path = "common/setting.rs"]
 mod setting;
 
@@ -18,6 +16,7 @@ use ninebit::random::Random;
 use ninebit::state::{Combiners, Policies, Register};
 use ninebit_lower::code::{run, value_of};
 use ninebit_lower::{Function, Input, Options, Result};
+use ninebit_test_support::random_program;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, runner};
 
