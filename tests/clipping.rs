@@ -1,6 +1,5 @@
 //! RAS-6 and RAS-7 in whole scenes: what is cut off is missing, what is left is where it was, and what was cut is told of.
 use super::bench::Bench;
-use super::random_scene;
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Frames;
 use ninebit::limits::Limits;
@@ -8,6 +7,7 @@ use ninebit::plan::{Plan, PlanOptions};
 use ninebit::raster::project::ClipPlane;
 use ninebit::state::Positions;
 use ninebit_scene as scene;
+use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::TestRunner;
 use std::path::Path;

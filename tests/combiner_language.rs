@@ -1,8 +1,8 @@
 //! The combiner language: what is printed reads back, what is read prints in one form, garbage is refused.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-use crate::random_program;
-use crate::random_scene;
+use ninebit_test_support::random_program;
+use ninebit_test_support::random_scene;
 
 use std::path::Path;
 

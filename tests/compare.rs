@@ -1,7 +1,7 @@
 //! The comparison with the ideal: what it says agrees with the trace, adds up, and stays within the stated bounds.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-use crate::random_scene;
+use ninebit_test_support::random_scene;
 
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::limits::Limits;

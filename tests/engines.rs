@@ -4,8 +4,9 @@
 //! The normal run draws the first 2,000 of two sequences of random scenes, plain ones and wider ones. `NINEBIT_ENGINE_SCENES` says how many instead, `NINEBIT_ENGINE_SHARD=k/n`
 //! draws every n-th of them, beginning with the k-th (from 0), `NINEBIT_ENGINE_MATRIX` says how many of the first are drawn by every
 //! instruction set with 1, 2, 3 and 8 threads and bands of all sizes, and `NINEBIT_ENGINE_SEED` chooses another sequence.
+use crate::scene_files;
 use crate::settings::number;
-use crate::{random_scene, scene_files};
+use ninebit_test_support::random_scene;
 
 use ninebit::engine::{Engine, Isa, RenderOptions, render};
 use ninebit::frame::Frames;

@@ -1,7 +1,7 @@
 //! The plan in words: what it predicts is what a run counts, and what it leaves out cannot be seen.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-use crate::random_scene;
+use ninebit_test_support::random_scene;
 
 use ninebit::engine::{RenderOptions, count, render};
 use ninebit::limits::Limits;

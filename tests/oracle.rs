@@ -1,10 +1,9 @@
 //! The crate against a second model written from the rules: the same words and depths, pixel by pixel.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-#[path = "oracle/model.rs"]
-mod model;
-use crate::random_scene;
 use crate::settings;
+use ninebit_oracle as model;
+use ninebit_test_support::random_scene;
 
 use ninebit::engine::{RenderOptions, render, trace};
 use ninebit::frame::Surface;

@@ -1,7 +1,7 @@
 //! Register words: from programs and back, refusals, and what is printed.
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
-use crate::random_scene;
+use ninebit_test_support::random_scene;
 
 use std::path::Path;
 

@@ -2,7 +2,8 @@
 //!
 //! The normal run takes 1,500 valid random scenes and breaks them in one to four places. `NINEBIT_CODE_SCENES` says how many instead,
 //! `NINEBIT_CODE_SEED` chooses others.
-use crate::{random_scene, settings};
+use crate::settings;
+use ninebit_test_support::random_scene;
 
 use ninebit::engine::{Engine, RenderOptions, render, trace};
 use ninebit::plan::{Plan, PlanError, PlanOptions};

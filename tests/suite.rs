@@ -19,14 +19,6 @@ mod dds;
 mod operations;
 #[path = "common/pages.rs"]
 mod pages;
-#[path = "common/random_program.rs"]
-mod random_program;
-#[path = "common/random_scene.rs"]
-mod random_scene;
-#[path = "common/random_vertex_program.rs"]
-mod random_vertex_program;
-#[path = "common/recompute.rs"]
-mod recompute;
 #[path = "common/scene_files.rs"]
 mod scene_files;
 #[path = "common/settings.rs"]

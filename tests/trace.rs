@@ -2,8 +2,8 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::bench::Bench;
-use crate::random_scene;
-use crate::recompute;
+use ninebit_test_support::random_scene;
+use ninebit_test_support::recompute;
 
 use ninebit::engine::{self, RenderOptions, TraceError};
 use ninebit::limits::Limits;

@@ -3,9 +3,9 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::pages;
-use crate::random_scene;
-use crate::recompute;
 use crate::scene_files;
+use ninebit_test_support::random_scene;
+use ninebit_test_support::recompute;
 
 use ninebit::engine;
 use ninebit::limits::Limits;

@@ -2,14 +2,13 @@
 #![allow(clippy::float_arithmetic, clippy::unwrap_used, missing_docs, unreachable_pub, reason = "a test binary")]
 
 use crate::pages;
-use crate::random_vertex_program;
+use ninebit_test_support::random_vertex_program::{instruction, shader};
 
 use ninebit::diagnostic::Diagnostic;
 use ninebit::random::Random;
 use ninebit::vertex::shader::*;
 use ninebit_program::vertex_shader::{parse, print, read};
 use proptest::prelude::*;
-use random_vertex_program::{instruction, shader};
 use sha2::{Digest, Sha256};
 
 fn refused(text: &str) -> Vec<Diagnostic> {

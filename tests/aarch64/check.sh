@@ -14,3 +14,4 @@ export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUNNER="qemu-aarch64 -L /usr/aarch
 export NINEBIT_ENGINE_SCENES=${1:-2000}
 cargo test --release --locked --target aarch64-unknown-linux-gnu --test suite -- --nocapture \
     engines:: oracle:: textures:: texture_properties:: compressed:: dds_files:: third_party truth:: vertex_scenes:: vertex_programs:: combiner_language::
+cargo test --release --locked --target aarch64-unknown-linux-gnu --package ninebit-oracle

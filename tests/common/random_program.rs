@@ -65,7 +65,7 @@ fn final_input() -> impl Strategy<Value = FinalInput> {
 }
 
 /// Up to nine stages; every field is anything.
-pub fn combiners() -> impl Strategy<Value = Combiners> {
+pub fn combiners() -> BoxedStrategy<Combiners> {
     let final_combiner =
         (
             [final_input(), final_input(), final_input(), final_input(), final_input(), final_input()],
@@ -78,4 +78,5 @@ pub fn combiners() -> impl Strategy<Value = Combiners> {
             });
     (prop::collection::vec(stage(), 0..10), of(), final_combiner)
         .prop_map(|(stages, mux_select, final_combiner)| Combiners { stages, mux_select, final_combiner })
+        .boxed()
 }

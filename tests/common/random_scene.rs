@@ -29,13 +29,13 @@ const STAGE: usize = 64;
 const UNITS: usize = 160;
 
 /// Valid scenes whose vertices lie in the domain of RAS-0: nothing is cut at the guard band.
-pub fn scene() -> impl Strategy<Value = Scene> {
+pub fn scene() -> BoxedStrategy<Scene> {
     const SIDES: u8 = ClipPlane::Left.bit() | ClipPlane::Right.bit() | ClipPlane::Top.bit() | ClipPlane::Bottom.bit();
     let fits = |scene: &Scene| {
         let plan = Plan::compile(scene, &PlanOptions::default());
         plan.is_ok_and(|plan| plan.draws.iter().all(|draw| draw.assembly.clipping.planes & SIDES == 0))
     };
-    Tape(SHARED + 4 * DRAW).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits)
+    Tape(SHARED + 4 * DRAW).prop_map(|tape| build(&tape)).prop_filter("RAS-0", fits).boxed()
 }
 
 /// A tape of so many words.

@@ -3,7 +3,7 @@
 use ninebit::vertex::shader::*;
 use proptest::prelude::*;
 
-pub fn source() -> impl Strategy<Value = Source> {
+fn source() -> impl Strategy<Value = Source> {
     let register = prop_oneof![
         2 => (0..INPUTS).prop_map(SourceRegister::Input),
         4 => (0..TEMPORARIES).prop_map(SourceRegister::Temporary),
@@ -29,18 +29,22 @@ fn destination(opcode: Opcode) -> impl Strategy<Value = Destination> {
     })
 }
 
-pub fn instruction() -> impl Strategy<Value = Instruction> {
-    prop::sample::select(Opcode::ALL.to_vec()).prop_flat_map(|opcode| {
-        (destination(opcode), prop::collection::vec(source(), opcode.sources()))
-            .prop_map(move |(destination, sources)| Instruction { opcode, destination, sources })
-    })
+pub fn instruction() -> BoxedStrategy<Instruction> {
+    prop::sample::select(Opcode::ALL.to_vec())
+        .prop_flat_map(|opcode| {
+            (destination(opcode), prop::collection::vec(source(), opcode.sources()))
+                .prop_map(move |(destination, sources)| Instruction { opcode, destination, sources })
+        })
+        .boxed()
 }
 
-pub fn shader() -> impl Strategy<Value = VertexShader> {
+pub fn shader() -> BoxedStrategy<VertexShader> {
     let number = prop_oneof![Just(0.5_f32), Just(-0.0), -1e6_f32..1e6, Just(1e-30), Just(3e38)];
     let definitions = prop::collection::btree_map(0..CONSTANTS, prop::array::uniform4(number), 0..4);
-    (definitions, prop::collection::vec(instruction(), 0..20)).prop_map(|(definitions, instructions)| VertexShader {
-        definitions: definitions.into_iter().collect(),
-        instructions,
-    })
+    (definitions, prop::collection::vec(instruction(), 0..20))
+        .prop_map(|(definitions, instructions)| VertexShader {
+            definitions: definitions.into_iter().collect(),
+            instructions,
+        })
+        .boxed()
 }

@@ -16,8 +16,8 @@ const WIDER: usize = 256 + 4 * WIDER_DRAW;
 const FIRST: usize = SHARED + 4 * DRAW;
 
 /// Valid scenes, mostly unlike those that [`scene`](super::scene) gives.
-pub fn scene() -> impl Strategy<Value = Scene> {
-    Tape(FIRST + WIDER).prop_map(|tape| widened(&tape)).prop_filter("RAS-0", legal)
+pub fn scene() -> BoxedStrategy<Scene> {
+    Tape(FIRST + WIDER).prop_map(|tape| widened(&tape)).prop_filter("RAS-0", legal).boxed()
 }
 
 fn legal(scene: &Scene) -> bool {

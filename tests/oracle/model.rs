@@ -2,6 +2,13 @@
 //!
 //! It shares no code with the crate but the scene it reads (`ninebit::state`) and the surfaces it returns, so that an error in one of
 //! the two shows as a difference.
+#![allow(
+    missing_docs,
+    missing_debug_implementations,
+    clippy::unwrap_used,
+    clippy::float_arithmetic,
+    reason = "a model that only tests ask, and that reads the floats of scenes"
+)]
 
 pub mod block;
 pub mod combiner;

@@ -73,18 +73,3 @@ fn module(piece: &Piece) -> String {
     }
     out + "endmodule\n"
 }
-
-#[cfg(test)]
-mod tests {
-    use ninebit::state::{Policies, Profile};
-
-    #[test]
-    fn every_step_is_a_module() {
-        let text = crate::Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT }.verilog();
-        for name in ["nb_mapped", "nb_products", "nb_third", "nb_output", "nb_final_rgb", "nb_blended", "nb_packed"] {
-            assert_eq!(text.matches(&format!("module {name} (\n")).count(), 1, "{name}");
-        }
-        assert_eq!(text.matches("endmodule").count(), text.matches("\nmodule ").count());
-        assert!(text.contains("CMB-3") && text.contains("NUM-2"));
-    }
-}

@@ -4,8 +4,6 @@
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
-#[path = "../../../tests/common/random_scene.rs"]
-mod random_scene;
 #[path = "common/setting.rs"]
 mod setting;
 #[path = "common/traced.rs"]
@@ -18,6 +16,7 @@ use ninebit::random::Random;
 use ninebit::state::{Policies, Scene};
 use ninebit_lower::code::{Test, run, value_of};
 use ninebit_lower::{Function, Options, Result, Textures};
+use ninebit_test_support::random_scene;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, runner, setting};
 use traced::Traced;

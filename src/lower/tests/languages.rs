@@ -5,10 +5,6 @@
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
-#[path = "../../../tests/common/random_program.rs"]
-mod random_program;
-#[path = "../../../tests/common/random_scene.rs"]
-mod random_scene;
 #[path = "common/setting.rs"]
 mod setting;
 #[path = "common/traced.rs"]
@@ -26,6 +22,7 @@ use ninebit::random::Random;
 use ninebit::state::{Policies, Scene};
 use ninebit_lower::code::{Kind, Test, run_changed, value_of};
 use ninebit_lower::{Function, Input, Language, Named, Options, Result, Textures};
+use ninebit_test_support::{random_program, random_scene};
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, compiler, python, runner, setting, works};
 use traced::Traced;

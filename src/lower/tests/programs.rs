@@ -2,16 +2,15 @@
 #![allow(missing_docs, unreachable_pub, dead_code, reason = "modules share files of which each uses its part")]
 #![allow(clippy::unwrap_used, clippy::float_arithmetic, reason = "tests fail by panicking")]
 
-#[path = "../../../tests/common/random_program.rs"]
-mod random_program;
 #[path = "common/setting.rs"]
 mod setting;
 
 use ninebit::combiner::registers::Registers;
 use ninebit::random::Random;
-use ninebit::state::{Combiners, Policies, Register};
+use ninebit::state::{Combiners, Policies, Profile, Register};
 use ninebit_lower::code::{run, value_of};
-use ninebit_lower::{Function, Input, Options, Result};
+use ninebit_lower::{Function, Generic, Input, Options, Result};
+use ninebit_test_support::random_program;
 use proptest::strategy::{Strategy, ValueTree};
 use setting::{any_policies, runner};
 
@@ -76,4 +75,14 @@ fn lines_yield_what_the_model_does() {
             assert_eq!(got, program.run(registers, &policies), "program {n} {program:?} {registers:?} {policies:?}");
         }
     }
+}
+
+#[test]
+fn every_step_of_the_generic_verilog_is_a_module() {
+    let text = Generic { chip: Profile::Nv2a, policies: Policies::DEFAULT }.verilog();
+    for name in ["nb_mapped", "nb_products", "nb_third", "nb_output", "nb_final_rgb", "nb_blended", "nb_packed"] {
+        assert_eq!(text.matches(&format!("module {name} (\n")).count(), 1, "{name}");
+    }
+    assert_eq!(text.matches("endmodule").count(), text.matches("\nmodule ").count());
+    assert!(text.contains("CMB-3") && text.contains("NUM-2"));
 }
