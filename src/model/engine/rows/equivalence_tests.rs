@@ -431,7 +431,7 @@ fn rows_interpolate_what_the_definition_does() {
         let (whole, columns) = ((0, i64::from(HEIGHT)), (0, i64::from(WIDTH)));
         for number in 0..draw.assembly.triangles.len() {
             let Some(context) = TriangleContext::new(&plan, draw, number, whole) else { continue };
-            let setup = Setup::new(&context, &compiled, planes);
+            let setup = Setup::new(&context, compiled, planes);
             let triangle = &setup.context.triangle;
             let window = (triangle.rows.0.max(whole.0), triangle.rows.1.min(whole.1));
             if is_small(triangle) {
@@ -451,9 +451,9 @@ fn rows_interpolate_what_the_definition_does() {
                     };
                     fours += u64::from(four);
                     if round.is_multiple_of(4) {
-                        compare::<true, false>(&setup, &compiled, batch, &mut varying, &mut rows);
+                        compare::<true, false>(&setup, compiled, batch, &mut varying, &mut rows);
                     } else {
-                        compare::<false, false>(&setup, &compiled, batch, &mut varying, &mut rows);
+                        compare::<false, false>(&setup, compiled, batch, &mut varying, &mut rows);
                     }
                     (covered, drawn) = (covered + coverage.count, drawn + 1);
                 }
@@ -466,7 +466,7 @@ fn rows_interpolate_what_the_definition_does() {
                     if i == end {
                         continue;
                     }
-                    setup.begin_row((i, j), end - i, &compiled, &mut varying);
+                    setup.begin_row((i, j), end - i, compiled, &mut varying);
                     while i < end {
                         let count = ((end - i) as usize).min(BLOCK - (j as usize % 5) * 32);
                         let lanes = whole_steps(count);
@@ -474,9 +474,9 @@ fn rows_interpolate_what_the_definition_does() {
                         let at = quotient::Positions { x: &IOTA[..lanes], y: &zeros[..lanes], last };
                         let batch = PixelBatch { first: (i, j), at, count, lane: 0, extent: (last, 0) };
                         if round.is_multiple_of(4) {
-                            compare::<true, true>(&setup, &compiled, batch, &mut varying, &mut rows);
+                            compare::<true, true>(&setup, compiled, batch, &mut varying, &mut rows);
                         } else {
-                            compare::<false, true>(&setup, &compiled, batch, &mut varying, &mut rows);
+                            compare::<false, true>(&setup, compiled, batch, &mut varying, &mut rows);
                         }
                         i += count as i64;
                         pixels += count as u64;
@@ -537,7 +537,7 @@ fn texture_shaders_take_what_the_definition_takes() {
         let draw = &mut scene.draws[0];
         // What has been drawn before shows wherever a fragment is dropped.
         draw.depth_test = if round % 4 < 2 { None } else { draw.depth_test.take() };
-        let unit = |bound| if bound { draw.textures[0].clone() } else { None };
+        let unit = |bound| if bound { draw.textures[0] } else { None };
         draw.textures = program.map(|operation| unit(operation.samples()));
         draw.texture_shader =
             [0, 1, 2, 3].map(|n| ShaderStage { operation: program[n], ..ShaderStage::conventional(n, true) });
