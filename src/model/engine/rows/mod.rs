@@ -5,6 +5,7 @@
 //! | `node.rs`, `graph.rs`, `build.rs` | what a draw computes: values with their ranges, from the planned state |
 //! | `kernels.rs` | the rules as loops over rows |
 //! | `planes.rs`, `quotient.rs`, `direction.rs`, `depth.rs`, `fog.rs`, `color.rs`, `triangle.rs` | what varies across a triangle: estimated, proved, settled |
+//! | `definition.rs` | what the definition computes in place of estimates |
 //! | `short.rs` | what weights that fall short take off coordinates that are divided by q or moved |
 //! | `third.rs` | layers of volumes, depths to compare with |
 //! | `small.rs` | the same for small triangles, four functions at a time |
@@ -24,6 +25,7 @@ mod boxes;
 mod build;
 mod color;
 mod dda;
+mod definition;
 mod depth;
 mod direction;
 mod dot;

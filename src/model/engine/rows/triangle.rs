@@ -3,6 +3,7 @@
 
 use super::color::{colors, narrow_weights};
 use super::dda::DdaRow;
+use super::definition::defined_coordinate;
 use super::depth::Steps;
 use super::direction::{Looking, only_face, positive};
 use super::fetch::PerLane;
@@ -17,17 +18,15 @@ use super::quotient::{
 };
 use super::short::Short;
 use super::taps::Footprints;
-use super::third::{Third, ThirdPlanes, thirds};
-use super::{CompiledDraw, Reason, Reasons, Sampler};
-use crate::combiner::registers::Registers;
+use super::third::{ThirdPlanes, thirds};
+use super::{CompiledDraw, Reason, Reasons};
 use crate::engine::pixel::TriangleContext;
 use crate::raster::interpolate::Sample;
 use crate::raster::setup::Triangle;
-use crate::state::{Named, Register, TEXTURE_UNITS};
+use crate::state::{Named, TEXTURE_UNITS};
 use crate::texture::cube::Face;
-use crate::texture::place::{Coordinates, Place};
+use crate::texture::place::Coordinates;
 use crate::texture::unit::Image;
-use crate::trace::Silent;
 use std::cell::Cell;
 
 /// How many reasons there are.
@@ -507,71 +506,6 @@ impl<'a> Setup<'a> {
             break_ties(w0, w2, whole0, whole2);
         }
     }
-
-    pub(super) fn sample(&self, batch: PixelBatch<'_>, n: usize) -> Sample<'_> {
-        batch.sample(n, &self.context.triangle)
-    }
-
-    /// Coordinates by the definition, pixel by pixel.
-    pub(super) fn defined(
-        &self,
-        batch: PixelBatch<'_>,
-        sampler: &Sampler,
-        numbers: &mut [PerLane<i32>; 2],
-        faces: &mut PerLane<u32>,
-    ) {
-        for n in 0..batch.count {
-            self.defined_lane(batch, n, sampler, numbers, faces);
-        }
-    }
-
-    pub(super) fn defined_lane(
-        &self,
-        batch: PixelBatch<'_>,
-        n: usize,
-        sampler: &Sampler,
-        numbers: &mut [PerLane<i32>; 2],
-        faces: &mut PerLane<u32>,
-    ) {
-        self.tell(Reason::Coordinates, 1);
-        let unit = &self.context.draw.units[sampler.index];
-        let sample = self.sample(batch, n);
-        let Some(place) = self.context.place(unit, &sample, batch.pixel(n)) else { return };
-        let [u, v] = match sampler.third {
-            Some(Third::Counts) => [place.layer(unit.layers); 2],
-            _ => place.on(&unit.levels[0]),
-        };
-        let lane = batch.lane + n;
-        (numbers[0][lane], numbers[1][lane]) = (u.value as i32 - sampler.bias(), v.value as i32 - sampler.bias());
-        faces[lane] = place.face() as u32;
-    }
-
-    /// Texture units that rows do not sample.
-    fn pixel_by_pixel(
-        &self,
-        batch: PixelBatch<'_>,
-        compiled: &CompiledDraw,
-        textures: &[Image<'_, i32>],
-        varying: &mut Varying,
-        rows: &mut [Lanes256],
-    ) {
-        const UNITS: [Register; TEXTURE_UNITS] =
-            [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
-        self.tell(Reason::Textures, batch.count);
-        for n in 0..batch.count {
-            let (sample, lane) = (self.sample(batch, n), batch.lane + n);
-            let mut registers = Registers::<i32>::new();
-            let lives = self.context.sample_textures(&sample, batch.pixel(n), &mut registers, textures, &mut Silent);
-            varying.alive[lane] = lives.is_some();
-            for (unit, register) in UNITS.into_iter().enumerate() {
-                for channel in 0..4 {
-                    if let Some(slot) = compiled.textures[unit][channel] {
-                        rows[usize::from(slot)].0[lane] = registers.read(register, channel) as i16;
-                    }
-                }
-            }
-        }
-    }
 }
 
 /// How the denominators of a batch vary.
@@ -619,8 +553,4 @@ impl Bounds {
         }
         (terms(self.columns, self.rows) * self.widest + 2.0 * reach * self.ratio) * SLACK
     }
-}
-
-fn defined_coordinate(sample: &Sample<'_>, plane: &Plane, bias: i32) -> i32 {
-    sample.coordinate(&plane.g).value as i32 - bias
 }
