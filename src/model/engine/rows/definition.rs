@@ -63,19 +63,26 @@ impl Setup<'_> {
         varying: &mut Varying,
         rows: &mut [Lanes256],
     ) {
-        const UNITS: [Register; TEXTURE_UNITS] =
-            [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
         self.tell(Reason::Textures, batch.count);
         for n in 0..batch.count {
             let (sample, lane) = (self.sample(batch, n), batch.lane + n);
             let mut registers = Registers::<i32>::new();
             let lives = self.context.sample_textures(&sample, batch.pixel(n), &mut registers, textures, &mut Silent);
             varying.alive[lane] = lives.is_some();
-            for (unit, register) in UNITS.into_iter().enumerate() {
-                for channel in 0..4 {
-                    if let Some(slot) = compiled.textures[unit][channel] {
-                        rows[usize::from(slot)].0[lane] = registers.read(register, channel) as i16;
-                    }
+            compiled.put_textures(&registers, lane, rows);
+        }
+    }
+}
+
+impl CompiledDraw {
+    /// Puts the texture registers of a pixel into the rows that want them.
+    pub(super) fn put_textures(&self, registers: &Registers<i32>, lane: usize, rows: &mut [Lanes256]) {
+        const UNITS: [Register; TEXTURE_UNITS] =
+            [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
+        for (slots, register) in self.textures.iter().zip(UNITS) {
+            for (channel, slot) in slots.iter().enumerate() {
+                if let Some(slot) = slot {
+                    rows[usize::from(*slot)].0[lane] = registers.read(register, channel) as i16;
                 }
             }
         }

@@ -4,6 +4,7 @@
 use super::Sampler;
 use super::fetch::PerLane;
 use super::planes::Plane;
+use super::quads::any_negative;
 use super::quotient::{Line, Positions, QuotientEstimate, SLACK, estimate_two, nearest, prove, whole};
 use super::short::{Short, floors};
 use super::triangle::{Bounds, PixelBatch, Setup};
@@ -212,11 +213,8 @@ impl Setup<'_> {
         close[..lanes].fill(0);
         floors(&at[0][..lanes], margin, sampler.bias(), close, &mut u[batch.lanes()]);
         floors(&at[1][..lanes], margin, sampler.bias(), close, &mut v[batch.lanes()]);
-        let mut any = 0;
-        for close in &close[..lanes] {
-            any |= close;
-        }
-        for n in (0..batch.count).filter(|n| any >> 63 != 0 && close[*n] >> 63 != 0) {
+        let count = if any_negative(&close[..lanes]) { batch.count } else { 0 };
+        for n in (0..count).filter(|n| close[*n] >> 63 != 0) {
             self.defined_lane(batch, n, sampler, numbers, faces);
         }
         true

@@ -523,12 +523,10 @@ fn texture_shaders_take_what_the_definition_takes() {
             (0..if small { 1024 } else { 6 }).flat_map(|_| triangle(&mut random, small)).collect();
         let program = programs[round / 2 % programs.len()];
         let tame = random.below(2) == 0;
-        for (n, operation) in program.iter().enumerate().filter(|(_, operation)| !operation.samples()) {
+        for (n, _) in program.iter().enumerate().filter(|(_, operation)| !operation.samples()) {
             for vertex in &mut vertices {
-                vertex.texture_coordinates[n] = match operation {
-                    _ if tame => [0; 4].map(|_| random.unit() * 2.0 - 0.5),
-                    _ => [0; 4].map(|_| wild(&mut random)),
-                };
+                vertex.texture_coordinates[n] =
+                    [0; 4].map(|_| if tame { random.unit() * 2.0 - 0.5 } else { wild(&mut random) });
             }
         }
         let filter = random.of(&[Filter::Linear, Filter::Nearest]);

@@ -20,7 +20,7 @@ use crate::engine::pixel::TriangleContext;
 use crate::engine::walk::Band;
 use crate::number::convert::factor;
 use crate::raster::interpolate::{COORDINATE_LIMIT, Sample};
-use crate::state::{MipFilter, Register, ShaderOperation, TEXTURE_UNITS};
+use crate::state::{MipFilter, ShaderOperation, TEXTURE_UNITS};
 use crate::trace::Silent;
 
 /// A number across a triangle.
@@ -557,8 +557,6 @@ fn define(
     let lanes = runs.last().map_or(0, |run| run.lane + run.count);
     // Most blocks have none.
     let runs = if work.open.any(lanes) { runs } else { &[] };
-    const UNITS: [Register; TEXTURE_UNITS] =
-        [Register::Texture0, Register::Texture1, Register::Texture2, Register::Texture3];
     let mut known: Option<(usize, TriangleContext<'_>)> = None;
     let height = job.plan.targets[job.draw.target].height;
     for run in runs {
@@ -582,13 +580,7 @@ fn define(
                 // Nothing reads what it holds; and rows of constants must stay as they are, for the next block.
                 continue;
             }
-            for (unit, register) in UNITS.into_iter().enumerate() {
-                for channel in 0..4 {
-                    if let Some(slot) = job.compiled.textures[unit][channel] {
-                        rows[usize::from(slot)].0[lane] = registers.read(register, channel) as i16;
-                    }
-                }
-            }
+            job.compiled.put_textures(&registers, lane, rows);
         }
     }
     work.triangles.clear();
