@@ -89,15 +89,14 @@ fn digests(plan: &Plan) -> Vec<String> {
 
 fn frames() -> Result<(), Failed> {
     let wanted = std::env::var("NINEBIT_WEB_SCENES").ok().and_then(|n| n.parse().ok()).unwrap_or(40_usize);
-    let all: Vec<PathBuf> = files(Path::new("vectors/scenes"), ".ron")
+    let all: Vec<(PathBuf, Vec<String>)> = files(Path::new("vectors/scenes"), ".ron")
         .into_iter()
         .filter(|path| !path.to_str().unwrap().ends_with(".expect.ron"))
         // Families are no scenes, and scenes that need captured images cannot be drawn here.
-        .filter(|path| load(path).is_some())
+        .filter_map(|path| load(&path).map(|(_, files)| (path, files)))
         .collect();
     let step = if wanted == 0 { 1 } else { all.len().div_ceil(wanted) };
-    let scenes: Vec<(PathBuf, Vec<String>)> =
-        all.into_iter().step_by(step).map(|path| (path.clone(), load(&path).unwrap().1)).collect();
+    let scenes: Vec<_> = all.into_iter().step_by(step).collect();
     // Both draw at once.
     let (answers, drawn) = std::thread::scope(|scope| {
         let answers = scope.spawn(|| node("frames", &scenes));

@@ -274,8 +274,7 @@ fn report_sum<L: Lane, O: Observer>(state: &FinalCombiner, channel: usize, opera
         let name = format!("final.sum.{register}.{suffix}");
         let operation = if invert { "final_invert" } else { "unsigned_identity" };
         let operand = report::register(format!("{register}.{suffix}"), x);
-        observer.step(report::register_step(BLOCK, "FIN-3", name.clone(), value).by(operation, vec![operand]));
-        terms.push(report::register(name, value));
+        terms.push(observer.tell(report::register_step(BLOCK, "FIN-3", name, value).by(operation, vec![operand])));
     }
     let operation = if state.color_sum_clamp { "add_limit_255" } else { "add" };
     observer.step(report::register_step(BLOCK, "FIN-3", format!("final.sum.{suffix}"), sum).by(operation, terms));

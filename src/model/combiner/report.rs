@@ -75,9 +75,9 @@ impl StageReport {
         };
         let name = format!("stage{}.mux", self.stage);
         observer.step(
-            Step::given(&format!("general stage {} mux", self.stage), "CMB-10", name, i64::from(takes_cd))
+            Step::given(&format!("general stage {} mux", self.stage), "CMB-10", name, takes_cd)
                 .by(operation, vec![report::register("spare0.a", spare0_alpha)])
-                .note(Some(if takes_cd { "set: takes CD" } else { "clear: takes AB" }.to_string())),
+                .note(if takes_cd { "set: takes CD" } else { "clear: takes AB" }.to_string()),
         );
     }
 
@@ -195,7 +195,7 @@ impl StageReport {
         ];
         let (rule, operation) = match (selected, rounding) {
             (Some(takes_cd), _) => {
-                inputs.push(plain(format!("stage{}.mux", self.stage), i64::from(takes_cd)));
+                inputs.push(plain(format!("stage{}.mux", self.stage), takes_cd));
                 ("CMB-10", "select")
             }
             (None, SumRounding::Each) => ("CMB-7", "add_rounded"),

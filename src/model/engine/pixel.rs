@@ -355,7 +355,7 @@ impl<'a> TriangleContext<'a> {
             factor
         } else {
             if O::ON {
-                observer.step(Step::given("fog", "CMB-13", "fog.a", 255).per(255).ideal(Some(255.0)));
+                observer.step(Step::given("fog", "CMB-13", "fog.a", 255).per(255).ideal(255.0));
             }
             L::ONE
         };
@@ -389,7 +389,7 @@ impl<'a> TriangleContext<'a> {
                         let value = if channel == 3 { 255_u8 } else { 0 };
                         let block = format!("texture unit {n}");
                         let ideal = Some(f64::from(value));
-                        observer.step(Step::given(&block, "TEX-16", name, i64::from(value)).per(255).ideal(ideal));
+                        observer.step(Step::given(&block, "TEX-16", name, value).per(255).ideal(ideal));
                     }
                 }
             }

@@ -53,7 +53,7 @@ pub(super) fn undefined<O: Observer>(read: u64, observer: &mut O) {
         for channel in (0..4).filter(|c| read & registers::bit(register, *c) != 0) {
             let name = format!("{}.{}", registers::name(register), channel_name(channel));
             let note = "no document defines this register here; taken as 0".to_string();
-            observer.step(Step::given("registers", "CMB-13", name, 0).per(255).ideal(Some(0.0)).note(Some(note)));
+            observer.step(Step::given("registers", "CMB-13", name, 0).per(255).ideal(0.0).note(note));
         }
     }
 }
@@ -118,8 +118,7 @@ pub(super) fn color<L: Lane, O: Observer>(
                 ("NUM-4", Some(format!("from {}{}", given.unwrap_or_default(), floats[channel])))
             }
         };
-        observer.step(report::register_step(INTERPOLATION, rule, corner.clone(), corners[k]).note(note));
-        inputs.push(report::register(corner, corners[k]));
+        inputs.push(observer.tell(report::register_step(INTERPOLATION, rule, corner, corners[k]).note(note)));
     }
     let (w0, w2) = (weights[0].value, weights[1].value);
     inputs.extend([part("W0", w0), part("W1", 256 - w0 - w2), part("W2", w2)]);
@@ -127,16 +126,15 @@ pub(super) fn color<L: Lane, O: Observer>(
 }
 
 /// A number of the set-up that a step reads.
-fn given<O: Observer>(observer: &mut O, rule: &'static str, name: &str, value: i64) -> Operand {
-    observer.step(Step::given(FOG, rule, name, value));
-    plain(name, value)
+fn given<O: Observer>(observer: &mut O, rule: &'static str, name: &str, value: impl Into<i64>) -> Operand {
+    observer.tell(Step::given(FOG, rule, name, value))
 }
 
 fn constants<O: Observer>(block: &str, constants: [[u8; 4]; 2], observer: &mut O) {
     for (n, constant) in constants.into_iter().enumerate() {
         for (channel, value) in constant.into_iter().enumerate() {
             let name = format!("constant{n}.{}", channel_name(channel));
-            observer.step(Step::given(block, "NUM-5", name, i64::from(value)).per(255).ideal(Some(f64::from(value))));
+            observer.step(Step::given(block, "NUM-5", name, value).per(255).ideal(f64::from(value)));
         }
     }
 }
@@ -161,41 +159,39 @@ impl TriangleContext<'_> {
             self.report_passed_fog(function, observer);
         }
         let factor_in_4096ths = |observer: &mut O, rule, v: i64, operation, inputs| {
-            let mut step = Step::given(FOG, rule, "fog.4096", v).by(operation, inputs);
-            step.per_one = 4096;
-            observer.step(step);
-            ("NUM-6", "factor_byte", vec![Operand { per_one: 4096, ..plain("fog.4096", v) }])
+            let factor = observer.tell(Step::given(FOG, rule, "fog.4096", v).per(4096).by(operation, inputs));
+            ("NUM-6", "factor_byte", vec![factor])
         };
         let (rule, operation, inputs) = match (plane, found.from) {
             (FogPlane::Linear(line, attribute), FogStep::Linear(v, (m, e))) => {
                 let (g, exponent) = attribute.numbers();
                 let mut inputs = quotient(observer, "FOG-2", g);
                 observer.step(Step::given(FOG, "FOG-2", "fog.d", m).by("truncate_24", inputs.clone()));
-                inputs.push(given(observer, "FOG-2", "fog.G.exponent", exponent.into()));
-                observer.step(Step::given(FOG, "FOG-2", "fog.d.exponent", e.into()).by("truncate_24_exponent", inputs));
+                inputs.push(given(observer, "FOG-2", "fog.G.exponent", exponent));
+                observer.step(Step::given(FOG, "FOG-2", "fog.d.exponent", e).by("truncate_24_exponent", inputs));
                 let mut inputs = Vec::new();
                 for (name, p) in [("fog.p0", line.p0), ("fog.p1", line.p1)] {
                     let (m, e) = convert::split(p);
                     inputs.push(given(observer, "FOG-2", name, m));
-                    inputs.push(given(observer, "FOG-2", &format!("{name}.exponent"), e.into()));
+                    inputs.push(given(observer, "FOG-2", &format!("{name}.exponent"), e));
                 }
-                inputs.extend([plain("fog.d", m), plain("fog.d.exponent", e.into())]);
+                inputs.extend([plain("fog.d", m), plain("fog.d.exponent", e)]);
                 let operation = if line.absolute { "fog_linear_abs" } else { "fog_linear" };
                 factor_in_4096ths(observer, "FOG-2", v, operation, inputs)
             }
             (FogPlane::Exponential(mode, attribute), FogStep::Exponential(q)) => {
                 let (g, exponent) = attribute.numbers();
                 let mut inputs = quotient(observer, "FOG-4", g);
-                inputs.push(given(observer, "FOG-4", "fog.G.exponent", exponent.into()));
+                inputs.push(given(observer, "FOG-4", "fog.G.exponent", exponent));
                 inputs.push(plain("lowered", q.lowered));
                 let note = (q.lowered != 0).then(|| "exactly on a step: one step lower (INT-4t)".to_string());
-                observer.step(Step::given(FOG, "FOG-4", "fog.q", q.value).per(4096).by("fog_steps", inputs).note(note));
+                let steps = Step::given(FOG, "FOG-4", "fog.q", q.value).per(4096).by("fog_steps", inputs);
                 let operation = match mode {
                     FogMode::Exp => "fog_exp",
                     FogMode::ExpAbs => "fog_exp_abs",
                     _ => "fog_exp2",
                 };
-                ("FOG-4", operation, vec![Operand { per_one: 4096, ..plain("fog.q", q.value) }])
+                ("FOG-4", operation, vec![observer.tell(steps.note(note))])
             }
             (FogPlane::Factor(g), FogStep::Factor(v)) => {
                 let inputs = quotient(observer, "INT-5n", *g);
@@ -205,7 +201,7 @@ impl TriangleContext<'_> {
                 let linear = self.draw.fog.function.is_some_and(|function| function.mode.is_linear());
                 let step = report::register_step(FOG, if linear { "FOG-5" } else { "FOG-4" }, "fog.a", factor);
                 let what = "d' or e of a vertex, or a parameter, is not finite".to_string();
-                return observer.step(step.note(Some(what)));
+                return observer.step(step.note(what));
             }
         };
         observer.step(report::register_step(FOG, rule, "fog.a", factor).by(operation, inputs));
@@ -214,14 +210,11 @@ impl TriangleContext<'_> {
     /// FOG-1 to FOG-3, INT-5n: what the vertices pass of their fog coordinates.
     fn report_passed_fog<O: Observer>(&self, function: &FogFunction, observer: &mut O) {
         let word = |observer: &mut O, rule, name: String, value: u32, operation, inputs| {
-            let step = Step::given(FOG, rule, name.clone(), value.into()).by(operation, inputs);
-            observer.step(step.note(Some(f32::from_bits(value).to_string())));
-            plain(name, value.into())
+            let step = Step::given(FOG, rule, name, value).by(operation, inputs);
+            observer.tell(step.note(f32::from_bits(value).to_string()))
         };
         let pattern = |observer: &mut O, name: String, value: f32| {
-            observer
-                .step(Step::given(FOG, "FOG-1", name.clone(), value.to_bits().into()).note(Some(value.to_string())));
-            plain(name, value.to_bits().into())
+            observer.tell(Step::given(FOG, "FOG-1", name, value.to_bits()).note(value.to_string()))
         };
         let vertices = self.vertices();
         let (passed, coordinates) = (vertices.fog(), vertices.fog_coordinates());
@@ -242,7 +235,7 @@ impl TriangleContext<'_> {
             let name = |what: &str| format!("vertex{k}.fog.{what}");
             let Some(d) = made else {
                 let note = "made at the nearest w, or given".to_string();
-                observer.step(Step::given(FOG, "RAS-0", name("passed"), passed.to_bits().into()).note(Some(note)));
+                observer.step(Step::given(FOG, "RAS-0", name("passed"), passed.to_bits()).note(note));
                 continue;
             };
             let given = pattern(observer, name("coordinate"), d);
@@ -290,13 +283,10 @@ impl TriangleContext<'_> {
         let first = if test.w_buffer { "DEP-6" } else { "DEP-1" };
         for (k, z) in values.iter().enumerate() {
             let name = format!("vertex{k}.{letter}");
-            if whole && !test.w_buffer {
-                observer.step(Step::given(DEPTH, "DEP-1", name.clone(), *z as i64));
-                inputs.push(plain(name, *z as i64));
-            } else {
-                observer.step(float_step(DEPTH, first, name.clone(), *z, f64::from(*z)));
-                inputs.push(float(name, *z));
-            }
+            inputs.push(observer.tell(match whole && !test.w_buffer {
+                true => Step::given(DEPTH, "DEP-1", name, *z as i64),
+                false => float_step(DEPTH, first, name, *z, f64::from(*z)),
+            }));
         }
         inputs.extend((0..3).map(|k| plain(format!("E{k}"), sample.e[k])));
         if test.offset != PolygonOffset::default() {
@@ -309,7 +299,7 @@ impl TriangleContext<'_> {
         if let Some(range) = test.range {
             inputs.extend([float("lowest", range.lowest), float("highest", range.highest)]);
             if !range.clamps {
-                let step = Step::given(DEPTH, "DEP-4", "depth_range.inside", i64::from(word.is_some()));
+                let step = Step::given(DEPTH, "DEP-4", "depth_range.inside", word.is_some());
                 let note = word.is_none().then(|| "outside: the fragment is dropped".to_owned());
                 observer
                     .step(step.by(["depth_inside", "w_inside"][usize::from(test.w_buffer)], inputs.clone()).note(note));
@@ -326,8 +316,8 @@ impl TriangleContext<'_> {
             (DepthFormat::Z24S8F, true) => "w_float_24",
         };
         let rule = if draw.depth_format.is_float() { "DEP-3" } else { first };
-        let step = Step::given(DEPTH, rule, "z", i64::from(word)).per(self.depth_unit()).by(operation, inputs);
-        observer.step(step.ideal(Some(self.ideal_depth(sample))));
+        let step = Step::given(DEPTH, rule, "z", word).per(self.depth_unit()).by(operation, inputs);
+        observer.step(step.ideal(self.ideal_depth(sample)));
     }
 
     /// What a depth word is a fraction of: the largest, or 1 where words are floats.
@@ -349,9 +339,9 @@ impl TriangleContext<'_> {
         let depth = |name: &str, value: i64| Operand { per_one: self.depth_unit(), ..plain(name, value) };
         let inputs = vec![depth("z", z), depth("z.stored", stored)];
         observer.step(
-            Step::given(DEPTH, "DEP-2", "depth_test.passed", i64::from(passed))
+            Step::given(DEPTH, "DEP-2", "depth_test.passed", passed)
                 .by(blend::compare_operation(test.function), inputs)
-                .note(Some(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string())),
+                .note(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string()),
         );
     }
 
@@ -377,10 +367,10 @@ impl TriangleContext<'_> {
             let name = format!("source.{suffix}");
             observer.step(report::register_step(BLOCK, "ROP-5", name, truncated[channel]).by(operation, inputs));
         }
-        observer.step(Step::given(BLOCK, "", "destination.word", i64::from(word)).note(Some(format!("{word:#010x}"))));
+        observer.step(Step::given(BLOCK, "", "destination.word", word).note(format!("{word:#010x}")));
         for (channel, value) in destination.iter().enumerate() {
             let inputs = vec![
-                plain("destination.word", i64::from(word)),
+                plain("destination.word", word),
                 plain(draw.surface.name(), 0),
                 plain(channel_name(channel), channel as i64),
             ];
@@ -389,7 +379,7 @@ impl TriangleContext<'_> {
         }
         for (channel, value) in draw.blend_constant.into_iter().enumerate() {
             let name = format!("blend_constant.{}", channel_name(channel));
-            observer.step(Step::given(BLOCK, "NUM-5", name, i64::from(value)).per(255).ideal(Some(f64::from(value))));
+            observer.step(Step::given(BLOCK, "NUM-5", name, value).per(255).ideal(f64::from(value)));
         }
     }
 
@@ -404,34 +394,28 @@ impl TriangleContext<'_> {
         const BLOCK: &str = "store";
         let draw = self.draw;
         let bits = surface::channel_bits(draw.surface);
-        let mut inputs = vec![
-            plain(draw.surface.name(), 0),
-            plain("surface.word", i64::from(old)),
-            plain("write_mask", i64::from(draw.write_mask)),
-        ];
-        observer.step(Step::given(BLOCK, "", "surface.word", i64::from(old)).note(Some(format!("{old:#010x}"))));
+        let mut inputs =
+            vec![plain(draw.surface.name(), 0), plain("surface.word", old), plain("write_mask", draw.write_mask)];
+        observer.step(Step::given(BLOCK, "", "surface.word", old).note(format!("{old:#010x}")));
         for channel in (0..4).filter(|c| bits[*c] & draw.write_mask != 0 && draw.final_combiner.live >> c & 1 != 0) {
             let from = if draw.blend.is_some() && draw.blended >> channel & 1 != 0 { "blend" } else { "fragment" };
             let value = channels[channel].observe().0;
             inputs.push(byte(format!("{from}.{}", channel_name(channel)), value));
         }
         let note = format!("{word:#010x}");
-        observer.step(Step::given(BLOCK, "ROP-5", "stored.word", i64::from(word)).by("store", inputs).note(Some(note)));
+        observer.step(Step::given(BLOCK, "ROP-5", "stored.word", word).by("store", inputs).note(note));
         let shown = surface::show(draw.surface, word);
         for channel in 0..4 {
             let name = format!("stored.{}", channel_name(channel));
             let kept = draw.written >> channel & 1 != 0;
             let ideal = channels[channel].observe().1.filter(|_| kept);
             let inputs = vec![
-                plain("stored.word", i64::from(word)),
+                plain("stored.word", word),
                 plain(draw.surface.texture_format().name(), 0),
                 plain(channel_name(channel), channel as i64),
             ];
             observer.step(
-                Step::given(BLOCK, "TEX-1", name, i64::from(shown[channel]))
-                    .per(255)
-                    .by("expand_texel", inputs)
-                    .ideal(ideal),
+                Step::given(BLOCK, "TEX-1", name, shown[channel]).per(255).by("expand_texel", inputs).ideal(ideal),
             );
         }
         if draw.depth_test.is_some_and(|test| test.write) {
@@ -447,18 +431,17 @@ const STENCIL_BLOCK: &str = "stencil test";
 /// STN-1: what is compared, and whether it passes.
 pub(super) fn stencil_test<O: Observer>(test: &StencilTest, stored: u8, passed: bool, observer: &mut O) {
     let mut masked = |name: &str, value: u8| {
-        let given = Step::given(STENCIL_BLOCK, "", name, i64::from(value));
-        observer.step(given.note(Some(format!("{value:#04x}"))));
-        let inputs = vec![plain(name, i64::from(value)), plain("stencil_test.mask", i64::from(test.mask))];
-        let (name, value) = (format!("{name}.masked"), i64::from(value & test.mask));
-        observer.step(Step::given(STENCIL_BLOCK, "STN-1", name.clone(), value).by("and", inputs));
-        plain(name, value)
+        let given = Step::given(STENCIL_BLOCK, "", name, value);
+        observer.step(given.note(format!("{value:#04x}")));
+        let inputs = vec![plain(name, value), plain("stencil_test.mask", test.mask)];
+        observer
+            .tell(Step::given(STENCIL_BLOCK, "STN-1", format!("{name}.masked"), value & test.mask).by("and", inputs))
     };
     let inputs = vec![masked("stencil_test.reference", test.reference), masked("stencil.stored", stored)];
     observer.step(
-        Step::given(STENCIL_BLOCK, "STN-1", "stencil_test.passed", i64::from(passed))
+        Step::given(STENCIL_BLOCK, "STN-1", "stencil_test.passed", passed)
             .by(blend::compare_operation(test.function), inputs)
-            .note(Some(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string())),
+            .note(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string()),
     );
 }
 
@@ -475,7 +458,7 @@ pub(super) fn stencil<O: Observer>(
         ("stencil_test.reference", test.reference),
         ("stencil_test.write_mask", test.write_mask),
     ];
-    let inputs = inputs.map(|(name, value)| plain(name, i64::from(value))).to_vec();
+    let inputs = inputs.map(|(name, value)| plain(name, value)).to_vec();
     let name = match operation {
         StencilOperation::Keep => "stencil_keep",
         StencilOperation::Zero => "stencil_zero",
@@ -486,8 +469,8 @@ pub(super) fn stencil<O: Observer>(
         StencilOperation::Increment => "stencil_increment",
         StencilOperation::Decrement => "stencil_decrement",
     };
-    let step = Step::given(STENCIL_BLOCK, "STN-1", "stencil", i64::from(written));
-    observer.step(step.by(name, inputs).note(Some(format!("{written:#04x}"))));
+    let step = Step::given(STENCIL_BLOCK, "STN-1", "stencil", written);
+    observer.step(step.by(name, inputs).note(format!("{written:#04x}")));
 }
 
 /// The constants of the stage that comes at or after number `next`, or of the final combiner.

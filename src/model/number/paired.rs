@@ -6,63 +6,52 @@ use std::ops::{Add, Sub};
 
 /// A value as an integer of the definition and as the real number that it stands for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Paired<I = f64> {
+pub struct Paired<I = f64, F = i32> {
     /// The definition.
-    pub fixed: i32,
+    pub fixed: F,
     /// The ideal, in steps of 1/255.
     pub ideal: I,
 }
 
 /// A factor of [`Paired`] registers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PairedFactor<I = f64> {
-    /// The definition.
-    pub fixed: Halves,
-    /// The ideal.
-    pub ideal: I,
-}
+pub type PairedFactor<I = f64> = Paired<I, Halves>;
 
 /// A sum of products of [`PairedFactor`]s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PairedSum<I = f64> {
-    /// The definition.
-    pub fixed: Quarters,
-    /// The ideal.
-    pub ideal: I,
+pub type PairedSum<I = f64> = Paired<I, Quarters>;
+
+impl<I: Add<Output = I>, F: Add<Output = F>> Add for Paired<I, F> {
+    type Output = Self;
+    #[inline(always)]
+    #[allow(clippy::float_arithmetic, reason = "the ideal half")]
+    fn add(self, other: Self) -> Self {
+        Paired { fixed: self.fixed + other.fixed, ideal: self.ideal + other.ideal }
+    }
 }
 
-/// Operators on the two halves; the ideal's arithmetic itself is `f64`'s.
-macro_rules! componentwise {
-    ($type:ident) => {
-        impl<I: Ideal> Add for $type<I> {
-            type Output = $type<I>;
-            #[inline(always)]
-            #[allow(clippy::float_arithmetic, reason = "the ideal half")]
-            fn add(self, other: Self) -> Self {
-                $type { fixed: self.fixed + other.fixed, ideal: self.ideal + other.ideal }
-            }
-        }
-        impl<I: Ideal> Sub for $type<I> {
-            type Output = $type<I>;
-            #[inline(always)]
-            #[allow(clippy::float_arithmetic, reason = "the ideal half")]
-            fn sub(self, other: Self) -> Self {
-                $type { fixed: self.fixed - other.fixed, ideal: self.ideal - other.ideal }
-            }
-        }
-    };
+impl<I: Sub<Output = I>, F: Sub<Output = F>> Sub for Paired<I, F> {
+    type Output = Self;
+    #[inline(always)]
+    #[allow(clippy::float_arithmetic, reason = "the ideal half")]
+    fn sub(self, other: Self) -> Self {
+        Paired { fixed: self.fixed - other.fixed, ideal: self.ideal - other.ideal }
+    }
 }
-componentwise!(Paired);
-componentwise!(PairedSum);
+
+/// Methods that act on each half alone.
+macro_rules! on_both {
+    ($($method:ident($($other:ident: $type:ty)?) -> $result:ty;)+) => { $(
+        fn $method(self $(, $other: $type)?) -> $result {
+            Paired { fixed: self.fixed.$method($($other.fixed)?), ideal: self.ideal.$method($($other.ideal)?) }
+        }
+    )+ };
+}
 
 impl<I: Ideal> Blend for Paired<I> {
     type Weight = Self;
     const WHOLE: Self = Paired { fixed: 256, ideal: I::WHOLE };
-    fn times(self, weight: Self) -> Self {
-        Paired { fixed: self.fixed.times(weight.fixed), ideal: self.ideal.times(weight.ideal) }
-    }
-    fn round8(self) -> Self {
-        Paired { fixed: self.fixed.round8(), ideal: self.ideal.round8() }
+    on_both! {
+        times(weight: Self) -> Self;
+        round8() -> Self;
     }
 }
 
@@ -72,17 +61,11 @@ impl<I: Ideal> Register for Paired<I> {
     const ZERO: Self = Paired { fixed: 0, ideal: I::ZERO };
     const ONE: Self = Paired { fixed: 255, ideal: I::ONE };
     const HALF: Self = Paired { fixed: i32::HALF, ideal: I::HALF };
-    fn max0(self) -> Self {
-        Paired { fixed: self.fixed.max0(), ideal: self.ideal.max0() }
-    }
-    fn factor(self) -> PairedFactor<I> {
-        PairedFactor { fixed: self.fixed.factor(), ideal: self.ideal.factor() }
-    }
-    fn twice(self) -> PairedFactor<I> {
-        PairedFactor { fixed: self.fixed.twice(), ideal: self.ideal.twice() }
-    }
-    fn halved(self) -> Self {
-        Paired { fixed: self.fixed.halved(), ideal: self.ideal.halved() }
+    on_both! {
+        max0() -> Self;
+        factor() -> PairedFactor<I>;
+        twice() -> PairedFactor<I>;
+        halved() -> Self;
     }
     fn saturated(self, floor: RegisterFloor) -> Self {
         Paired { fixed: self.fixed.saturated(floor), ideal: self.ideal.saturated(floor) }
@@ -92,16 +75,12 @@ impl<I: Ideal> Register for Paired<I> {
 impl<I: Ideal> Factor for PairedFactor<I> {
     type Sum = PairedSum<I>;
     type Register = Paired<I>;
-    fn product(self, other: PairedFactor<I>) -> PairedSum<I> {
-        PairedSum { fixed: self.fixed.product(other.fixed), ideal: self.ideal.product(other.ideal) }
-    }
+    on_both! { product(other: Self) -> PairedSum<I>; }
 }
 
 impl<I: Ideal> Sum for PairedSum<I> {
     type Register = Paired<I>;
-    fn rounded(self) -> Paired<I> {
-        Paired { fixed: self.fixed.rounded(), ideal: self.ideal.rounded() }
-    }
+    on_both! { rounded() -> Paired<I>; }
 }
 
 impl<I: Ideal> Lane for Paired<I> {
@@ -114,9 +93,6 @@ impl<I: Ideal> Lane for Paired<I> {
     fn texel(value: i32, numerator: i32, denominator: i32) -> Self {
         Paired { fixed: i32::texel(value, numerator, denominator), ideal: I::texel(value, numerator, denominator) }
     }
-    fn signed_texel(self) -> Self {
-        Paired { fixed: self.fixed.signed_texel(), ideal: self.ideal.signed_texel() }
-    }
     fn weight(fixed: i32, ideal: impl FnOnce() -> f64) -> Self {
         Paired { fixed, ideal: I::of(ideal()) }
     }
@@ -127,25 +103,20 @@ impl<I: Ideal> Lane for Paired<I> {
         Paired { fixed, ideal: self.ideal.multiplied(fixed, factor) }
     }
     fn halfway(a: Self, b: Self) -> PairedFactor<I> {
-        PairedFactor { fixed: i32::halfway(a.fixed, b.fixed), ideal: I::halfway(a.ideal, b.ideal) }
+        Paired { fixed: i32::halfway(a.fixed, b.fixed), ideal: I::halfway(a.ideal, b.ideal) }
     }
     fn negated(factor: PairedFactor<I>) -> PairedFactor<I> {
-        PairedFactor { fixed: i32::negated(factor.fixed), ideal: I::negated(factor.ideal) }
-    }
-    fn widened(self) -> PairedSum<I> {
-        PairedSum { fixed: self.fixed.widened(), ideal: self.ideal.widened() }
+        Paired { fixed: i32::negated(factor.fixed), ideal: I::negated(factor.ideal) }
     }
     fn rounded_half(sum: PairedSum<I>) -> Self {
         Paired { fixed: i32::rounded_half(sum.fixed), ideal: I::rounded_half(sum.ideal) }
     }
-    fn clamped(self) -> Self {
-        Paired { fixed: self.fixed.clamped(), ideal: self.ideal.clamped() }
-    }
-    fn least(self, other: Self) -> Self {
-        Paired { fixed: self.fixed.least(other.fixed), ideal: self.ideal.least(other.ideal) }
-    }
-    fn greatest(self, other: Self) -> Self {
-        Paired { fixed: self.fixed.greatest(other.fixed), ideal: self.ideal.greatest(other.ideal) }
+    on_both! {
+        signed_texel() -> Self;
+        widened() -> PairedSum<I>;
+        clamped() -> Self;
+        least(other: Self) -> Self;
+        greatest(other: Self) -> Self;
     }
     fn decision(self) -> i32 {
         self.fixed
@@ -163,7 +134,7 @@ impl<I: Ideal> Lane for Paired<I> {
     #[allow(clippy::float_arithmetic, reason = "the ideal half")]
     fn attributed_factor(factor: PairedFactor<I>, part: Part) -> (PairedFactor<I>, f64) {
         let (ideal, error) = factor.ideal.absorb(f64::from(factor.fixed.0) / 2.0, part);
-        (PairedFactor { ideal, ..factor }, error)
+        (Paired { ideal, ..factor }, error)
     }
     fn attributed_weight(weight: Self, part: Part) -> (Self, f64) {
         weight.attributed(part)

@@ -191,14 +191,12 @@ pub fn alpha_test<L: Lane, O: Observer>(test: &AlphaTest, alpha: L, observer: &m
     let passed = passes(alpha.decision());
     observer.decided(Decision::AlphaTest, i64::from(passed), || i64::from(passes(alpha.ideal_decision())));
     if O::ON {
-        let inputs = vec![
-            report::register("fragment.a", alpha),
-            crate::trace::byte("alpha_test.reference", i64::from(test.reference)),
-        ];
+        let inputs =
+            vec![report::register("fragment.a", alpha), crate::trace::byte("alpha_test.reference", test.reference)];
         observer.step(
-            crate::trace::Step::given("alpha test", "ROP-1", "alpha_test.passed", i64::from(passed))
+            crate::trace::Step::given("alpha test", "ROP-1", "alpha_test.passed", passed)
                 .by(compare_operation(test.function), inputs)
-                .note(Some(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string())),
+                .note(if passed { "passes" } else { "fails: the fragment is dropped" }.to_string()),
         );
     }
     passed
@@ -237,8 +235,7 @@ fn report_channel<L: Lane, O: Observer>(
         for (name, kind, value) in [("Fs", blend.source, factors[0]), ("Fd", blend.destination, factors[1])] {
             let (operation, inputs) = factor_operation(kind, channel, source, destination, constant);
             let name = format!("blend.{name}.{suffix}");
-            observer.step(report::register_step(BLOCK, "ROP-4", name.clone(), value).by(operation, inputs));
-            operands.push(report::register(name, value));
+            operands.push(observer.tell(report::register_step(BLOCK, "ROP-4", name, value).by(operation, inputs)));
         }
     }
     let (rule, operation) = match blend.equation {
@@ -250,14 +247,11 @@ fn report_channel<L: Lane, O: Observer>(
         BlendEquation::SignedAdd => ("ROP-3", "signed_add"),
         BlendEquation::SignedReverseSubtract => ("ROP-3", "signed_reverse_subtract"),
     };
-    let name = format!("blend.raw.{suffix}");
-    observer.step(report::register_step(BLOCK, rule, name.clone(), raw).by(operation, operands));
     let clamped = (raw.observe().0 != out.observe().0).then(|| "clamped".to_string());
-    observer.step(
-        report::register_step(BLOCK, rule, format!("blend.{suffix}"), out)
-            .by("clamp_0_255", vec![report::register(name, raw)])
-            .note(clamped),
-    );
+    let name = format!("blend.raw.{suffix}");
+    let inputs = vec![observer.tell(report::register_step(BLOCK, rule, name, raw).by(operation, operands))];
+    let step = report::register_step(BLOCK, rule, format!("blend.{suffix}"), out);
+    observer.step(step.by("clamp_0_255", inputs).note(clamped));
 }
 
 fn factor_operation<L: Lane>(

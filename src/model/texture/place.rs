@@ -317,7 +317,7 @@ impl Place for Interpolated<'_> {
         let direction = self.tell_direction(report, observer);
         for (axis, letter) in ["u", "v"].into_iter().enumerate() {
             let lowered = plain("lowered", settled[axis].lowered);
-            let size = plain("size", i64::from(sides[axis]));
+            let size = plain("size", sides[axis]);
             let (rule, operation, mut inputs) = match self.coordinates {
                 Coordinates::Plane(g) => {
                     let g = g[axis].map(|g| g >> shifts[axis]);
@@ -372,7 +372,7 @@ impl Place for Interpolated<'_> {
         };
         inputs.extend((0..3).map(|k| plain(format!("E{k}"), self.at.e[k])));
         if q.is_some() {
-            inputs.push(plain("size", i64::from(layers)));
+            inputs.push(plain("size", layers));
             inputs.extend(shortfall(self.at));
         } else {
             inputs.push(plain("D", self.at.d));
@@ -397,9 +397,7 @@ impl Place for Interpolated<'_> {
         inputs.push(plain(format.name(), 0));
         let real = ideal::in_words(format, self.real_r());
         observer.step(
-            Step::given(&report.block(), "SHD-1", report.name("reference"), i64::from(word))
-                .by(operation, inputs)
-                .ideal(Some(real)),
+            Step::given(&report.block(), "SHD-1", report.name("reference"), word).by(operation, inputs).ideal(real),
         );
     }
 
@@ -432,7 +430,7 @@ impl Place for Interpolated<'_> {
             }
             for (axis, letter) in ["u", "v"].into_iter().enumerate() {
                 let edges = (0..3).map(|k| plain(edge(k), samples[n].e[k]));
-                let size = plain("size", i64::from(sides[axis]));
+                let size = plain("size", sides[axis]);
                 let (operation, inputs) = match self.coordinates {
                     Coordinates::Plane(g) => {
                         let mut inputs = report.planes("INT-4", &format!("G_{letter}"), &g[axis], observer);
@@ -487,7 +485,7 @@ impl Interpolated<'_> {
         let Coordinates::Direction(direction) = self.coordinates else { return };
         let face = Self::face_at(direction, at);
         let step = Step::given(&report.block(), "TEX-12", report.name(name), face as i64);
-        observer.step(step.by("cube_face", inputs).note(Some(Named::name(face).to_string())));
+        observer.step(step.by("cube_face", inputs).note(Named::name(face).to_string()));
     }
 }
 

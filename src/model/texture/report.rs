@@ -45,6 +45,11 @@ impl Report<'_> {
         format!("unit{}.{}{suffix}", self.unit.index, self.prefix)
     }
 
+    /// A step of this unit.
+    pub fn step(&self, rule: &'static str, suffix: &str, value: impl Into<i64>) -> Step {
+        Step::given(&self.block(), rule, self.name(suffix), value)
+    }
+
     /// Numbers of a linear function at the vertices, told to the observer, as operands.
     pub fn planes<O: Observer>(
         &self,
@@ -74,13 +79,7 @@ impl Report<'_> {
             "TEX-15" | "TSH-7" => "weights fall short: another 1/256 texel (INT-4t)".to_string(),
             _ => "exactly on a 1/256 texel: one step lower (INT-4t)".to_string(),
         });
-        observer.step(
-            Step::given(&self.block(), rule, self.name(letter), settled.value)
-                .per(256)
-                .by(operation, inputs)
-                .ideal(Some(ideal))
-                .note(note),
-        );
+        observer.step(self.step(rule, letter, settled.value).per(256).by(operation, inputs).ideal(ideal).note(note));
     }
 
     /// A coordinate of a pixel of the quad.
@@ -105,8 +104,8 @@ impl Report<'_> {
         choice: &Choice,
         observer: &mut O,
     ) {
-        let (block, state) = (self.block(), &self.unit.state);
-        let mut ratio = Step::given(&block, "TEX-10", self.name("log2_ratio"), i64::from(log2_ratio)).per(256);
+        let state = &self.unit.state;
+        let mut ratio = self.step("TEX-10", "log2_ratio", log2_ratio).per(256);
         ratio = match quad {
             Some(quad) => {
                 let coordinate = |pixel: usize, n: usize| Operand {
@@ -116,22 +115,22 @@ impl Report<'_> {
                 };
                 ratio.by("log2_ratio", (0..6).map(|n| coordinate(n / 2, n % 2)).collect())
             }
-            None => ratio.note(Some("some of the quad lies behind the viewer".to_string())),
+            None => ratio.note("some of the quad lies behind the viewer".to_string()),
         };
         observer.step(ratio);
         let inputs = vec![
-            part(self.name("log2_ratio"), i64::from(log2_ratio)),
-            part("lod_bias", i64::from(state.lod_bias)),
-            part("min_lod", i64::from(state.min_lod)),
-            part("max_lod", i64::from(state.max_lod)),
+            part(self.name("log2_ratio"), log2_ratio),
+            part("lod_bias", state.lod_bias),
+            part("min_lod", state.min_lod),
+            part("max_lod", state.max_lod),
         ];
         let note = if lod <= 0 { "magnified" } else { "minified" };
         observer.step(
-            Step::given(&block, "TEX-9", self.name("lod"), i64::from(lod))
+            self.step("TEX-9", "lod", lod)
                 .per(256)
                 .by("biased_lod", inputs)
-                .ideal(Some(ideal))
-                .note(Some(format!("{note}: {} filter", crate::state::Named::name(choice.filter)))),
+                .ideal(ideal)
+                .note(format!("{note}: {} filter", crate::state::Named::name(choice.filter))),
         );
         let operation = match state.mip_filter {
             _ if lod <= 0 => "level_0",
@@ -139,11 +138,11 @@ impl Report<'_> {
             MipFilter::Nearest => "nearest_level",
             MipFilter::Linear => "lower_level",
         };
-        let inputs = || vec![part(self.name("lod"), i64::from(lod)), plain("levels", self.unit.levels.len() as i64)];
-        let level = Step::given(&block, "TEX-9", self.name("level"), choice.level as i64);
+        let inputs = || vec![part(self.name("lod"), lod), plain("levels", self.unit.levels.len() as i64)];
+        let level = self.step("TEX-9", "level", choice.level as i64);
         observer.step(level.by(operation, inputs()));
         if let Some((next, _)) = choice.next {
-            let step = Step::given(&block, "TEX-9", self.name("next_level"), next as i64);
+            let step = self.step("TEX-9", "next_level", next as i64);
             observer.step(step.by("upper_level", inputs()));
         }
     }
@@ -151,20 +150,14 @@ impl Report<'_> {
     /// TEX-9: the weight of the second level.
     pub(super) fn lod_weight<L: Lane, O: Observer>(&self, lod: i32, weight: L::Weight, observer: &mut O) {
         let (weight, ideal) = L::observe_weight(weight);
-        let inputs = vec![part(self.name("lod"), i64::from(lod))];
-        observer.step(
-            Step::given(&self.block(), "TEX-9", self.name("weight_lod"), weight)
-                .per(256)
-                .by("lod_weight", inputs)
-                .ideal(ideal),
-        );
+        let inputs = vec![part(self.name("lod"), lod)];
+        observer.step(self.step("TEX-9", "weight_lod", weight).per(256).by("lod_weight", inputs).ideal(ideal));
     }
 
     pub(super) fn nearest<O: Observer>(&self, coordinate: [i64; 2], texel: [i64; 2], observer: &mut O) {
         for (n, (letter, axis)) in [("u", "x"), ("v", "y")].into_iter().enumerate() {
             observer.step(
-                Step::given(&self.block(), "TEX-5", self.name(axis), texel[n])
-                    .by("nearest_texel", vec![part(self.name(letter), coordinate[n])]),
+                self.step("TEX-5", axis, texel[n]).by("nearest_texel", vec![part(self.name(letter), coordinate[n])]),
             );
         }
     }
@@ -185,7 +178,7 @@ impl Report<'_> {
             }
             let (weight, ideal) = L::observe_weight(weights[n]);
             observer.step(
-                Step::given(&self.block(), "TEX-6", self.name(&format!("weight_{letter}")), weight)
+                self.step("TEX-6", &format!("weight_{letter}"), weight)
                     .per(256)
                     .by("linear_weight", inputs)
                     .ideal(ideal),
@@ -197,10 +190,10 @@ impl Report<'_> {
     pub(super) fn layer<O: Observer>(&self, w: i64, layer: Option<usize>, observer: &mut O) {
         let index = nearest(w);
         let block = self.block();
-        let step = Step::given(&block, "TEX-5", self.name("z"), index);
+        let step = self.step("TEX-5", "z", index);
         observer.step(step.by("nearest_texel", vec![part(self.name("w"), w)]));
         if let Some(layer) = layer {
-            let inputs = vec![plain(self.name("z"), index), plain("size", i64::from(self.unit.layers))];
+            let inputs = vec![plain(self.name("z"), index), plain("size", self.unit.layers)];
             let name = self.name("layer");
             observer.step(address_step(&block, name, self.unit.state.address_r, false, inputs, layer as i64));
         }
@@ -214,10 +207,9 @@ impl Report<'_> {
         (weight, ideal_weight): (i64, Option<f64>),
         observer: &mut O,
     ) {
-        let block = self.block();
         let of_unit = |name: &str| format!("unit{}.{name}", self.unit.index);
         let footprint = || {
-            let mut inputs = vec![plain("limit", i64::from(limit)), plain("tap", tap as i64)];
+            let mut inputs = vec![plain("limit", limit), plain("tap", tap as i64)];
             for (pixel, at) in quad.iter().flatten().enumerate() {
                 for (n, letter) in ["u", "v"].into_iter().enumerate() {
                     let name = of_unit(&format!("quad{pixel}.{letter}"));
@@ -229,10 +221,10 @@ impl Report<'_> {
         for (n, letter) in ["u", "v"].into_iter().enumerate() {
             let mut inputs = vec![part(of_unit(letter), coordinates[n])];
             inputs.extend(footprint());
-            let step = Step::given(&block, "TEX-17", self.name(letter), at[n]).per(256);
-            observer.step(step.by(["tap_u", "tap_v"][n], inputs).ideal(Some(ideal[n])));
+            let step = self.step("TEX-17", letter, at[n]).per(256);
+            observer.step(step.by(["tap_u", "tap_v"][n], inputs).ideal(ideal[n]));
         }
-        let step = Step::given(&block, "TEX-17", self.name("weight"), weight).per(256);
+        let step = self.step("TEX-17", "weight", weight).per(256);
         observer.step(step.by("tap_weight", footprint()).ideal(ideal_weight));
     }
 
@@ -268,15 +260,15 @@ impl Report<'_> {
         let block = self.block();
         let [depth, named] = ["texel.depth", "reference"].map(|name| self.name(name));
         if shadow.reference == ShadowReference::Zero {
-            observer.step(Step::given(&block, "SHD-1", named.clone(), i64::from(reference)));
+            observer.step(Step::given(&block, "SHD-1", named.clone(), reference));
         }
         let note = format!("words of {}", format.name());
-        let inputs = vec![plain(named, i64::from(reference)), plain(depth, i64::from(stored))];
+        let inputs = vec![plain(named, reference), plain(depth, stored)];
         let operation = compare_operation(shadow.function);
-        let step = Step::given(&block, "SHD-1", self.name("passes"), i64::from(passes));
-        observer.step(step.by(operation, inputs).note(Some(note)));
+        let step = self.step("SHD-1", "passes", passes);
+        observer.step(step.by(operation, inputs).note(note));
         for n in (0..4).filter(|n| self.unit.live >> n & 1 != 0) {
-            let inputs = vec![plain(self.name("passes"), i64::from(passes))];
+            let inputs = vec![plain(self.name("passes"), passes)];
             let name = self.name(&format!("compared.{}", channel_name(n)));
             observer.step(self.lane_step("SHD-1", name, result).by("all_or_nothing", inputs));
         }
@@ -298,10 +290,8 @@ impl Report<'_> {
         if let Some(at) = texel.at {
             let (sizes, modes) = ([slice.level.width, slice.level.height], self.unit.modes());
             for (n, axis) in ["x", "y"].into_iter().enumerate() {
-                let inputs = vec![
-                    plain(self.name(&format!("{axis}{}", index[n].0)), index[n].1),
-                    plain("size", i64::from(sizes[n])),
-                ];
+                let inputs =
+                    vec![plain(self.name(&format!("{axis}{}", index[n].0)), index[n].1), plain("size", sizes[n])];
                 let step = address_step(&block, texel_name(axis), modes[n], self.unit.border, inputs, at[n]);
                 observer.step(step);
                 place.push(plain(texel_name(axis), at[n]));
@@ -319,8 +309,8 @@ impl Report<'_> {
         });
         let word = self.word(words, texel, (place, lies), &texel_name, observer);
         if self.unit.format.depth().is_some() {
-            let inputs = vec![plain(texel_name("word"), i64::from(word))];
-            let depth = Step::given(&block, "SHD-1", texel_name("depth"), i64::from(depth_of(word)));
+            let inputs = vec![plain(texel_name("word"), word)];
+            let depth = Step::given(&block, "SHD-1", texel_name("depth"), depth_of(word));
             observer.step(depth.by("depth_of_word", inputs));
         }
         word
@@ -342,7 +332,7 @@ impl Report<'_> {
             let signed = self.unit.signed_lane(lane);
             let rule = if signed { "TEX-18" } else { "TEX-1" };
             let letter = self.lane(lane);
-            let mut inputs = vec![plain(texel_name("word"), i64::from(word))];
+            let mut inputs = vec![plain(texel_name("word"), word)];
             let operation = if self.unit.is_wide() {
                 match (lane == 1, signed) {
                     (false, false) if fetch::has_no_high_half(self.unit.format, texel) => {
@@ -377,7 +367,7 @@ impl Report<'_> {
         let mut tell = |rule: &'static str, what: &str, word: u32, operation: &'static str, inputs: Vec<Operand>| {
             let note = Some(format!("{word:#010x}"));
             let lies = lies.filter(|_| operation == "fetch");
-            let step = Step::given(&block, rule, name(what), i64::from(word)).by(operation, inputs).note(note);
+            let step = Step::given(&block, rule, name(what), word).by(operation, inputs).note(note);
             observer.step(step.at(lies));
             word
         };
@@ -386,14 +376,14 @@ impl Report<'_> {
             TextureFormat::P8 => {
                 let entry = fetch::palette_entry(self.unit, texel.word);
                 tell("TEX-1", "index", texel.word, "fetch", place);
-                tell("TEX-1", "word", entry, "palette", vec![plain(name("index"), i64::from(texel.word))])
+                tell("TEX-1", "word", entry, "palette", vec![plain(name("index"), texel.word)])
             }
             TextureFormat::Dxt1 | TextureFormat::Dxt3 | TextureFormat::Dxt5 => {
                 let raw = fetch::block(self.unit, words, texel);
                 let mut inputs = Vec::new();
                 for (n, word) in raw.iter().enumerate() {
                     tell("", &format!("block{n}"), *word, "fetch", place.clone());
-                    inputs.push(plain(name(&format!("block{n}")), i64::from(*word)));
+                    inputs.push(plain(name(&format!("block{n}")), *word));
                 }
                 // Blocks lie in one layer.
                 inputs.extend(place.into_iter().take(2));
@@ -452,7 +442,6 @@ impl Report<'_> {
         observer.step(self.lane_step("TEX-9", self.name(&format!("levels.{suffix}")), value).by("mix", inputs));
     }
 
-    /// A channel of the register, from the lane of the name `from`.
     /// KEY-1: so many channels of a texel against the key, and what it becomes.
     pub(super) fn color_key<L: Lane, O: Observer>(
         &self,
@@ -461,32 +450,29 @@ impl Report<'_> {
         (texel, keyed): (&[L; 4], &[L; 4]),
         observer: &mut O,
     ) {
-        let name = |of: &str, n: usize| self.name(&format!("{of}.{}", channel_name(n)));
-        let texel = |n: usize| self.lane_operand(name("texel", n), texel[n]);
+        let texel = |n: usize| self.lane_operand(self.name(&format!("texel.{}", channel_name(n))), texel[n]);
         let wanted = color_key::as_lanes(self.unit, key);
         let mut inputs: Vec<Operand> = (0..compared).map(texel).collect();
         for (n, value) in wanted.into_iter().enumerate().take(compared) {
-            let part = Operand { name: name("key", n), value: i64::from(value), ..texel(n) };
-            observer.step(Step::given(&self.block(), "KEY-1", part.name.clone(), part.value).per(part.per_one));
-            inputs.push(part);
+            inputs.push(
+                observer.tell(self.step("KEY-1", &format!("key.{}", channel_name(n)), value).per(self.per_one())),
+            );
         }
-        let matches = (self.name("key.matched"), i64::from(matched));
-        let step = Step::given(&self.block(), "KEY-1", matches.0.clone(), matches.1).by("equals_key", inputs);
-        observer.step(step.note(match (matched, key.mode) {
-            (true, ColorKeyMode::Texel) => Some("the fragment is dropped".to_string()),
-            _ => None,
-        }));
+        let drops = matched && key.mode == ColorKeyMode::Texel;
+        let note = drops.then(|| "the fragment is dropped".to_string());
+        let matches = observer.tell(self.step("KEY-1", "key.matched", matched).by("equals_key", inputs).note(note));
         let cleared = color_key::cleared(key.mode);
         for n in (0..4).filter(|n| self.unit.live >> n & 1 != 0) {
             let mut inputs = vec![texel(n)];
             let operation = if cleared[n] { "zero_if" } else { "write" };
-            inputs.extend(cleared[n].then(|| plain(matches.0.clone(), matches.1)));
+            inputs.extend(cleared[n].then(|| matches.clone()));
             let (value, ideal) = keyed[n].observe();
-            let step = Step::given(&self.block(), "KEY-1", name("keyed", n), value);
-            observer.step(step.per(texel(n).per_one).by(operation, inputs).ideal(ideal));
+            let step = self.step("KEY-1", &format!("keyed.{}", channel_name(n)), value).per(self.per_one());
+            observer.step(step.by(operation, inputs).ideal(ideal));
         }
     }
 
+    /// A channel of the register, from the lane of the name `from`.
     pub(super) fn register<L: Lane, O: Observer>(
         &self,
         from: &str,

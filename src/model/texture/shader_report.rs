@@ -23,6 +23,15 @@ fn name(index: usize, suffix: &str) -> String {
     format!("unit{index}.{suffix}")
 }
 
+fn step(index: usize, rule: &'static str, suffix: &str, value: impl Into<i64>) -> Step {
+    Step::given(&block(index), rule, name(index, suffix), value)
+}
+
+/// A step that yields a single-precision number.
+fn single(index: usize, rule: &'static str, suffix: &str, value: f32, ideal: f64) -> Step {
+    float_step(&block(index), rule, name(index, suffix), value, ideal)
+}
+
 /// A register that a stage yields whatever the pixel.
 pub(super) fn constant<L: Lane, O: Observer>(
     index: usize,
@@ -47,12 +56,9 @@ pub(super) fn linear<O: Observer>(
 ) -> Vec<Operand> {
     let (g, exponent) = attribute.numbers();
     let named = |k: usize| name(index, &format!("G_{}{k}", COORDINATES[n]));
-    for (k, g) in g.iter().enumerate() {
-        observer.step(Step::given(&block(index), "INT-4", named(k), *g));
-    }
-    let planes = (0..3).map(|k| plain(named(k), g[k]));
+    let planes = [0, 1, 2].map(|k| observer.tell(Step::given(&block(index), "INT-4", named(k), g[k]))).into_iter();
     let edges = (0..3).map(|k| plain(format!("E{k}"), at.e[k]));
-    planes.chain(edges).chain([plain("D", at.d), plain("exponent", i64::from(exponent))]).collect()
+    planes.chain(edges).chain([plain("D", at.d), plain("exponent", exponent)]).collect()
 }
 
 /// TSH-9: one channel.
@@ -66,12 +72,10 @@ pub(super) fn pass_through<L: Lane, O: Observer>(
     observer: &mut O,
 ) {
     let inputs = linear(index, n, attribute, at, observer);
-    let block = block(index);
-    let part = name(index, &format!("{}.4096", COORDINATES[n]));
-    observer.step(Step::given(&block, "TSH-9", part.clone(), v).per(4096).by("floor_number", inputs));
-    let inputs = vec![Operand { per_one: 4096, ..plain(part, v) }];
+    let part = step(index, "TSH-9", &format!("{}.4096", COORDINATES[n]), v).per(4096).by("floor_number", inputs);
+    let inputs = vec![observer.tell(part)];
     let register = format!("texture{index}.{}", channel_name(n));
-    observer.step(report::register_step(&block, "TSH-9", register, value).by("factor_byte", inputs));
+    observer.step(report::register_step(&block(index), "TSH-9", register, value).by("factor_byte", inputs));
 }
 
 /// TSH-10: whether one coordinate drops the fragment.
@@ -86,10 +90,10 @@ pub(super) fn sign<O: Observer>(
 ) {
     let inputs = linear(index, n, attribute, at, observer);
     let operation = if drops_not_negative { "is_not_negative" } else { "is_negative" };
-    let name = name(index, &format!("{}.drops", COORDINATES[n]));
     let dropped = negative != drops_not_negative;
     let note = dropped.then(|| "the fragment is dropped".to_string());
-    observer.step(Step::given(&block(index), "TSH-10", name, i64::from(dropped)).by(operation, inputs).note(note));
+    let step = step(index, "TSH-10", &format!("{}.drops", COORDINATES[n]), dropped);
+    observer.step(step.by(operation, inputs).note(note));
 }
 
 /// A coordinate in single precision.
@@ -101,10 +105,10 @@ pub(super) fn rounded<O: Observer>(
     value: f32,
     ideal: f64,
     observer: &mut O,
-) {
+) -> Operand {
     let inputs = linear(index, n, attribute, at, observer);
-    let step = float_step(&block(index), "TSH-4", name(index, COORDINATES[n]), value, ideal);
-    observer.step(step.by("nearest_float", inputs));
+    let step = single(index, "TSH-4", COORDINATES[n], value, ideal);
+    observer.tell(step.by("nearest_float", inputs))
 }
 
 /// The bytes of the earlier unit's colour that a stage reads.
@@ -143,10 +147,10 @@ pub(super) fn dot<O: Observer>(
 ) {
     let hilo = matches!(parts.mapping, DotMapping::Hilo1 | DotMapping::HiloHemisphere);
     previous(index, color, if hilo { &[3, 0, 1, 2] } else { &[0, 1, 2] }, observer);
-    let read = |n: usize| plain(previous_name(index, n), i64::from(color.bytes[n]));
-    let block = block(index);
+    let read = |n: usize| plain(previous_name(index, n), color.bytes[n]);
+    let mut factors = Vec::new();
     for n in 0..3 {
-        rounded(index, n, &parts.attributes[n], at, parts.coordinates[n], real.0[n], observer);
+        let coordinate = rounded(index, n, &parts.attributes[n], at, parts.coordinates[n], real.0[n], observer);
         let halves = [vec![read(3), read(0)], vec![read(1), read(2)]];
         let (rule, operation, inputs) = match (parts.mapping, n) {
             (DotMapping::ZeroToOne, _) => ("TSH-1", "remap_zero_to_one", vec![read(n)]),
@@ -158,22 +162,16 @@ pub(super) fn dot<O: Observer>(
             (DotMapping::HiloHemisphere, 2) => ("TSH-3", "third_of_unit", halves.concat()),
             (DotMapping::HiloHemisphere, _) => ("TSH-3", "remap_half_signed", halves[n].clone()),
         };
-        let vector = name(index, &format!("vector.{}", AXES[n]));
-        observer.step(float_step(&block, rule, vector.clone(), parts.vector[n], real.1[n]).by(operation, inputs));
+        let vector = single(index, rule, &format!("vector.{}", AXES[n]), parts.vector[n], real.1[n]);
+        factors.push([coordinate, observer.tell(vector.by(operation, inputs))]);
     }
-    for n in 0..3 {
-        let inputs = vec![
-            float(name(index, COORDINATES[n]), parts.coordinates[n]),
-            float(name(index, &format!("vector.{}", AXES[n])), parts.vector[n]),
-        ];
-        let product = name(index, &format!("product.{}", AXES[n]));
-        observer.step(
-            float_step(&block, "TSH-4", product, parts.products[n], product_of(real, n)).by("float_product", inputs),
-        );
+    let mut inputs = Vec::new();
+    for (n, factors) in factors.into_iter().enumerate() {
+        let suffix = format!("product.{}", AXES[n]);
+        let product = single(index, "TSH-4", &suffix, parts.products[n], product_of(real, n));
+        inputs.push(observer.tell(product.by("float_product", factors.to_vec())));
     }
-    let inputs = (0..3).map(|n| float(name(index, &format!("product.{}", AXES[n])), parts.products[n])).collect();
-    observer
-        .step(float_step(&block, "TSH-4", name(index, "dot"), parts.dot.fixed, parts.dot.real).by("float_sum", inputs));
+    observer.step(single(index, "TSH-4", "dot", parts.dot.fixed, parts.dot.real).by("float_sum", inputs));
 }
 
 #[allow(clippy::float_arithmetic, reason = "the ideal's product")]
@@ -190,25 +188,20 @@ pub(super) fn reflection<O: Observer>(
     real: &Reflection<f64>,
     observer: &mut O,
 ) {
-    let block = block(index);
-    let eye_name = |n: usize| if constant { name(index, &format!("eye.{}", AXES[n])) } else { name(n + 1, "q") };
-    if constant {
-        for n in 0..3 {
-            observer.step(float_step(&block, "TSH-5", eye_name(n), eye[n], f64::from(eye[n])));
-        }
-    }
+    let step = |what: &str, value: f32, ideal: f64| single(index, "TSH-5", what, value, ideal);
+    let eyes = [0, 1, 2].map(|n| match constant {
+        true => observer.tell(step(&format!("eye.{}", AXES[n]), eye[n], f64::from(eye[n]))),
+        false => float(name(n + 1, "q"), eye[n]),
+    });
+    let eyes = |n: usize| eyes[n].clone();
     let normals = |n: usize| float(name(n + 1, "dot"), normal[n].fixed);
-    let eyes = |n: usize| float(eye_name(n), eye[n]);
-    let step = |what: &str, value: f32, ideal: f64| float_step(&block, "TSH-5", name(index, what), value, ideal);
     let toward = (0..3).flat_map(|n| [normals(n), eyes(n)]).collect();
-    observer.step(step("toward", fixed.toward, real.toward).by("float_dot", toward));
+    let toward = observer.tell(step("toward", fixed.toward, real.toward).by("float_dot", toward));
     let square = (0..3).flat_map(|n| [normals(n), normals(n)]).collect();
-    observer.step(step("square", fixed.square, real.square).by("float_dot", square));
-    let inputs = vec![float(name(index, "toward"), fixed.toward)];
-    observer.step(step("scale", fixed.scale, real.scale).by("float_double", inputs));
+    let square = observer.tell(step("square", fixed.square, real.square).by("float_dot", square));
+    let scale = observer.tell(step("scale", fixed.scale, real.scale).by("float_double", vec![toward]));
     for n in 0..3 {
-        let (scale, square) = (float(name(index, "scale"), fixed.scale), float(name(index, "square"), fixed.square));
-        let inputs = vec![scale, normals(n), square, eyes(n)];
+        let inputs = vec![scale.clone(), normals(n), square.clone(), eyes(n)];
         let vector = step(&format!("reflection.{}", AXES[n]), fixed.vector[n], real.vector[n]);
         observer.step(vector.by("float_reflection", inputs));
     }
@@ -217,7 +210,7 @@ pub(super) fn reflection<O: Observer>(
 /// TSH-8: scale and offset.
 pub(super) fn luminance_state<O: Observer>(index: usize, luminance: [f32; 2], observer: &mut O) {
     for (what, value) in ["luminance.scale", "luminance.offset"].into_iter().zip(luminance) {
-        observer.step(float_step(&block(index), "TSH-8", name(index, what), value, f64::from(value)));
+        observer.step(single(index, "TSH-8", what, value, f64::from(value)));
     }
 }
 
@@ -230,18 +223,16 @@ pub(super) fn luminance<L: Lane, O: Observer>(
     luminance: [f32; 2],
     observer: &mut O,
 ) {
-    let block = block(index);
     let register = format!("texture{index}.{}", channel_name(n));
     let inputs = vec![
         report::register(register.clone(), sampled),
-        plain(previous_name(index, 0), i64::from(red)),
+        plain(previous_name(index, 0), red),
         float(name(index, "luminance.scale"), luminance[0]),
         float(name(index, "luminance.offset"), luminance[1]),
     ];
-    let part = name(index, &format!("luminance.{}", channel_name(n)));
-    observer.step(Step::given(&block, "TSH-8", part.clone(), v).per(4096).by("luminance", inputs));
-    let inputs = vec![Operand { per_one: 4096, ..plain(part, v) }];
-    observer.step(report::register_step(&block, "TSH-8", register, value).by("luminance_byte", inputs));
+    let part = step(index, "TSH-8", &format!("luminance.{}", channel_name(n)), v).per(4096).by("luminance", inputs);
+    let inputs = vec![observer.tell(part)];
+    observer.step(report::register_step(&block(index), "TSH-8", register, value).by("luminance_byte", inputs));
 }
 
 /// Where the coordinates of a dependent read on a level come from.
@@ -260,36 +251,27 @@ pub(super) fn coordinates<O: Observer>(
         vector.iter().flat_map(|(vector, names)| (0..3).map(|n| float(names[n].clone(), vector[n]))).collect();
     if vector.is_some() {
         let face = place.target.face();
-        let step = Step::given(&report.block(), "TEX-12", report.name("face"), face as i64);
-        observer.step(step.by("float_face", direction.clone()).note(Some(Named::name(face).to_string())));
+        let step = report.step("TEX-12", "face", face as i64);
+        observer.step(step.by("float_face", direction.clone()).note(Named::name(face).to_string()));
     }
     for (axis, letter) in ["u", "v"].into_iter().enumerate() {
-        let size = plain("size", i64::from(sides[axis]));
+        let size = plain("size", sides[axis]);
         let (rule, operation, inputs) = match place.target {
             Target::Moved(moved) => {
                 let offset = moved.offsets(unit, level)[axis];
-                let offset_name = report.name(&format!("offset_{letter}"));
-                let [along_blue, along_green] = moved.entries()[axis];
-                let entries = [["m0", "m3"], ["m1", "m2"]][axis].map(|m| name(index, m));
-                for (entry, value) in entries.iter().zip([along_blue, along_green]) {
-                    observer.step(float_step(&report.block(), "TSH-7", entry.clone(), value, f64::from(value)));
-                }
-                let [blue, green] = moved.blue_green.map(i64::from);
-                let inputs = vec![
-                    float(entries[0].clone(), along_blue),
-                    float(entries[1].clone(), along_green),
-                    plain(previous_name(index, 2), blue),
-                    plain(previous_name(index, 1), green),
-                    size,
-                ];
-                let per_one = 256 << OFFSET_BITS;
-                let step = Step::given(&report.block(), "TSH-7", offset_name.clone(), offset).per(per_one);
-                observer.step(step.by("bump_offset", inputs));
+                let [along_blue, along_green] = [0, 1].map(|n| {
+                    let (entry, value) = ([["m0", "m3"], ["m1", "m2"]][axis][n], moved.entries()[axis][n]);
+                    observer.tell(single(index, "TSH-7", entry, value, f64::from(value)))
+                });
+                let [blue, green] =
+                    [(2, 0), (1, 1)].map(|(channel, n)| plain(previous_name(index, channel), moved.blue_green[n]));
+                let step = report.step("TSH-7", &format!("offset_{letter}"), offset).per(256 << OFFSET_BITS);
+                let offset = observer.tell(step.by("bump_offset", vec![along_blue, along_green, blue, green, size]));
                 let mut inputs =
                     report.planes("INT-4", &format!("G_{letter}"), &moved.planes(unit, level)[axis], observer);
                 inputs.extend((0..3).map(|k| plain(format!("E{k}"), moved.at.e[k])));
                 inputs.push(plain("D", moved.at.d));
-                inputs.push(Operand { per_one, ..plain(offset_name, offset) });
+                inputs.push(offset);
                 inputs.extend(shortfall(&moved.at));
                 inputs.push(plain("lowered", settled[axis].lowered));
                 ("TSH-7", "floor_plane_moved", inputs)
@@ -300,7 +282,7 @@ pub(super) fn coordinates<O: Observer>(
                     DependentScale::Over255 => "dependent_255",
                     DependentScale::Over256 => "dependent_256",
                 };
-                ("TSH-6", operation, vec![plain(previous_name(index, channel), i64::from(bytes[axis])), size])
+                ("TSH-6", operation, vec![plain(previous_name(index, channel), bytes[axis]), size])
             }
             Target::Floats(floats) => {
                 let dot = float(name(index + axis - 1, "dot"), floats[axis]);

@@ -23,6 +23,13 @@ pub trait Observer {
     const COUNTS: bool = false;
     /// One rule has been applied.
     fn step(&mut self, step: Step);
+    /// The same; what it yielded, as an operand of later steps.
+    fn tell(&mut self, step: Step) -> Operand {
+        let Step { name, value, per_one, .. } = &step;
+        let operand = Operand { name: name.clone(), value: *value, per_one: *per_one };
+        self.step(step);
+        operand
+    }
     /// A rule has yielded a value; what is returned goes on in its place. It may differ in the ideal only.
     fn observe<L: Lane>(&mut self, _rule: Rule, value: L) -> L {
         value
@@ -120,14 +127,14 @@ pub struct Place {
 
 impl Step {
     /// A plain integer (per one: 1) without operands.
-    pub fn given(block: &str, rule: &'static str, name: impl Into<String>, value: i64) -> Step {
+    pub fn given(block: &str, rule: &'static str, name: impl Into<String>, value: impl Into<i64>) -> Step {
         Step {
             block: block.to_string(),
             rule,
             name: name.into(),
             operation: "given",
             inputs: Vec::new(),
-            value,
+            value: value.into(),
             per_one: 1,
             ideal: None,
             note: None,
@@ -153,15 +160,15 @@ impl Step {
     /// Sets the ideal, a number in steps of this step's unit.
     #[must_use]
     #[allow(clippy::float_arithmetic, reason = "display of the ideal")]
-    pub fn ideal(mut self, ideal: Option<f64>) -> Step {
-        self.ideal = ideal.map(|i| i / self.per_one as f64);
+    pub fn ideal(mut self, ideal: impl Into<Option<f64>>) -> Step {
+        self.ideal = ideal.into().map(|i| i / self.per_one as f64);
         self
     }
 
     /// Sets the remark, if there is one.
     #[must_use]
-    pub fn note(mut self, note: Option<String>) -> Step {
-        self.note = note;
+    pub fn note(mut self, note: impl Into<Option<String>>) -> Step {
+        self.note = note.into();
         self
     }
 
@@ -195,18 +202,18 @@ pub fn float(name: impl Into<String>, value: f32) -> Operand {
 }
 
 /// A plain integer operand.
-pub fn plain(name: impl Into<String>, value: i64) -> Operand {
-    Operand { name: name.into(), value, per_one: 1 }
+pub fn plain(name: impl Into<String>, value: impl Into<i64>) -> Operand {
+    Operand { name: name.into(), value: value.into(), per_one: 1 }
 }
 
 /// An operand in steps of 1/255.
-pub fn byte(name: impl Into<String>, value: i64) -> Operand {
-    Operand { name: name.into(), value, per_one: 255 }
+pub fn byte(name: impl Into<String>, value: impl Into<i64>) -> Operand {
+    Operand { name: name.into(), value: value.into(), per_one: 255 }
 }
 
 /// An operand in 256ths.
-pub fn part(name: impl Into<String>, value: i64) -> Operand {
-    Operand { name: name.into(), value, per_one: 256 }
+pub fn part(name: impl Into<String>, value: impl Into<i64>) -> Operand {
+    Operand { name: name.into(), value: value.into(), per_one: 256 }
 }
 
 /// Reports for values of a lane: the integer and the ideal in the unit that shows no fraction.

@@ -83,7 +83,7 @@ impl Operation for Address {
             let inputs = vec![plain("index", values[0]), plain("size", i64::from(self.size))];
             let mut step = address_step("address", "texel", self.mode, false, inputs, texel.unwrap_or(values[0]));
             if texel.is_none() {
-                step = step.note(Some("outside: the border colour".to_owned()));
+                step = step.note("outside: the border colour".to_owned());
             }
             observer.step(step);
         }

@@ -168,7 +168,7 @@ fn given(columns: &[Column], values: &[i64], steps: &[Step]) -> Vec<Step> {
             match column.per_one {
                 1 => step,
                 _ if column.signed_texel => step.ideal(<Paired>::texel(0, *value as i32, 128).observe().1),
-                _ => step.ideal(Some(*value as f64)),
+                _ => step.ideal(*value as f64),
             }
         })
         .collect()

@@ -92,13 +92,13 @@ impl Operation for Program {
         let mut registers = inputs::load(values);
         registers.write(Register::Spare0, 3, registers.read(Register::Texture0, 3));
         if O::ON {
-            let value = registers.read(Register::Spare0, 3).fixed.into();
-            observer.step(Step::given("given", "CMB-13", "spare0.a", value).per(255).ideal(Some(value as f64)));
+            let value = i64::from(registers.read(Register::Spare0, 3).fixed);
+            observer.step(Step::given("given", "CMB-13", "spare0.a", value).per(255).ideal(value as f64));
         }
         let constants = |colors: [[u8; 4]; 2], block: &str, observer: &mut O| {
             for (n, channel) in (0..2).flat_map(|n| (0..4).map(move |channel| (n, channel))).filter(|_| O::ON) {
                 let (name, value) = (format!("constant{n}.{}", channel_name(channel)), i64::from(colors[n][channel]));
-                observer.step(Step::given(block, "NUM-5", name, value).per(255).ideal(Some(value as f64)));
+                observer.step(Step::given(block, "NUM-5", name, value).per(255).ideal(value as f64));
             }
         };
         for (index, stage) in self.combiners.stages.iter().enumerate() {
