@@ -75,7 +75,7 @@ fn u(covered: &Covered<'_>) -> (i64, i64) {
         at: &sample,
         pixel: covered.pixel,
         vertices: covered.vertices,
-        w: covered.w(),
+        perspective: true,
     };
     let settled = place.on(&covered.unit.levels[0])[0];
     // INT-4t takes an exact tie one step lower: that is the rule and no error.

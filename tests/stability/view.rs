@@ -130,7 +130,7 @@ impl Covered<'_> {
             at: &at,
             pixel: self.pixel,
             vertices: self.vertices,
-            w: self.w(),
+            perspective: true,
         };
         lod::log2_ratio(place.quad())
     }

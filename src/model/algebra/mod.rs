@@ -58,11 +58,13 @@ impl Site {
     }
 
     /// The same place some channels on.
+    #[inline(always)]
     pub const fn channel(self, channel: usize) -> Site {
         Site(self.0 << channel)
     }
 
     /// The places of so many channels, this being the first.
+    #[inline(always)]
     pub const fn channels(self, count: usize) -> u64 {
         self.0 * ((1 << count) - 1)
     }

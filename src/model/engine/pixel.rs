@@ -21,6 +21,7 @@ use crate::texture::place::{self, Coordinates, Interpolated};
 use crate::texture::stage::ShaderSetup;
 use crate::texture::unit::{self, Image, PlannedUnit};
 use crate::trace::{Decision, Observer, Rule, Step, Work, report};
+use std::cell::OnceCell;
 
 /// A triangle of a draw, set up.
 #[derive(Debug)]
@@ -285,7 +286,8 @@ impl<'a> TriangleContext<'a> {
             if live == 0 {
                 continue;
             }
-            let source = |k: usize| self.source(register, k);
+            let sources = OnceCell::new();
+            let source = |k: usize| sources.get_or_init(|| [0, 1, 2].map(|k| self.source(register, k)))[k];
             let corners: [[L; 3]; 4] = std::array::from_fn(|channel| {
                 std::array::from_fn(|k| {
                     let corner = L::value(i32::from(colors[k][channel]), || ideal::color_channel(&source(k), channel));
@@ -297,20 +299,16 @@ impl<'a> TriangleContext<'a> {
                     }
                 })
             });
-            let value = if O::ON || !constant(colors) {
-                let mut channel = 0;
-                corners.map(|c| {
-                    let value = interpolate::color(c, w0, w2);
-                    channel += 1;
-                    if O::MEASURES && live >> (channel - 1) & 1 != 0 {
-                        observer.observe(Rule::Int2, value)
-                    } else {
-                        value
+            let mut value = [L::ZERO; 4];
+            for (channel, value) in value.iter_mut().enumerate() {
+                *value = corners[channel][0];
+                if O::ON || !constant(colors) {
+                    *value = interpolate::color(corners[channel], w0, w2);
+                    if O::MEASURES && live >> channel & 1 != 0 {
+                        *value = observer.observe(Rule::Int2, *value);
                     }
-                })
-            } else {
-                corners.map(|c| c[0])
-            };
+                }
+            }
             if O::ON {
                 let output =
                     draw.vertex_program.then_some(if register == Register::PrimaryColor { "oD0" } else { "oD1" });
@@ -394,10 +392,9 @@ impl<'a> TriangleContext<'a> {
                 }
             }
         }
-        let w = self.w();
         if let (Some(shader), Some(setup)) = (&self.draw.shader, &self.shader) {
             let (units, vertices, scale) = (&self.draw.units, self.vertices(), self.plan.policies.dependent_scale);
-            let chain = Chain { shader, units, setup, textures, vertices, w, scale };
+            let chain = Chain { shader, units, setup, textures, vertices, perspective: self.draw.perspective, scale };
             let values = chain.run(sample, pixel, observer)?;
             for (register, value) in UNITS.into_iter().zip(values) {
                 registers.load(register, value);
@@ -428,11 +425,6 @@ impl<'a> TriangleContext<'a> {
         Some(())
     }
 
-    /// w of the vertices; all 1 without perspective.
-    fn w(&self) -> [f32; 3] {
-        if self.draw.perspective { self.vertices().position(3) } else { [1.0; 3] }
-    }
-
     /// The coordinates of a unit, before anything moves them. `None`: it has none of its own.
     #[inline]
     pub(super) fn coordinates_of(&self, unit: usize) -> Option<&Coordinates> {
@@ -451,7 +443,8 @@ impl<'a> TriangleContext<'a> {
         pixel: (i64, i64),
     ) -> Option<Interpolated<'s>> {
         let coordinates = self.coordinates_of(unit.index)?;
-        Some(Interpolated { unit, coordinates, at: sample, pixel, vertices: self.vertices(), w: self.w() })
+        let (vertices, perspective) = (self.vertices(), self.draw.perspective);
+        Some(Interpolated { unit, coordinates, at: sample, pixel, vertices, perspective })
     }
 
     /// ROP-1, STN-1, DEP-1, DEP-2: the tests, in their order. `None`: the fragment is dropped.

@@ -21,13 +21,19 @@ pub struct IdealTracks<const N: usize>(pub [f64; N]);
 
 impl<const N: usize> IdealTracks<N> {
     #[inline(always)]
-    fn map(self, f: impl Fn(f64) -> f64) -> Self {
-        IdealTracks(std::array::from_fn(|n| f(self.0[n])))
+    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for track in &mut self.0 {
+            *track = f(*track);
+        }
+        self
     }
 
     #[inline(always)]
-    fn zip(self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
-        IdealTracks(std::array::from_fn(|n| f(self.0[n], other.0[n])))
+    fn zip(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for (track, other) in self.0.iter_mut().zip(other.0) {
+            *track = f(*track, other);
+        }
+        self
     }
 }
 
@@ -50,8 +56,8 @@ impl<const N: usize> Ideal for IdealTracks<N> {
     #[inline(always)]
     fn absorb(mut self, fixed: f64, part: Part) -> (Self, f64) {
         let error = fixed - self.0[N - 1];
-        for strand in self.0.iter_mut().skip(1 + part as usize) {
-            *strand += error;
+        for (n, strand) in self.0.iter_mut().enumerate() {
+            *strand = if n > part as usize { *strand + error } else { *strand };
         }
         self.0[N - 1] = fixed;
         (self, error)

@@ -147,16 +147,12 @@ impl<'a> Sample<'a> {
     /// With u_k = G_k / P_k that is 2^-24 b_i (u_i - u_1) of the quotient, for each weight i that falls short, which is 2^-24 / (P_1 D) times
     /// E_i (G_i P_1 - P_i G_1).
     pub fn shortfall(&self, g: &[i64; 3]) -> i128 {
-        let p = &self.triangle.p;
-        [0, 2]
-            .into_iter()
-            .zip(self.short())
-            .filter(|(_, short)| *short)
-            .map(|(i, _)| {
-                let difference = i128::from(g[i]) * i128::from(p[1]) - i128::from(p[i]) * i128::from(g[1]);
-                difference * i128::from(self.e[i])
-            })
-            .sum()
+        let (p, [first, third]) = (&self.triangle.p, self.short());
+        let lost = |i: usize, short: bool| {
+            let difference = i128::from(g[i]) * i128::from(p[1]) - i128::from(p[i]) * i128::from(g[1]);
+            if short { difference * i128::from(self.e[i]) } else { 0 }
+        };
+        lost(0, first) + lost(2, third)
     }
 
     /// INT-4t: whether a quotient is one step lower, given if it is exact and what its numerator loses.

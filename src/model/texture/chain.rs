@@ -28,8 +28,8 @@ pub struct Chain<'a, L> {
     pub textures: &'a [Image<'a, L>],
     /// The triangle's vertices, for the ideal.
     pub vertices: TriangleVertices<'a>,
-    /// Their w; all 1 without perspective.
-    pub w: [f32; 3],
+    /// Whether that divides by their w.
+    pub perspective: bool,
     /// TSH-6.
     pub scale: DependentScale,
 }
@@ -148,7 +148,7 @@ impl<L: Lane> Chain<'_, L> {
 
     /// The ideal's weights of the vertices.
     fn weights(&self, at: &Sample<'_>) -> [f64; 3] {
-        at.ideal.unwrap_or_else(|| ideal::barycentrics(at.triangle, at.e, self.w, true))
+        at.ideal.unwrap_or_else(|| ideal::barycentrics(at.triangle, at.e, self.vertices.position(3), self.perspective))
     }
 
     /// The ideal's interpolated coordinates of a stage.
@@ -162,8 +162,8 @@ impl<L: Lane> Chain<'_, L> {
         let (Some(unit), StageSetup::Places(coordinates)) = (self.unit(index), &self.setup.0[index]) else {
             return (black(), false);
         };
-        let (vertices, w) = (self.vertices, self.w);
-        let place = Interpolated { unit, coordinates, at: at.sample, pixel: at.pixel, vertices, w };
+        let (vertices, perspective) = (self.vertices, self.perspective);
+        let place = Interpolated { unit, coordinates, at: at.sample, pixel: at.pixel, vertices, perspective };
         unit::sample::<L, O>(unit, &self.textures[unit.state.texture], &place, observer)
     }
 

@@ -160,8 +160,8 @@ pub struct Interpolated<'a> {
     pub pixel: (i64, i64),
     /// The vertices of the triangle, for the ideal.
     pub vertices: TriangleVertices<'a>,
-    /// w of the vertices; all 1 without perspective.
-    pub w: [f32; 3],
+    /// Whether the ideal divides by their w.
+    pub perspective: bool,
 }
 
 /// Samples at the top-left pixel of a pixel's quad, at its right and at its lower neighbour.
@@ -221,7 +221,7 @@ impl Interpolated<'_> {
 
     /// The ideal's weights of the vertices at edge functions that need not be covered.
     fn weights(&self, e: [i64; 3]) -> [f64; 3] {
-        ideal::barycentrics(self.at.triangle, e, self.w, true)
+        ideal::barycentrics(self.at.triangle, e, self.vertices.position(3), self.perspective)
     }
 
     fn real_at(&self, weights: [f64; 3], face: Option<Face>) -> Real {

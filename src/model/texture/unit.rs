@@ -339,15 +339,17 @@ pub fn mix<L: Lane, O: Observer>(
     // All four channels: cheaper than asking which are read.
     observer.count(Work::Lerps, 12);
     let live = unit.live_lanes();
+    // `map` would copy all of them for each lane.
+    let of = |lane: usize| [texels[0][lane], texels[1][lane], texels[2][lane], texels[3][lane]];
     let out: [L; 4] = std::array::from_fn(|lane| {
         if O::MEASURES && live >> lane & 1 == 0 {
             return L::ZERO;
         }
-        bilinear(texels.map(|texel| texel[lane]), weights[0], weights[1], |v| observed_step(unit, lane, v, observer))
+        bilinear(of(lane), weights[0], weights[1], |v| observed_step(unit, lane, v, observer))
     });
     if O::ON {
         for lane in (0..4).filter(|c| live >> c & 1 != 0) {
-            report.filter(lane, texels.map(|t| t[lane]), weights, out[lane], observer);
+            report.filter(lane, of(lane), weights, out[lane], observer);
         }
     }
     out

@@ -28,7 +28,7 @@ fn with_place<T>(unit: &PlannedUnit, [r, q]: [f32; 2], then: impl FnOnce(&Interp
     let vertices = vertices.triangle([0, 1, 2]);
     let coordinates = Coordinates::new(&triangle, vertices.coordinates(0), unit);
     let at = Sample::new(&triangle, triangle.edges(8, 8));
-    Some(then(&Interpolated { unit, coordinates: &coordinates, at: &at, pixel: (8, 8), vertices, w: [1.0; 3] }))
+    Some(then(&Interpolated { unit, coordinates: &coordinates, at: &at, pixel: (8, 8), vertices, perspective: false }))
 }
 
 /// A texel behind a colour key.

@@ -128,7 +128,7 @@ impl Operation for Cube {
             at: &sample,
             pixel: (0, 0),
             vertices: vertices.triangle([0; 3]),
-            w: [1.0; 3],
+            perspective: true,
         };
         let (level, face) = (&self.unit.levels[0], place.face());
         let settled = place.on(level);
