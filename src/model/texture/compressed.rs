@@ -29,7 +29,6 @@ pub struct Decoded {
 ///
 /// `block` is 2 words for DXT1 (the two colours, the first in the low half; the indices) and 4 for DXT3 and DXT5 (two of alpha before
 /// those), little-endian. `dithered` says that DXT1 follows TEX-3 (nv2a), not TEX-4 (nv10). Other formats have no blocks and give zero.
-#[inline]
 pub fn decode(format: TextureFormat, dithered: bool, block: &[u32], x: u32, y: u32) -> Decoded {
     let texel = 4 * (y & 3) + (x & 3);
     match (format, block) {
